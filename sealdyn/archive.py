@@ -1,0 +1,384 @@
+"""One HDF5 file per run: scenario, provenance, named series with units, events, and the state to go on from.
+
+How a run survives being killed.  HDF5 cannot be interrupted while it rearranges its own bookkeeping, so
+it never does that in a file anybody reads: the skeleton is written once beside the run with room to spare
+and renamed into place; rows then go straight to the places HDF5 has reserved for them; a record of how
+many rows count (two slots in turn, each with a checksum) goes last.  Whatever instant the run ends at, the
+file opens and one record is whole.  When the room is used up, or the run is done, the file is written anew
+and renamed again.  Readers need no lock and no luck.
+"""
+
+import json
+import os
+import time as clock
+import zlib
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import NamedTuple
+
+import h5py
+import numpy as np
+
+FORMAT = "sealdyn archive 1"
+STATUSES = ("ok", "collapsed", "failed", "interrupted")
+SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
+SLOT, LOG = 1 << 14, 1 << 14
+
+
+class ArchiveError(Exception):
+    """A file that cannot be read as an archive, or cannot be continued; one line."""
+
+
+class Series(NamedTuple):
+    """What a stranger must know of a column."""
+
+    units: str
+    long_name: str
+
+
+def partial_path(path) -> Path:
+    """Where a run that is to become `path` lives until it is complete."""
+    path = Path(path)
+    return path.with_name(path.stem + ".partial.h5")
+
+
+class ArchiveWriter:
+    """Writes one run, row by row, in bounded memory.
+
+    `series` maps a column's name to its `Series`; `time` (s) is added when missing.  `meta` becomes root
+    attributes.  `expected_rows` spares copying: room for so many rows is reserved at once.  Rows wait in
+    memory for at most `interval` seconds or `buffer_rows` rows.  With `resume`, goes on from
+    `<stem>.partial.h5`, or from a `path` that was interrupted: `rows`, `state` say from where; without
+    either it starts anew.  Raises `ArchiveError` when the series differ from those of the file resumed.
+    """
+
+    def __init__(
+        self,
+        path,
+        *,
+        scenario_text: str,
+        resolved: dict,
+        meta: dict,
+        series: dict[str, Series],
+        resume: bool = False,
+        expected_rows: int = 0,
+        interval: float = 0.3,
+        buffer_rows: int = BLOCK,
+    ):
+        self.path, self.partial = Path(path), partial_path(path)
+        self.rows, self.state = 0, {}
+        self._series = {"time": Series("s", "time"), **series}
+        self._attributes = {
+            "title": self.path.stem,
+            "program": "sealdyn",
+            "created": datetime.now(UTC).isoformat(timespec="seconds"),
+            **meta,
+            "scenario": scenario_text,
+            "resolved": resolved,
+        }
+        self._interval, self._buffer_rows = interval, buffer_rows
+        self._waiting, self._state, self._log, self._sequence = [], {}, b"", 0
+        self._room, self._slot, self._log_room, self._file = 0, SLOT, LOG, None
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        source = self._resumable() if resume else None
+        if source:
+            self._take_over(source)
+        self._reserve(source, max(SMALLEST_ROOM, min(expected_rows + 1, LARGEST_FIRST_ROOM)))
+
+    def append(self, columns: dict, state: dict | None = None) -> None:
+        """Adds rows: one array of equal length for every series.  `state` (numbers, strings, arrays) is
+        what a continued run starts from after these rows; the last one given is kept."""
+        if set(columns) != set(self._series):
+            raise ValueError(f"columns differ from the series: {sorted(set(columns) ^ set(self._series))}")
+        columns = {name: np.array(columns[name], "<f8", ndmin=1) for name in self._series}
+        lengths = {len(values) for values in columns.values()}
+        if len(lengths) != 1:
+            raise ValueError(f"columns of unequal length: {sorted(lengths)}")
+        # Rows know their place, so that a flush broken off by Ctrl-C can simply be done again.
+        self._waiting.append((self._appended(), columns, self.state if state is None else state))
+        self.state = self._waiting[-1][2]
+        late = clock.monotonic() - self._written >= self._interval
+        if late or self._appended() - self.rows >= self._buffer_rows:
+            self.flush()
+
+    def events(self, events: list[dict]) -> None:
+        """Adds events: dicts with kind, time (s), value, text; other keys are kept as JSON."""
+        self._log += b"".join(_to_json(event).encode() + b"\n" for event in events)
+
+    def flush(self) -> None:
+        """Hands everything waiting to the operating system; after it, a kill loses nothing."""
+        rows, state, log = self._appended(), self.state, self._log
+        record = self._record(rows, state, log)
+        full = rows > self._room or len(record) > self._slot or len(log) > self._log_room
+        if full or not self._file:
+            self._slot = max(self._slot, 2 * len(record))
+            self._log_room = max(self._log_room, 2 * len(log))
+            self._reserve(self.partial, rows)
+            record = self._record(rows, state, log)
+        if self._waiting:
+            first = self._waiting[0][0]
+            for name in self._series:
+                values = np.concatenate([columns[name] for _, columns, _ in self._waiting])
+                self._write(self._place[name] + 8 * first, values.tobytes())
+        self._write(self._place["log"] + self._logged, log[self._logged :])
+        # The record last: it is what makes the bytes above count.
+        self._write(self._place["record"] + (self._sequence % 2) * self._slot, record)
+        self.rows, self._state, self._logged, self._sequence = rows, state, len(log), self._sequence + 1
+        self._waiting, self._written = [], clock.monotonic()
+
+    def finish(self, status: str, message: str, summary: dict) -> Path:
+        """Completes the archive and gives it its name; returns where it is.
+
+        An interrupted run does not replace a complete archive: it stays at `partial_path(path)`.
+        """
+        if status not in STATUSES:
+            raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
+        self.flush()
+        target = self.path
+        if status == "interrupted" and not self._may_replace():
+            target = self.partial
+        self._attributes |= {"status": status, "message": message, "summary": summary, "rows": self.rows}
+        with self._rewritten(target, self.rows, self.partial, self._attributes) as file:
+            file.create_group("restart").attrs["state"] = _to_json(self.state)
+            _write_events(file, _read_log(self._log))
+        if target != self.partial:
+            self.partial.unlink(missing_ok=True)
+        return target
+
+    def close(self) -> None:
+        """Leaves the run as it is, to be continued."""
+        if self._file:
+            self.flush()
+            self._close()
+
+    def _close(self) -> None:
+        if self._file:
+            self._file.close()
+        self._file = None
+
+    def _appended(self) -> int:
+        if not self._waiting:
+            return self.rows
+        start, columns, _ = self._waiting[-1]
+        return start + len(columns["time"])
+
+    # -- continuing --------------------------------------------------------------------------------
+
+    def _resumable(self):
+        if self.partial.exists():
+            return self.partial
+        return self.path if self.path.exists() and self._may_replace() else None
+
+    def _may_replace(self) -> bool:
+        try:
+            return read_info(self.path)["status"] == "interrupted"
+        except ArchiveError:
+            return True
+
+    def _take_over(self, source):
+        with _opened(source) as (file, record):
+            names = {name for name, item in file.items() if isinstance(item, h5py.Dataset)}
+            if names != set(self._series):
+                raise ArchiveError(f"{source}: cannot be continued, its series differ from this run's")
+            self.rows, self.state = record["rows"], record["state"]
+            self._attributes["created"] = file.attrs["created"]
+        self._state = self.state
+        self.events(record["events"])
+
+    # -- the file ----------------------------------------------------------------------------------
+
+    def _record(self, rows: int, state: dict, log: bytes) -> bytes:
+        record = {"sequence": self._sequence, "rows": rows, "log": len(log), "state": state}
+        text = _to_json(record).encode()
+        return b"%08x %s\n" % (zlib.crc32(text), text)
+
+    def _reserve(self, source, rows: int) -> None:
+        """Writes the file anew with room for `rows` and as many again, what counts in `source` copied."""
+        attributes = {**self._attributes, "status": "running", "message": ""}
+        room = self._room if rows <= self._room else max(rows, 2 * self.rows)
+        log = self._log
+        record = self._record(self.rows, self._state, log)
+        self._slot = max(self._slot, 2 * len(record))
+        self._log_room = max(self._log_room, 2 * len(log))
+        with self._rewritten(self.partial, room, source, attributes) as file:
+            restart = file.create_group("restart")
+            restart.attrs["note"] = "rows beyond those of the newest whole record are room, not data"
+            places = {name: file[name] for name in self._series}
+            places["record"] = restart.create_dataset("record", data=np.zeros((2, self._slot), "u1"))
+            places["log"] = restart.create_dataset("log", data=np.zeros(self._log_room, "u1"))
+            restart["log"][: len(log)] = np.frombuffer(log, "u1")
+            restart["record"][self._sequence % 2, : len(record)] = np.frombuffer(record, "u1")
+            place = {name: item.id.get_offset() for name, item in places.items()}
+        self._room, self._place, self._logged, self._sequence = room, place, len(log), self._sequence + 1
+        self._written = clock.monotonic()
+        self._file = open(self.partial, "r+b", buffering=0)  # noqa: SIM115  kept for the whole run
+
+    @contextmanager
+    def _rewritten(self, target: Path, room: int, source, attributes: dict):
+        """A complete new file that takes the place of `target` at once when the block ends."""
+        fresh = target.with_name(target.name + ".new")
+        with h5py.File(fresh, "w") as file:
+            file.attrs["format"] = FORMAT
+            for name, value in attributes.items():
+                file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
+            for name, series in self._series.items():
+                column = file.create_dataset(name, (room,), "<f8", fillvalue=np.nan)
+                column.attrs["units"], column.attrs["long_name"] = series
+                column[:1] = np.nan  # HDF5 reserves the whole extent at the first write
+            _attach_scale(file, "time", self._series)
+            if source and self.rows:
+                with h5py.File(source, "r") as old:
+                    for name in self._series:
+                        _copy_rows(old[name], file[name], self.rows)
+            yield file
+        self._close()
+        os.replace(fresh, target)
+
+    def _write(self, place: int, data: bytes) -> None:
+        self._file.seek(place)
+        view = memoryview(data)
+        while view:
+            view = view[self._file.write(view) :]
+
+
+def _copy_rows(old, new, rows: int) -> None:
+    for start in range(0, rows, BLOCK):
+        stop = min(start + BLOCK, rows)
+        new[start:stop] = old[start:stop]
+
+
+def _attach_scale(group, scale: str, names) -> None:
+    group[scale].make_scale(scale)
+    for name in names:
+        if name != scale:
+            group[name].dims[0].attach_scale(group[scale])
+
+
+def _write_events(file, events: list[dict]) -> None:
+    group = file.create_group("events")
+    if not events:
+        return
+    for name in ("time", "value"):
+        group[name] = np.array([event.get(name, np.nan) for event in events], "<f8")
+    for name in ("kind", "text"):
+        group[name] = np.array([str(event.get(name, "")) for event in events], h5py.string_dtype())
+    rest = [{k: v for k, v in event.items() if k not in group} for event in events]
+    group["details"] = np.array([_to_json(item) for item in rest], h5py.string_dtype())
+    group["time"].attrs["units"] = "s"
+    _attach_scale(group, "time", list(group))
+
+
+def _to_json(value) -> str:
+    def plain(item):
+        if isinstance(item, np.ndarray):
+            return {"array": item.tolist()}
+        if isinstance(item, np.generic):
+            return item.item()
+        return str(item)
+
+    return json.dumps(value, default=plain)
+
+
+def _from_json(text):
+    return json.loads(text, object_hook=lambda d: np.array(d["array"]) if set(d) == {"array"} else d)
+
+
+# -- reading ---------------------------------------------------------------------------------------
+
+
+@contextmanager
+def _opened(path):
+    """The file at `path` (or the run that is still to become it) and its newest whole record."""
+    with _open_file(Path(path)) as file:
+        if file.attrs.get("format") != FORMAT:
+            raise ArchiveError(f"{path}: an HDF5 file, but not a sealdyn archive")
+        try:
+            yield file, _read_record(file)
+        except (KeyError, OSError, ValueError) as error:
+            raise ArchiveError(f"{path}: damaged ({error})") from error
+
+
+def _read_record(file) -> dict:
+    if "record" not in file["restart"]:
+        state = _from_json(file["restart"].attrs["state"])
+        return {"rows": int(file.attrs["rows"]), "state": state, "events": _read_events(file["events"])}
+    record = _newest_record(file["restart/record"][()])
+    return record | {"events": _read_log(file["restart/log"][: record["log"]].tobytes())}
+
+
+def _open_file(path: Path):
+    for candidate in (path, partial_path(path), path):
+        # A run may finish between two looks: then what was partial has its final name.
+        if candidate.is_file():
+            try:
+                return h5py.File(candidate, "r")
+            except FileNotFoundError:
+                continue
+            except OSError as error:
+                what = "truncated or damaged" if h5py.is_hdf5(candidate) else "not an HDF5 file"
+                raise ArchiveError(f"{candidate}: {what}") from error
+    raise ArchiveError(f"{path}: {'not a file' if path.exists() else 'no such file'}")
+
+
+def _newest_record(slots) -> dict:
+    whole = []
+    for slot in slots:
+        check, _, text = slot.tobytes().split(b"\n", 1)[0].partition(b" ")
+        if check == b"%08x" % zlib.crc32(text):
+            whole.append(_from_json(text))
+    if not whole:
+        raise ValueError("no whole record of its rows")
+    return max(whole, key=lambda record: record["sequence"])
+
+
+def _read_log(log: bytes) -> list[dict]:
+    return [_from_json(line) for line in log.splitlines()]
+
+
+def _read_events(group) -> list[dict]:
+    if "time" not in group:
+        return []
+    columns = {k: group[k].asstr()[()] if k in ("kind", "text", "details") else group[k][()] for k in group}
+    details = columns.pop("details")
+    rows = zip(*(columns[k].tolist() for k in columns), strict=True)
+    return [
+        dict(zip(columns, row, strict=True)) | json.loads(d) for row, d in zip(rows, details, strict=True)
+    ]
+
+
+def read_info(path) -> dict:
+    """Everything but the series: status, message, summary, scenario, resolved, rows, restart, events,
+    series (name -> `Series`) and the other root attributes.  Works while the run is written."""
+    with _opened(path) as (file, record):
+        info = {name: value.item() if hasattr(value, "item") else value for name, value in file.attrs.items()}
+        for name in ("summary", "resolved"):
+            info[name] = _from_json(info.get(name, "{}"))
+        names = [name for name, item in file.items() if isinstance(item, h5py.Dataset)]
+        info["series"] = {n: Series(file[n].attrs["units"], file[n].attrs["long_name"]) for n in names}
+        return info | {"rows": record["rows"], "restart": record["state"], "events": record["events"]}
+
+
+def last_state(path) -> dict:
+    """What a continued run starts from: the state given with the last row that counts."""
+    with _opened(path) as (_, record):
+        return record["state"]
+
+
+def column(path, name: str, rows: slice = slice(None)) -> np.ndarray:
+    """One series, float64, or a slice of it, without loading the rest."""
+    with _opened(path) as (file, record):
+        if name not in file or not isinstance(file[name], h5py.Dataset):
+            raise ArchiveError(f"{path}: has no series {name!r}")
+        return file[name][slice(*rows.indices(record["rows"]))]
+
+
+def open_archive(path):
+    """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units; `attrs` hold the
+    scenario text, status, message, and `resolved` and `summary` as JSON."""
+    import xarray
+
+    with _opened(path) as (file, record):
+        name = file.filename
+    dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
+    return dataset.isel(time=slice(0, record["rows"])).assign_attrs(rows=record["rows"])

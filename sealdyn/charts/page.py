@@ -1,0 +1,83 @@
+"""The sheet a chart is drawn on: figure, axes in the house's look, and a PNG at the end."""
+
+import os
+from pathlib import Path
+
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from .palette import BLACK, GREY, PALE, STATUS
+
+LOOK = {
+    "font.size": 8.5,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,
+    "grid.color": PALE,
+    "grid.linewidth": 0.5,
+    "lines.linewidth": 1.0,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "path.simplify": True,
+    "agg.path.chunksize": 20000,
+}
+DPI = 150
+
+
+def sheet(width: float, height: float):
+    """A figure of `width` x `height` inches."""
+    figure = Figure(figsize=(width, height), dpi=DPI)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def look():
+    """The house's look, as a context: axes must be made inside it."""
+    return rc_context(LOOK)
+
+
+def absent(ax, title: str, why: str = "not in this scene") -> None:
+    """An empty panel that says so."""
+    ax.set_title(title)
+    ax.grid(False)
+    ax.set(xticks=[], yticks=[])
+    for spine in ax.spines.values():
+        spine.set_color(PALE)
+    ax.text(0.5, 0.5, why, transform=ax.transAxes, ha="center", va="center", color=GREY, style="italic")
+
+
+def header(figure, run, lines_below: int = 2) -> None:
+    """The scene's question, then name, model and verdict, then what happened."""
+    left, top, step = 0.035, 1 - 0.26 / figure.get_figheight(), 0.2 / figure.get_figheight()
+    width = int(figure.get_figwidth() * 11)
+    figure.text(left, top, shortened(run.question, width), fontsize=13, weight="bold", va="center")
+    if lines_below > 0:
+        words = shortened(run.description, int(figure.get_figwidth() * 15.5))
+        figure.text(left, top - 1.3 * step, words, fontsize=9, va="center", color=BLACK)
+    if lines_below > 1:
+        words = f"{run.status}: {run.message}" if run.message else run.status
+        words = shortened(words, int(figure.get_figwidth() * 15.5))
+        colour = STATUS.get(run.status, BLACK)
+        figure.text(left, top - 2.4 * step, words, fontsize=9, va="center", color=colour, weight="bold")
+
+
+def shortened(words: str, length: int) -> str:
+    """`words` in one line of at most `length` characters."""
+    words = " ".join(words.split())
+    return words if len(words) <= length else words[: length - 1].rsplit(" ", 1)[0] + " …"
+
+
+def save(figure, path) -> Path:
+    """Writes the PNG beside `path` first, so that a figure is never seen half drawn."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".new")
+    figure.savefig(fresh, format="png", dpi=DPI)
+    os.replace(fresh, path)
+    return path

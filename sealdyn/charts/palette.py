@@ -1,0 +1,23 @@
+"""Colours that colour-blind readers tell apart.
+
+**Source** Okabe and Ito (2008), Color Universal Design; the map for film thickness is cividis
+(Nunez, Anderton and Renslow, 2018).
+"""
+
+BLACK = "#000000"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+GREEN = "#009E73"
+YELLOW = "#F0E442"
+BLUE = "#0072B2"
+VERMILLION = "#D55E00"
+PURPLE = "#CC79A7"
+GREY = "#8A8A8A"
+PALE = "#D9D9D9"
+
+THICKNESS = "cividis"
+
+# One meaning, one colour, in every chart.
+FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK
+RING = {"stator": PURPLE, "rotor": BLUE}
+STATUS = {"ok": GREEN, "collapsed": VERMILLION, "failed": VERMILLION, "interrupted": ORANGE, "running": BLUE}

@@ -1,0 +1,134 @@
+"""What the tilt and the film are made of, in orders of shaft speed."""
+
+import numpy as np
+
+from .page import absent, header, look, save, sheet
+from .palette import FILM, LEAK, TILT
+from .record import Run
+
+MOST_ROWS = 1 << 15
+FLOOR = 1e-5
+HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
+
+
+def draw(archive_path, out_path, turns: float | None = None):
+    """Spectra of the relative tilt (forward and backward), the axial gap and h_min over the last `turns`
+    turns; default the last half of the run."""
+    run = Run(archive_path)
+    with look():
+        figure = sheet(11.5, 7.2)
+        header(figure, run)
+        top = figure.add_axes((0.075, 0.46, 0.895, 0.345))
+        panel(top, run, turns)
+        for left, name, title in ((0.075, "axial_gap_change", "Axial motion"), (0.555, "h_min", "h_min")):
+            ax = figure.add_axes((left, 0.075, 0.415, 0.255))
+            real_panel(ax, run, name, title, turns)
+        return save(figure, out_path)
+
+
+def panel(ax, run: Run, turns: float | None = None) -> None:
+    """Relative tilt, two-sided: positive orders whirl with the shaft, negative ones against it.  An
+    aligned scene shows its axial motion instead."""
+    if not run.has("relative_tilt_x", "relative_tilt_y"):
+        real_panel(ax, run, "axial_gap_change", "Axial motion", turns)
+        return
+    x, y = (lambda first, axis=axis: run.values(f"relative_tilt_{axis}", first) for axis in "xy")
+    title = "Relative tilt in orders of shaft speed"
+    show(ax, run, lambda first: x(first) + 1j * y(first), title, "amplitude, µrad", TILT, turns)
+
+
+def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None) -> None:
+    """A real series about its mean, one-sided."""
+    if not run.has(name):
+        absent(ax, title)
+        return
+    colour = FILM if name == "h_min" else LEAK
+    show(ax, run, lambda first: run.values(name, first), title, "amplitude, µm", colour, turns)
+
+
+def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float | None) -> None:
+    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI)."""
+    if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
+        absent(ax, title, "fewer than two turns: no spectrum")
+        return
+    first = run.last(turns or run.turns[-1] / 2, MOST_ROWS)
+    if run.rows - first < 16:
+        first = 0
+    orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
+    amplitude *= 1e6
+    largest = amplitude.max()
+    if not largest > 0:
+        absent(ax, title, "does not move")
+        return
+    named = peaks(orders, amplitude)
+    reach = min(max(3.0, 1.15 * np.abs(orders[named]).max() if len(named) else 0), np.abs(orders).max())
+    two_sided = orders[0] < 0
+    ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
+    ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
+    ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * 12))
+    for at in named:
+        ax.annotate(
+            f"{orders[at]:.3g}×\n{amplitude[at]:.3g}",
+            (orders[at], amplitude[at]),
+            xytext=(0, 3),
+            textcoords="offset points",
+            ha="center",
+            fontsize=7.5,
+        )
+    how = ", speed varies: resampled over shaft angle" if resampled else ""
+    sides = "against the shaft  ←   order   →  with the shaft" if two_sided else "order of shaft speed"
+    ax.set(title=title, ylabel=label)
+    span = run.turns[-1] - run.turns[first]
+    ax.set_xlabel(f"{sides}\nlast {span:.3g} turns, Hann window, resolution {resolution:.2g} orders{how}")
+
+
+def order_spectrum(turns, signal):
+    """Amplitude spectrum of `signal` (real or complex) over shaft angle, Hann window.
+
+    `turns` rise; where they do not rise evenly the signal is resampled by cubic interpolation.  Cut to a
+    whole number of turns, so that integer orders fall on a line of the spectrum.  Returns orders,
+    amplitudes (of a cosine if real, of the rotating vector if complex), resolution (orders), resampled.
+    """
+    step = (turns[-1] - turns[0]) / (len(turns) - 1)
+    resampled = bool(np.abs(np.diff(turns) / step - 1).max() > 1e-3)
+    if resampled:
+        grid = np.linspace(turns[0], turns[-1], len(turns))
+        signal = cubic(grid, turns, signal)
+    if step < 0.5:
+        whole = np.floor((turns[-1] - turns[0]) / 1.0 + 1e-6)
+        signal = signal[-max(2, round(whole / step)) :]
+    if np.isrealobj(signal):
+        signal = signal - signal.mean()
+    count = len(signal)
+    hann = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)
+    if np.iscomplexobj(signal):
+        lines = np.fft.fftshift(np.fft.fft(hann * signal))
+        orders = np.fft.fftshift(np.fft.fftfreq(count, step))
+        amplitude = np.abs(lines) / hann.sum()
+    else:
+        orders, amplitude = np.fft.rfftfreq(count, step), 2 * np.abs(np.fft.rfft(hann * signal)) / hann.sum()
+    return orders, amplitude, HANN_BANDWIDTH / (count * step), resampled
+
+
+def cubic(at, x, y):
+    """Lagrange interpolation through the four nearest rows; `x` rises, unevenly."""
+    k = np.clip(np.searchsorted(x, at) - 2, 0, len(x) - 4)
+    total = np.zeros(len(at), y.dtype)
+    for i in range(4):
+        weight = np.ones(len(at))
+        for j in range(4):
+            if j != i:
+                weight *= (at - x[k + j]) / (x[k + i] - x[k + j])
+        total += weight * y[k + i]
+    return total
+
+
+def peaks(orders, amplitude, most: int = 5) -> np.ndarray:
+    """Rows of the largest local maxima, above 1 % of the largest and clear of one another."""
+    inside = np.r_[False, (amplitude[1:-1] >= amplitude[:-2]) & (amplitude[1:-1] > amplitude[2:]), False]
+    ranked = np.flatnonzero(inside & (amplitude > 0.01 * amplitude.max()))
+    kept: list[int] = []
+    for at in ranked[np.argsort(-amplitude[ranked])]:
+        if all(abs(orders[at] - orders[other]) > 0.3 for other in kept) and len(kept) < most:
+            kept.append(int(at))
+    return np.array(kept, int)

@@ -1,0 +1,310 @@
+"""The verbs: run, check, schema, show, plot, validate.  Everything heavy is imported by the verb that needs it."""
+
+import json
+import signal
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
+EXIT = {
+    "ok": DONE,
+    "invalid": BAD_INPUT,
+    "collapsed": COLLAPSED,
+    "failed": FAILED,
+    "interrupted": INTERRUPTED,
+}
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help=(
+        "Time-domain rotor dynamics of flexibly mounted mechanical face seals.  "
+        "Exit codes: 0 done, 2 bad input, 3 film collapsed, 4 solver failed, 5 a check failed, 130 interrupted."
+    ),
+)
+
+ScenarioFile = Annotated[
+    Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")
+]
+Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")
+]
+
+
+class Stop(Exception):
+    """Ends a verb with a status and a sentence."""
+
+    def __init__(self, status: str, message: str, code: int | None = None):
+        super().__init__(message)
+        self.status, self.message = status, message
+        self.code = EXIT[status] if code is None else code
+
+
+def _read(path: Path, overrides):
+    """Scenario of a TOML file or of an archive; input errors end here."""
+    from .archive import ArchiveError, read_info
+    from .scenario import ScenarioError, parse_scenario, read_scenario
+
+    try:
+        if path.suffix == ".h5":
+            info = read_info(path)
+            given = [*info.get("overrides", []), *(overrides or [])]
+            return parse_scenario(info["scenario"], info.get("name", path.stem), given)
+        return read_scenario(path, overrides or ())
+    except (ScenarioError, ArchiveError) as error:
+        raise Stop("invalid", str(error)) from None
+
+
+@app.command()
+def run(
+    file: ScenarioFile,
+    set: Overrides = None,
+    out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>.h5)")] = None,
+    plot: Annotated[
+        bool, typer.Option("--plot/--no-plot", help="draw the overview figure beside the archive")
+    ] = True,
+    as_json: AsJson = False,
+    resume: Annotated[
+        bool, typer.Option("--continue", help="go on with an interrupted or killed run")
+    ] = False,
+):
+    """Run a scenario: archive, figure, and what a seal engineer reads first."""
+    from .archive import ArchiveError
+    from .report import lines
+    from .scene import ImpossibleScene
+    from .simulate import simulate
+
+    scenario = _read(file, set)
+    if out is None:
+        stem = f"{file.stem}-rerun" if file.suffix == ".h5" else scenario.name
+        out = (file.parent if file.suffix == ".h5" else Path("outputs")) / f"{stem}.h5"
+    if resume:
+        _check_resumable(out, scenario)
+    _say_compiling(file=sys.stderr)
+    flag = _catch_interrupt()
+    with _Progress() as bar:
+        try:
+            result = simulate(scenario, out, progress=bar, stop=lambda: bool(flag), resume=resume)
+        except (ImpossibleScene, ArchiveError) as error:
+            raise Stop("invalid", f"{file}: {error}") from None
+        except OSError as error:
+            raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
+    summary = {**result.summary, "figure": None}
+    if plot and result.status != "interrupted":
+        from .charts import overview
+
+        figure = result.archive.with_suffix(".png")
+        overview.draw(result.archive, figure)
+        summary["figure"] = str(figure)
+    if as_json:
+        print(json.dumps(summary))
+    else:
+        for line in lines(scenario, summary):
+            print(line)
+    if result.status == "interrupted":
+        print(f"go on with: sealdyn run {file} --continue", file=sys.stderr)
+    raise typer.Exit(EXIT[result.status])
+
+
+def _check_resumable(out, scenario):
+    from .archive import partial_path, read_info
+
+    source = partial_path(out) if partial_path(out).exists() else out
+    if not source.exists():
+        raise Stop("invalid", f"{source}: nothing to continue; run without --continue first")
+    info = read_info(source)
+    if info["status"] not in ("running", "interrupted"):
+        raise Stop("ok", f"{source}: nothing to continue, the run is complete ({info['status']})")
+    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
+        raise Stop(
+            "invalid", f"{source}: was made from another scenario text or other --set; run without --continue"
+        )
+
+
+def _catch_interrupt() -> list:
+    """First Ctrl-C asks the run to end cleanly after its present chunk; a second one breaks off."""
+    asked = []
+
+    def ask(signum, frame):
+        if asked:
+            raise KeyboardInterrupt
+        asked.append(signum)
+
+    signal.signal(signal.SIGINT, ask)
+    signal.signal(signal.SIGTERM, ask)
+    return asked
+
+
+def _say_compiling(file):
+    """The first run on a machine compiles the kernels; say so before the wait."""
+    cache = Path(__file__).parent / "__pycache__"
+    if not any(cache.glob("dynamics.*.nbi")):
+        print("first run on this machine: compiling kernels once (some seconds) ...", file=file, flush=True)
+
+
+class _Progress:
+    """Progress bar on standard error: simulated time, turns of time left."""
+
+    def __init__(self):
+        self.bar = self.task = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        if self.bar:
+            self.bar.stop()
+
+    def __call__(self, t: float, end: float):
+        if self.bar is None:
+            from rich.console import Console
+            from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+            self.bar = Progress(
+                TextColumn("{task.fields[time]}"),
+                BarColumn(),
+                TextColumn("{task.percentage:>3.0f}%"),
+                TimeRemainingColumn(),
+                console=Console(stderr=True),
+                transient=False,
+            )
+            self.task = self.bar.add_task("", total=end, time="")
+            self.bar.start()
+        self.bar.update(self.task, completed=t, time=f"t = {t:.4g} of {end:.4g} s")
+
+
+@app.command()
+def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
+    """Read a scenario, say what is wrong with it or print it resolved to SI."""
+    from .report import resolved_lines
+    from .scenario import unused_keys
+    from .scene import ImpossibleScene
+    from .simulate import prepare
+
+    scenario = _read(file, set)
+    try:
+        problem, method, why, *_ = prepare(scenario)
+    except ImpossibleScene as error:
+        raise Stop("invalid", f"{file}: {error}") from None
+    found = {
+        "status": "ok",
+        "message": "the scene is possible",
+        "scene": scenario.resolved(),
+        "model": {
+            "film": problem.film_name,
+            "unknowns": problem.names,
+            "solver": method,
+            "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
+            "unused": unused_keys(scenario),
+        },
+        "clearance": problem.clearance,
+        "equilibria": [vars(e) for e in problem.equilibria],
+    }
+    if as_json:
+        print(json.dumps(found))
+    else:
+        for line in resolved_lines(found):
+            print(line)
+
+
+@app.command()
+def schema():
+    """Print the JSON schema of scenario files, for editors."""
+    from .scenario import json_schema
+
+    print(json.dumps(json_schema(), indent=2))
+
+
+@app.command()
+def show(
+    file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
+    csv: Annotated[
+        bool, typer.Option("--csv", help="all series as comma-separated values on standard output")
+    ] = False,
+    as_json: AsJson = False,
+):
+    """Say what an archive holds; works while a run writes it."""
+    from .archive import ArchiveError, column, read_info
+    from .report import archive_lines, csv_rows
+
+    try:
+        info = read_info(file)
+        if csv:
+            for row in csv_rows(info, lambda name, rows: column(file, name, rows)):
+                print(row)
+        elif as_json:
+            names = ("status", "message", "rows", "summary", "scenario", "version", "libraries", "events")
+            print(json.dumps({name: info.get(name) for name in names}))
+        else:
+            for line in archive_lines(file, info):
+                print(line)
+    except ArchiveError as error:
+        raise Stop("invalid", str(error)) from None
+
+
+@app.command()
+def plot(
+    file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
+    kind: Annotated[str, typer.Option(help="overview, orbit, film or spectrum")] = "overview",
+    out: Annotated[Path | None, typer.Option(help="figure to write (default beside the archive)")] = None,
+):
+    """Draw a figure from an archive."""
+    import difflib
+    import importlib
+
+    from .archive import ArchiveError
+
+    kinds = ("overview", "orbit", "film", "spectrum")
+    if kind not in kinds:
+        near = difflib.get_close_matches(kind, kinds, 1)
+        hint = f'; nearest "{near[0]}"' if near else ""
+        raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{hint}')
+    if out is None:
+        out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
+    try:
+        importlib.import_module(f"sealdyn.charts.{kind}").draw(file, out)
+    except ArchiveError as error:
+        raise Stop("invalid", str(error)) from None
+    print(out)
+
+
+@app.command()
+def validate(as_json: AsJson = False):
+    """Compare published numbers with three independent roads: formula, linear algebra, time domain."""
+    from .validation import report, validate_all
+
+    rows = validate_all()
+    good = all(row["verdict"] != "FAILED" for row in rows)
+    if as_json:
+        print(json.dumps({"status": "ok" if good else "failed", "checks": rows}))
+    else:
+        report(rows)
+    raise typer.Exit(DONE if good else CHECK_FAILED)
+
+
+def main():
+    """Entry point: one line for every error, never a traceback."""
+    as_json = "--json" in sys.argv
+    try:
+        app()
+    except Stop as stop:
+        if as_json:
+            print(json.dumps({"status": stop.status, "message": stop.message}))
+        else:
+            print(stop.message, file=sys.stderr)
+        sys.exit(stop.code)
+    except BrokenPipeError:
+        sys.exit(DONE)
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,69 @@
+"""Closed forms that a run must confirm: film coefficients, steady response, contact onset, stability.
+
+Dimensional (SI).  Radii, clearances and films in m, angles and coning in rad, pressures in Pa, tilt stiffness
+in N m/rad, tilt damping in N m s/rad, inertia in kg m^2, speeds in rad/s.  Arguments broadcast over numpy
+arrays unless a function says scalar.  The clearance is the film thickness at the inner radius of the aligned
+seal, `h = clearance + coning (r - inner_radius)`; the pressure drop is outer minus inner pressure.
+"""
+
+from .film import (
+    FilmCoefficients,
+    aligned_leakage,
+    aligned_opening_force,
+    film_coefficients,
+    narrow_seal_opening_force,
+    radial_film_coefficients,
+)
+from .green_1989 import GREEN_1989, GREEN_1989_ROUNDED, GREEN_1989_SEAL, Published, green_1989_tilt
+from .response import (
+    contact_tilt,
+    critical_coning,
+    critical_forcing,
+    critical_tilt_inner,
+    critical_tilt_outer,
+    fmr_absolute_static,
+    fmr_dynamic,
+    fmr_static,
+    fms_dynamic,
+    fms_static,
+    superposed,
+)
+from .stability import (
+    axial_mode_stable,
+    fmr_critical_speed,
+    fmr_whirl_ratio,
+    fms_critical_speed,
+    fms_whirl_ratio,
+    unconditional_inertia_ratio,
+)
+
+__all__ = [
+    "GREEN_1989",
+    "GREEN_1989_ROUNDED",
+    "GREEN_1989_SEAL",
+    "FilmCoefficients",
+    "Published",
+    "aligned_leakage",
+    "aligned_opening_force",
+    "axial_mode_stable",
+    "contact_tilt",
+    "critical_coning",
+    "critical_forcing",
+    "critical_tilt_inner",
+    "critical_tilt_outer",
+    "film_coefficients",
+    "fmr_absolute_static",
+    "fmr_critical_speed",
+    "fmr_dynamic",
+    "fmr_static",
+    "fmr_whirl_ratio",
+    "fms_critical_speed",
+    "fms_dynamic",
+    "fms_static",
+    "fms_whirl_ratio",
+    "green_1989_tilt",
+    "narrow_seal_opening_force",
+    "radial_film_coefficients",
+    "superposed",
+    "unconditional_inertia_ratio",
+]

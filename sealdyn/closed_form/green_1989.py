@@ -1,0 +1,87 @@
+"""The reference seal of Green (1989) and what his Table 1 prints, as data.
+
+**Source** Green, I., "Gyroscopic and Support Effects on the Steady-State Response of a Noncontacting Flexibly
+Mounted Rotor Mechanical Face Seal", J. Tribology 111 (1989), Table 1 and the example before it.
+"""
+
+from typing import Literal, NamedTuple
+
+SOURCE = "Green (1989), Table 1"
+
+
+class Published(NamedTuple):
+    """One printed number.  `last_digit` is one unit of its last printed digit, in the same unit."""
+
+    source: str
+    quantity: str
+    value: float | None  # None: the table says that there is none
+    arrangement: Literal["FMR", "FMS"]
+    inertia_ratio: float | None  # c = I/J; None where the quantity does not depend on it
+    last_digit: float | None
+
+
+# Transmissibilities are per unit forcing, the maximum for both forcings 1, critical misalignments in units of
+# C/r_o with unit own misalignment (of the stator for FMR, runout for FMS), critical speeds in rad/s.
+GREEN_1989 = (
+    Published(SOURCE, "static_transmissibility", 0.071, "FMR", None, 0.001),
+    Published(SOURCE, "dynamic_transmissibility", 0.055, "FMR", 0.5, 0.001),
+    Published(SOURCE, "dynamic_transmissibility", 0.066, "FMR", 3.0, 0.001),
+    Published(SOURCE, "maximum_relative_misalignment", 0.126, "FMR", 0.5, 0.001),
+    Published(SOURCE, "maximum_relative_misalignment", 0.137, "FMR", 3.0, 0.001),
+    Published(SOURCE, "critical_misalignment", 16.86, "FMR", 0.5, 0.01),
+    Published(SOURCE, "critical_misalignment", 16.76, "FMR", 3.0, 0.01),
+    Published(SOURCE, "critical_speed", None, "FMR", 0.5, None),
+    Published(SOURCE, "critical_speed", 8.4e3, "FMR", 3.0, 100.0),
+    Published(SOURCE, "static_transmissibility", 0.061, "FMS", None, 0.001),
+    Published(SOURCE, "dynamic_transmissibility", 0.080, "FMS", None, 0.001),
+    Published(SOURCE, "maximum_relative_misalignment", 0.141, "FMS", None, 0.001),
+    Published(SOURCE, "critical_misalignment", 14.8, "FMS", None, 0.1),
+    Published(SOURCE, "critical_speed", 5.9e3, "FMS", None, 100.0),
+)
+
+# SI.  The transverse inertia (m r_o^2 / 2) stays when the inertia ratio changes: polar = transverse / ratio.
+GREEN_1989_SEAL = {
+    "inner_radius": 0.032,
+    "outer_radius": 0.040,
+    "clearance": 10e-6,
+    "coning": 25e-6 / 8e-3,
+    "viscosity": 0.5e-3,
+    "pressure_drop": 0.5e6,
+    "speed": 1000.0,
+    "mass": 1.0,
+    "transverse_inertia": 8e-4,
+    "axial_support_stiffness": 5e5,
+    "axial_support_damping": 300.0,
+    "support_radius": 0.040,
+}
+
+# The same seal as printed: dimensionless, rounded to the digits given.  Speed 1 stands for 1000 rad/s, so a
+# critical speed computed from these comes out in thousands of rad/s.
+GREEN_1989_ROUNDED = {
+    "speed": 1.0,
+    "transverse_inertia": 1.63e-3,
+    "support_stiffness": 8.14e-4,
+    "support_damping": 4.88e-4,
+    "film_stiffness": 0.0118,
+    "film_damping": 8.3e-3,
+}
+
+
+def green_1989_tilt(
+    film_stiffness: float, film_damping: float, inertia_ratio: float = 0.5
+) -> dict[str, float]:
+    """The seven keywords of the tilt formulas (SI) for the reference seal on a film of the caller's choice.
+
+    **Source** support at radius r_s: `K_s = K_z r_s^2 / 2`, the same for damping.
+    """
+    seal = GREEN_1989_SEAL
+    half = seal["support_radius"] ** 2 / 2
+    return {
+        "speed": seal["speed"],
+        "transverse_inertia": seal["transverse_inertia"],
+        "polar_inertia": seal["transverse_inertia"] / inertia_ratio,
+        "support_stiffness": seal["axial_support_stiffness"] * half,
+        "support_damping": seal["axial_support_damping"] * half,
+        "film_stiffness": film_stiffness,
+        "film_damping": film_damping,
+    }

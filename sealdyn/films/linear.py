@@ -1,0 +1,139 @@
+"""Linear film: constant stiffness and damping about the aligned equilibrium.
+
+    F = F_0 - K_z dz - D_z dz',     M = -[ K g + D (g' - i wm g) ]      (on the stator)
+
+**Source** coefficients from Green (1987; appendix of Green 1989), from another film's linearisation, or
+the user's own.  The term with the mean spin wm is the wedge (half-speed entrainment), the only
+destabilising one.  Green's stiffness follows the pressure drop and his damping the viscosity, so both
+follow tables over time; the user's own numbers stay as given.
+**Valid** small motion: |g| r_o and dz well below the clearance; then it costs nothing.
+Leakage and drag are those of the narrow seal at the tilted film, angle by angle, without squeeze.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..closed_form import film_coefficients, narrow_seal_opening_force
+from ..gap import (
+    CAVITATED,
+    CLEARANCE,
+    CONING,
+    DZ,
+    DZ_RATE,
+    FACE_SIZE,
+    FLOOR,
+    FLOW_INNER,
+    FLOW_OUTER,
+    FORCE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_PRESSURE,
+    INNER_RADIUS,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    OUTER_RADIUS,
+    SPIN_DIFFERENCE,
+    TILT_AT_MEAN,
+    TORQUE,
+    VISCOSITY,
+    above_floor,
+    face_block,
+)
+
+RUNG = 1
+UNKNOWNS = 0
+
+# Block layout after the faces: each coefficient is a constant plus a part per pressure drop or viscosity.
+TILT_K, TILT_K_DP, TILT_D, TILT_D_MU, AXIAL_K, AXIAL_K_DP, AXIAL_D, AXIAL_D_MU, FORCE_I, FORCE_O = range(
+    FACE_SIZE, FACE_SIZE + 10
+)
+BLOCK_SIZE = FACE_SIZE + 10
+FLOW_ANGLES = 64
+
+
+def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
+    """The film's block of the parameter array, shape (BLOCK_SIZE,).  `error` is not needed: no quadrature."""
+    f = np.zeros(BLOCK_SIZE)
+    f[:FACE_SIZE] = face_block(film, clearance)
+    faces = dict(
+        inner_radius=film.inner_radius,
+        outer_radius=film.outer_radius,
+        clearance=clearance,
+        coning=film.coning,
+    )
+    if film.coefficients == "green":
+        c = film_coefficients(**faces, viscosity=1.0, pressure_drop=1.0)
+        f[TILT_K_DP], f[TILT_D_MU] = c.tilt_stiffness, c.tilt_damping
+        f[AXIAL_K_DP], f[AXIAL_D_MU] = c.axial_stiffness, c.axial_damping
+    else:
+        c = film.coefficients
+        f[TILT_K], f[TILT_D], f[AXIAL_K], f[AXIAL_D] = (
+            c.tilt_stiffness,
+            c.tilt_damping,
+            c.axial_stiffness,
+            c.axial_damping,
+        )
+    f[FORCE_I] = narrow_seal_opening_force(**faces, inner_pressure=1.0, outer_pressure=0.0)
+    f[FORCE_O] = narrow_seal_opening_force(**faces, inner_pressure=0.0, outer_pressure=1.0)
+    return f
+
+
+def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
+    """Opening force (N) of the aligned narrow seal at rest; pressures absolute (Pa), clearance in m."""
+    return float(
+        narrow_seal_opening_force(
+            inner_radius=film.inner_radius,
+            outer_radius=film.outer_radius,
+            clearance=clearance,
+            coning=film.coning,
+            inner_pressure=inner_pressure,
+            outer_pressure=outer_pressure,
+        )
+    )
+
+
+@njit(cache=True)
+def wrench(f, s):
+    """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
+    drop, mu = s[OUTER_PRESSURE] - s[INNER_PRESSURE], s[VISCOSITY]
+    k, d = f[TILT_K] + f[TILT_K_DP] * drop, f[TILT_D] + f[TILT_D_MU] * mu
+    k_z, d_z = f[AXIAL_K] + f[AXIAL_K_DP] * drop, f[AXIAL_D] + f[AXIAL_D_MU] * mu
+    wedge = d * s[MEAN_SPIN]
+    s[FORCE] = (
+        f[FORCE_I] * s[INNER_PRESSURE] + f[FORCE_O] * s[OUTER_PRESSURE] - k_z * s[DZ] - d_z * s[DZ_RATE]
+    )
+    s[MOMENT_X] = -k * s[GX] - d * s[GX_RATE] - wedge * s[GY]
+    s[MOMENT_Y] = -k * s[GY] - d * s[GY_RATE] + wedge * s[GX]
+    s[CAVITATED] = 0.0
+
+
+@njit(cache=True)
+def flow(f, s):
+    """As `wrench`; also flow in +r (m^3/s) and friction torque on the rotor (N m) of the narrow seal at
+    this gap: `h^3` conductance and `mu r/h` drag integrated over the face width in closed form."""
+    wrench(f, s)
+    r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
+    width, r_m = r_o - r_i, 0.5 * (r_i + r_o)
+    tilt = math.hypot(s[GX], s[GY])
+    swing_i, swing_o = r_i * tilt, r_o * tilt
+    if f[TILT_AT_MEAN] != 0.0:
+        swing_i = swing_o = r_m * tilt
+    conductance = drag = 0.0
+    for j in range(FLOW_ANGLES):
+        cos_b = math.cos(2.0 * math.pi * j / FLOW_ANGLES)
+        h_i = above_floor(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
+        h_o = above_floor(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
+        conductance += 2.0 * (h_i * h_o) ** 2 / (width * (h_i + h_o))
+        change = (h_o - h_i) / h_i
+        drag += width / h_i * (math.log1p(change) / change if abs(change) > 1e-9 else 1.0)
+    d_theta = 2.0 * math.pi / FLOW_ANGLES
+    drop = s[OUTER_PRESSURE] - s[INNER_PRESSURE]
+    s[FLOW_INNER] = s[FLOW_OUTER] = -r_m * drop * d_theta * conductance / (12.0 * s[VISCOSITY])
+    twist = 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])
+    s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * r_m**3 * d_theta * drag + twist

@@ -1,0 +1,81 @@
+"""The gap between the faces: axes, signs, film thickness, its smallest value, and the gap-state array.
+
+Axes (see README): zeta is the shaft axis, theta is measured from xi.  The stator faces the rotor from
+above, `gap = stator surface - rotor surface`; the tilt of a ring is a small rotation vector, and
+`g = tilt of stator - tilt of rotor`.  Film thickness of two rigid coned faces:
+
+    h(r, theta) = C + dz + coning (r - r_i) + r (g_x sin(theta) - g_y cos(theta))
+
+With `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from
+there: h = C + dz + coning (r - r_i) - r G cos(beta).
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+# Slots of the gap-state array `s`, which the scene fills and the film kernels read and complete.
+DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)
+MEAN_SPIN, SPIN_DIFFERENCE, VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE = range(6, 11)
+FORCE, MOMENT_X, MOMENT_Y = range(11, 14)
+FLOW_INNER, FLOW_OUTER, TORQUE, CAVITATED = range(14, 18)
+GAP_STATE_SIZE = 18
+
+# Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
+INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR = range(7)
+FACE_SIZE = 7
+
+
+def face_block(film, clearance: float) -> np.ndarray:
+    """The face part of a film's parameter block, shape (FACE_SIZE,): radii and clearance in m, coning in
+    rad, the floor of the film thickness in m, and two flags."""
+    return np.array(
+        [
+            film.inner_radius,
+            film.outer_radius,
+            clearance,
+            film.coning,
+            film.floor * clearance,
+            film.tilt_radius == "mean",
+            film.geometry == "planar",
+        ],
+        dtype=np.float64,
+    )
+
+
+@njit(cache=True)
+def edge_gaps(f, dz, tilt):
+    """Smallest film thickness (m) over the circle at the inner and at the outer edge.
+
+    `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
+    **Valid** rigid faces, linear coning: the minimum over the face is the smaller of the two.
+    """
+    r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
+    a_i, a_o = r_i, r_o
+    if f[TILT_AT_MEAN] != 0.0:
+        a_i = a_o = 0.5 * (r_i + r_o)
+    inner = f[CLEARANCE] + dz - a_i * tilt
+    outer = f[CLEARANCE] + dz + f[CONING] * (r_o - r_i) - a_o * tilt
+    return inner, outer
+
+
+@njit(cache=True)
+def h_min(f, dz, g_x, g_y):
+    """Smallest film thickness over the face (m), its angle (rad, from xi) and radius (m)."""
+    inner, outer = edge_gaps(f, dz, math.hypot(g_x, g_y))
+    theta = math.atan2(g_y, g_x) - 0.5 * math.pi
+    if theta < -math.pi:
+        theta += 2.0 * math.pi
+    if inner <= outer:
+        return inner, theta, f[INNER_RADIUS]
+    return outer, theta, f[OUTER_RADIUS]
+
+
+@njit(cache=True)
+def above_floor(h, floor):
+    """Film thickness as the film laws see it: h itself above the floor, below it a positive
+    continuation with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""
+    if h >= floor:
+        return h
+    return floor * math.exp((h - floor) / floor)

@@ -1,0 +1,601 @@
+"""A scene made ready for a solver: unknowns, scales, right-hand side, residual, signals, linear form."""
+
+import importlib
+import math
+import pkgutil
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from . import dynamics, films, watch
+from .equilibrium import ClosingForce, Equilibrium, initially, settle
+from .films import Coefficients
+from .gap import (
+    CAVITATED,
+    DZ,
+    FACE_SIZE,
+    FLOW_INNER,
+    FLOW_OUTER,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GY,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    TORQUE,
+    VISCOSITY,
+    h_min,
+)
+from .imposed import AXIAL, OWN, ROTOR, ROW, STATOR, oscillators
+from .legs import Leg, constant_and_slope, cut
+from .modes import Harmonic, LinearScene, RingNumbers, common_period, linearise
+from .scene import ImpossibleScene, Scene
+from .units import Table
+
+WORKS = 6
+# Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
+STIFF = 60.0
+RING_NAMES = ("stator", "rotor")
+
+
+def film_module(name: str):
+    """The film rung called `name`, found by file name; "auto" is the radial film until a choice is certified."""
+    return importlib.import_module(f"sealdyn.films.{'radial' if name == 'auto' else name}")
+
+
+def film_names() -> list[str]:
+    """Names of the film rungs there are."""
+    return sorted(m.name for m in pkgutil.iter_modules(films.__path__) if not m.name.startswith("_"))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What the scene decided: film rung, unknowns, and why."""
+
+    film: str
+    unknowns: list[str]
+    massless: bool
+    linear: bool
+    reasons: list[str]
+
+
+class Problem:
+    """Equations, scales and signals of one scene over a duration.
+
+    `n` displacements come first in the unknowns `y`, then the rates of those with mass (n_mechanical in all),
+    then five works and the sum of absolute works.  Times handed in are leg times tau; call `begin(k)` first.
+    """
+
+    def __init__(self, scene: Scene, duration: float, accuracy: float = 1e-6):
+        self.scene, self.duration, self.accuracy = scene, duration, accuracy
+        self.film = film_module(scene.film.model)
+        self.film_name = self.film.__name__.rsplit(".", 1)[1]
+        self.clearance, self.closing, self.equilibria, self.closing_said = settle(
+            scene, self.film.opening_force
+        )
+        self.table = self._film_table()
+        self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
+        self.face = self.f[:FACE_SIZE].copy()
+        self.legs = self._legs()
+        self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
+        self._choose()
+        self._lay_out()
+        self.begin(0)
+        self.y0 = np.zeros(self.size)
+        self.records = watch.fresh_records()
+        self.last = (0.0, self.y0)
+        self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
+
+    # --- making ready -------------------------------------------------------------------------------
+
+    def _film_table(self):
+        """The film's table; a linear film that borrows another film's coefficients gets them here."""
+        table = self.scene.film
+        if self.film_name != "linear" or table.coefficients != "radial":
+            return table
+        source = film_module("radial")
+        k, d = linearised_film(
+            source, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance
+        )
+        taken = Coefficients(
+            tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
+        )
+        return replace(table, coefficients=taken)
+
+    def _legs(self) -> list[Leg]:
+        scene = self.scene
+        quantities = [
+            scene.shaft.speed,
+            scene.stator.speed,
+            scene.film.viscosity,
+            scene.film.inner_pressure,
+            scene.film.outer_pressure,
+            self.closing.spring,
+            scene.rotor.runout,
+            scene.rotor.misalignment,
+            scene.stator.misalignment,
+        ]
+        return cut(self.duration, scene.shaft.speed, scene.stator.speed, quantities)
+
+    def _choose(self):
+        """Which unknowns the scene needs, and why."""
+        scene, reasons = self.scene, []
+        rings = {STATOR: scene.stator, ROTOR: scene.rotor}
+        self.floats = {k: ring.support is not None for k, ring in rings.items()}
+        rows = np.vstack(
+            [oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, g) for g in self.legs]
+        )
+        starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
+        moved = [s for k, s in starts.items() if self.floats[k]]
+        tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate)) or bool(
+            np.any(rows[:, 1] != AXIAL)
+        )
+        shifted = any(v for s in moved for v in (s.z, s.z_rate)) or bool(np.any(rows[:, 1] == AXIAL))
+        changing = any(
+            isinstance(q, Table)
+            for q in (scene.film.inner_pressure, scene.film.outer_pressure, self.closing.spring)
+        )
+        linear = self.film_name == "linear"
+        floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
+        arrangement = {(True, False): "FMS", (False, True): "FMR", (True, True): "FMSR"}
+        reasons.append(f"{arrangement[self.floats[STATOR], self.floats[ROTOR]]}: support under {floating}")
+        if scene.film.model == "auto":
+            reasons.append("film auto: the radial film, the highest rung with a certified quadrature")
+        self.with_tilt, self.with_axial = tilted, True
+        if not tilted:
+            reasons.append("aligned faces and no angular forcing: axial unknowns only")
+        elif linear and not shifted and not changing:
+            self.with_axial = False
+            reasons.append("linear film and no axial forcing: axial motion decouples and stays at rest")
+        elif linear:
+            reasons.append("linear film: axial and angular motion decouple, both forced")
+        massless = any(
+            self.floats[k]
+            and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
+            for k, r in rings.items()
+        )
+        if massless:
+            reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
+        self.constant = len(self.legs) == 1 or all(
+            not isinstance(q, Table)
+            for q in (scene.shaft.speed, scene.stator.speed, scene.film.viscosity, scene.rotor.runout,
+                      scene.rotor.misalignment, scene.stator.misalignment)
+        ) and not changing  # fmt: skip
+        if any(isinstance(q, Table) for q in (scene.shaft.speed, scene.stator.speed, scene.film.viscosity)):
+            self.constant = False
+        self.massless, self.linear, self.reasons = massless, linear, reasons
+
+    def _lay_out(self):
+        """Places of the unknowns in `y`, their names and scales, and the constant part of the parameters."""
+        scene, rings = self.scene, (self.scene.stator, self.scene.rotor)
+        self.ring_block = np.zeros(dynamics.LEG_AT)
+        names, place = [], 0
+        for k, ring in enumerate(rings):
+            at = dynamics.RING * k
+            block = self.ring_block[at : at + dynamics.RING]
+            block[dynamics.AT_Z] = block[dynamics.AT_TILT] = -1
+            block[dynamics.AT_Z_RATE] = block[dynamics.AT_TILT_RATE] = -1
+            if not self.floats[k]:
+                continue
+            support = ring.support
+            tilt_k, tilt_d = support.tilt()
+            block[: dynamics.AT_Z] = (
+                1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia,
+                support.axial_stiffness, support.axial_damping, tilt_k, tilt_d,
+            )  # fmt: skip
+            if self.with_axial:
+                block[dynamics.AT_Z], place = place, place + 1
+                names.append(f"{RING_NAMES[k]}_z")
+            if self.with_tilt:
+                block[dynamics.AT_TILT], place = place, place + 2
+                names += [f"{RING_NAMES[k]}_tilt_x", f"{RING_NAMES[k]}_tilt_y"]
+        self.n, self.names = place, names
+        self.rate_places = np.full(self.n, -1)
+        for k, ring in enumerate(rings):
+            block = self.ring_block[dynamics.RING * k : dynamics.RING * (k + 1)]
+            if block[dynamics.AT_Z] >= 0 and ring.mass > 0:
+                block[dynamics.AT_Z_RATE] = self.rate_places[int(block[dynamics.AT_Z])] = place
+                place += 1
+            if block[dynamics.AT_TILT] >= 0 and ring.transverse_inertia > 0:
+                block[dynamics.AT_TILT_RATE] = place
+                tilt = int(block[dynamics.AT_TILT])
+                self.rate_places[tilt : tilt + 2] = place, place + 1
+                place += 2
+        self.n_mechanical, self.size = place, place + WORKS
+        self.ring_block[dynamics.WORKS_AT] = place
+        # A massless unknown without any damping on it is algebraic.
+        self.algebraic = [] if not self.massless else self._algebraic()
+        self._set_scales(scene)
+
+    def _algebraic(self):
+        _, damping = self.film_matrices()
+        places = []
+        for k in range(2):
+            block = self.ring_block[dynamics.RING * k : dynamics.RING * (k + 1)]
+            if (
+                block[dynamics.AT_Z] >= 0
+                and block[dynamics.AT_Z_RATE] < 0
+                and not (block[dynamics.AXIAL_D] or damping[0, 0])
+            ):
+                places.append(int(block[dynamics.AT_Z]))
+            if (
+                block[dynamics.AT_TILT] >= 0
+                and block[dynamics.AT_TILT_RATE] < 0
+                and not (block[dynamics.TILT_D] or damping[1, 1])
+            ):
+                places += [int(block[dynamics.AT_TILT]), int(block[dynamics.AT_TILT]) + 1]
+        return places
+
+    def _set_scales(self, scene):
+        """Scales of the unknowns: clearance, clearance / outer radius, times the shaft speed for rates."""
+        length, tilt = self.clearance, self.clearance / scene.film.outer_radius
+        displacement = np.array([length if name.endswith("_z") else tilt for name in self.names])
+        speeds = [constant_and_slope(scene.shaft.speed, g)[0] for g in self.legs]
+        pace = max((abs(w) for w in speeds), default=0.0)
+        forced = [2 * math.pi * v.frequency for v in (*scene.housing.axial, *scene.housing.angular)]
+        if pace == 0.0:
+            pace = max(forced, default=0.0) or self._natural_pace()
+        self.pace = pace
+        self.fast_time = 2 * math.pi / max([pace, *forced, self._natural_pace()])
+        self.scales = np.zeros(self.size)
+        self.scales[: self.n] = displacement
+        for i, place in enumerate(self.rate_places):
+            if place >= 0:
+                self.scales[place] = displacement[i] * pace
+        self.energy_scale = self._energy_scale(length, tilt)
+        self.scales[self.n_mechanical :] = self.energy_scale
+
+    def _natural_pace(self) -> float:
+        linear = self.linear_scene(0)
+        values, _ = linear.eigen()
+        return float(np.max(np.abs(values.imag), initial=0.0)) or 1.0 / self.duration
+
+    def _energy_scale(self, length, tilt) -> float:
+        """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
+        clearance), so that a gentle scene is audited as sharply as a violent one."""
+        amplitude = 0.0
+        for row in oscillators(
+            self.scene.shaft, self.scene.housing, self.scene.rotor, self.scene.stator, self.legs[0]
+        ):
+            amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
+        for start in (self.scene.initial.stator, self.scene.initial.rotor):
+            for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
+                amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
+        amplitude = min(max(amplitude, 1e-6), 1.0)
+        stiffness, _ = self.film_matrices()
+        spring_z = sum(self.ring_block[k * dynamics.RING + dynamics.AXIAL_K] for k in range(2))
+        spring_t = sum(self.ring_block[k * dynamics.RING + dynamics.TILT_K] for k in range(2))
+        largest = max(
+            (spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2
+        )
+        return max(largest * amplitude**2, 1e-30)
+
+    # --- the pass -----------------------------------------------------------------------------------
+
+    def begin(self, index: int) -> Leg:
+        """Load a leg: tables as value and slope, phases reduced modulo one turn."""
+        leg, scene = self.legs[index], self.scene
+        closing = self.closing.over(leg, scene.film)
+        varying = [
+            constant_and_slope(q, leg)
+            for q in (
+                scene.shaft.speed,
+                scene.stator.speed,
+                scene.film.viscosity,
+                scene.film.inner_pressure,
+                scene.film.outer_pressure,
+            )
+        ]
+        rows = oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
+        head = np.array([x for pair in [*varying, closing] for x in pair] + [len(rows)])
+        self.p = np.concatenate([self.ring_block, head, rows.ravel()])
+        self.leg, self.leg_index, self.rows = leg, index, rows
+        self._bind()
+        return leg
+
+    def _bind(self):
+        """Right-hand side and residual as plain functions over this leg's arrays."""
+        p, w, s, f = self.p, self.w, self.s, self.f
+        kinematics, rates, balance, wrench = (
+            dynamics.kinematics,
+            dynamics.rates,
+            dynamics.residual,
+            self.film.wrench,
+        )
+        work = np.zeros(self.size)
+
+        def rhs(tau, y, yp):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            rates(tau, y, p, w, s, yp)
+
+        def residual(tau, y, yp, res):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            balance(tau, y, yp, p, w, s, work, res)
+
+        self.rhs, self.residual = rhs, residual
+
+    def jacobian(self, tau, y, yp, jac):
+        """d y'/d y (size, size) by forward differences over the mechanical unknowns; works feed nothing back."""
+        base, moved = np.empty(self.size), y.copy()
+        self.rhs(tau, y, base)
+        jac[:, :] = 0.0
+        column = np.empty(self.size)
+        for j in range(self.n_mechanical):
+            step = 1e-7 * max(abs(y[j]), self.scales[j])
+            moved[j] = y[j] + step
+            self.rhs(tau, moved, column)
+            jac[:, j] = (column - base) / step
+            moved[j] = y[j]
+
+    def start_rates(self, tau, y) -> np.ndarray:
+        """Consistent derivatives at y: Newton on the residual, whose rows are linear in them but for a floor."""
+        yp, res = np.zeros(self.size), np.empty(self.size)
+        if not self.massless:
+            self.rhs(tau, y, yp)
+            return yp
+        light = [i for i in range(self.n) if self.rate_places[i] < 0 and i not in self.algebraic]
+        scale = self.scales[: self.n] * self.pace
+        for _ in range(4):
+            self.residual(tau, y, yp, res)
+            jac = np.zeros((len(light), len(light)))
+            for b, j in enumerate(light):
+                moved, shifted = yp.copy(), np.empty(self.size)
+                moved[j] += scale[j]
+                self.residual(tau, y, moved, shifted)
+                jac[:, b] = (shifted[light] - res[light]) / scale[j]
+            yp[light] -= np.linalg.solve(jac, res[light])
+        self.residual(tau, y, yp, res)
+        others = [i for i in range(self.size) if i not in light and i not in self.algebraic]
+        yp[others] -= res[others]
+        return yp
+
+    def motion(self, ys, yps):
+        """Displacements (m, n) and their rates (m, n) of stored steps."""
+        rate = np.empty((len(ys), self.n))
+        for i, place in enumerate(self.rate_places):
+            rate[:, i] = ys[:, place] if place >= 0 else yps[:, i]
+        return np.ascontiguousarray(ys[:, : self.n]), rate
+
+    def energies(self, taus, ys) -> np.ndarray:
+        """Kinetic and spring energy (J) at stored steps."""
+        out = np.empty(len(taus))
+        dynamics.energies(taus, ys, np.zeros(self.size), self.p, self.w, self.s, out)
+        return out
+
+    def unknowns(self, q, q_rate) -> np.ndarray:
+        """A vector `y` (works zero) from displacements and rates."""
+        y = np.zeros(self.size)
+        y[: self.n] = q
+        for i, place in enumerate(self.rate_places):
+            if place >= 0:
+                y[place] = q_rate[i]
+        return y
+
+    def watch(self, index, t, q, q_rate, count, begin, end) -> float:
+        """Update the records of extremes over some steps; leg time of collapse or -1."""
+        windows = np.array(self.windows) - self.legs[index].time
+        tolerance = 0.02 * self.accuracy * np.array([self.clearance, self.clearance / self.face[1]])
+        return watch.watch(
+            t, q, q_rate, count, begin, end, self.p, self.f, np.zeros(self.size), np.zeros(self.size),
+            self.w, self.s, windows, index, self.records, tolerance,
+        )  # fmt: skip
+
+    def collapse_sentence(self, index: int, tau: float) -> str:
+        """When, where, and what to try."""
+        record = self.records[0]
+        side = "inner" if record[watch.H_RADIUS] == self.face[0] else "outer"
+        return (
+            f"film collapsed at t = {self.legs[index].time + tau:.6g} s: thickness {record[watch.H] * 1e6:.3g} um "
+            f"(floor {self.face[4] * 1e6:.3g} um) at the {side} radius {record[watch.H_RADIUS] * 1e3:.4g} mm, "
+            f"theta = {math.degrees(record[watch.H_THETA]):.1f} deg.  Try less misalignment or runout, "
+            'more coning or clearance, a stiffer or more damped support, run.start = "steady".'
+        )
+
+    def solver(self) -> tuple[str, str]:
+        """The method this scene wants, and why."""
+        if self.massless:
+            return "ida", "a massless ring has no rates: IDA, on the residual form"
+        values, _ = self.linear_scene().eigen()
+        ratio = float(np.max(-values.real)) * self.fast_time / (2 * math.pi)
+        if ratio > STIFF:
+            return "bdf", f"fastest decay {ratio:.0f} times the fastest forcing: stiff, CVODE BDF"
+        return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
+
+    def check_start(self):
+        """Raises ImpossibleScene if the film is closed at the start."""
+        at = self.y0[: self.n][None, :]
+        low = self.signals(np.zeros(1), at, np.zeros_like(at))
+        if low["h_min"][0] <= self.face[4]:
+            raise ImpossibleScene(
+                "film.clearance",
+                f"a film closed at the start (thinnest {low['h_min'][0] * 1e6:.4g} um)",
+                f'more than the floor, {self.face[4] * 1e6:.3g} um: less tilt, more clearance, or run.start = "steady"',
+            )
+
+    def period(self) -> float | None:
+        """Common period (s) of the forcing in the present leg; one shaft turn if nothing moves; None if the
+        frequencies are incommensurate or change."""
+        if np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
+            return None
+        speed, slope = constant_and_slope(self.scene.shaft.speed, self.leg)
+        if slope:
+            return None
+        moving = [w for w in self.rows[:, 7] if w != 0.0]
+        return common_period([*moving, speed] if speed else moving)
+
+    # --- what is looked at --------------------------------------------------------------------------
+
+    def signals(self, taus, q, q_rate) -> dict[str, np.ndarray]:
+        """Everything the archive keeps at given leg times; `q`, `q_rate` (m, n) displacements and rates."""
+        m = len(taus)
+        gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, dynamics.SCRATCH)), np.empty((m, 3))
+        flow, f, p, w, s, face = self.film.flow, self.f, self.p, self.w, self.s, self.face
+        ys = np.zeros((m, self.size))
+        ys[:, : self.n] = q
+        yps = np.zeros(self.size)
+        massive = self.rate_places >= 0
+        ys[:, self.rate_places[massive]] = q_rate[:, massive]
+        for i in range(m):
+            yps[: self.n] = q_rate[i]
+            dynamics.kinematics(taus[i], ys[i], yps, p, w, s)
+            flow(f, s)
+            gap[i], scratch[i] = s, w
+            low[i] = h_min(face, s[DZ], s[GX], s[GY])
+        return self._columns(np.asarray(taus), gap, scratch, low)
+
+    def _columns(self, taus, gap, scratch, low):
+        leg, columns = self.leg, {}
+        speed, slope = constant_and_slope(self.scene.shaft.speed, leg)
+        columns["time"] = leg.time + taus
+        from .legs import reduced
+
+        columns["shaft_angle"] = np.mod(
+            reduced(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi
+        )
+        columns["shaft_speed"] = speed + slope * taus
+        for k, name in enumerate(RING_NAMES):
+            at = dynamics.OWN_STATE + 6 * k
+            parts = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
+            for i, part in enumerate(parts[: 6 if self.floats[k] else 3]):
+                columns[f"{name}_{part}"] = scratch[:, at + i]
+        g = gap[:, GX] + 1j * gap[:, GY]
+        columns["relative_tilt_x"], columns["relative_tilt_y"] = gap[:, GX], gap[:, GY]
+        columns["relative_misalignment"], columns["relative_precession"] = np.abs(g), np.angle(g)
+        columns["axial_gap_change"] = gap[:, DZ]
+        columns["h_min"], columns["h_min_angle"], columns["h_min_radius"] = low.T
+        columns["film_force"] = gap[:, FORCE]
+        columns["film_moment_x"], columns["film_moment_y"] = gap[:, MOMENT_X], gap[:, MOMENT_Y]
+        closing = self.closing.over(leg, self.scene.film)
+        columns["closing_force"] = closing[0] + closing[1] * taus
+        # Leakage counts from high to low pressure; flow in +r is inward negative.
+        sign = -1.0 if self.closing.outer_is_high else 1.0
+        columns["leakage_inner"] = sign * gap[:, FLOW_INNER]
+        columns["leakage_outer"] = sign * gap[:, FLOW_OUTER]
+        columns["friction_torque"] = gap[:, TORQUE]
+        columns["friction_power"] = gap[:, TORQUE] * gap[:, SPIN_DIFFERENCE]
+        columns["cavitated_fraction"] = gap[:, CAVITATED]
+        return {name: np.ascontiguousarray(values) for name, values in columns.items()}
+
+    # --- the linear side ----------------------------------------------------------------------------
+
+    def film_matrices(self, leg_index: int = 0):
+        """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of that leg's start."""
+        return linearised_film(self.film, self.f, self.scene, self.clearance, self.legs[leg_index])
+
+    def linear_scene(self, leg_index: int = 0, speed: float | None = None) -> LinearScene:
+        """The linearised scene at a leg's start, or at another shaft speed (rad/s)."""
+        leg = self.legs[leg_index]
+        w_r = constant_and_slope(self.scene.shaft.speed, leg)[0] if speed is None else speed
+        w_s = constant_and_slope(self.scene.stator.speed, leg)[0]
+        stiffness, damping = linearised_film(
+            self.film, self.f, self.scene, self.clearance, leg, mean_spin=0.5 * (w_r + w_s)
+        )
+        rings = []
+        for k, ring in enumerate((self.scene.stator, self.scene.rotor)):
+            support = ring.support
+            tilt_k, tilt_d = support.tilt() if support else (0.0, 0.0)
+            rings.append(
+                RingNumbers(
+                    sign=1.0 if k == STATOR else -1.0,
+                    floats=self.floats[k],
+                    mass=ring.mass,
+                    inertia=ring.transverse_inertia,
+                    polar=ring.polar_inertia,
+                    axial_stiffness=support.axial_stiffness if support else 0.0,
+                    axial_damping=support.axial_damping if support else 0.0,
+                    tilt_stiffness=tilt_k,
+                    tilt_damping=tilt_d,
+                    spin=w_s if k == STATOR else w_r,
+                )
+            )
+        return LinearScene(rings, stiffness, damping)
+
+    def harmonics(self) -> list[Harmonic]:
+        """The imposed oscillators of the present leg as harmonics in leg time (constant amplitude and speed)."""
+        found = []
+        for ring, kind, amplitude, _, cos, sin, a0, a1, _ in self.rows.reshape(-1, ROW):
+            phasor = amplitude * np.exp(1j * a0)
+            shape = np.zeros(3, dtype=complex)
+            if kind == AXIAL:
+                shape[0] = phasor
+            elif cos == 1.0 and sin == 0.0 and kind != 2:
+                shape[1], shape[2] = phasor, -1j * phasor
+            else:
+                shape[1], shape[2] = phasor * cos, phasor * sin
+            none = np.zeros(3, dtype=complex)
+            found.append(
+                Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none)
+            )
+        return found
+
+    def steady_motion(self):
+        """Linear steady state: a function of leg time giving (displacements, rates) of all floating rings' three
+        unknowns each, and the list of (harmonic, complex answer)."""
+        linear = self.linear_scene(self.leg_index)
+        answers = [(h, linear.response(h)) for h in self.harmonics()]
+
+        def at(tau):
+            q, rate = np.zeros(len(linear.mass)), np.zeros(len(linear.mass))
+            for h, answer in answers:
+                turned = answer * np.exp(1j * h.frequency * tau)
+                q += turned.real
+                rate += (1j * h.frequency * turned).real
+            return q, rate
+
+        return at, answers, linear
+
+    def _kept(self):
+        """Places of this problem's displacements among three per floating ring."""
+        parts = [i for i in range(3) if (i == 0 and self.with_axial) or (i > 0 and self.with_tilt)]
+        count = sum(self.floats.values())
+        return [3 * a + i for a in range(count) for i in parts]
+
+    def steady_start(self) -> np.ndarray:
+        """Unknowns on the linear steady state at time zero."""
+        at, _, _ = self.steady_motion()
+        q, rate = at(0.0)
+        kept = self._kept()
+        return self.unknowns(q[kept], rate[kept])
+
+    def exact_motion(self, tau0, y0):
+        """Exact mechanical unknowns of a linear scene with constant parameters: harmonic balance plus the matrix
+        exponential of the free motion.  Returns a function of leg time."""
+        from scipy.linalg import expm
+
+        at, _, linear = self.steady_motion()
+        kept = self._kept()
+        places = [*range(self.n), *self.rate_places]
+        matrix = linear.state_matrix()
+        half = len(linear.mass)
+        rows = [*kept, *[half + i for i in kept]]
+        matrix = matrix[np.ix_(rows, rows)]
+        q, rate = at(tau0)
+        free = y0[places] - np.concatenate([q[kept], rate[kept]])
+
+        def exact(tau):
+            q, rate = at(tau)
+            y = np.empty(self.n_mechanical)
+            y[places] = np.concatenate([q[kept], rate[kept]]) + expm(matrix * (tau - tau0)) @ free
+            return y
+
+        return exact
+
+
+def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None):
+    """Stiffness and damping matrices (3, 3) of a film about the aligned rest state at a leg's start."""
+    s = np.zeros(GAP_STATE_SIZE)
+    first = (lambda q: constant_and_slope(q, leg)[0]) if leg else initially
+    s[VISCOSITY] = first(scene.film.viscosity)
+    s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
+    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
+    s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
+    s[SPIN_DIFFERENCE] = w_r - w_s
+    length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
+    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    return linearise(film.wrench, f, s, (length, tilt, length * pace, tilt * pace))

@@ -1,0 +1,217 @@
+"""What cannot be: valid keys that no scene can have together; and keys that this scene leaves unused."""
+
+import cmath
+import difflib
+import math
+
+from .scenario_errors import film_models
+from .scene import ImpossibleScene
+from .units import Table
+
+
+def refuse_impossible(scene, run) -> None:
+    """Raises `ImpossibleScene` with the first rule that the scene breaks."""
+    _film(scene.film)
+    _closing(scene)
+    for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
+        _ring(name, ring)
+    if not (scene.stator.support or scene.rotor.support):
+        raise ImpossibleScene(
+            "rotor.support",
+            "no support on either ring",
+            "[rotor.support] or [stator.support]: the ring that floats",
+        )
+    _vibrations(scene.housing)
+    _run(scene.shaft, run)
+    if run.start == "rest":
+        _open_at_start(scene)
+
+
+def _film(film) -> None:
+    if film.model not in film_models():
+        near = difflib.get_close_matches(film.model, film_models(), 1)
+        expected = "one of " + ", ".join(f'"{m}"' for m in film_models())
+        raise ImpossibleScene(
+            "film.model", f'"{film.model[:40]}"', expected + (f"; nearest '{near[0]}'" if near else "")
+        )
+    for key in ("inner_radius", "outer_radius", "clearance"):
+        value = getattr(film, key)
+        if value is not None and value <= 0:
+            raise ImpossibleScene(f"film.{key}", f"{value:g} m", "a length > 0")
+    if film.inner_radius >= film.outer_radius:
+        raise ImpossibleScene(
+            "film.inner_radius",
+            f"{film.inner_radius:g} m",
+            f"less than outer_radius = {film.outer_radius:g} m",
+        )
+    if not 0 < film.floor < 0.5:
+        raise ImpossibleScene(
+            "film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5"
+        )
+    if film.clearance is not None:
+        outer = film.clearance + film.coning * (film.outer_radius - film.inner_radius)
+        if outer <= film.floor * film.clearance:
+            raise ImpossibleScene(
+                "film.coning",
+                f"{film.coning:g} rad, a film of {outer:g} m at the outer radius",
+                "an open film",
+            )
+    _cavitation(film)
+
+
+def _cavitation(film) -> None:
+    for key in ("outer_pressure", "inner_pressure"):
+        least = min(points(getattr(film, key)))
+        if film.cavitation_pressure is not None and film.cavitation_pressure > least:
+            raise ImpossibleScene(
+                "film.cavitation_pressure",
+                f"{film.cavitation_pressure:g} Pa",
+                f"at most {key} = {least:g} Pa",
+            )
+
+
+def _closing(scene) -> None:
+    ratio, spring = scene.closing.balance_ratio, scene.closing.spring_force
+    if scene.film.clearance is None and (ratio is None or spring is None):
+        raise ImpossibleScene(
+            "film.clearance",
+            "nothing",
+            "a length, or both [closing] balance_ratio and [closing] spring_force",
+        )
+    if scene.film.clearance is not None and ratio is not None and spring is not None:
+        raise ImpossibleScene(
+            "film.clearance",
+            "clearance, balance_ratio and spring_force together",
+            "two of the three: the third follows",
+        )
+    if ratio is not None and ratio < 0:
+        raise ImpossibleScene("closing.balance_ratio", f"{ratio:g}", "a ratio >= 0")
+
+
+def _ring(name: str, ring) -> None:
+    if ring.polar_inertia > 2 * ring.transverse_inertia and not ring.unphysical_inertia:
+        raise ImpossibleScene(
+            f"{name}.polar_inertia",
+            f"{ring.polar_inertia:g} kg*m^2",
+            f"at most 2 x transverse_inertia = {2 * ring.transverse_inertia:g} kg*m^2 (a thin disk), "
+            "or unphysical_inertia = true",
+        )
+    if ring.polar_inertia > 0 and ring.transverse_inertia == 0:
+        raise ImpossibleScene(f"{name}.transverse_inertia", "0 beside a polar_inertia", "an inertia > 0")
+    support = ring.support
+    if support is None:
+        return
+    key = f"{name}.support"
+    by_tilt = support.tilt_stiffness is not None or support.tilt_damping is not None
+    if support.radius is not None and by_tilt:
+        raise ImpossibleScene(f"{key}.radius", "radius and tilt coefficients", "one or the other")
+    if support.radius is None and support.tilt_stiffness is None:
+        raise ImpossibleScene(
+            f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness"
+        )
+    if support.radius is not None and support.radius <= 0:
+        raise ImpossibleScene(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
+
+
+def _vibrations(housing) -> None:
+    for kind in ("axial", "angular"):
+        for n, vibration in enumerate(getattr(housing, kind)):
+            if (vibration.displacement is None) == (vibration.acceleration is None):
+                found = "neither" if vibration.displacement is None else "both"
+                raise ImpossibleScene(
+                    f"housing.{kind}.{n}.displacement", found, "exactly one of displacement and acceleration"
+                )
+
+
+def _run(shaft, run) -> None:
+    if run.duration is not None:
+        if run.duration <= 0:
+            raise ImpossibleScene("run.duration", f"{run.duration:g} s", "a time > 0")
+    elif turns_of(shaft.speed) < run.turns:
+        raise ImpossibleScene(
+            "run.turns",
+            f"{run.turns:g} turns of a shaft that makes {turns_of(shaft.speed):g}",
+            "[run] duration, or a [shaft] speed that gets there",
+        )
+    if run.samples_per_turn is not None and not any(points(shaft.speed)):
+        raise ImpossibleScene("run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
+
+
+def _open_at_start(scene) -> None:
+    """The flexible ring starts where [initial] says, else untilted at the clearance."""
+    film = scene.film
+    if film.clearance is None:
+        return
+    rotor, stator = _start(scene.initial.rotor), _start(scene.initial.stator)
+    if scene.rotor.support is None:
+        rotor = (0.0, cmath.rect(initially(scene.rotor.runout), scene.rotor.runout_phase))
+    if scene.stator.support is None:
+        angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
+        stator = (0.0, cmath.rect(angle, direction))
+    tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
+    at_inner = gap - tilt * film.inner_radius
+    at_outer = gap + film.coning * (film.outer_radius - film.inner_radius) - tilt * film.outer_radius
+    if not min(at_inner, at_outer) > film.floor * film.clearance:
+        blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
+        if (scene.rotor.support and scene.stator.support) or _given(scene.initial):
+            blame = "initial"
+        where = "inner" if at_inner < at_outer else "outer"
+        raise ImpossibleScene(
+            blame,
+            f"a film closed at the start ({min(at_inner, at_outer):g} m at the {where} radius, "
+            f"relative misalignment {tilt:g} rad)",
+            f"more than floor x clearance = {film.floor * film.clearance:g} m",
+        )
+
+
+def _start(ring) -> tuple[float, complex]:
+    return ring.z or 0.0, complex(ring.tilt_x or 0.0, ring.tilt_y or 0.0)
+
+
+def _given(initial) -> bool:
+    return any(value is not None for ring in (initial.rotor, initial.stator) for value in vars(ring).values())
+
+
+def initially(value) -> float:
+    return value.at(0.0) if isinstance(value, Table) else value
+
+
+def points(value) -> tuple[float, ...]:
+    return value.value if isinstance(value, Table) else (value,)
+
+
+def turns_of(speed) -> float:
+    """Turns the shaft makes in all (either way): endless unless its speed ends at zero."""
+    if points(speed)[-1] != 0:
+        return math.inf
+    if not isinstance(speed, Table):
+        return 0.0
+    angle = max(0.0, speed.time[0]) * abs(speed.value[0])
+    for t0, t1 in zip(speed.time, speed.time[1:], strict=False):
+        if t1 > 0:
+            t0 = max(t0, 0.0)
+            middle = 0.5 * (t0 + t1)
+            angle += (t1 - t0) * abs(speed.at(middle))
+    return angle / (2 * math.pi)
+
+
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia")
+
+
+def unused(scene, given: set[str]) -> list[str]:
+    """Known keys that were given and that this scene does not use."""
+    leaves = []
+    for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
+        if ring.support is None:
+            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}."]
+    if scene.rotor.support is None:
+        leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
+    else:
+        leaves += ["rotor.runout", "rotor.runout_phase"]
+    if scene.film.model != "linear":
+        leaves.append("film.coefficients")
+    elif scene.film.coefficients != "radial":
+        leaves += ["film.geometry", "film.cavitation_pressure"]
+    return sorted(
+        k for k in given if any(k == u or (k + ".").startswith(u.rstrip(".") + ".") for u in leaves)
+    )

@@ -1,0 +1,318 @@
+"""One pass: a scenario becomes a problem, the problem a trajectory, the trajectory an archive."""
+
+import json
+import math
+import os
+import platform
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from . import __version__, archive
+from .archive import ArchiveWriter, Series, partial_path
+from .legs import time_of_angle
+from .problem import RING_NAMES, Problem
+from .scene import ImpossibleScene
+from .solve import Audit, solve
+from .summary import summarise
+from .units import Table
+
+SERIES = {
+    "shaft_angle": Series("rad", "shaft angle, modulo one turn"),
+    "shaft_speed": Series("rad/s", "shaft speed"),
+    "relative_tilt_x": Series("rad", "relative tilt about xi, stator minus rotor"),
+    "relative_tilt_y": Series("rad", "relative tilt about eta, stator minus rotor"),
+    "relative_misalignment": Series("rad", "relative misalignment of the faces"),
+    "relative_precession": Series("rad", "direction of the relative tilt, from xi"),
+    "axial_gap_change": Series("m", "change of the axial gap from the design clearance"),
+    "h_min": Series("m", "smallest film thickness over the face"),
+    "h_min_angle": Series("rad", "angle of the smallest film thickness, from xi"),
+    "h_min_radius": Series("m", "radius of the smallest film thickness"),
+    "film_force": Series("N", "opening force of the film"),
+    "film_moment_x": Series("N m", "film moment on the stator about xi"),
+    "film_moment_y": Series("N m", "film moment on the stator about eta"),
+    "closing_force": Series("N", "closing force"),
+    "leakage_inner": Series("m^3/s", "leakage at the inner radius, from high to low pressure"),
+    "leakage_outer": Series("m^3/s", "leakage at the outer radius, from high to low pressure"),
+    "friction_torque": Series("N m", "friction torque on the rotor"),
+    "friction_power": Series("W", "friction power"),
+    "cavitated_fraction": Series("1", "share of the face at the cavitation pressure"),
+}
+PARTS = {
+    "z": ("m", "axial displacement"),
+    "tilt_x": ("rad", "tilt about xi"),
+    "tilt_y": ("rad", "tilt about eta"),
+    "z_rate": ("m/s", "axial velocity"),
+    "tilt_x_rate": ("rad/s", "tilt rate about xi"),
+    "tilt_y_rate": ("rad/s", "tilt rate about eta"),
+}
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run leaves: status, a sentence, the summary of interface.md as a dict, and where the archive is."""
+
+    status: str
+    message: str
+    summary: dict
+    archive: Path
+
+
+@dataclass
+class Tally:
+    """Running means and maxima of the sampled series; kept in the archive to go on from."""
+
+    rows: int = 0
+    sums: dict = None
+    largest: dict = None
+
+    NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
+             "cavitated_fraction", "film_force", "shaft_speed")  # fmt: skip
+
+    def add(self, columns):
+        self.sums = self.sums or dict.fromkeys(self.NAMES, 0.0)
+        self.largest = self.largest or dict.fromkeys(self.NAMES, -math.inf)
+        self.rows += len(columns["time"])
+        for name in self.NAMES:
+            self.sums[name] += float(columns[name].sum())
+            self.largest[name] = max(self.largest[name], float(columns[name].max()))
+
+    def mean(self, name: str) -> float:
+        return self.sums[name] / self.rows if self.rows else math.nan
+
+
+class ArchiveSink:
+    """Takes what the solver has integrated: signals into the archive, restart data beside them."""
+
+    def __init__(self, problem, writer, dt, count, tally, progress, stop):
+        self.problem, self.writer, self.dt, self.count = problem, writer, dt, count
+        self.tally, self.progress, self.stop = tally, progress, stop
+        self.audit = None
+        self.waiting = None
+
+    def due(self, index: int) -> np.ndarray:
+        """Leg times of the samples in leg `index`, counted from the nearest sample so that they stay exact."""
+        leg = self.problem.legs[index]
+        first = max(0, math.ceil(leg.time / self.dt - 1e-9))
+        # The offset of the first sample is taken in exact arithmetic.
+        from fractions import Fraction
+
+        offset = float(Fraction(self.dt) * first - leg.start)
+        last = index + 1 == len(self.problem.legs)
+        end = leg.length
+        number = int(math.floor((end - offset) / self.dt + 1e-9)) + 1
+        taus = offset + self.dt * np.arange(max(number, 0))
+        # A sample at a leg's end belongs to the next leg, whose parameters it shows; the run's last stays.
+        keep = (taus >= -1e-12 * end) & ((taus < end * (1 - 1e-12)) | last)
+        return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
+
+    def take(self, index, taus, q, q_rate):
+        columns = self.problem.signals(taus, q, q_rate)
+        self.tally.add(columns)
+        if self.waiting is None:
+            self.waiting = columns
+        else:
+            self.waiting = {k: np.concatenate([self.waiting[k], columns[k]]) for k in columns}
+
+    def state(self, index, tau, y):
+        self.flush(index, tau, y)
+        if self.progress:
+            leg = self.problem.legs[index]
+            self.progress(leg.time + tau, self.problem.duration)
+        if self.stop and self.stop():
+            raise KeyboardInterrupt
+
+    def flush(self, index, tau, y):
+        if self.waiting is None:
+            return
+        problem = self.problem
+        state = {
+            "leg": index,
+            "tau": tau,
+            "y": np.asarray(y),
+            "records": problem.records.ravel(),
+            "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
+            "audit": self.audit.kept(),
+            "names": problem.names,
+        }
+        self.writer.append(self.waiting, state)
+        self.waiting = None
+
+
+def sampling(scenario) -> tuple[float, float, int]:
+    """Duration (s), sample interval (s) and number of intervals of a scenario's run."""
+    run, speed = scenario.run, scenario.scene.shaft.speed
+    if run.duration is not None:
+        duration = run.duration
+    else:
+        try:
+            duration = time_of_angle(speed, 2 * math.pi * run.turns)
+        except ValueError as error:
+            raise ImpossibleScene("run.turns", str(error), "run.duration instead") from None
+    if run.samples is not None:
+        return duration, duration / run.samples, run.samples
+    fastest = max(abs(v) for v in speed.value) if isinstance(speed, Table) else abs(speed)
+    if fastest == 0.0:
+        return duration, duration / 1000, 1000
+    count = max(1, round(duration * fastest / (2 * math.pi) * run.samples_per_turn))
+    exact = duration * fastest / (2 * math.pi) * run.samples_per_turn
+    if abs(exact - count) < 1e-6 * count:
+        return duration, duration / count, count
+    interval = 2 * math.pi / fastest / run.samples_per_turn
+    return duration, interval, int(duration / interval)
+
+
+def simulate(
+    scenario,
+    out: str | os.PathLike | None = None,
+    *,
+    progress: Callable[[float, float], None] | None = None,
+    stop: Callable[[], bool] | None = None,
+    resume: bool = False,
+) -> Result:
+    """Run a scenario into an archive.
+
+    `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
+    called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
+    interrupted or killed run left off.  A run that fails is a result with its status.
+    Raises ImpossibleScene or ArchiveError for a scene or file that cannot be.
+    """
+    begun = clock.perf_counter()
+    out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
+    problem, method, why, interval, count = prepare(scenario)
+    writer = ArchiveWriter(
+        out,
+        scenario_text=scenario.text,
+        resolved=scenario.resolved(),
+        meta=_meta(scenario, method),
+        series=_series(problem),
+        resume=resume,
+        expected_rows=count,
+    )
+    sink = ArchiveSink(problem, writer, interval, count, Tally(), progress, stop)
+    audit = Audit(problem)
+    sink.audit = audit
+    restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
+    outcome = solve(problem, method, scenario.run.accuracy, sink, audit=audit, resume=restart)
+    sink.flush(outcome.leg, outcome.tau, outcome.y)
+    summary = summarise(scenario, problem, outcome, sink.tally, method, why)
+    summary["wall_time"] = clock.perf_counter() - begun
+    path = partial_path(out) if outcome.status == "interrupted" else out
+    summary["archive"] = str(path)
+    writer.events(_events(problem, outcome))
+    path = writer.finish(outcome.status, outcome.message, json.loads(json.dumps(summary)))
+    summary["archive"] = str(path)
+    return Result(outcome.status, outcome.message, summary, path)
+
+
+def prepare(scenario):
+    """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count.
+    Raises ImpossibleScene or ArchiveError."""
+    duration, interval, count = sampling(scenario)
+    problem = Problem(scenario.scene, duration, scenario.run.accuracy)
+    _start(problem, scenario)
+    method, why = problem.solver()
+    if scenario.run.solver != "auto":
+        method, why = scenario.run.solver, "asked for"
+    _check_method(problem, method)
+    _set_windows(problem)
+    return problem, method, why, interval, count
+
+
+def _start(problem, scenario):
+    """Initial unknowns: rest, the linear steady state, an archive's last state, and what [initial] gives."""
+    if scenario.run.start == "steady":
+        problem.y0 = problem.steady_start()
+    elif scenario.run.start != "rest":
+        state = archive.last_state(scenario.run.start)
+        if not state:
+            raise archive.ArchiveError(f"{scenario.run.start}: holds no last state to start from")
+        rates = problem.n + np.arange(problem.n_mechanical - problem.n)
+        if list(state["names"]) != problem.names or len(state["y"]) != problem.size:
+            raise ImpossibleScene(
+                "run.start",
+                f"{scenario.run.start} with unknowns {', '.join(state['names'])}",
+                f"an archive with the unknowns {', '.join(problem.names)}",
+            )
+        problem.y0[: problem.n] = state["y"][: problem.n]
+        problem.y0[rates] = state["y"][rates]
+    for k, ring in ((0, scenario.scene.initial.stator), (1, scenario.scene.initial.rotor)):
+        for part in PARTS:
+            given = getattr(ring, part)
+            base = f"{RING_NAMES[k]}_{part.removesuffix('_rate')}"
+            if given is None or base not in problem.names:
+                continue
+            place = problem.names.index(base)
+            place = problem.rate_places[place] if part.endswith("_rate") else place
+            if place >= 0:
+                problem.y0[place] = given
+    problem.check_start()
+
+
+def _check_method(problem, method):
+    if problem.massless and method != "ida":
+        raise ImpossibleScene("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
+    if method == "expm" and not (problem.linear and problem.constant):
+        what = "a nonlinear film" if not problem.linear else "parameters that change with time"
+        raise ImpossibleScene(
+            "run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters'
+        )
+
+
+def _set_windows(problem):
+    """The last two forcing periods, for the steady state."""
+    problem.begin(len(problem.legs) - 1)
+    period, end = problem.period(), problem.duration
+    constant_from = problem.leg.time if len(problem.legs) > 1 and not problem.constant else 0.0
+    if period and end - 2 * period >= constant_from - 1e-9 * end:
+        problem.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
+    problem.begin(0)
+
+
+def _resumed(problem, writer, sink, audit):
+    state = writer.state
+    problem.records[:] = np.array(state["records"], dtype=float).reshape(problem.records.shape)
+    tally = state["tally"]
+    sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
+    audit.restore(state["audit"])
+    return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
+
+
+def _series(problem) -> dict[str, Series]:
+    series = {}
+    for k, name in enumerate(RING_NAMES):
+        for part in list(PARTS)[: 6 if problem.floats[k] else 3]:
+            units, long_name = PARTS[part]
+            series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
+    return {**series, **SERIES}
+
+
+def _meta(scenario, method) -> dict:
+    libraries = ("numpy", "scipy", "scikit-sundae", "h5py", "numba")
+    return {
+        "version": __version__,
+        "libraries": {name: version(name) for name in libraries} | {"python": platform.python_version()},
+        "solver": method,
+        "accuracy": scenario.run.accuracy,
+        "question": scenario.question,
+        "overrides": list(scenario.overrides),
+        "name": scenario.name,
+    }
+
+
+def _events(problem, outcome) -> list[dict]:
+    record = problem.records[0]
+    events = []
+    if math.isfinite(record[0]):
+        at = problem.legs[int(record[8])].time + record[1]
+        kind = "collapse" if outcome.status == "collapsed" else "film_minimum"
+        events.append({"kind": kind, "time": at, "value": record[0], "text": outcome.message,
+                       "theta": record[2], "radius": record[3]})  # fmt: skip
+    if outcome.status == "failed":
+        at = problem.legs[outcome.leg].time + outcome.tau
+        events.append({"kind": "failure", "time": at, "value": math.nan, "text": outcome.message})
+    return events

@@ -1,0 +1,112 @@
+"""Unit names: "mPa*s" becomes a dimension and an exact factor to SI.
+
+Angles are counted as a dimension (pint's own definitions call a radian a pure number, and lose 2 pi between
+Hz and rad/s), so the definitions are our own few.
+"""
+
+import difflib
+import re
+from decimal import Decimal
+from functools import cache, lru_cache
+
+# Exact decimals, so that "10 um" is the float 1e-5 and not its neighbour.
+PREFIXES = """
+giga- = 1e9 = G-
+mega- = 1e6 = M-
+kilo- = 1e3 = k-
+deci- = 1e-1 = d-
+centi- = 1e-2 = c-
+milli- = 1e-3 = m-
+micro- = 1e-6 = u-
+nano- = 1e-9 = n-
+"""
+DEFINITIONS = """
+meter = [length] = m = metre
+kilogram = [mass] = kg
+second = [time] = s = sec
+kelvin = [temperature] = K = degC
+radian = [angle] = rad
+gram = 1e-3 kilogram = g
+minute = 60 second = min
+hour = 3600 second = h = hr
+micron = 1e-6 meter = microns
+inch = 0.0254 meter = in
+mil = 1e-3 inch = thou
+foot = 12 inch = ft
+pound = 0.45359237 kilogram = lb = lbm
+liter = 1e-3 meter**3 = L = l = litre
+cc = 1e-6 meter**3
+revolution = 6.28318530717958647692528676655900577 radian = rev = turn
+degree = 1 / 360 revolution = deg
+arcminute = 1 / 60 degree = arcmin
+arcsecond = 1 / 60 arcminute = arcsec
+hertz = revolution / second = Hz
+rpm = revolution / minute
+newton = kilogram * meter / second**2 = N
+standard_gravity = 9.80665 meter / second**2
+pound_force = pound * standard_gravity = lbf
+newton_meter = newton * meter = Nm
+newton_second = newton * second = Ns
+newton_meter_second = newton * meter * second = Nms
+pascal = newton / meter**2 = Pa
+pascal_second = pascal * second = Pas
+bar = 1e5 pascal = bara
+atmosphere = 101325 pascal = atm
+psi = pound_force / inch**2 = psia
+poise = 0.1 pascal * second = P
+stokes = 1e-4 meter**2 / second = St
+joule = newton * meter = J
+watt = joule / second = W
+calorie = 4.184 joule = cal
+"""
+# A unit is names, one-digit powers, * / ( ) and blanks: nothing that could be made to compute for long.
+UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|[*/() ])+")
+
+
+@cache
+def _registry():
+    import pint
+
+    registry = pint.UnitRegistry(None, non_int_type=Decimal, cache_folder=None)
+    for line in (PREFIXES + DEFINITIONS).split("\n"):
+        if line:
+            registry.define(line)
+    return registry
+
+
+@lru_cache(maxsize=1024)
+def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
+    """Dimension (with angle counted) and factor to SI of a unit; ValueError when it is none."""
+    if len(text) > 60 or not UNIT.fullmatch(text):
+        raise ValueError(text)
+    registry = _registry()
+    try:
+        root = registry.Quantity(Decimal(1), registry.parse_units(text)).to_root_units()
+    except Exception as error:  # the expression parser underneath raises whatever it likes
+        raise ValueError(text) from error
+    return frozenset(root.dimensionality.items()), Decimal(root.magnitude)
+
+
+def unknown_unit(text: str) -> str:
+    """Which word of `text` is no unit, with the nearest that is."""
+    for word in re.findall(r"[^\W\d]+", text):
+        if not _is_unit(word):
+            same = [name for name in _names() if name.lower() == word.lower()]
+            near = same or difflib.get_close_matches(word, _names(), 1, 0.5)
+            return f"unknown unit '{word}'" + (f", nearest '{near[0]}'" if near else "")
+    return f"'{text}' is no unit"
+
+
+def _is_unit(word: str) -> bool:
+    try:
+        dimension_and_factor(word)
+    except ValueError:
+        return False
+    return True
+
+
+@cache
+def _names() -> list[str]:
+    plain = [name for line in DEFINITIONS.split("\n") for name in re.findall(r"\b[a-zA-Z_]{1,12}\b", line)]
+    symbols = re.findall(r"(\w)-$", PREFIXES, re.MULTILINE)
+    return plain + [p + n for n in ("m", "Pa", "N", "s", "rad", "g", "Hz", "P", "J") for p in symbols]

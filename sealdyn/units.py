@@ -1,0 +1,293 @@
+"""The door: "10 um", "9550 rpm", "5 bar" become SI floats; the field types of the scenario's tables.
+
+A bare number is SI.  A string needs a unit.  Angles are counted: a revolution is 2 pi rad and Hz and rpm
+are revolutions per time, so a speed in Hz and a frequency in rad/s both come out right.
+"""
+
+import difflib
+import math
+import re
+from bisect import bisect_right
+from dataclasses import dataclass
+from decimal import Decimal, DecimalException
+from functools import cache
+from typing import Annotated, Any
+
+from .unit_names import dimension_and_factor, unknown_unit
+
+NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
+GAUGE = re.compile(r"gau?ge|\b(?:bar|psi|k?pa|mpa|atm) *\(?g\b", re.IGNORECASE)
+
+
+class QuantityError(ValueError):
+    """A value that is not what its key asks for: what was found, what is expected."""
+
+    def __init__(self, found: str, expected: str):
+        super().__init__(f"found {found}; expected {expected}")
+        self.found, self.expected = found, expected
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What a key holds: its name, SI unit, other units it takes at the same factor, and its least value."""
+
+    name: str
+    unit: str
+    example: str
+    also: tuple[str, ...] = ()
+    least: float = -math.inf
+    open: bool = False
+
+    def read(self, value: Any) -> float:
+        """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`."""
+        if isinstance(value, str):
+            return self._limited(self._from_string(value), shown(value))
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise QuantityError(shown(value), self.expected())
+        try:
+            return self._limited(float(value), shown(value))
+        except OverflowError:
+            raise QuantityError("a number beyond 1e308", self.expected()) from None
+
+    def expected(self) -> str:
+        article = "an" if self.name[0] in "aeiou" else "a"
+        limit = "" if self.least == -math.inf else f" {'>' if self.open else '>='} {self.least:g}"
+        return f"{article} {self.name}{limit} in {self.unit} or with its unit, e.g. {self.example}"
+
+    def _limited(self, value: float, found: str) -> float:
+        if not math.isfinite(value):
+            raise QuantityError(found, f"a finite {self.name}")
+        if value < self.least or (self.open and value == self.least):
+            raise QuantityError(found, self.expected())
+        return value
+
+    def _from_string(self, text: str) -> float:
+        number, unit = self._split(text)
+        try:
+            dimension, factor = dimension_and_factor(unit)
+        except ValueError:
+            raise QuantityError(f"{shown(text)} ({unknown_unit(unit)})", self.expected()) from None
+        if dimension not in [dimension_and_factor(u)[0] for u in (self.unit, *self.also)]:
+            raise QuantityError(f"{shown(text)} ({_named(dimension)})", self.expected())
+        try:
+            return float(Decimal(number) * factor / dimension_and_factor(self.unit)[1])
+        except (DecimalException, OverflowError):
+            raise QuantityError(shown(text), f"a finite {self.name}") from None
+
+    def _split(self, text: str) -> tuple[str, str]:
+        """Number and unit of a string, with this quantity's own reading of `g` and of gauge pressure."""
+        match = NUMBER.fullmatch(text.strip()) if len(text) < 200 else None
+        if not match:
+            raise QuantityError(shown(text), self.expected())
+        number, unit = match[1], match[2]
+        if not unit:
+            raise QuantityError(f"{shown(text)} (no unit)", self.expected())
+        unit = unit.translate(WRITTEN)
+        if self.name == "acceleration":
+            # The field's g is standard gravity; elsewhere g is the gram.
+            unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
+        if self.name == "absolute pressure" and GAUGE.search(unit):
+            raise QuantityError(
+                f"{shown(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air"
+            )
+        if re.search(r"\bTIR\b", unit):
+            raise QuantityError(
+                f"{shown(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
+            )
+        return number, unit
+
+    # Pydantic asks for these two; nothing of pydantic is imported before it does.
+    def __get_pydantic_core_schema__(self, source, handler):
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema, handler) -> dict:
+        number = {"type": "number"}
+        if self.least > -math.inf:
+            number["exclusiveMinimum" if self.open else "minimum"] = self.least
+        text = {"type": "string", "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S"}
+        return {"description": self.expected(), "anyOf": [number, text]}
+
+
+WRITTEN = {
+    ord("µ"): "u",
+    ord("μ"): "u",
+    ord("·"): "*",
+    ord("⋅"): "*",
+    ord("×"): "*",
+    ord("²"): "^2",
+    ord("³"): "^3",
+}
+WRITTEN |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
+
+
+def shown(value: Any, most: int = 60) -> str:
+    """What a file held, in a few printable words."""
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, (list, tuple)):
+        return "a list"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    try:
+        text = f'"{value}"' if isinstance(value, str) else f"{value}"
+    except ValueError:  # Python does not print integers of thousands of digits
+        return "a number of thousands of digits"
+    text = "".join(c if c.isprintable() else repr(c)[1:-1] for c in text[:most])
+    return text if len(text) < most else text[: most - 3] + "..."
+
+
+@dataclass(frozen=True)
+class Table:
+    """A quantity given at times (s): linear between, held before the first and after the last.
+
+    The same time twice is a step; from that time on the second value holds.
+    """
+
+    time: tuple[float, ...]
+    value: tuple[float, ...]
+
+    def at(self, t: float) -> float:
+        """Value at time t (s)."""
+        k = bisect_right(self.time, t)
+        if k == 0:
+            return self.value[0]
+        if k == len(self.time):
+            return self.value[-1]
+        t0, t1 = self.time[k - 1], self.time[k]
+        v0, v1 = self.value[k - 1], self.value[k]
+        return v0 + (v1 - v0) * ((t - t0) / (t1 - t0))
+
+    def breaks(self) -> tuple[float, ...]:
+        """Times (s) of the kinks and steps, increasing."""
+        return tuple(sorted(set(self.time)))
+
+
+@dataclass(frozen=True)
+class VaryingQuantity:
+    """A quantity that may also be a `Table`."""
+
+    quantity: Quantity
+
+    def read(self, value: Any) -> "float | Table":
+        """Float in SI, or `Table` of a `{ time = [...], value = [...] }`.  Raises `QuantityError`."""
+        if isinstance(value, Table):
+            value = {"time": list(value.time), "value": list(value.value)}
+        return self._table(value) if isinstance(value, dict) else self._constant(value)
+
+    def _constant(self, value: Any) -> float:
+        try:
+            return self.quantity.read(value)
+        except QuantityError as error:
+            if isinstance(value, list):
+                raise QuantityError(
+                    error.found, "a number, or a table { time = [...], value = [...] }"
+                ) from None
+            raise
+
+    def _table(self, value: dict) -> Table:
+        form = "a table { time = [...], value = [...] }"
+        for key in value:
+            if key not in ("time", "value"):
+                near = difflib.get_close_matches(key, ["time", "value"], 1)
+                raise QuantityError(
+                    f"key {shown(key)}", form + (f"; nearest key {near[0]!r}" if near else "")
+                )
+        for key in ("time", "value"):
+            if not isinstance(value.get(key), list):
+                found = shown(value[key]) if key in value else "nothing"
+                raise QuantityError(f"{key} = {found}", form)
+        return self._checked(
+            _entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value")
+        )
+
+    @staticmethod
+    def _checked(time: tuple[float, ...], value: tuple[float, ...]) -> Table:
+        if len(time) != len(value):
+            raise QuantityError(f"{len(time)} times and {len(value)} values", "as many times as values")
+        if len(time) < 2:
+            raise QuantityError(f"a table of {len(time)} point(s)", "at least 2 points")
+        for k in range(1, len(time)):
+            if time[k] < time[k - 1]:
+                raise QuantityError(
+                    f"time {time[k]:g} s after {time[k - 1]:g} s", "times that do not decrease"
+                )
+            if k > 1 and time[k] == time[k - 2]:
+                raise QuantityError(f"time {time[k]:g} s three times", "a time at most twice (a step)")
+        return Table(time, value)
+
+    def __get_pydantic_core_schema__(self, source, handler):
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema, handler) -> dict:
+        constant = self.quantity.__get_pydantic_json_schema__(None, None)
+        column = {"type": "array", "minItems": 2, "items": {"anyOf": constant["anyOf"]}}
+        seconds = {"type": "array", "minItems": 2, "items": SECONDS.__get_pydantic_json_schema__(None, None)}
+        table = {
+            "type": "object",
+            "properties": {"time": seconds, "value": column},
+            "required": ["time", "value"],
+            "additionalProperties": False,
+        }
+        return {
+            "description": constant["description"] + "; or a table of times",
+            "anyOf": [*constant["anyOf"], table],
+        }
+
+
+def _entries(quantity: Quantity, column: list, name: str) -> tuple[float, ...]:
+    values = []
+    for k, entry in enumerate(column):
+        try:
+            values.append(quantity.read(entry))
+        except QuantityError as error:
+            raise QuantityError(f"{name}[{k}] = {error.found}", error.expected) from None
+    return tuple(values)
+
+
+class Varying:
+    """`Varying[X]`: an X that may be a table of times."""
+
+    def __class_getitem__(cls, kind):
+        return Annotated[float | Table, VaryingQuantity(kind.__metadata__[0])]
+
+
+SECONDS = Quantity("time", "s", '"0.5 s"')
+Time = Annotated[float, SECONDS]
+Length = Annotated[float, Quantity("length", "m", '"10 um"')]
+Angle = Annotated[float, Quantity("angle", "rad", '"25 urad", "0.5 mrad", "1 deg"', ("m/m",))]
+Speed = Annotated[float, Quantity("speed of rotation", "rad/s", '"1000 rad/s", "9550 rpm", "150 Hz"')]
+Frequency = Annotated[float, Quantity("frequency", "Hz", '"50 Hz", "3000 rpm", "314 rad/s"', (), 0, True)]
+Velocity = Annotated[float, Quantity("velocity", "m/s", '"1 mm/s"')]
+Acceleration = Annotated[float, Quantity("acceleration", "m/s^2", '"20 m/s^2", "2 g"')]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration", "rad/s^2", '"30 rad/s^2"')]
+Mass = Annotated[float, Quantity("mass", "kg", '"1 kg"', (), 0)]
+Inertia = Annotated[float, Quantity("inertia", "kg*m^2", '"8e-4 kg*m^2"', (), 0)]
+Stiffness = Annotated[float, Quantity("stiffness", "N/m", '"5e5 N/m"', (), 0)]
+Damping = Annotated[float, Quantity("damping", "N*s/m", '"300 N*s/m"', (), 0)]
+TiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",), 0)]
+TiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",), 0)]
+AxialFilmStiffness = Annotated[float, Quantity("film stiffness", "N/m", '"5e7 N/m"')]
+AxialFilmDamping = Annotated[float, Quantity("film damping", "N*s/m", '"3e4 N*s/m"')]
+SignedTiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",))]
+SignedTiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",))]
+Pressure = Annotated[float, Quantity("absolute pressure", "Pa", '"5 bar"', (), 0)]
+Viscosity = Annotated[float, Quantity("viscosity", "Pa*s", '"0.5 mPa*s"', (), 0, True)]
+Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0, True)]
+SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True)]
+Force = Annotated[float, Quantity("force", "N", '"50 N"')]
+
+
+@cache
+def _named(dimension: frozenset) -> str:
+    """What a dimension is called, for a message."""
+    if dimension == dimension_and_factor("1/s")[0]:
+        return "says neither radians nor revolutions"
+    for kind in [v for v in globals().values() if hasattr(v, "__metadata__")]:
+        quantity = kind.__metadata__[0]
+        if isinstance(quantity, Quantity) and dimension_and_factor(quantity.unit)[0] == dimension:
+            return f"a unit of {quantity.name}"
+    return "another dimension" if dimension else "a pure number"
