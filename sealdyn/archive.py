@@ -342,9 +342,7 @@ def _read_events(group) -> list[dict]:
     columns = {k: group[k].asstr()[()] if k in ("kind", "text", "details") else group[k][()] for k in group}
     details = columns.pop("details")
     rows = zip(*(columns[k].tolist() for k in columns), strict=True)
-    return [
-        dict(zip(columns, row, strict=True)) | json.loads(d) for row, d in zip(rows, details, strict=True)
-    ]
+    return [dict(zip(columns, row, strict=True)) | json.loads(d) for row, d in zip(rows, details, strict=True)]
 
 
 def read_info(path) -> dict:

@@ -28,13 +28,9 @@ app = typer.Typer(
     ),
 )
 
-ScenarioFile = Annotated[
-    Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")
-]
+ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
-AsJson = Annotated[
-    bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")
-]
+AsJson = Annotated[bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")]
 
 
 class Stop(Exception):
@@ -66,13 +62,9 @@ def run(
     file: ScenarioFile,
     set: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>.h5)")] = None,
-    plot: Annotated[
-        bool, typer.Option("--plot/--no-plot", help="draw the overview figure beside the archive")
-    ] = True,
+    plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the overview figure beside the archive")] = True,
     as_json: AsJson = False,
-    resume: Annotated[
-        bool, typer.Option("--continue", help="go on with an interrupted or killed run")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--continue", help="go on with an interrupted or killed run")] = False,
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
     from .archive import ArchiveError
@@ -122,9 +114,7 @@ def _check_resumable(out, scenario):
     if info["status"] not in ("running", "interrupted"):
         raise Stop("ok", f"{source}: nothing to continue, the run is complete ({info['status']})")
     if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
-        raise Stop(
-            "invalid", f"{source}: was made from another scenario text or other --set; run without --continue"
-        )
+        raise Stop("invalid", f"{source}: was made from another scenario text or other --set; run without --continue")
 
 
 def _catch_interrupt() -> list:
@@ -224,9 +214,7 @@ def schema():
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
-    csv: Annotated[
-        bool, typer.Option("--csv", help="all series as comma-separated values on standard output")
-    ] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="all series as comma-separated values on standard output")] = False,
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""

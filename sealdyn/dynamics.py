@@ -53,9 +53,7 @@ from .imposed import (
 
 # Slots of one ring in the parameter block: it floats?, inertia, support, where its unknowns are in `y`
 # (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself).
-FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = (
-    range(12)
-)
+FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
 RING = 12
 WORKS_AT = 2 * RING
 LEG_AT = WORKS_AT + 1
@@ -154,8 +152,7 @@ def _works(tau, p, w, s, yp, at):
                 e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
                 e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
                 power[3] -= p[ring + TILT_K] * (
-                    e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE])
-                    + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
+                    e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE]) + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
                 )
     yp[at + 5] = abs(power[0]) + abs(power[1]) + abs(power[2]) + abs(power[3]) + abs(power[4])
 

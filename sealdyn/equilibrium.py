@@ -134,9 +134,7 @@ def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(abs(film.coning) * (film.outer_radius - film.inner_radius), 1e-6)
     tight, wide = (opening_force(film, c, inner, outer) for c in (reference / 100, reference * 100))
-    expected = (
-        f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
-    )
+    expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"
     if roots:
         found = f"only unstable equilibria (at {', '.join(f'{r.clearance * 1e6:.3g} um' for r in roots)})"

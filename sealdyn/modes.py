@@ -181,9 +181,7 @@ def resonance_speeds(at_speed, low: float, high: float, points: int = 120) -> li
 
     def distances(w):
         # Forward modes only: an unbalance-like forcing turns with the shaft.
-        return sorted(
-            m.value.imag - w for m in at_speed(w).modes() if m.kind == "tilt" and m.direction == "forward"
-        )
+        return sorted(m.value.imag - w for m in at_speed(w).modes() if m.kind == "tilt" and m.direction == "forward")
 
     previous = distances(speeds[0])
     for a, b in zip(speeds[:-1], speeds[1:], strict=True):

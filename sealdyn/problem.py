@@ -74,9 +74,7 @@ class Problem:
         self.scene, self.duration, self.accuracy = scene, duration, accuracy
         self.film = film_module(scene.film.model)
         self.film_name = self.film.__name__.rsplit(".", 1)[1]
-        self.clearance, self.closing, self.equilibria, self.closing_said = settle(
-            scene, self.film.opening_force
-        )
+        self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self.film.opening_force)
         self.table = self._film_table()
         self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
         self.face = self.f[:FACE_SIZE].copy()
@@ -98,9 +96,7 @@ class Problem:
         if self.film_name != "linear" or table.coefficients != "radial":
             return table
         source = film_module("radial")
-        k, d = linearised_film(
-            source, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance
-        )
+        k, d = linearised_film(source, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance)
         taken = Coefficients(
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
@@ -126,9 +122,7 @@ class Problem:
         scene, reasons = self.scene, []
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
-        rows = np.vstack(
-            [oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, g) for g in self.legs]
-        )
+        rows = np.vstack([oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, g) for g in self.legs])
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
         moved = [s for k, s in starts.items() if self.floats[k]]
         tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate)) or bool(
@@ -136,8 +130,7 @@ class Problem:
         )
         shifted = any(v for s in moved for v in (s.z, s.z_rate)) or bool(np.any(rows[:, 1] == AXIAL))
         changing = any(
-            isinstance(q, Table)
-            for q in (scene.film.inner_pressure, scene.film.outer_pressure, self.closing.spring)
+            isinstance(q, Table) for q in (scene.film.inner_pressure, scene.film.outer_pressure, self.closing.spring)
         )
         linear = self.film_name == "linear"
         floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
@@ -154,8 +147,7 @@ class Problem:
         elif linear:
             reasons.append("linear film: axial and angular motion decouple, both forced")
         massless = any(
-            self.floats[k]
-            and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
+            self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
             for k, r in rings.items()
         )
         if massless:
@@ -258,9 +250,7 @@ class Problem:
         """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
         clearance), so that a gentle scene is audited as sharply as a violent one."""
         amplitude = 0.0
-        for row in oscillators(
-            self.scene.shaft, self.scene.housing, self.scene.rotor, self.scene.stator, self.legs[0]
-        ):
+        for row in oscillators(self.scene.shaft, self.scene.housing, self.scene.rotor, self.scene.stator, self.legs[0]):
             amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
         for start in (self.scene.initial.stator, self.scene.initial.rotor):
             for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
@@ -269,9 +259,7 @@ class Problem:
         stiffness, _ = self.film_matrices()
         spring_z = sum(self.ring_block[k * dynamics.RING + dynamics.AXIAL_K] for k in range(2))
         spring_t = sum(self.ring_block[k * dynamics.RING + dynamics.TILT_K] for k in range(2))
-        largest = max(
-            (spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2
-        )
+        largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
         return max(largest * amplitude**2, 1e-30)
 
     # --- the pass -----------------------------------------------------------------------------------
@@ -455,9 +443,7 @@ class Problem:
         columns["time"] = leg.time + taus
         from .legs import reduced
 
-        columns["shaft_angle"] = np.mod(
-            reduced(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi
-        )
+        columns["shaft_angle"] = np.mod(reduced(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi)
         columns["shaft_speed"] = speed + slope * taus
         for k, name in enumerate(RING_NAMES):
             at = dynamics.OWN_STATE + 6 * k
@@ -529,9 +515,7 @@ class Problem:
             else:
                 shape[1], shape[2] = phasor * cos, phasor * sin
             none = np.zeros(3, dtype=complex)
-            found.append(
-                Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none)
-            )
+            found.append(Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none))
         return found
 
     def steady_motion(self):

@@ -8,10 +8,7 @@ MICRO, MILLI = 1e6, 1e3
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     model, stability, film, closing = (summary[k] for k in ("model", "stability", "film", "closing"))
-    out = [
-        f"{scenario.name}: {summary['status']}"
-        + ("" if summary["status"] == "ok" else f" - {summary['message']}")
-    ]
+    out = [f"{scenario.name}: {summary['status']}" + ("" if summary["status"] == "ok" else f" - {summary['message']}")]
     out.append(
         f"  model         {model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
         f"{summary['counts']['steps']} steps, {summary['counts']['rhs']} evaluations, {summary['wall_time']:.2g} s"
@@ -80,18 +77,14 @@ def _tilt_lines(summary):
         out.append(f"  steady state  {tilt['steady_said']}")
     margin = summary["contact_margin"]
     if margin is not None:
-        out.append(
-            f"  contact       linear theory: forcing may grow {_n(margin)} times before the faces touch"
-        )
+        out.append(f"  contact       linear theory: forcing may grow {_n(margin)} times before the faces touch")
     return out
 
 
 def _stability_line(stability):
     critical = stability["critical_speed"]
     whirl = stability["whirl_ratio"]
-    text = (
-        f"  stability     {stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
-    )
+    text = f"  stability     {stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
     text += f", critical speed {_n(critical)} rad/s" if critical else ", no critical speed"

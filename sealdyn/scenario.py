@@ -37,7 +37,7 @@ class Run:
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
     `turns` of the shaft (default 60) or `duration`; `samples_per_turn` (default 64; of a shaft at rest:
-    1024 samples) or `samples` in all.
+    1000 in all) or `samples` in all.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -45,7 +45,7 @@ class Run:
     turns: Annotated[float, Field(gt=0)] | None = None
     duration: Time | None = None
     samples_per_turn: Annotated[int, Field(gt=0)] | None = None
-    samples: Annotated[int, Field(gt=1)] | None = None
+    samples: Annotated[int, Field(gt=0)] | None = None
     accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
     solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
     start: Annotated[str, Field(pattern=STARTS)] = "rest"
@@ -80,6 +80,10 @@ class Scenario:
         tree = dataclasses.asdict(self.scene) | {"run": dataclasses.asdict(self.run), "study": self.study}
         return _plain(tree)
 
+    def unused(self) -> list[str]:
+        """Known keys, dotted, that the user gave and that this scene does not use."""
+        return unused(self.scene, self.given)
+
 
 def read_scenario(path, overrides=()) -> Scenario:
     """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
@@ -93,14 +97,10 @@ def read_scenario(path, overrides=()) -> Scenario:
     except IsADirectoryError:
         raise ScenarioError(str(path), "", "a folder", "a scenario file (TOML)") from None
     except UnicodeDecodeError as error:
-        raise ScenarioError(
-            path.name, "", f"no UTF-8 text (byte {error.start})", "a scenario file (TOML)"
-        ) from None
+        raise ScenarioError(path.name, "", f"no UTF-8 text (byte {error.start})", "a scenario file (TOML)") from None
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or str(error)
-        raise ScenarioError(
-            shown(str(path)), "", f"an unreadable file ({why})", "a scenario file (TOML)"
-        ) from None
+        raise ScenarioError(shown(str(path)), "", f"an unreadable file ({why})", "a scenario file (TOML)") from None
     return parse_scenario(text, path.name, overrides, path)
 
 
@@ -135,8 +135,8 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
 
 
 def unused_keys(scenario: Scenario) -> list[str]:
-    """Known keys, dotted, that the user gave and that this scene does not use."""
-    return unused(scenario.scene, scenario.given)
+    """`scenario.unused()`, as a function."""
+    return scenario.unused()
 
 
 def json_schema() -> dict:
@@ -162,13 +162,9 @@ def _toml(text: str, name: str) -> dict:
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ScenarioError(
-            name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]'
-        ) from None
+        raise ScenarioError(name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
     except (ValueError, RecursionError):
-        raise ScenarioError(
-            name, "", "numbers too long or tables too deep", "a scenario file (TOML)"
-        ) from None
+        raise ScenarioError(name, "", "numbers too long or tables too deep", "a scenario file (TOML)") from None
     if not raw:
         raise ScenarioError(name, "", "an empty file", "the tables [shaft], [film], [rotor], [stator]")
     return raw
@@ -230,9 +226,7 @@ def _check_run_and_study(raw: dict, name: str) -> None:
     """What depends on several keys: how long and how often, and that studies are tables."""
     for study, settings in _table(raw, "study").items():
         if not isinstance(settings, dict):
-            raise ScenarioError(
-                name, f"study.{study}", shown(settings), "a table [study.NAME] of a study's settings"
-            )
+            raise ScenarioError(name, f"study.{study}", shown(settings), "a table [study.NAME] of a study's settings")
     raw.setdefault("run", {})
     run = _table(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
@@ -240,6 +234,8 @@ def _check_run_and_study(raw: dict, name: str) -> None:
             raise ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
     if "duration" not in run:
         run.setdefault("turns", 60)
+    if "samples" not in run:
+        run.setdefault("samples_per_turn", 64)
 
 
 def _question(text: str) -> str:

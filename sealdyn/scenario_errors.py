@@ -133,7 +133,7 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     if path[-1].isdigit():
         return f"a table [[{key}]]"
     if error["type"] == "string_pattern_mismatch":
-        return error["ctx"]["pattern"].strip("^$()").replace("|", ", ")
+        return '"rest", "steady" or an archive "file.h5"'
     signs = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
     limit = "".join(f" {signs[k]} {v:g}" for k, v in error.get("ctx", {}).items() if k in signs)
     return expected_of(key, holds) + limit
@@ -141,9 +141,7 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
 
 def _unknown(name: str, kind: type, path: list[str]) -> ScenarioError:
     table, key = ".".join(path[:-1]), path[-1]
-    what, valid = (
-        ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
-    )
+    what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
     printable = ".".join([*path[:-1], shown(key).strip('"')])
     return ScenarioError(name, printable, what, f"{valid}; {nearest(kind, table, key)}")
 

@@ -42,9 +42,7 @@ def override_key(raw: dict, override: str, name: str) -> None:
 def _entry(place: Any, step: str, key: str, name: str) -> Any:
     if isinstance(place, list):
         if not step.isdecimal() or len(step) > 6 or int(step) >= len(place):
-            raise ScenarioError(
-                name, key, f"entry {shown(step)}", f"0 to {len(place) - 1}: the file has {len(place)}"
-            )
+            raise ScenarioError(name, key, f"entry {shown(step)}", f"0 to {len(place) - 1}: the file has {len(place)}")
         below = place[int(step)]
     else:
         below = place.setdefault(step, {})

@@ -45,9 +45,7 @@ def _film(film) -> None:
             f"less than outer_radius = {film.outer_radius:g} m",
         )
     if not 0 < film.floor < 0.5:
-        raise ImpossibleScene(
-            "film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5"
-        )
+        raise ImpossibleScene("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
     if film.clearance is not None:
         outer = film.clearance + film.coning * (film.outer_radius - film.inner_radius)
         if outer <= film.floor * film.clearance:
@@ -106,9 +104,7 @@ def _ring(name: str, ring) -> None:
     if support.radius is not None and by_tilt:
         raise ImpossibleScene(f"{key}.radius", "radius and tilt coefficients", "one or the other")
     if support.radius is None and support.tilt_stiffness is None:
-        raise ImpossibleScene(
-            f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness"
-        )
+        raise ImpossibleScene(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
     if support.radius is not None and support.radius <= 0:
         raise ImpossibleScene(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
 
@@ -212,6 +208,4 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":
         leaves += ["film.geometry", "film.cavitation_pressure"]
-    return sorted(
-        k for k in given if any(k == u or (k + ".").startswith(u.rstrip(".") + ".") for u in leaves)
-    )
+    return sorted(k for k in given if any(k == u or (k + ".").startswith(u.rstrip(".") + ".") for u in leaves))

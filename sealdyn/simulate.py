@@ -258,9 +258,7 @@ def _check_method(problem, method):
         raise ImpossibleScene("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
     if method == "expm" and not (problem.linear and problem.constant):
         what = "a nonlinear film" if not problem.linear else "parameters that change with time"
-        raise ImpossibleScene(
-            "run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters'
-        )
+        raise ImpossibleScene("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')
 
 
 def _set_windows(problem):

@@ -80,9 +80,7 @@ def _in_chunks(solver, problem, leg, tau, y, yp, method, counts, allow):
         allow(int(BUDGET * (stop - tau) / problem.fast_time) + 2000)
         try:
             result = (
-                solver.solve(np.array([tau, stop]), y)
-                if yp is None
-                else solver.solve(np.array([tau, stop]), y, yp)
+                solver.solve(np.array([tau, stop]), y) if yp is None else solver.solve(np.array([tau, stop]), y, yp)
             )
         except _TooLong:
             allow(None)
@@ -175,9 +173,7 @@ def _ida(problem, leg, tau, y, method, tolerance, counts):
         inner(t, y, yp, res)
 
     options = {"algebraic_idx": problem.algebraic} if len(problem.algebraic) else {}
-    solver = IDA(
-        counted, rtol=tolerance, atol=_tolerances(problem, tolerance), max_num_steps=1_000_000, **options
-    )
+    solver = IDA(counted, rtol=tolerance, atol=_tolerances(problem, tolerance), max_num_steps=1_000_000, **options)
     yield from _in_chunks(solver, problem, leg, tau, y, problem.start_rates(tau, y), method, counts, allow)
 
 
@@ -264,9 +260,7 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
         status, message, tau, y = "failed", str(failure), *problem.last
     except KeyboardInterrupt:
         status, message, tau, y = "interrupted", "interrupted by the user", *problem.last
-    return Outcome(
-        status, message, counts, clock.perf_counter() - begun, index, tau, y, tolerance, audit.residual()
-    )
+    return Outcome(status, message, counts, clock.perf_counter() - begun, index, tau, y, tolerance, audit.residual())
 
 
 def _blocks(steps):
@@ -345,6 +339,33 @@ def _hand_over(index, t, q, q_rate, begin, end, due, done, fallen, sink) -> int:
     if len(times):
         sink.take(index, times, *_at(t, q, q_rate, begin, end, times))
     return last
+
+
+class Recorder:
+    """A sink that keeps displacements in memory, every `interval` seconds; none without an interval."""
+
+    def __init__(self, problem, interval: float | None = None):
+        self.problem, self.interval, self.parts = problem, interval, []
+
+    def due(self, index):
+        leg = self.problem.legs[index]
+        if self.interval is None:
+            return np.empty(0)
+        first = max(0, int(np.ceil(leg.time / self.interval - 1e-9)))
+        taus = (first + np.arange(int(leg.length / self.interval) + 2)) * self.interval - leg.time
+        end = leg.length * (1 + 1e-12)
+        last = index + 1 == len(self.problem.legs)
+        return np.clip(taus[(taus >= 0) & ((taus < leg.length * (1 - 1e-12)) | last) & (taus <= end)], 0, leg.length)
+
+    def take(self, index, taus, q, q_rate):
+        self.parts.append((self.problem.legs[index].time + taus, q, q_rate))
+
+    def state(self, index, tau, y):
+        pass
+
+    def arrays(self):
+        """Times (m,), displacements (m, n), rates (m, n)."""
+        return tuple(np.concatenate([part[i] for part in self.parts]) for i in range(3))
 
 
 class Audit:

@@ -135,8 +135,7 @@ def _film(problem, linear, tally):
         "cross_stiffness": k[1, 2],
         "max_cavitated_fraction": tally.largest["cavitated_fraction"] if tally.largest else math.nan,
         "equilibria": [
-            {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable}
-            for e in problem.equilibria
+            {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in problem.equilibria
         ],
     }
 
@@ -253,7 +252,5 @@ def stability(problem, leg_index: int, linear=None) -> dict:
         "resonance_speeds": resonances,
         "growth_rate": found[0].value.real,
         "speed": speed,
-        "modes": [
-            {"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found
-        ],
+        "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
     }

@@ -87,9 +87,7 @@ class Quantity:
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
         if self.name == "absolute pressure" and GAUGE.search(unit):
-            raise QuantityError(
-                f"{shown(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air"
-            )
+            raise QuantityError(f"{shown(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air")
         if re.search(r"\bTIR\b", unit):
             raise QuantityError(
                 f"{shown(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
@@ -181,9 +179,7 @@ class VaryingQuantity:
             return self.quantity.read(value)
         except QuantityError as error:
             if isinstance(value, list):
-                raise QuantityError(
-                    error.found, "a number, or a table { time = [...], value = [...] }"
-                ) from None
+                raise QuantityError(error.found, "a number, or a table { time = [...], value = [...] }") from None
             raise
 
     def _table(self, value: dict) -> Table:
@@ -191,16 +187,12 @@ class VaryingQuantity:
         for key in value:
             if key not in ("time", "value"):
                 near = difflib.get_close_matches(key, ["time", "value"], 1)
-                raise QuantityError(
-                    f"key {shown(key)}", form + (f"; nearest key {near[0]!r}" if near else "")
-                )
+                raise QuantityError(f"key {shown(key)}", form + (f"; nearest key {near[0]!r}" if near else ""))
         for key in ("time", "value"):
             if not isinstance(value.get(key), list):
                 found = shown(value[key]) if key in value else "nothing"
                 raise QuantityError(f"{key} = {found}", form)
-        return self._checked(
-            _entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value")
-        )
+        return self._checked(_entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value"))
 
     @staticmethod
     def _checked(time: tuple[float, ...], value: tuple[float, ...]) -> Table:
@@ -210,9 +202,7 @@ class VaryingQuantity:
             raise QuantityError(f"a table of {len(time)} point(s)", "at least 2 points")
         for k in range(1, len(time)):
             if time[k] < time[k - 1]:
-                raise QuantityError(
-                    f"time {time[k]:g} s after {time[k - 1]:g} s", "times that do not decrease"
-                )
+                raise QuantityError(f"time {time[k]:g} s after {time[k - 1]:g} s", "times that do not decrease")
             if k > 1 and time[k] == time[k - 2]:
                 raise QuantityError(f"time {time[k]:g} s three times", "a time at most twice (a step)")
         return Table(time, value)

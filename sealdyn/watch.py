@@ -127,9 +127,7 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                 # How far the measure may sink between the points: at most the rise to the farther neighbour.
                 far_left, far_right = min(left, SCAN - 2), max(right, 2)
                 dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
-                held = (
-                    record[H] if kind == THICKNESS else record[MOST] if kind == MINUS_TILT else record[LEAST]
-                )
+                held = record[H] if kind == THICKNESS else record[MOST] if kind == MINUS_TILT else record[LEAST]
                 slack = tolerance[0]
                 if kind != THICKNESS:
                     known = abs(held) < np.inf
@@ -149,9 +147,7 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                 value(table, nodes, size, at, q, q_rate)
                 theta, radius = _measures(at, q, y, yp, p, f, w, s, out)
                 if kind == THICKNESS and window == 0 and out[kind] < f[FLOOR]:
-                    fallen = _first_below(
-                        t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
-                    )
+                    fallen = _first_below(t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
                     value(table, nodes, size, fallen, q, q_rate)
                     theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
                     record[H], record[H_TAU], record[H_LEG] = out[THICKNESS], fallen, leg

@@ -35,9 +35,7 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     for prefix, colour, label in tilts:
         outer = hull(run, prefix)
         if first > 0:
-            ax.fill(
-                *outer, color=PALE, alpha=0.6, lw=0, label="reach of the whole run" if label is None else None
-            )
+            ax.fill(*outer, color=PALE, alpha=0.6, lw=0, label="reach of the whole run" if label is None else None)
         x, y = (1e6 * run.values(f"{prefix}_{axis}", first) for axis in "xy")
         ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
         mark_turns(ax, run, first, x, y)
@@ -75,9 +73,7 @@ def mark_turns(ax, run: Run, first: int, x, y) -> None:
         return
     phase = run.turns[first:] + run.values("shaft_angle", 0, 1)[0] / (2 * np.pi)
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1)[-200:]
-    ax.plot(
-        np.interp(whole, phase, x), np.interp(whole, phase, y), "o", ms=3.2, color=MARK, label="once per turn"
-    )
+    ax.plot(np.interp(whole, phase, x), np.interp(whole, phase, y), "o", ms=3.2, color=MARK, label="once per turn")
 
 
 def contact_circle(ax, run: Run, reach: float) -> float:

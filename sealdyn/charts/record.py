@@ -77,9 +77,7 @@ class Run:
         for start in range(first, self.rows, stretch * max(1, BLOCK // stretch)):
             values = self.values(name, start, start + stretch * max(1, BLOCK // stretch))
             edges = np.arange(0, len(values), stretch)
-            padded = np.concatenate([values, np.full(-len(values) % stretch, values[-1])]).reshape(
-                -1, stretch
-            )
+            padded = np.concatenate([values, np.full(-len(values) % stretch, values[-1])]).reshape(-1, stretch)
             at = np.sort(np.stack([padded.argmin(1), padded.argmax(1)], 1), 1) + edges[:, None]
             at = np.minimum(at.ravel(), len(values) - 1)
             kept_x.append(self.progress[start + at])
@@ -104,12 +102,7 @@ class Run:
         inner = self.film("inner_radius") or 0.0
         radius = first.get("h_min_radius", inner)
         slope = (self.film("coning") or 0.0) * (radius - inner)
-        return (
-            first["h_min"]
-            - first["axial_gap_change"]
-            - slope
-            + radius * first.get("relative_misalignment", 0)
-        )
+        return first["h_min"] - first["axial_gap_change"] - slope + radius * first.get("relative_misalignment", 0)
 
     @cached_property
     def contact_tilt(self) -> float | None:

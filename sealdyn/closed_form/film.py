@@ -67,9 +67,7 @@ def film_coefficients(
     inner, outer = _edge_films(inner_radius, outer_radius, clearance, coning)
     width, mean_radius = np.subtract(outer_radius, inner_radius), np.add(inner_radius, outer_radius) / 2
     both = inner + outer
-    tilt_stiffness = (
-        math.pi * pressure_drop * (coning * inner_radius - inner) * (mean_radius * width / both) ** 2
-    )
+    tilt_stiffness = math.pi * pressure_drop * (coning * inner_radius - inner) * (mean_radius * width / both) ** 2
     squeeze = _squeeze_factor(inner, outer)
     tilt_damping = 24 * math.pi * viscosity * mean_radius**3 * (width / both) ** 3 * squeeze
     axial_stiffness = 2 * math.pi * mean_radius * width * pressure_drop * coning * width / both**2

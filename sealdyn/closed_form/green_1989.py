@@ -67,9 +67,7 @@ GREEN_1989_ROUNDED = {
 }
 
 
-def green_1989_tilt(
-    film_stiffness: float, film_damping: float, inertia_ratio: float = 0.5
-) -> dict[str, float]:
+def green_1989_tilt(film_stiffness: float, film_damping: float, inertia_ratio: float = 0.5) -> dict[str, float]:
     """The seven keywords of the tilt formulas (SI) for the reference seal on a film of the caller's choice.
 
     **Source** support at radius r_s: `K_s = K_z r_s^2 / 2`, the same for damping.

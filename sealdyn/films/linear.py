@@ -105,9 +105,7 @@ def wrench(f, s):
     k, d = f[TILT_K] + f[TILT_K_DP] * drop, f[TILT_D] + f[TILT_D_MU] * mu
     k_z, d_z = f[AXIAL_K] + f[AXIAL_K_DP] * drop, f[AXIAL_D] + f[AXIAL_D_MU] * mu
     wedge = d * s[MEAN_SPIN]
-    s[FORCE] = (
-        f[FORCE_I] * s[INNER_PRESSURE] + f[FORCE_O] * s[OUTER_PRESSURE] - k_z * s[DZ] - d_z * s[DZ_RATE]
-    )
+    s[FORCE] = f[FORCE_I] * s[INNER_PRESSURE] + f[FORCE_O] * s[OUTER_PRESSURE] - k_z * s[DZ] - d_z * s[DZ_RATE]
     s[MOMENT_X] = -k * s[GX] - d * s[GX_RATE] - wedge * s[GY]
     s[MOMENT_Y] = -k * s[GY] - d * s[GY_RATE] + wedge * s[GX]
     s[CAVITATED] = 0.0
