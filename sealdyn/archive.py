@@ -350,8 +350,11 @@ def read_info(path) -> dict:
     series (name -> `Series`) and the other root attributes.  Works while the run is written."""
     with _opened(path) as (file, record):
         info = {name: value.item() if hasattr(value, "item") else value for name, value in file.attrs.items()}
-        for name in ("summary", "resolved"):
-            info[name] = _from_json(info.get(name, "{}"))
+        for name in file.attrs.keys() - {"scenario", "title", "message"}:
+            # Dicts and lists were stored as JSON: they come back as what they were.
+            if isinstance(info[name], str) and info[name][:1] in ("{", "["):
+                info[name] = _from_json(info[name])
+        info.setdefault("summary", {})
         names = [name for name, item in file.items() if isinstance(item, h5py.Dataset)]
         info["series"] = {n: Series(file[n].attrs["units"], file[n].attrs["long_name"]) for n in names}
         return info | {"rows": record["rows"], "restart": record["state"], "events": record["events"]}

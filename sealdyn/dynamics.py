@@ -105,7 +105,8 @@ def kinematics(tau, y, yp, p, w, s):
 
 @njit(cache=True)
 def _net(tau, k, p, w, s, power):
-    """Net force and moments on ring k (without inertia) into the scratch; adds the powers of the elements."""
+    """Net force and moments on ring k (without inertia) into the scratch; adds the powers of the elements and
+    returns the springs' power."""
     leg = p[LEG_AT:]
     ring, c, x, net = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k
     sign = 1.0 if k == 0 else -1.0
@@ -133,18 +134,20 @@ def _net(tau, k, p, w, s, power):
     power[1] += sign * (s[FORCE] * v + s[MOMENT_X] * v_x + s[MOMENT_Y] * v_y)
     power[2] -= sign * closing * v
     power[4] += gyro_x * v_x + gyro_y * v_y
+    return spring * v + spring_x * v_x + spring_y * v_y
 
 
 @njit(cache=True)
 def _works(tau, p, w, s, yp, at):
     """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers, gyroscopic
-    term (zero), and the sum of absolute powers.  The springs' energy is a state function, so their moving
-    ends (carrier, own misalignment) do the work `spring force x end's velocity`."""
+    term (zero), and the sum of absolute powers, springs included.  The springs' energy is a state function,
+    so what counts as work is that of their moving ends (carrier, own misalignment)."""
     power = yp[at : at + 5]
     power[:] = 0.0
+    springs = 0.0
     for k in range(2):
         if p[k * RING + FLOATS] != 0.0:
-            _net(tau, k, p, w, s, power)
+            springs += _net(tau, k, p, w, s, power)
             ring, c, x = k * RING, k * PER_RING, OWN_STATE + 6 * k
             if p[ring + AT_Z] >= 0.0:
                 power[3] -= p[ring + AXIAL_K] * (w[x + Z] - w[c + Z]) * w[c + Z_RATE]
@@ -154,7 +157,8 @@ def _works(tau, p, w, s, yp, at):
                 power[3] -= p[ring + TILT_K] * (
                     e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE]) + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
                 )
-    yp[at + 5] = abs(power[0]) + abs(power[1]) + abs(power[2]) + abs(power[3]) + abs(power[4])
+    exchanged = abs(power[0]) + abs(power[1]) + abs(power[2]) + abs(power[3]) + abs(power[4])
+    yp[at + 5] = exchanged + abs(springs)
 
 
 @njit(cache=True)

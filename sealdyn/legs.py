@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 from decimal import Decimal, getcontext
 from fractions import Fraction
+from itertools import pairwise
 
 from .units import Table
 
@@ -68,7 +69,7 @@ def cut(duration: float, rotor_speed, stator_speed, quantities) -> list[Leg]:
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
     legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
     points = sorted(breaks)
-    for begin, end in zip(points[:-1], points[1:], strict=True):
+    for begin, end in pairwise(points):
         whole = Leg(Fraction(begin), end - begin, rotor_angle, stator_angle)
         fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
         pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))

@@ -5,10 +5,13 @@ of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of e
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import eig
 from scipy.optimize import brentq
+
+from .gap import FORCE
 
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
 TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -159,16 +162,18 @@ def verdict(modes: list[Mode]) -> str:
 
 def critical_speed(at_speed, low: float, high: float, points: int = 160) -> float | None:
     """Lowest shaft speed (rad/s) in [low, high] where the largest growth rate of a tilt mode changes sign;
-    None if it does not.  `at_speed(w)` gives the LinearScene at speed w."""
+    None if it does not, or only within rounding.  `at_speed(w)` gives the LinearScene at speed w."""
 
     def growth(w):
-        return max(mode.value.real for mode in at_speed(w).modes() if mode.kind == "tilt")
+        tilt = [mode.value for mode in at_speed(w).modes() if mode.kind == "tilt"]
+        rate = max(value.real for value in tilt)
+        return rate if abs(rate) > NEUTRAL * max(map(abs, tilt)) else 0.0
 
     speeds = np.geomspace(low, high, points)
     previous = growth(speeds[0])
-    for a, b in zip(speeds[:-1], speeds[1:], strict=True):
+    for a, b in pairwise(speeds):
         present = growth(b)
-        if (previous < 0) != (present < 0):
+        if previous * present < 0:
             return float(brentq(growth, a, b, rtol=1e-13))
         previous = present
     return None
@@ -184,7 +189,7 @@ def resonance_speeds(at_speed, low: float, high: float, points: int = 120) -> li
         return sorted(m.value.imag - w for m in at_speed(w).modes() if m.kind == "tilt" and m.direction == "forward")
 
     previous = distances(speeds[0])
-    for a, b in zip(speeds[:-1], speeds[1:], strict=True):
+    for a, b in pairwise(speeds):
         present = distances(b)
         if len(present) == len(previous):
             for i, (p, q) in enumerate(zip(previous, present, strict=True)):
@@ -216,8 +221,13 @@ def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, f
             moved = s.copy()
             moved[column] += (k - 4) * sizes[column]
             wrench(f, moved)
-            jacobian[:, column] += weight * moved[11:14] / sizes[column]
-    return -jacobian[:, :3], -jacobian[:, 3:]
+            jacobian[:, column] += weight * moved[FORCE : FORCE + 3] / sizes[column]
+    # What is below the rounding of the force is nothing.
+    wrench(f, s)
+    for column in range(6):
+        noise = 1e-14 * np.array([abs(s[FORCE]), *[abs(s[FORCE]) * steps[0] / steps[1]] * 2]) / sizes[column]
+        jacobian[np.abs(jacobian[:, column]) < noise, column] = 0.0
+    return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
 
 
 def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:

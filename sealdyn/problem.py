@@ -3,43 +3,23 @@
 import importlib
 import math
 import pkgutil
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from . import dynamics, films, watch
-from .equilibrium import ClosingForce, Equilibrium, initially, settle
+from .equilibrium import initially, settle
 from .films import Coefficients
-from .gap import (
-    CAVITATED,
-    DZ,
-    FACE_SIZE,
-    FLOW_INNER,
-    FLOW_OUTER,
-    FORCE,
-    GAP_STATE_SIZE,
-    GX,
-    GY,
-    INNER_PRESSURE,
-    MEAN_SPIN,
-    MOMENT_X,
-    MOMENT_Y,
-    OUTER_PRESSURE,
-    SPIN_DIFFERENCE,
-    TORQUE,
-    VISCOSITY,
-    h_min,
-)
-from .imposed import AXIAL, OWN, ROTOR, ROW, STATOR, oscillators
+from .gap import FACE_SIZE, GAP_STATE_SIZE, INNER_PRESSURE, MEAN_SPIN, OUTER_PRESSURE, SPIN_DIFFERENCE, VISCOSITY
+from .imposed import AXIAL, FIXED_AXIS, OWN, ROW, STATOR, oscillators
+from .layout import Layout
 from .legs import Leg, constant_and_slope, cut
 from .modes import Harmonic, LinearScene, RingNumbers, common_period, linearise
 from .scene import ImpossibleScene, Scene
-from .units import Table
+from .signals import signals
 
-WORKS = 6
 # Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
 STIFF = 60.0
-RING_NAMES = ("stator", "rotor")
 
 
 def film_module(name: str):
@@ -50,17 +30,6 @@ def film_module(name: str):
 def film_names() -> list[str]:
     """Names of the film rungs there are."""
     return sorted(m.name for m in pkgutil.iter_modules(films.__path__) if not m.name.startswith("_"))
-
-
-@dataclass(frozen=True)
-class Choice:
-    """What the scene decided: film rung, unknowns, and why."""
-
-    film: str
-    unknowns: list[str]
-    massless: bool
-    linear: bool
-    reasons: list[str]
 
 
 class Problem:
@@ -80,8 +49,14 @@ class Problem:
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
-        self._choose()
-        self._lay_out()
+        self.layout = layout = Layout(scene, self.legs, self.closing, self.film_name == "linear")
+        self.names, self.n, self.rate_places = layout.names, layout.n, layout.rate_places
+        self.n_mechanical, self.size, self.reasons = layout.n_mechanical, layout.size, layout.reasons
+        self.floats, self.massless, self.linear, self.constant = (
+            layout.floats, layout.massless, layout.linear, layout.constant
+        )  # fmt: skip
+        self.algebraic = layout.algebraic(self.film_matrices()[1]) if layout.massless else []
+        self.scales, self.pace, self.fast_time = layout.scales(self)
         self.begin(0)
         self.y0 = np.zeros(self.size)
         self.records = watch.fresh_records()
@@ -117,151 +92,6 @@ class Problem:
         ]
         return cut(self.duration, scene.shaft.speed, scene.stator.speed, quantities)
 
-    def _choose(self):
-        """Which unknowns the scene needs, and why."""
-        scene, reasons = self.scene, []
-        rings = {STATOR: scene.stator, ROTOR: scene.rotor}
-        self.floats = {k: ring.support is not None for k, ring in rings.items()}
-        rows = np.vstack([oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, g) for g in self.legs])
-        starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
-        moved = [s for k, s in starts.items() if self.floats[k]]
-        tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate)) or bool(
-            np.any(rows[:, 1] != AXIAL)
-        )
-        shifted = any(v for s in moved for v in (s.z, s.z_rate)) or bool(np.any(rows[:, 1] == AXIAL))
-        changing = any(
-            isinstance(q, Table) for q in (scene.film.inner_pressure, scene.film.outer_pressure, self.closing.spring)
-        )
-        linear = self.film_name == "linear"
-        floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
-        arrangement = {(True, False): "FMS", (False, True): "FMR", (True, True): "FMSR"}
-        reasons.append(f"{arrangement[self.floats[STATOR], self.floats[ROTOR]]}: support under {floating}")
-        if scene.film.model == "auto":
-            reasons.append("film auto: the radial film, the highest rung with a certified quadrature")
-        self.with_tilt, self.with_axial = tilted, True
-        if not tilted:
-            reasons.append("aligned faces and no angular forcing: axial unknowns only")
-        elif linear and not shifted and not changing:
-            self.with_axial = False
-            reasons.append("linear film and no axial forcing: axial motion decouples and stays at rest")
-        elif linear:
-            reasons.append("linear film: axial and angular motion decouple, both forced")
-        massless = any(
-            self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
-            for k, r in rings.items()
-        )
-        if massless:
-            reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
-        self.constant = len(self.legs) == 1 or all(
-            not isinstance(q, Table)
-            for q in (scene.shaft.speed, scene.stator.speed, scene.film.viscosity, scene.rotor.runout,
-                      scene.rotor.misalignment, scene.stator.misalignment)
-        ) and not changing  # fmt: skip
-        if any(isinstance(q, Table) for q in (scene.shaft.speed, scene.stator.speed, scene.film.viscosity)):
-            self.constant = False
-        self.massless, self.linear, self.reasons = massless, linear, reasons
-
-    def _lay_out(self):
-        """Places of the unknowns in `y`, their names and scales, and the constant part of the parameters."""
-        scene, rings = self.scene, (self.scene.stator, self.scene.rotor)
-        self.ring_block = np.zeros(dynamics.LEG_AT)
-        names, place = [], 0
-        for k, ring in enumerate(rings):
-            at = dynamics.RING * k
-            block = self.ring_block[at : at + dynamics.RING]
-            block[dynamics.AT_Z] = block[dynamics.AT_TILT] = -1
-            block[dynamics.AT_Z_RATE] = block[dynamics.AT_TILT_RATE] = -1
-            if not self.floats[k]:
-                continue
-            support = ring.support
-            tilt_k, tilt_d = support.tilt()
-            block[: dynamics.AT_Z] = (
-                1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia,
-                support.axial_stiffness, support.axial_damping, tilt_k, tilt_d,
-            )  # fmt: skip
-            if self.with_axial:
-                block[dynamics.AT_Z], place = place, place + 1
-                names.append(f"{RING_NAMES[k]}_z")
-            if self.with_tilt:
-                block[dynamics.AT_TILT], place = place, place + 2
-                names += [f"{RING_NAMES[k]}_tilt_x", f"{RING_NAMES[k]}_tilt_y"]
-        self.n, self.names = place, names
-        self.rate_places = np.full(self.n, -1)
-        for k, ring in enumerate(rings):
-            block = self.ring_block[dynamics.RING * k : dynamics.RING * (k + 1)]
-            if block[dynamics.AT_Z] >= 0 and ring.mass > 0:
-                block[dynamics.AT_Z_RATE] = self.rate_places[int(block[dynamics.AT_Z])] = place
-                place += 1
-            if block[dynamics.AT_TILT] >= 0 and ring.transverse_inertia > 0:
-                block[dynamics.AT_TILT_RATE] = place
-                tilt = int(block[dynamics.AT_TILT])
-                self.rate_places[tilt : tilt + 2] = place, place + 1
-                place += 2
-        self.n_mechanical, self.size = place, place + WORKS
-        self.ring_block[dynamics.WORKS_AT] = place
-        # A massless unknown without any damping on it is algebraic.
-        self.algebraic = [] if not self.massless else self._algebraic()
-        self._set_scales(scene)
-
-    def _algebraic(self):
-        _, damping = self.film_matrices()
-        places = []
-        for k in range(2):
-            block = self.ring_block[dynamics.RING * k : dynamics.RING * (k + 1)]
-            if (
-                block[dynamics.AT_Z] >= 0
-                and block[dynamics.AT_Z_RATE] < 0
-                and not (block[dynamics.AXIAL_D] or damping[0, 0])
-            ):
-                places.append(int(block[dynamics.AT_Z]))
-            if (
-                block[dynamics.AT_TILT] >= 0
-                and block[dynamics.AT_TILT_RATE] < 0
-                and not (block[dynamics.TILT_D] or damping[1, 1])
-            ):
-                places += [int(block[dynamics.AT_TILT]), int(block[dynamics.AT_TILT]) + 1]
-        return places
-
-    def _set_scales(self, scene):
-        """Scales of the unknowns: clearance, clearance / outer radius, times the shaft speed for rates."""
-        length, tilt = self.clearance, self.clearance / scene.film.outer_radius
-        displacement = np.array([length if name.endswith("_z") else tilt for name in self.names])
-        speeds = [constant_and_slope(scene.shaft.speed, g)[0] for g in self.legs]
-        pace = max((abs(w) for w in speeds), default=0.0)
-        forced = [2 * math.pi * v.frequency for v in (*scene.housing.axial, *scene.housing.angular)]
-        if pace == 0.0:
-            pace = max(forced, default=0.0) or self._natural_pace()
-        self.pace = pace
-        self.fast_time = 2 * math.pi / max([pace, *forced, self._natural_pace()])
-        self.scales = np.zeros(self.size)
-        self.scales[: self.n] = displacement
-        for i, place in enumerate(self.rate_places):
-            if place >= 0:
-                self.scales[place] = displacement[i] * pace
-        self.energy_scale = self._energy_scale(length, tilt)
-        self.scales[self.n_mechanical :] = self.energy_scale
-
-    def _natural_pace(self) -> float:
-        linear = self.linear_scene(0)
-        values, _ = linear.eigen()
-        return float(np.max(np.abs(values.imag), initial=0.0)) or 1.0 / self.duration
-
-    def _energy_scale(self, length, tilt) -> float:
-        """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
-        clearance), so that a gentle scene is audited as sharply as a violent one."""
-        amplitude = 0.0
-        for row in oscillators(self.scene.shaft, self.scene.housing, self.scene.rotor, self.scene.stator, self.legs[0]):
-            amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
-        for start in (self.scene.initial.stator, self.scene.initial.rotor):
-            for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
-                amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
-        amplitude = min(max(amplitude, 1e-6), 1.0)
-        stiffness, _ = self.film_matrices()
-        spring_z = sum(self.ring_block[k * dynamics.RING + dynamics.AXIAL_K] for k in range(2))
-        spring_t = sum(self.ring_block[k * dynamics.RING + dynamics.TILT_K] for k in range(2))
-        largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
-        return max(largest * amplitude**2, 1e-30)
-
     # --- the pass -----------------------------------------------------------------------------------
 
     def begin(self, index: int) -> Leg:
@@ -280,7 +110,7 @@ class Problem:
         ]
         rows = oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
         head = np.array([x for pair in [*varying, closing] for x in pair] + [len(rows)])
-        self.p = np.concatenate([self.ring_block, head, rows.ravel()])
+        self.p = np.concatenate([self.layout.ring_block, head, rows.ravel()])
         self.leg, self.leg_index, self.rows = leg, index, rows
         self._bind()
         return leg
@@ -398,7 +228,7 @@ class Problem:
     def check_start(self):
         """Raises ImpossibleScene if the film is closed at the start."""
         at = self.y0[: self.n][None, :]
-        low = self.signals(np.zeros(1), at, np.zeros_like(at))
+        low = signals(self, np.zeros(1), at, np.zeros_like(at))
         if low["h_min"][0] <= self.face[4]:
             raise ImpossibleScene(
                 "film.clearance",
@@ -416,57 +246,6 @@ class Problem:
             return None
         moving = [w for w in self.rows[:, 7] if w != 0.0]
         return common_period([*moving, speed] if speed else moving)
-
-    # --- what is looked at --------------------------------------------------------------------------
-
-    def signals(self, taus, q, q_rate) -> dict[str, np.ndarray]:
-        """Everything the archive keeps at given leg times; `q`, `q_rate` (m, n) displacements and rates."""
-        m = len(taus)
-        gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, dynamics.SCRATCH)), np.empty((m, 3))
-        flow, f, p, w, s, face = self.film.flow, self.f, self.p, self.w, self.s, self.face
-        ys = np.zeros((m, self.size))
-        ys[:, : self.n] = q
-        yps = np.zeros(self.size)
-        massive = self.rate_places >= 0
-        ys[:, self.rate_places[massive]] = q_rate[:, massive]
-        for i in range(m):
-            yps[: self.n] = q_rate[i]
-            dynamics.kinematics(taus[i], ys[i], yps, p, w, s)
-            flow(f, s)
-            gap[i], scratch[i] = s, w
-            low[i] = h_min(face, s[DZ], s[GX], s[GY])
-        return self._columns(np.asarray(taus), gap, scratch, low)
-
-    def _columns(self, taus, gap, scratch, low):
-        leg, columns = self.leg, {}
-        speed, slope = constant_and_slope(self.scene.shaft.speed, leg)
-        columns["time"] = leg.time + taus
-        from .legs import reduced
-
-        columns["shaft_angle"] = np.mod(reduced(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi)
-        columns["shaft_speed"] = speed + slope * taus
-        for k, name in enumerate(RING_NAMES):
-            at = dynamics.OWN_STATE + 6 * k
-            parts = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
-            for i, part in enumerate(parts[: 6 if self.floats[k] else 3]):
-                columns[f"{name}_{part}"] = scratch[:, at + i]
-        g = gap[:, GX] + 1j * gap[:, GY]
-        columns["relative_tilt_x"], columns["relative_tilt_y"] = gap[:, GX], gap[:, GY]
-        columns["relative_misalignment"], columns["relative_precession"] = np.abs(g), np.angle(g)
-        columns["axial_gap_change"] = gap[:, DZ]
-        columns["h_min"], columns["h_min_angle"], columns["h_min_radius"] = low.T
-        columns["film_force"] = gap[:, FORCE]
-        columns["film_moment_x"], columns["film_moment_y"] = gap[:, MOMENT_X], gap[:, MOMENT_Y]
-        closing = self.closing.over(leg, self.scene.film)
-        columns["closing_force"] = closing[0] + closing[1] * taus
-        # Leakage counts from high to low pressure; flow in +r is inward negative.
-        sign = -1.0 if self.closing.outer_is_high else 1.0
-        columns["leakage_inner"] = sign * gap[:, FLOW_INNER]
-        columns["leakage_outer"] = sign * gap[:, FLOW_OUTER]
-        columns["friction_torque"] = gap[:, TORQUE]
-        columns["friction_power"] = gap[:, TORQUE] * gap[:, SPIN_DIFFERENCE]
-        columns["cavitated_fraction"] = gap[:, CAVITATED]
-        return {name: np.ascontiguousarray(values) for name, values in columns.items()}
 
     # --- the linear side ----------------------------------------------------------------------------
 
@@ -510,7 +289,7 @@ class Problem:
             shape = np.zeros(3, dtype=complex)
             if kind == AXIAL:
                 shape[0] = phasor
-            elif cos == 1.0 and sin == 0.0 and kind != 2:
+            elif kind != FIXED_AXIS:
                 shape[1], shape[2] = phasor, -1j * phasor
             else:
                 shape[1], shape[2] = phasor * cos, phasor * sin
@@ -536,7 +315,7 @@ class Problem:
 
     def _kept(self):
         """Places of this problem's displacements among three per floating ring."""
-        parts = [i for i in range(3) if (i == 0 and self.with_axial) or (i > 0 and self.with_tilt)]
+        parts = [i for i in range(3) if (i == 0 and self.layout.with_axial) or (i > 0 and self.layout.with_tilt)]
         count = sum(self.floats.values())
         return [3 * a + i for a in range(count) for i in parts]
 

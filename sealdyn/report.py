@@ -33,8 +33,8 @@ def lines(scenario, summary: dict) -> list[str]:
         f"would heat the leakage by {_n(friction['temperature_rise'])} K"
     )
     out.append(
-        f"  film          clearance {_n(film['clearance'], MICRO)} um, axial stiffness {_n(film['axial_stiffness'])} N/m, "
-        f"tilt stiffness {_n(film['tilt_stiffness'])} N m/rad, tilt damping {_n(film['tilt_damping'])} N m s/rad"
+        f"  film          clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} "
+        f"N m/rad, tilt damping {_n(film['tilt_damping'])} N m s/rad, axial stiffness {_n(film['axial_stiffness'])} N/m"
     )
     out.append(
         f"  closing       {_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
@@ -107,9 +107,8 @@ def resolved_lines(found: dict) -> list[str]:
     out += [f"# {reason}" for reason in model["reasons"]]
     for root in found["equilibria"]:
         kind = "stable" if root["stable"] else "not stable by the film alone"
-        out.append(
-            f"# equilibrium clearance {_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m, {kind}"
-        )
+        where = f"{_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m"
+        out.append(f"# equilibrium clearance {where}, {kind}")
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
     return out

@@ -93,7 +93,8 @@ def nearest(kind: type, path: str, key: str) -> str:
     elsewhere = [f"[{table}]" for table, keys in every.items() if key in keys and table]
     top = [table for table in every if table and table.rpartition(".")[2] == key]
     if top:
-        return f"the table is [{top[0]}]"
+        above, _, last = top[0].rpartition(".")
+        return f"the table is [[{top[0]}]]" if is_list(every[above][last]) else f"the table is [{top[0]}]"
     close = difflib.get_close_matches(key, here, 1, 0.6)
     if elsewhere and not (close and close[0].startswith(key)):
         return f"'{key}' belongs to {' or '.join(elsewhere[:3])}"

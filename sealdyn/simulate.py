@@ -7,6 +7,7 @@ import platform
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from importlib.metadata import version
 from pathlib import Path
 
@@ -14,10 +15,13 @@ import numpy as np
 
 from . import __version__, archive
 from .archive import ArchiveWriter, Series, partial_path
+from .audit import Audit
+from .layout import RING_NAMES
 from .legs import time_of_angle
-from .problem import RING_NAMES, Problem
+from .problem import Problem
 from .scene import ImpossibleScene
-from .solve import Audit, solve
+from .signals import signals
+from .solve import solve
 from .summary import summarise
 from .units import Table
 
@@ -99,19 +103,17 @@ class ArchiveSink:
         leg = self.problem.legs[index]
         first = max(0, math.ceil(leg.time / self.dt - 1e-9))
         # The offset of the first sample is taken in exact arithmetic.
-        from fractions import Fraction
-
         offset = float(Fraction(self.dt) * first - leg.start)
         last = index + 1 == len(self.problem.legs)
         end = leg.length
-        number = int(math.floor((end - offset) / self.dt + 1e-9)) + 1
+        number = math.floor((end - offset) / self.dt + 1e-9) + 1
         taus = offset + self.dt * np.arange(max(number, 0))
         # A sample at a leg's end belongs to the next leg, whose parameters it shows; the run's last stays.
         keep = (taus >= -1e-12 * end) & ((taus < end * (1 - 1e-12)) | last)
         return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
 
     def take(self, index, taus, q, q_rate):
-        columns = self.problem.signals(taus, q, q_rate)
+        columns = signals(self.problem, taus, q, q_rate)
         self.tally.add(columns)
         if self.waiting is None:
             self.waiting = columns

@@ -6,8 +6,9 @@ import numpy as np
 
 from . import closed_form, modes
 from .imposed import ROTOR, STATOR
+from .legs import constant_and_slope
 from .scenario import unused_keys
-from .watch import H, H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST
+from .watch import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
@@ -154,8 +155,6 @@ def _closing(problem):
 
 
 def _first(quantity, problem):
-    from .legs import constant_and_slope
-
     return constant_and_slope(quantity, problem.leg)[0]
 
 
@@ -184,6 +183,8 @@ def _closed_form(problem, linear, tilt):
     formulas fed with the film's own coefficients."""
     if tilt is None:
         return {"road": "none: conditions change with time"}
+    if modes.verdict(linear.modes()) != "stable":
+        return {"road": "none: the linear steady state is not approached (not stable)"}
     found = {"relative_max": tilt[0], "relative_min": tilt[1], "axial_closing": tilt[2],
              "road": "harmonic balance of the film's own linearisation"}  # fmt: skip
     if tilt[3] is None and len(problem.rows):

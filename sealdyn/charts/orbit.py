@@ -30,16 +30,18 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     if not tilts:
         absent(ax, title)
         return
+    hulls = [hull(run, prefix) for prefix, _, _ in tilts]
+    reach = max(np.abs(outer).max(initial=0.0) for outer in hulls)
+    if not reach > 0:
+        absent(ax, title, "faces aligned throughout")
+        return
     first = run.last(turns if run.turning else np.inf)
-    reach = 0.0
-    for prefix, colour, label in tilts:
-        outer = hull(run, prefix)
+    for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
             ax.fill(*outer, color=PALE, alpha=0.6, lw=0, label="reach of the whole run" if label is None else None)
         x, y = (1e6 * run.values(f"{prefix}_{axis}", first) for axis in "xy")
         ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
         mark_turns(ax, run, first, x, y)
-        reach = max(reach, np.abs(outer).max(), 1e-6)
     circle = contact_circle(ax, run, reach) if contact else 0.0
     limit = 1.12 * max(reach, circle)
     ax.axhline(0, color=GREY, lw=0.5)

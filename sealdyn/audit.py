@@ -1,0 +1,45 @@
+"""Energy audit: one number that exposes a wrong sign in any scene."""
+
+import numpy as np
+
+
+class Audit:
+    """Energy balance: largest |dE - sum of works| over the sum of integrals of |power|, at every step."""
+
+    def __init__(self, problem):
+        self.problem, self.worst, self.moved = problem, 0.0, 0.0
+        self.energy0 = self.works0 = self.last = None
+
+    def begin(self, tau, y):
+        """A leg begins; the first fixes the zero of energy and works.  At a step of an imposed motion the
+        spring energy jumps (its end is moved in no time): that work is booked here."""
+        energy = float(self.problem.energies(np.array([tau]), y[None, :])[0])
+        if self.energy0 is None:
+            self.energy0, self.works0 = energy, y[-6:-1].sum()
+        else:
+            self.energy0 += energy - self.last
+        self.last = energy
+
+    def take(self, t, ys, begin, end):
+        """Check the steps (begin, end] of the running leg."""
+        if end <= begin:
+            return
+        energies = self.problem.energies(t[begin + 1 : end + 1], ys[begin + 1 : end + 1])
+        works = ys[begin + 1 : end + 1, -6:-1].sum(axis=1)
+        defects = np.abs(energies - self.energy0 - (works - self.works0))
+        self.worst = max(self.worst, float(defects.max()))
+        self.last, self.moved = float(energies[-1]), float(ys[end, -1])
+
+    def kept(self) -> dict:
+        """What a continued run needs."""
+        return {"worst": self.worst, "moved": self.moved, "energy0": self.energy0, "works0": self.works0,
+                "last": self.last}  # fmt: skip
+
+    def restore(self, kept: dict):
+        """Go on from `kept`."""
+        self.worst, self.moved, self.last = kept["worst"], kept["moved"], kept["last"]
+        self.energy0, self.works0 = kept["energy0"], kept["works0"]
+
+    def residual(self) -> float:
+        """The one number; 0 when nothing is exchanged."""
+        return self.worst / self.moved if self.moved > 0 else 0.0

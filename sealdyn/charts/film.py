@@ -1,0 +1,114 @@
+"""Film thickness around the circle: as it changes over the last turns, and at its thinnest moment."""
+
+import numpy as np
+from matplotlib.colors import Normalize
+
+from .page import absent, header, look, save, sheet
+from .palette import CONTACT, THICKNESS
+from .record import BLOCK, Run
+
+MOST_COLUMNS = 1500
+AROUND = np.linspace(0, 2 * np.pi, 181)
+
+
+def draw(archive_path, out_path, turns: float = 6.0):
+    """Map of film thickness over angle and turns, at the radius of its minimum, and over the face at the
+    thinnest sample of the whole run."""
+    run = Run(archive_path)
+    with look():
+        figure = sheet(12.0, 5.8)
+        header(figure, run)
+        over_turns = figure.add_axes((0.06, 0.11, 0.48, 0.62))
+        face = figure.add_axes((0.64, 0.08, 0.28, 0.64), projection="polar")
+        if run.clearance is None or not run.has("h_min", "axial_gap_change"):
+            absent(over_turns, "Film thickness around the circle")
+            absent(face, "Thinnest moment")
+            return save(figure, out_path)
+        bar = figure.add_axes((0.55, 0.11, 0.012, 0.62))
+        figure.colorbar(map_over_turns(over_turns, run, turns), cax=bar, label="film thickness, µm")
+        face_at_minimum(figure, face, run)
+        return save(figure, out_path)
+
+
+def thickness(run: Run, radius, angle, first: int, stop: int):
+    """Film thickness (m): rows first to stop along axis 0, then broadcast over `radius` and `angle`.
+
+    h = C + dz + r (g_x sin - g_y cos) + coning (r - r_i); no tilt in the archive: aligned faces.
+    **Valid** for coned faces; waviness is not in it.
+    """
+
+    def rows(name):
+        values = run.values(name, first, stop) if run.has(name) else np.zeros(min(stop, run.rows) - first)
+        return values.reshape(-1, *([1] * np.broadcast(radius, angle).ndim))
+
+    wedge = rows("relative_tilt_x") * np.sin(angle) - rows("relative_tilt_y") * np.cos(angle)
+    coning = (run.film("coning") or 0.0) * (radius - (run.film("inner_radius") or 0.0))
+    return run.clearance + rows("axial_gap_change") + radius * wedge + coning
+
+
+def map_over_turns(ax, run: Run, turns: float):
+    """Angle against turns; the line follows the smallest film thickness."""
+    first = run.last(turns if run.turning else np.inf, MOST_COLUMNS)
+    radius = _edge(run, first)
+    over = 1e6 * thickness(run, radius, AROUND, first, run.rows)
+    progress = run.progress[first:]
+    even = np.linspace(progress[0], progress[-1], len(progress))
+    over = over[np.clip(np.searchsorted(progress, even), 0, len(progress) - 1)]
+    image = ax.imshow(over.T, origin="lower", aspect="auto", cmap=THICKNESS, extent=(progress[0], progress[-1], 0, 360))
+    if run.has("h_min_angle") and over.std() > 1e-9:
+        angle = np.degrees(run.values("h_min_angle", first)) % 360
+        ax.plot(progress, angle, ".", ms=1.6, color="white")
+        ax.set_title("Film thickness around the circle  (white: where it is thinnest)")
+    else:
+        ax.set_title("Film thickness around the circle  (aligned faces)")
+    ax.grid(False)
+    ax.set(xlabel=run.progress_label, yticks=range(0, 361, 60))
+    ax.set_ylabel(f"angle from ξ, degrees, at r = {1e3 * radius:.4g} mm")
+    return image
+
+
+def face_at_minimum(figure, ax, run: Run) -> None:
+    """The face at the sample with the smallest h_min of the whole run."""
+    at = _thinnest_row(run)
+    inner, outer = run.film("inner_radius"), run.film("outer_radius")
+    if not (inner and outer):
+        absent(ax, "Thinnest moment")
+        return
+    radius = np.linspace(inner, outer, 12)
+    over = 1e6 * thickness(run, radius[:, None], AROUND, at, at + 1)[0]
+    over = np.broadcast_to(over, (len(radius), len(AROUND)))
+    spread = max(over.max() - over.min(), 1e-3 * abs(over.max()))
+    image = ax.pcolormesh(
+        AROUND,
+        1e3 * radius,
+        over,
+        shading="gouraud",
+        cmap=THICKNESS,
+        norm=Normalize(over.min(), over.min() + spread),
+    )
+    low = np.unravel_index(over.argmin(), over.shape)
+    ax.plot(AROUND[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+    ax.set(ylim=(0, 1e3 * outer), yticks=[])
+    ax.grid(False)
+    unit = "turn" if run.turning else "ms"
+    ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * 1e6:.4g} µm at {unit} "
+                 f"{run.progress[at]:.4g}", pad=16, loc="center")  # fmt: skip
+    ax.text(0, 0, f"{1e3 * inner:.4g}–{1e3 * outer:.4g} mm", ha="center", va="center")
+    bar = figure.add_axes((0.945, 0.11, 0.012, 0.62))
+    figure.colorbar(image, cax=bar, label="film thickness, µm")
+
+
+def _edge(run: Run, first: int) -> float:
+    """Radius (m) where the film is thinnest most of the time."""
+    if run.has("h_min_radius"):
+        return float(np.median(run.values("h_min_radius", first)))
+    return run.film("inner_radius") or 0.0
+
+
+def _thinnest_row(run: Run) -> int:
+    best, at = np.inf, 0
+    for start in range(0, run.rows, BLOCK):
+        values = run.values("h_min", start, start + BLOCK)
+        if values.min() < best:
+            best, at = values.min(), start + int(values.argmin())
+    return at

@@ -1,0 +1,171 @@
+"""The figure a seal engineer pins to the wall: question, verdict, orbit, film, tilt, leakage, spectrum, numbers."""
+
+import numpy as np
+
+from . import orbit, spectrum
+from .page import absent, header, look, save, sheet
+from .palette import BLACK, CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT
+from .record import Run
+
+ML_PER_HOUR = 3.6e9
+LEFT, MIDDLE, RIGHT = (0.045, 0.25), (0.365, 0.27), (0.715, 0.265)
+ROWS = ((0.615, 0.245), (0.335, 0.215), (0.07, 0.2))
+
+
+def draw(archive_path, out_path, turns: float = 4.0):
+    """Everything on one sheet; the enlarged panels show the last `turns` turns."""
+    run = Run(archive_path)
+    with look():
+        figure = sheet(13.5, 9.0)
+        header(figure, run)
+
+        def axes(column, row, share=None):
+            return figure.add_axes((column[0], ROWS[row][0], column[1], ROWS[row][1]), sharex=share)
+
+        orbit.panel(figure.add_axes((LEFT[0] + 0.01, 0.4, LEFT[1], 0.46)), run)
+        key_numbers(figure.add_axes((LEFT[0] - 0.01, 0.02, LEFT[1] + 0.03, 0.31)), run)
+        whole, last = axes(MIDDLE, 0), axes(RIGHT, 0)
+        for ax, first in ((whole, 0), (last, run.last(turns))):
+            film_panel(ax, run, first)
+        for ax, first in ((axes(MIDDLE, 1, whole), 0), (axes(RIGHT, 1, last), run.last(turns))):
+            tilt_panel(ax, run, first)
+        leakage_panel(axes(MIDDLE, 2, whole), run)
+        spectrum.panel(axes(RIGHT, 2), run)
+        return save(figure, out_path)
+
+
+def film_panel(ax, run: Run, first: int) -> None:
+    """h_min with the design clearance, contact, and where the run ended if it did not end well."""
+    title = "Smallest film thickness" + (f", {orbit.window(run, first)}" if first else "")
+    if not run.has("h_min"):
+        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+        return
+    x, h = run.envelope("h_min", first)
+    ax.plot(x, 1e6 * h, color=FILM)
+    top = 1e6 * np.nanmax(h)
+    if run.clearance:
+        ax.axhline(1e6 * run.clearance, color=GREY, ls="--", lw=0.9)
+        top = max(top, 1e6 * run.clearance)
+        # Named on the whole-run panel only: the enlarged one beside it shares the lines.
+        if not first:
+            _name(ax, 1e6 * run.clearance, "clearance", GREY)
+    ax.axhline(0, color=CONTACT, lw=1.2)
+    if not first:
+        _name(ax, 0, "contact", CONTACT)
+    if run.status in ("collapsed", "failed", "interrupted"):
+        colour = STATUS[run.status]
+        ax.plot(x[-1], 1e6 * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
+        near_top = 1e6 * h[-1] > 0.75 * top
+        ax.annotate(run.status, (x[-1], 1e6 * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
+                    textcoords="offset points", ha="right", weight="bold")  # fmt: skip
+    ax.set(title=title, ylabel="h_min, µm", ylim=(-0.03 * top, 1.15 * top))
+    _span(ax, run, first)
+
+
+def tilt_panel(ax, run: Run, first: int) -> None:
+    """Relative misalignment between the closed form's extremes."""
+    title = "Relative misalignment" + (f", {orbit.window(run, first)}" if first else "")
+    if not run.has("relative_misalignment"):
+        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+        return
+    x, tilt = run.envelope("relative_misalignment", first)
+    ax.plot(x, 1e6 * tilt, color=TILT)
+    top = 1e6 * np.nanmax(tilt)
+    if not top > 0:
+        absent(ax, title, "faces aligned throughout")
+        return
+    theory = run.summary.get("closed_form") or {}
+    for key, words, below in (("relative_max", "closed form max", False), ("relative_min", "min", True)):
+        if isinstance(theory.get(key), int | float):
+            value = 1e6 * theory[key]
+            if value < 3 * top:
+                ax.axhline(value, color=THEORY, ls="--", lw=1.1)
+                top = max(top, value)
+                if not first:
+                    _name(ax, value, words, THEORY, below)
+    ax.set(title=title, ylabel="tilt, µrad", ylim=(0, 1.2 * top))
+    _span(ax, run, first)
+
+
+def leakage_panel(ax, run: Run) -> None:
+    """Leakage at both radii; they differ while the film swells and shrinks."""
+    sides = [side for side in ("inner", "outer") if run.has(f"leakage_{side}")]
+    title = "Leakage, high to low pressure"
+    if not sides:
+        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+        return
+    for side, style in zip(sides, ({"color": LEAK}, {"color": BLACK, "ls": (0, (4, 3))}), strict=False):
+        x, flow = run.envelope(f"leakage_{side}")
+        ax.plot(x, ML_PER_HOUR * flow, label=f"at the {side} radius", **style)
+    ax.set(title=title, ylabel="ml/h")
+    ax.margins(y=0.25)
+    ax.legend(loc="upper right", ncols=2, borderaxespad=0.0)
+    _span(ax, run, 0)
+
+
+def key_numbers(ax, run: Run) -> None:
+    """A short table from the summary; rows the run does not have are left out."""
+    ax.set_axis_off()
+    ax.set_title("Key numbers")
+    rows = list(_numbers(run.summary)) or [("no summary yet", "the run has not finished")]
+    step = min(0.082, 0.97 / len(rows))
+    for line, (name, value) in enumerate(rows):
+        y = 0.95 - step * line
+        ax.text(0.0, y, name, va="center", transform=ax.transAxes, color=GREY, fontsize=8)
+        ax.text(0.42, y, value, va="center", transform=ax.transAxes, fontsize=8)
+        ax.plot((0, 1), (y - step / 2, y - step / 2), color=PALE, lw=0.5, transform=ax.transAxes)
+
+
+def _numbers(summary: dict):
+    """(name, value in words) of what the summary holds."""
+
+    def get(path):
+        value = summary
+        for key in path.split("."):
+            value = value.get(key) if isinstance(value, dict) else None
+        return value if isinstance(value, int | float) and np.isfinite(value) else None
+
+    def said(path, factor, unit, digits=4):
+        value = get(path)
+        return None if value is None else f"{factor * value:.{digits}g} {unit}".strip()
+
+    def joined(*parts):
+        return ", ".join(part for part in parts if part)
+
+    share = said("h_min.of_clearance", 100, "% of clearance", 3)
+    yield from _kept("smallest film", joined(said("h_min.value", 1e6, "µm"), share))
+    tilt = [said(f"relative_misalignment.{k}", 1e6, "", 3) for k in ("max", "min", "mean")]
+    if any(tilt):
+        yield "tilt max / min / mean", " / ".join(part or "–" for part in tilt) + " µrad"
+    steady = [said(f"relative_misalignment.steady_{k}", 1e6, "", 4) for k in ("max", "min")]
+    if any(steady):
+        yield "steady max / min", " / ".join(part or "–" for part in steady) + " µrad"
+    theory = [said(f"closed_form.relative_{k}", 1e6, "", 4) for k in ("max", "min")]
+    if any(theory):
+        yield "closed form max / min", " / ".join(part or "–" for part in theory) + " µrad"
+    yield from _kept("mean leakage", said("leakage.mean_ml_per_h", 1, "ml/h"))
+    yield from _kept("mean friction", joined(said("friction.power", 1, "W", 3), said("friction.torque", 1, "N m", 3)))
+    stiff = joined(said("film.axial_stiffness", 1e-6, "N/µm", 3), said("film.tilt_stiffness", 1, "N m/rad", 3))
+    yield from _kept("film stiffness", stiff)
+    balance = get("closing.balance_ratio")
+    ratio = None if balance is None else f"balance ratio {balance:.3g}"
+    yield from _kept("closing force", joined(said("closing.force", 1, "N"), ratio))
+    yield from _kept("critical speed", said("stability.critical_speed", 1, "rad/s"))
+    yield from _kept("margin to contact", said("contact_margin", 1, "× this forcing", 3))
+    yield from _kept("energy residual", said("energy_residual", 1, "", 2))
+
+
+def _kept(name: str, value):
+    return [(name, value)] if value else []
+
+
+def _name(ax, y: float, words: str, colour: str, below: bool = False) -> None:
+    """Names a horizontal line at its right end, above it (or below)."""
+    ax.annotate(words, (1, y), xycoords=("axes fraction", "data"), xytext=(-2, -2 if below else 2), color=colour,
+                textcoords="offset points", ha="right", va="top" if below else "bottom", fontsize=8)  # fmt: skip
+
+
+def _span(ax, run: Run, first: int) -> None:
+    start, end = run.progress[first], run.progress[-1]
+    ax.set_xlim(start, end if end > start else start + 1)
+    ax.set_xlabel(run.progress_label)
