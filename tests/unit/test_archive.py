@@ -17,13 +17,14 @@ from sealdyn.archive import ArchiveError, ArchiveWriter, Series, column, last_st
 
 SCENARIO = '# Does it hold?  Ω = 1000\n[shaft]\nspeed = "1000 rad/s"\n'
 SERIES = {"h_min": Series("m", "smallest film thickness"), "count": Series("1", "row number")}
+META = {"version": "0.1.0", "overrides": [], "libraries": {"numpy": "2"}}
 
 
 def writer(path, **options):
     given = {
         "scenario_text": SCENARIO,
         "resolved": {"film": {"clearance": 1e-5}},
-        "meta": {"version": "0.1.0"},
+        "meta": META,
     }
     return ArchiveWriter(path, **(given | {"series": SERIES} | options))
 
@@ -49,7 +50,8 @@ def test_what_goes_in_comes_out_to_the_last_bit(tmp_path):
     info = read_info(path)
     assert (info["status"], info["message"], info["rows"]) == ("ok", "done", 300)
     assert info["scenario"] == SCENARIO and info["resolved"] == {"film": {"clearance": 1e-5}}
-    assert info["summary"] == {"h_min": {"value": 3e-6}, "none": None} and info["version"] == "0.1.0"
+    assert info["summary"] == {"h_min": {"value": 3e-6}, "none": None}
+    assert {name: info[name] for name in META} == META
     assert info["series"]["h_min"] == SERIES["h_min"]
     (event,) = info["events"]
     assert event == {"kind": "minimum", "time": 0.25, "value": 3e-6, "text": "smallest film µ", "theta": 0.5}
@@ -88,6 +90,19 @@ def test_a_running_archive_opens_with_its_rows_and_nothing_else(tmp_path):
         assert dataset.attrs["scenario"] == SCENARIO
         assert json.loads(dataset.attrs["resolved"]) == {"film": {"clearance": 1e-5}}
         np.testing.assert_array_equal(dataset["count"].values, np.arange(30.0))
+    run.close()
+
+
+def test_a_record_broken_off_half_way_leaves_the_one_before(tmp_path):
+    path = tmp_path / "run.h5"
+    run = writer(path, interval=0.0)
+    run.append(rows(0, 30), {"row": 30})
+    run.append(rows(30, 40), {"row": 40})
+    # What a kill amid the last write leaves: a record whose end never came.
+    with h5py.File(archive.partial_path(path), "r+") as file:
+        newest = max((0, 1), key=lambda slot: b'"rows": 40' in file["restart/record"][slot].tobytes())
+        file["restart/record"][newest, 40:] = 0
+    assert read_info(path)["rows"] == 30 and last_state(path) == {"row": 30}
     run.close()
 
 
@@ -227,9 +242,7 @@ def test_reading_while_a_run_writes(tmp_path):
                 info = read_info(path)
                 seen.append(info["rows"])
                 assert info["rows"] == info["restart"].get("row", 0)
-                np.testing.assert_array_equal(
-                    column(path, "count", slice(0, info["rows"])), np.arange(seen[-1])
-                )
+                np.testing.assert_array_equal(column(path, "count", slice(0, info["rows"])), np.arange(seen[-1]))
             except Exception as error:
                 errors.append(error)
 

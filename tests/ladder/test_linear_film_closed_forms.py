@@ -1,0 +1,77 @@
+"""A linear film integrated in time against the steady response of Green (1989), and FMSR against its limits."""
+
+import numpy as np
+import pytest
+from scenes import INERTIA, MISALIGNMENT, SPEED, SUPPORT, fmr, fms, fmsr, run
+
+from sealdyn import closed_form
+from sealdyn.closed_form import film_coefficients
+from sealdyn.watch import LEAST, MOST
+
+ACCURACY = 1e-8
+FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
+K_S, D_S = SUPPORT.tilt()
+
+
+def numbers(c):
+    return dict(
+        speed=SPEED, transverse_inertia=INERTIA, polar_inertia=INERTIA / c, support_stiffness=K_S,
+        support_damping=D_S, film_stiffness=FILM.tilt_stiffness, film_damping=FILM.tilt_damping,
+    )  # fmt: skip
+
+
+def transmissibilities(flexible, c):
+    """Oracle: the ring's complex equation at frequency 0 and w, written out and solved here."""
+    w, j = SPEED, INERTIA / c if flexible == "rotor" else 0.0
+    k_f, d_f = FILM.tilt_stiffness, FILM.tilt_damping
+    spin = w if flexible == "rotor" else 0.0
+
+    def film(s):
+        return k_f + 1j * s * d_f - 0.5j * w * d_f
+
+    def own(s):
+        return -INERTIA * s * s + j * w * s + D_S * (1j * s - 1j * spin) + K_S
+
+    fixed, turning = 0.0, w
+    own_s, partner_s = (turning, fixed) if flexible == "rotor" else (fixed, turning)
+    to_own = K_S / (own(own_s) + film(own_s))
+    to_partner = 1 - film(partner_s) / (own(partner_s) + film(partner_s))
+    static, dynamic = (to_partner, to_own) if flexible == "rotor" else (to_own, to_partner)
+    return abs(static), abs(dynamic)
+
+
+@pytest.mark.parametrize("c", [0.5, 3.0])
+@pytest.mark.parametrize("flexible", ["rotor", "stator"])
+def test_extremes_of_the_relative_misalignment(flexible, c):
+    """static, dynamic, maximum and minimum, each from its own run, to 1e-6 at accuracy 1e-8."""
+    if flexible == "rotor":
+        static, dynamic = closed_form.fmr_static(**numbers(c)), closed_form.fmr_dynamic(**numbers(c))
+        scenes = [fmr("linear", c, own=0.0), fmr("linear", c, stator=0.0), fmr("linear", c)]
+    else:
+        static, dynamic = closed_form.fms_static(**numbers(c)), closed_form.fms_dynamic(**numbers(c))
+        scenes = [fms("linear", c, runout=0.0), fms("linear", c, own=0.0), fms("linear", c)]
+    assert (static, dynamic) == pytest.approx(transmissibilities(flexible, c), rel=1e-12)
+    runs = [run(scene, turns=12, accuracy=ACCURACY, per_turn=1) for scene in scenes]
+    for which, expected in ((0, static), (1, dynamic)):
+        for slot in (MOST, LEAST):
+            assert runs[which].record(1)[slot] / MISALIGNMENT == pytest.approx(expected, rel=1e-6)
+    most, least = closed_form.superposed(static, dynamic)
+    assert runs[2].record(1)[MOST] / MISALIGNMENT == pytest.approx(most, rel=1e-6)
+    assert runs[2].record(1)[LEAST] / MISALIGNMENT == pytest.approx(least, rel=1e-6)
+
+
+@pytest.mark.parametrize("limit", ["rotor", "stator"])
+def test_fmsr_tends_to_its_limits_as_one_over_stiffness(limit):
+    """Stiffen the stator's support: FMR is left.  Stiffen the rotor's: FMS."""
+    alone = run(fmr("linear") if limit == "rotor" else fms("linear"), turns=3, accuracy=ACCURACY, start="steady")
+    relative = alone["relative_tilt_x"] + 1j * alone["relative_tilt_y"]
+    factors, errors = np.array([1e3, 1e4, 1e5]), []
+    for factor in factors:
+        stiff = {"stator_stiffer": factor} if limit == "rotor" else {"rotor_stiffer": factor}
+        both = run(fmsr("linear", **stiff), turns=3, accuracy=ACCURACY, start="steady")
+        assert both.problem.n == 4
+        answer = both["relative_tilt_x"] + 1j * both["relative_tilt_y"]
+        errors.append(np.max(np.abs(answer - relative)) / np.max(np.abs(relative)))
+    slope = np.polyfit(np.log(factors), np.log(errors), 1)[0]
+    assert slope == pytest.approx(-1.0, abs=0.05)
+    assert errors[-1] < 1e-3

@@ -1,0 +1,107 @@
+"""Films solved the long way, importing nothing of the package: for tests to compare with."""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+
+def pressure_lines(face, state, angles, cuts=()):
+    """Reynolds' equation along the radius at every angle, `(r h^3 p')' = 12 mu r (dh/dt + wm dh/dtheta)`, by
+    shooting with DOP853: returns theta and the solution's integrals over the radius.
+
+    `face`: r_i, r_o, clearance, coning, planar, mean; `state`: dz, gx, gy, their rates, wm, mu, p_i, p_o.
+    Everything in the fixed frame, angle by angle, no symmetry used.  Integrals: of p r, p r^2, and r^3/h, p' s, ...
+    """
+    r_i, r_o, c, coning, planar, mean = face
+    dz, gx, gy, dz_t, gx_t, gy_t, wm, mu, p_i, p_o = state
+    theta = 2 * np.pi * np.arange(angles) / angles
+    sin, cos = np.sin(theta), np.cos(theta)
+    r_m, n = 0.5 * (r_i + r_o), angles
+
+    def film(r):
+        arm = r_m if mean else r
+        h = c + dz + coning * (r - r_i) + arm * (gx * sin - gy * cos)
+        turn = arm * (gx * cos + gy * sin)
+        return h, dz_t + arm * (gx_t * sin - gy_t * cos) + wm * turn, turn
+
+    def slopes(r, y):
+        phi, p1, p0 = y[:n], y[n : 2 * n], y[2 * n : 3 * n]
+        h, f, _ = film(r)
+        area = 1.0 if planar else r
+        per = 12 * mu / (area * h**3)
+        return np.concatenate(
+            [area * f, per * phi, per, p1 * r, p0 * r, p1 * r * r, p0 * r * r, r**3 / h, film(r)[2] * p1 * r,
+             film(r)[2] * p0 * r]
+        )  # fmt: skip
+
+    h_small = min(np.min(film(r_i)[0]), np.min(film(r_o)[0]))
+    width, size = r_o - r_i, 12 * mu / (r_m * h_small**3)
+    f_size = max(np.max(np.abs(film(r)[1])) for r in (r_i, r_o)) + 1e-30
+    scale = [f_size * r_m * width, size * f_size * r_m * width**2, size * width]
+    scale += [scale[1] * r_m * width, scale[2] * r_m * width, scale[1] * r_m**2 * width, scale[2] * r_m**2 * width]
+    scale += [r_o**4 / h_small, scale[1] * h_small * width, scale[2] * h_small * width]
+    atol = np.repeat(np.array(scale) * 1e-18, n)
+    found = solve_ivp(slopes, (r_i, r_o), np.zeros(10 * n), "DOP853", rtol=2.3e-14, atol=atol)
+    phi, p1, p0, f1, f0, m1, m0, drag, t1, t0 = found.y[:, -1].reshape(10, n)
+    edge = (p_o - p_i - p1) / p0
+    strip = r_m if planar else 1.0
+    force = f1 + edge * f0 + p_i * (r_o**2 - r_i**2) / 2
+    moment = m1 + edge * m0 + p_i * (r_o**3 - r_i**3) / 3
+    turn_mean = [np.zeros(n)] * 2
+    # int dh/dtheta p r dr, whose constant part p_i integrates to zero around the circle.
+    turned = t1 + edge * t0 + turn_mean[0]
+    return theta, dict(
+        force=force, moment=moment, inner=-edge * strip, outer=-(edge + phi) * strip, drag=drag, turned=turned, edge=edge
+    )
+
+
+def radial_wrench(face, state, angles):
+    """F (N), M = M_x + i M_y (N m) on the stator, flow in +r at both radii (m^3/s), Couette integral
+    int r^3/h (m^2), and int p dh/dtheta dA (N m)."""
+    theta, line = pressure_lines(face, state, angles)
+    d = 2 * np.pi / angles
+    moment = np.sum(line["moment"] * (np.sin(theta) - 1j * np.cos(theta))) * d
+    return (np.sum(line["force"]) * d, moment, np.sum(line["inner"]) * d, np.sum(line["outer"]) * d,
+            np.sum(line["drag"]) * d, np.sum(line["turned"]) * d)  # fmt: skip
+
+
+def pressure_field(face, state, angles, points):
+    """Pressure (angles, points) on a dense grid by cumulative Simpson rule, with theta, r and film (same shapes)."""
+    r_i, r_o, c, coning, planar, mean = face
+    dz, gx, gy, dz_t, gx_t, gy_t, wm, mu, p_i, p_o = state
+    theta = 2 * np.pi * np.arange(angles) / angles
+    sin, cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
+    r = np.linspace(r_i, r_o, 2 * points - 1)
+    arm = np.full_like(r, 0.5 * (r_i + r_o)) if mean else r
+    h = c + dz + coning * (r - r_i) + arm * (gx * sin - gy * cos)
+    f = dz_t + arm * (gx_t * sin - gy_t * cos) + wm * arm * (gx * cos + gy * sin)
+    area = np.ones_like(r) if planar else r
+    # area * f is a quadratic at most (planar: linear) in r: its integral by Simpson's rule on the halves is exact
+    # at even points; the integrand at odd points by the matching three-point formula.
+    step = r[1] - r[0]
+    phi = _cumulative(area * f, step)
+    per = 12 * mu / (area * h**3)
+    p1, p0 = _cumulative(per * phi, step), _cumulative(per, step)
+    p = p_i + p1 + (p_o - p_i - p1[:, -1:]) / p0[:, -1:] * p0
+    return theta, r, h, p
+
+
+def _cumulative(values, step):
+    """Cumulative integral along the last axis, third order at odd points, fourth at even (Simpson)."""
+    out = np.zeros(np.broadcast_shapes(values.shape))
+    a, b, c = values[..., 0:-2:2], values[..., 1:-1:2], values[..., 2::2]
+    first = step / 12 * (5 * a + 8 * b - c)
+    whole = step / 3 * (a + 4 * b + c)
+    ends = np.cumsum(whole, axis=-1)
+    out[..., 2::2] = ends
+    out[..., 1::2] = first
+    out[..., 3::2] += ends[..., :-1]
+    return out
+
+
+def floored_wrench(face, state, floor, angles, points):
+    """F and M with max(p, floor) on the dense grid."""
+    theta, r, _, p = pressure_field(face, state, angles, points)
+    p = np.maximum(p, floor)
+    d = 2 * np.pi / angles
+    line, line_2 = np.trapezoid(p * r, r, axis=1), np.trapezoid(p * r * r, r, axis=1)
+    return np.sum(line) * d, np.sum(line_2 * (np.sin(theta) - 1j * np.cos(theta))) * d

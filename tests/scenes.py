@@ -1,0 +1,185 @@
+"""Scenes the tests share, built in Python: the seal of Green (1989) with the support under either ring or both."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from sealdyn.films import Coefficients, Film
+from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft
+from sealdyn.problem import Problem
+from sealdyn.ring import Rotor, Stator, Support
+from sealdyn.scene import Initial, RingStart, Scene
+from sealdyn.signals import signals
+from sealdyn.solve import solve
+from sealdyn.units import Table
+
+CLEARANCE, R_I, R_O, SPEED = 1e-5, 0.032, 0.040, 1000.0
+INERTIA, MISALIGNMENT = 8e-4, 25e-6
+TILT_SCALE = CLEARANCE / R_O
+SUPPORT = Support(axial_stiffness=5e5, axial_damping=300.0, radius=0.04)
+NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
+
+
+def film(model="radial", **changes):
+    """Green's film: 25 um of coning over an 8 mm face, 5 bar outside."""
+    given = dict(
+        inner_radius=R_I, outer_radius=R_O, clearance=CLEARANCE, coning=3.125e-3, viscosity=0.5e-3,
+        outer_pressure=5e5, inner_pressure=0.0, model=model,
+    )  # fmt: skip
+    return Film(**(given | changes))
+
+
+def ring(c=0.5, **changes):
+    """Inertia and support of Green's ring; c = transverse over polar inertia."""
+    return dict(mass=1.0, transverse_inertia=INERTIA, polar_inertia=INERTIA / c, support=SUPPORT) | changes
+
+
+def fmr(model="radial", c=0.5, speed=SPEED, own=MISALIGNMENT, stator=MISALIGNMENT, **parts):
+    """Flexible rotor (own misalignment, turning) over a misaligned stator (fixed)."""
+    given = dict(
+        shaft=Shaft(speed=speed),
+        film=film(model),
+        rotor=Rotor(**ring(c, misalignment=own)),
+        stator=Stator(misalignment=stator),
+    )
+    return Scene(**(given | parts))
+
+
+def fms(model="radial", c=0.5, speed=SPEED, own=MISALIGNMENT, runout=MISALIGNMENT, **parts):
+    """Flexible stator (own misalignment, fixed) over a rotor that runs out (turning)."""
+    given = dict(
+        shaft=Shaft(speed=speed),
+        film=film(model),
+        stator=Stator(**ring(c, misalignment=own)),
+        rotor=Rotor(runout=runout),
+    )
+    return Scene(**(given | parts))
+
+
+def fmsr(model="radial", rotor_stiffer=1.0, stator_stiffer=1.0, speed=SPEED, own=MISALIGNMENT, stator=MISALIGNMENT):
+    """Both rings float; a support may be stiffened."""
+    stiff = [
+        replace(SUPPORT, axial_stiffness=factor * SUPPORT.axial_stiffness) for factor in (rotor_stiffer, stator_stiffer)
+    ]
+    return Scene(
+        shaft=Shaft(speed=speed),
+        film=film(model),
+        rotor=Rotor(**ring(support=stiff[0], misalignment=own)),
+        stator=Stator(**ring(support=stiff[1], misalignment=stator)),
+    )
+
+
+def large_tilt(model="radial"):
+    """A stator so far out of square that the gap closes to some tenths of the clearance."""
+    return fmr(model, stator=2.3e-3, own=MISALIGNMENT)
+
+
+def housing_vibration(model="radial"):
+    """Axial and angular housing tones, one pair commensurate with the shaft."""
+    shaking = Housing(
+        axial=[AxialVibration(frequency=400.0, acceleration=20.0)],
+        angular=[
+            AngularVibration(frequency=2 * SPEED / (2 * math.pi), displacement=5e-6),
+            AngularVibration(frequency=75.0, displacement=20e-6, direction=math.pi / 2),
+        ],
+    )
+    return fmr(model, stator=0.0, housing=shaking)
+
+
+def runup(model="radial"):
+    """A stator carried from 1000 to 3000 rad/s in 20 ms, with kinks."""
+    return fms(model, speed=Table((0.0, 0.005, 0.025, 0.03), (1000.0, 1000.0, 3000.0, 3000.0)))
+
+
+def free_ring(c=0.5, tilt=20e-6, tilt_rate=5e-3, speed=SPEED):
+    """A rotor on undamped springs in a film that does nothing."""
+    return fmr(
+        c=c,
+        speed=speed,
+        film=film("linear", coefficients=NOTHING),
+        rotor=Rotor(**ring(c, support=replace(SUPPORT, axial_damping=0.0))),
+        stator=Stator(),
+        initial=Initial(rotor=RingStart(tilt_x=tilt, tilt_y_rate=tilt_rate)),
+    )
+
+
+class Sink:
+    """Keeps displacements, rates and signals at evenly spaced times."""
+
+    def __init__(self, problem, interval):
+        self.problem, self.interval = problem, interval
+        self.count = round(problem.duration / interval)
+        self.times, self.q, self.rates, self.parts = [], [], [], []
+
+    def due(self, index):
+        leg = self.problem.legs[index]
+        taus = np.arange(self.count + 1) * self.interval - leg.time
+        last = index + 1 == len(self.problem.legs)
+        inside = (taus >= -1e-12) & ((taus < leg.length * (1 - 1e-12)) | last) & (taus <= leg.length * (1 + 1e-9))
+        return np.clip(taus[inside], 0.0, leg.length)
+
+    def take(self, index, taus, q, q_rate):
+        self.times.append(taus + self.problem.legs[index].time)
+        self.q.append(q)
+        self.rates.append(q_rate)
+        self.parts.append(signals(self.problem, taus, q, q_rate))
+
+    def state(self, *anything):
+        pass
+
+
+class Run:
+    """A finished run: problem, outcome, times (m,), displacements and rates (m, n), signals by name."""
+
+    def __init__(self, problem, outcome, sink):
+        self.problem, self.outcome = problem, outcome
+        self.times = np.concatenate(sink.times) if sink.times else np.empty(0)
+        self.q = np.concatenate(sink.q) if sink.q else np.empty((0, problem.n))
+        self.rates = np.concatenate(sink.rates) if sink.rates else np.empty((0, problem.n))
+        self.parts = sink.parts
+
+    def __getitem__(self, name):
+        return np.concatenate([part[name] for part in self.parts])
+
+    def record(self, window):
+        """Extremes of one window, as `sealdyn.watch` names its slots."""
+        return self.problem.records[window]
+
+    def scaled(self):
+        """Displacements and rates over their scales, (m, 2n)."""
+        scales = self.problem.scales[: self.problem.n]
+        return np.hstack([self.q / scales, self.rates / (scales * self.problem.pace)])
+
+    def tilt(self, ring):
+        """Complex tilt of a ring at the sampled times."""
+        at = self.problem.names.index(f"{ring}_tilt_x")
+        return self.q[:, at] + 1j * self.q[:, at + 1]
+
+
+def prepared(scene, duration, accuracy, start="rest", problem_class=Problem):
+    """A problem with its start: at rest (plus what [initial] gives) or on the linear steady state."""
+    problem = problem_class(scene, duration, accuracy)
+    if start == "steady":
+        problem.y0 = problem.steady_start()
+    for name, given in (("stator", scene.initial.stator), ("rotor", scene.initial.rotor)):
+        for part in ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate"):
+            value, base = getattr(given, part), f"{name}_{part.removesuffix('_rate')}"
+            if value is not None and base in problem.names:
+                place = problem.names.index(base)
+                problem.y0[problem.rate_places[place] if part.endswith("_rate") else place] = value
+    return problem
+
+
+def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="rest", duration=None,
+        problem_class=Problem):  # fmt: skip
+    """Integrate a scene; the last two turns are the windows 1 and 2."""
+    speed = scene.shaft.speed if not isinstance(scene.shaft.speed, Table) else max(scene.shaft.speed.value)
+    turn = 2 * math.pi / abs(speed)
+    duration = duration if duration is not None else turns * turn
+    problem = prepared(scene, duration, accuracy, start, problem_class)
+    problem.windows[1] = [duration - turn, duration]
+    problem.windows[2] = [duration - 2 * turn, duration - turn]
+    sink = Sink(problem, duration / max(1, round(duration / turn * per_turn)))
+    outcome = solve(problem, method, accuracy, sink)
+    return Run(problem, outcome, sink)

@@ -1,0 +1,172 @@
+"""Quantities with units, against values worked out by hand."""
+
+import math
+import subprocess
+import sys
+
+import pytest
+
+from sealdyn import units
+from sealdyn.units import QuantityError, Table
+
+
+def read(kind, value):
+    return kind.__metadata__[0].read(value)
+
+
+@pytest.mark.parametrize(
+    "kind, text, si",
+    [
+        ("Length", "10 um", 1e-5),
+        ("Length", "10um", 1e-5),
+        ("Length", "10 µm", 1e-5),
+        ("Length", "1 in", 0.0254),
+        ("Speed", "9550 rpm", 9550 * 2 * math.pi / 60),
+        ("Speed", "150 Hz", 150 * 2 * math.pi),
+        ("Speed", "1000 rad/s", 1000.0),
+        ("Speed", "1 deg/s", math.pi / 180),
+        ("Frequency", "50 Hz", 50.0),
+        ("Frequency", "5.4 kHz", 5400.0),
+        ("Frequency", "3000 rpm", 50.0),
+        ("Frequency", "100 rad/s", 100 / (2 * math.pi)),
+        ("Acceleration", "45 g", 45 * 9.80665),
+        ("Acceleration", "20 m/s^2", 20.0),
+        ("AngularAcceleration", "30 rad/s^2", 30.0),
+        ("AngularAcceleration", "1 rev/s^2", 2 * math.pi),
+        ("Mass", "800 g", 0.8),
+        ("Angle", "25 urad", 25e-6),
+        ("Angle", "0.5 mrad", 5e-4),
+        ("Angle", "1 deg", math.pi / 180),
+        ("Angle", "3 um/mm", 3e-3),
+        ("Pressure", "5 bar", 5e5),
+        ("Pressure", "1 psi", 6894.757293168362),
+        ("Viscosity", "0.5 mPa*s", 5e-4),
+        ("Viscosity", "0.5 mPa s", 5e-4),
+        ("Viscosity", "0.5 cP", 5e-4),
+        ("Inertia", "8e-4 kg*m^2", 8e-4),
+        ("Inertia", "8 kg·cm²", 8e-4),
+        ("Damping", "300 N*s/m", 300.0),
+        ("TiltStiffness", "400 N*m", 400.0),
+        ("TiltStiffness", "400 N*m/rad", 400.0),
+        ("TiltStiffness", "1 N*m/deg", 180 / math.pi),
+        ("TiltDamping", "0.24 N m s/rad", 0.24),
+        ("Density", "1 g/cm^3", 1000.0),
+        ("SpecificHeat", "4.18 kJ/(kg*K)", 4180.0),
+        ("Time", "2 min", 120.0),
+    ],
+)
+def test_strings_with_units(kind, text, si):
+    assert read(getattr(units, kind), text) == pytest.approx(si, rel=1e-15)
+
+
+def test_decimal_text_gives_the_nearest_float():
+    # 10 * 1e-6 in floats is 9.999999999999999e-06
+    assert read(units.Length, "10 um") == 1e-5
+    assert read(units.Inertia, "16e-4 kg*m^2") == 16e-4
+
+
+def test_bare_numbers_are_si():
+    assert read(units.Speed, 1000) == 1000.0
+    assert isinstance(read(units.Speed, 1000), float)
+    assert read(units.Frequency, 50) == 50.0
+
+
+@pytest.mark.parametrize(
+    "kind, value, says",
+    [
+        ("Speed", "10 um", "a unit of length"),
+        ("Speed", "1000 1/s", "neither radians nor revolutions"),
+        ("Speed", "10", "no unit"),
+        ("Length", "10 rpm", "speed"),
+        ("Length", "10 micrometre s", "expected a length"),
+        ("Pressure", "5 Bar", "nearest 'bar'"),
+        ("Pressure", "5 bar gauge", "add the 1.01325 bar"),
+        ("Pressure", "5 barg", "add the 1.01325 bar"),
+        ("Pressure", "70 psig", "add the 1.01325 bar"),
+        ("Pressure", "5 bar(g)", "add the 1.01325 bar"),
+        ("Pressure", -1.0, ">= 0"),
+        ("Viscosity", 0, "> 0"),
+        ("Mass", "-1 kg", ">= 0"),
+        ("Inertia", "-1 kg*m^2", ">= 0"),
+        ("Stiffness", "-1 N/m", ">= 0"),
+        ("Damping", -3, ">= 0"),
+        ("Frequency", "0 Hz", "> 0"),
+        ("Angle", "20 um TIR", "rotor.runout"),
+        ("Acceleration", "45 kg", "a unit of mass"),
+        ("Mass", True, "found true"),
+        ("Mass", math.nan, "finite"),
+        ("Mass", math.inf, "finite"),
+        ("Mass", "nan kg", "expected a mass"),
+        ("Mass", "1e400 kg", "finite"),
+        ("Mass", 10**400, "beyond"),
+        ("Mass", None, "expected a mass"),
+        ("Mass", [1], "a list"),
+        ("Mass", {"a": 1}, "a table"),
+        ("Mass", "", "expected a mass"),
+        ("Length", "9**9**9**9 m", "expected a length"),
+        ("Length", "1 m**9**9**9", "expected a length"),
+        ("Length", "1 " + "m" * 58 + "$", "expected a length"),
+        ("Length", "1 ((((", "expected a length"),
+        ("Length", "1" * 100000, "expected a length"),
+    ],
+)
+def test_refused_with_what_was_found_and_expected(kind, value, says):
+    with pytest.raises(QuantityError, match=r".*") as refusal:
+        read(getattr(units, kind), value)
+    assert says in str(refusal.value)
+    assert "\n" not in str(refusal.value) and len(str(refusal.value)) < 300
+
+
+def test_an_integer_that_python_does_not_print():
+    with pytest.raises(QuantityError):
+        read(units.Mass, 10**5000)
+    assert units.shown(10**5000) == "a number of thousands of digits"
+
+
+def test_signed_kinds_take_negative_values():
+    assert read(units.SignedTiltStiffness, "-400 N*m/rad") == -400.0
+    assert read(units.Length, "-1 um") == -1e-6
+
+
+def varying(value, kind=units.Speed):
+    return units.Varying[kind].__metadata__[0].read(value)
+
+
+def test_table_with_units_entry_by_entry():
+    table = varying({"time": ["0 s", "500 ms", 2], "value": ["60 rpm", 10, "1 Hz"]})
+    assert table == Table((0.0, 0.5, 2.0), (pytest.approx(2 * math.pi), 10.0, pytest.approx(2 * math.pi)))
+    assert varying("1 Hz") == pytest.approx(2 * math.pi)
+
+
+def test_table_is_linear_between_and_held_outside():
+    table = Table((1.0, 2.0, 2.0, 4.0), (10.0, 20.0, 50.0, 30.0))
+    assert [table.at(t) for t in (-1, 1, 1.5, 2, 3, 4, 9)] == [10, 10, 15, 50, 40, 30, 30]
+    assert table.at(2 - 1e-12) == pytest.approx(20.0)
+    assert table.breaks() == (1.0, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    "table, says",
+    [
+        ({"time": [0, 1], "value": [1]}, "as many times as values"),
+        ({"time": [0], "value": [1]}, "at least 2"),
+        ({"time": [0, 2, 1], "value": [1, 2, 3]}, "do not decrease"),
+        ({"time": [0, 0, 0], "value": [1, 2, 3]}, "at most twice"),
+        ({"time": [0, 1], "values": [1, 2]}, "nearest key 'value'"),
+        ({"time": [0, 1]}, "value = nothing"),
+        ({"time": 0, "value": [1, 2]}, "time = 0"),
+        ({"time": [0, 1], "value": [1, "2 um"]}, "value[1]"),
+        ({"time": [0, "1 m"], "value": [1, 2]}, "time[1]"),
+        ({"time": [0, 1], "value": [1, math.nan]}, "value[1]"),
+        ([1, 2], "a table { time"),
+    ],
+)
+def test_bad_tables(table, says):
+    with pytest.raises(QuantityError) as refusal:
+        varying(table)
+    assert says in str(refusal.value)
+
+
+def test_units_are_loaded_only_for_a_string():
+    code = "import sys, sealdyn.units as u; u.Length.__metadata__[0].read(1.0); sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
