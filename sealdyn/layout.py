@@ -124,6 +124,13 @@ class Layout:
                 scales[place] = displacement[i] * pace
         return scales, pace, 2 * math.pi / max([pace, *forced, natural])
 
+    def memory(self, problem, fast_time: float) -> float:
+        """Fastest periods for which the linearised scene remembers an error, at most those of the run."""
+        speeds = {constant_and_slope(self.scene.shaft.speed, leg)[0]: k for k, leg in enumerate(problem.legs)}
+        slowest = max(float(np.max(problem.linear_scene(k).eigen()[0].real)) for k in speeds.values())
+        longest = problem.duration if slowest * problem.duration > -1.0 else -1.0 / slowest
+        return longest / fast_time
+
     def _energy(self, problem, length, tilt) -> float:
         """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
         clearance), so that a gentle scene is audited as sharply as a violent one."""

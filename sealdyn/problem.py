@@ -57,6 +57,7 @@ class Problem:
         )  # fmt: skip
         self.algebraic = layout.algebraic(self.film_matrices()[1]) if layout.massless else []
         self.scales, self.pace, self.fast_time = layout.scales(self)
+        self.memory = layout.memory(self, self.fast_time)
         self.begin(0)
         self.y0 = np.zeros(self.size)
         self.records = watch.fresh_records()

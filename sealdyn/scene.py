@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from .films import Film
 from .motion import Housing, Shaft
 from .ring import Rotor, Stator
-from .units import Force, Length, Varying
+from .units import Angle, Force, Length, Speed, Varying, Velocity
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,11 @@ class RingStart:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     z: Length | None = None
-    tilt_x: float | None = None
-    tilt_y: float | None = None
-    z_rate: float | None = None
-    tilt_x_rate: float | None = None
-    tilt_y_rate: float | None = None
+    tilt_x: Angle | None = None
+    tilt_y: Angle | None = None
+    z_rate: Velocity | None = None
+    tilt_x_rate: Speed | None = None
+    tilt_y_rate: Speed | None = None
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from .archive import ArchiveWriter, Series, partial_path
 from .audit import Audit
 from .layout import RING_NAMES
 from .legs import time_of_angle
+from .methods import attainable
 from .problem import Problem
 from .scene import ImpossibleScene
 from .signals import signals
@@ -221,6 +222,12 @@ def prepare(scenario):
     if scenario.run.solver != "auto":
         method, why = scenario.run.solver, "asked for"
     _check_method(problem, method)
+    best = attainable(method, problem.memory)
+    if best > scenario.run.accuracy:
+        problem.reasons.append(
+            f"ACCURACY: hardly damped over {problem.memory:.3g} periods, errors add up: "
+            f"{method} keeps {best:.1e} at best"
+        )
     _set_windows(problem)
     return problem, method, why, interval, count
 

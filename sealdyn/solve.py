@@ -2,8 +2,8 @@
 
 A problem offers `n` displacements first in its unknowns, `legs` (each with `length`), `begin(k)`,
 `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `start_rates`, `jacobian`, `scales`, `motion`, `energies`,
-`watch`, `y0`; its last six unknowns are works; a sink takes what has been integrated.  Nothing here knows of seals
-or files.
+`watch`, `y0`, `memory`; its last six unknowns are works.  A sink takes what has been integrated.
+Nothing here knows of seals or files.
 """
 
 import time as clock
@@ -45,7 +45,7 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
     Returns an Outcome; a failed run is a result.
     """
     begun = clock.perf_counter()
-    tolerance = tolerance_for(method, accuracy)
+    tolerance = tolerance_for(method, accuracy, problem.memory)
     counts, audit = Counts(), audit or Audit(problem)
     first, tau, y = resume if resume else (0, 0.0, problem.y0.copy())
     status, message, index = "ok", "done", first

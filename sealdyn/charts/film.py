@@ -18,13 +18,13 @@ def draw(archive_path, out_path, turns: float = 6.0):
     with look():
         figure = sheet(12.0, 5.8)
         header(figure, run)
-        over_turns = figure.add_axes((0.06, 0.11, 0.48, 0.62))
-        face = figure.add_axes((0.64, 0.08, 0.28, 0.64), projection="polar")
+        over_turns = figure.add_axes((0.06, 0.11, 0.47, 0.64))
+        face = figure.add_axes((0.675, 0.1, 0.23, 0.58), projection="polar")
         if run.clearance is None or not run.has("h_min", "axial_gap_change"):
             absent(over_turns, "Film thickness around the circle")
             absent(face, "Thinnest moment")
             return save(figure, out_path)
-        bar = figure.add_axes((0.55, 0.11, 0.012, 0.62))
+        bar = figure.add_axes((0.54, 0.11, 0.011, 0.64))
         figure.colorbar(map_over_turns(over_turns, run, turns), cax=bar, label="film thickness, µm")
         face_at_minimum(figure, face, run)
         return save(figure, out_path)
@@ -94,7 +94,7 @@ def face_at_minimum(figure, ax, run: Run) -> None:
     ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * 1e6:.4g} µm at {unit} "
                  f"{run.progress[at]:.4g}", pad=16, loc="center")  # fmt: skip
     ax.text(0, 0, f"{1e3 * inner:.4g}–{1e3 * outer:.4g} mm", ha="center", va="center")
-    bar = figure.add_axes((0.945, 0.11, 0.012, 0.62))
+    bar = figure.add_axes((0.945, 0.11, 0.011, 0.64))
     figure.colorbar(image, cax=bar, label="film thickness, µm")
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from .page import absent, header, look, save, sheet
-from .palette import CONTACT, GREY, MARK, PALE, RING, TILT
+from .palette import CONTACT, GREY, MARK, RING, TILT
 from .record import BLOCK, Run
 
-DIRECTIONS = 360
+DIRECTIONS = 72
 
 
 def draw(archive_path, out_path, turns: float = 8.0):
@@ -31,17 +31,21 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
         absent(ax, title)
         return
     hulls = [hull(run, prefix) for prefix, _, _ in tilts]
-    reach = max(np.abs(outer).max(initial=0.0) for outer in hulls)
-    if not reach > 0:
+    whole = max(np.hypot(*outer).max() for outer in hulls)
+    if not whole > 0:
         absent(ax, title, "faces aligned throughout")
         return
     first = run.last(turns if run.turning else np.inf)
+    drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
-            ax.fill(*outer, color=PALE, alpha=0.6, lw=0, label="reach of the whole run" if label is None else None)
+            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=_once(ax, f"whole run: to {whole:.3g} µrad"))
         x, y = (1e6 * run.values(f"{prefix}_{axis}", first) for axis in "xy")
         ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
         mark_turns(ax, run, first, x, y)
+        drawn = max(drawn, np.hypot(x, y).max())
+    # A start-up transient much larger than what is left of it would hide the orbit: look closer.
+    reach = drawn if 0 < 3 * drawn < whole else whole
     circle = contact_circle(ax, run, reach) if contact else 0.0
     limit = 1.12 * max(reach, circle)
     ax.axhline(0, color=GREY, lw=0.5)
@@ -51,6 +55,11 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     ax.legend(loc="upper left", ncols=2, borderaxespad=0.1, handlelength=1.4, columnspacing=1.0)
 
 
+def _once(ax, label: str) -> str:
+    """`label` the first time, then nothing, so that a legend names it once."""
+    return "_" if label in ax.get_legend_handles_labels()[1] else label
+
+
 def window(run: Run, first: int) -> str:
     """The drawn stretch in words."""
     amount = run.progress[-1] - run.progress[first]
@@ -58,15 +67,18 @@ def window(run: Run, first: int) -> str:
 
 
 def hull(run: Run, prefix: str) -> np.ndarray:
-    """The furthest the tilt went in each direction, over the whole run: a closed polygon, 2 x n, urad."""
-    furthest = np.zeros(DIRECTIONS)
+    """How far the tilt went towards each direction in the whole run: a convex polygon, (2, n), urad."""
+    angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
+    towards = np.stack([np.cos(angles), np.sin(angles)], 1)
+    furthest, corners = np.full(DIRECTIONS, -np.inf), np.zeros((2, DIRECTIONS))
     for start in range(0, run.rows, BLOCK):
-        tilt = sum(f * run.values(f"{prefix}_{a}", start, start + BLOCK) for f, a in ((1, "x"), (1j, "y")))
-        sector = (np.angle(tilt) / (2 * np.pi) * DIRECTIONS).astype(int) % DIRECTIONS
-        np.maximum.at(furthest, sector, np.abs(tilt))
-    angles = (np.arange(DIRECTIONS) + 0.5) * 2 * np.pi / DIRECTIONS
-    seen = furthest > 0
-    return 1e6 * furthest[seen] * np.array([np.cos(angles[seen]), np.sin(angles[seen])])
+        tilt = np.stack([run.values(f"{prefix}_{axis}", start, start + BLOCK) for axis in "xy"])
+        reached = towards @ tilt
+        at = reached.argmax(1)
+        reached = reached[np.arange(DIRECTIONS), at]
+        corners = np.where(reached > furthest, tilt[:, at], corners)
+        furthest = np.maximum(reached, furthest)
+    return 1e6 * corners
 
 
 def mark_turns(ax, run: Run, first: int, x, y) -> None:
@@ -75,7 +87,8 @@ def mark_turns(ax, run: Run, first: int, x, y) -> None:
         return
     phase = run.turns[first:] + run.values("shaft_angle", 0, 1)[0] / (2 * np.pi)
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1)[-200:]
-    ax.plot(np.interp(whole, phase, x), np.interp(whole, phase, y), "o", ms=3.2, color=MARK, label="once per turn")
+    x, y = np.interp(whole, phase, x), np.interp(whole, phase, y)
+    ax.plot(x, y, "o", ms=3.2, color=MARK, label=_once(ax, "once per turn"))
 
 
 def contact_circle(ax, run: Run, reach: float) -> float:

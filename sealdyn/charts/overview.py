@@ -4,12 +4,12 @@ import numpy as np
 
 from . import orbit, spectrum
 from .page import absent, header, look, save, sheet
-from .palette import BLACK, CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT
+from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run
 
 ML_PER_HOUR = 3.6e9
-LEFT, MIDDLE, RIGHT = (0.045, 0.25), (0.365, 0.27), (0.715, 0.265)
-ROWS = ((0.615, 0.245), (0.335, 0.215), (0.07, 0.2))
+LEFT, MIDDLE, RIGHT = (0.055, 0.25), (0.375, 0.265), (0.715, 0.265)
+ROWS = ((0.64, 0.235), (0.37, 0.205), (0.085, 0.19))
 
 
 def draw(archive_path, out_path, turns: float = 4.0):
@@ -22,14 +22,17 @@ def draw(archive_path, out_path, turns: float = 4.0):
         def axes(column, row, share=None):
             return figure.add_axes((column[0], ROWS[row][0], column[1], ROWS[row][1]), sharex=share)
 
-        orbit.panel(figure.add_axes((LEFT[0] + 0.01, 0.4, LEFT[1], 0.46)), run)
-        key_numbers(figure.add_axes((LEFT[0] - 0.01, 0.02, LEFT[1] + 0.03, 0.31)), run)
+        orbit.panel(figure.add_axes((LEFT[0], 0.444, LEFT[1], 0.431)), run)
+        key_numbers(figure.add_axes((LEFT[0] - 0.02, 0.03, LEFT[1] + 0.015, 0.32)), run)
         whole, last = axes(MIDDLE, 0), axes(RIGHT, 0)
         for ax, first in ((whole, 0), (last, run.last(turns))):
             film_panel(ax, run, first)
         for ax, first in ((axes(MIDDLE, 1, whole), 0), (axes(RIGHT, 1, last), run.last(turns))):
             tilt_panel(ax, run, first)
         leakage_panel(axes(MIDDLE, 2, whole), run)
+        for ax in figure.axes[-2:]:
+            # Panels above share their x axis with the lowest of the column.
+            ax.set_xlabel(run.progress_label)
         spectrum.panel(axes(RIGHT, 2), run)
         return save(figure, out_path)
 
@@ -42,24 +45,27 @@ def film_panel(ax, run: Run, first: int) -> None:
         return
     x, h = run.envelope("h_min", first)
     ax.plot(x, 1e6 * h, color=FILM)
-    top = 1e6 * np.nanmax(h)
+    ax.set(title=title, ylabel="h_min, µm")
+    _span(ax, run, first)
+    low, top = 1e6 * np.nanmin(h), 1e6 * np.nanmax(h)
+    if first:
+        margin = max(0.3 * (top - low), 2e-3 * top)
+        ax.set_ylim(low - margin, top + margin)
+    else:
+        top = 1.15 * max(top, 1e6 * (run.clearance or 0))
+        ax.set_ylim(-0.03 * top, top)
+        _name(ax, 0, "contact", CONTACT)
     if run.clearance:
         ax.axhline(1e6 * run.clearance, color=GREY, ls="--", lw=0.9)
-        top = max(top, 1e6 * run.clearance)
-        # Named on the whole-run panel only: the enlarged one beside it shares the lines.
         if not first:
             _name(ax, 1e6 * run.clearance, "clearance", GREY)
     ax.axhline(0, color=CONTACT, lw=1.2)
-    if not first:
-        _name(ax, 0, "contact", CONTACT)
     if run.status in ("collapsed", "failed", "interrupted"):
         colour = STATUS[run.status]
         ax.plot(x[-1], 1e6 * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
         near_top = 1e6 * h[-1] > 0.75 * top
         ax.annotate(run.status, (x[-1], 1e6 * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
                     textcoords="offset points", ha="right", weight="bold")  # fmt: skip
-    ax.set(title=title, ylabel="h_min, µm", ylim=(-0.03 * top, 1.15 * top))
-    _span(ax, run, first)
 
 
 def tilt_panel(ax, run: Run, first: int) -> None:
@@ -69,21 +75,20 @@ def tilt_panel(ax, run: Run, first: int) -> None:
         absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
         return
     x, tilt = run.envelope("relative_misalignment", first)
-    ax.plot(x, 1e6 * tilt, color=TILT)
     top = 1e6 * np.nanmax(tilt)
     if not top > 0:
-        absent(ax, title, "faces aligned throughout")
+        absent(ax, title, "faces aligned")
         return
+    ax.plot(x, 1e6 * tilt, color=TILT)
     theory = run.summary.get("closed_form") or {}
-    for key, words, below in (("relative_max", "closed form max", False), ("relative_min", "min", True)):
-        if isinstance(theory.get(key), int | float):
-            value = 1e6 * theory[key]
-            if value < 3 * top:
-                ax.axhline(value, color=THEORY, ls="--", lw=1.1)
-                top = max(top, value)
-                if not first:
-                    _name(ax, value, words, THEORY, below)
-    ax.set(title=title, ylabel="tilt, µrad", ylim=(0, 1.2 * top))
+    lines = [1e6 * theory[k] for k in ("relative_max", "relative_min") if isinstance(theory.get(k), int | float)]
+    if lines and 0 < max(lines) < 3 * top:
+        for line in lines:
+            ax.axhline(line, color=THEORY, ls="--", lw=1.1, zorder=3)
+        ax.plot([], [], color=THEORY, ls="--", lw=1.1, label="closed form, max and min")
+        ax.legend(loc="upper right", borderaxespad=0.0)
+        top = max(top, *lines)
+    ax.set(title=title, ylabel="tilt, µrad", ylim=(0, 1.3 * top))
     _span(ax, run, first)
 
 
@@ -94,9 +99,11 @@ def leakage_panel(ax, run: Run) -> None:
     if not sides:
         absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
         return
-    for side, style in zip(sides, ({"color": LEAK}, {"color": BLACK, "ls": (0, (4, 3))}), strict=False):
+    # The outer one wide and pale beneath, so that both are seen where they agree.
+    for side in reversed(sides):
         x, flow = run.envelope(f"leakage_{side}")
-        ax.plot(x, ML_PER_HOUR * flow, label=f"at the {side} radius", **style)
+        colour, width = (LEAK, 0.8) if side == "inner" else (YELLOW, 2.0)
+        ax.plot(x, ML_PER_HOUR * flow, label=f"at the {side} radius", color=colour, lw=width)
     ax.set(title=title, ylabel="ml/h")
     ax.margins(y=0.25)
     ax.legend(loc="upper right", ncols=2, borderaxespad=0.0)
@@ -127,7 +134,7 @@ def _numbers(summary: dict):
 
     def said(path, factor, unit, digits=4):
         value = get(path)
-        return None if value is None else f"{factor * value:.{digits}g} {unit}".strip()
+        return None if value is None else f"{written(factor * value, digits)} {unit}".strip()
 
     def joined(*parts):
         return ", ".join(part for part in parts if part)
@@ -155,17 +162,24 @@ def _numbers(summary: dict):
     yield from _kept("energy residual", said("energy_residual", 1, "", 2))
 
 
+def written(value: float, digits: int) -> str:
+    """`digits` significant figures; large numbers in full, with thousands marked."""
+    if 1e4 <= abs(value) < 1e7:
+        return f"{float(f'{value:.{digits}g}'):,.0f}".replace(",", " ")
+    return f"{value:.{digits}g}"
+
+
 def _kept(name: str, value):
     return [(name, value)] if value else []
 
 
-def _name(ax, y: float, words: str, colour: str, below: bool = False) -> None:
-    """Names a horizontal line at its right end, above it (or below)."""
-    ax.annotate(words, (1, y), xycoords=("axes fraction", "data"), xytext=(-2, -2 if below else 2), color=colour,
-                textcoords="offset points", ha="right", va="top" if below else "bottom", fontsize=8)  # fmt: skip
+def _name(ax, y: float, words: str, colour: str) -> None:
+    """Names a horizontal line above its right end."""
+    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+    paper = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
+    ax.annotate(words, (1, y), xytext=(-2, 2), color=colour, fontsize=8, bbox=paper, **where)
 
 
 def _span(ax, run: Run, first: int) -> None:
     start, end = run.progress[first], run.progress[-1]
     ax.set_xlim(start, end if end > start else start + 1)
-    ax.set_xlabel(run.progress_label)

@@ -91,6 +91,10 @@ class Run:
         value = self.resolved.get("film", {}).get(name)
         return value if isinstance(value, int | float) else None
 
+    def housing(self, kind: str) -> list[dict]:
+        """The resolved `[[housing.axial]]` or `[[housing.angular]]` tables."""
+        return (self.resolved.get("housing") or {}).get(kind) or []
+
     @cached_property
     def clearance(self) -> float | None:
         """Design clearance (m): given, or from the first row's h_min = C + dz + coning (r - r_i) - r tilt."""
@@ -140,7 +144,7 @@ class Run:
         if unknowns:
             names = unknowns if isinstance(unknowns, list) else None
             count = len(names) if names else unknowns
-            parts.append(f"{count} unknowns" if isinstance(count, int) else str(count))
+            parts.append(f"{count} unknown{'s' * (count != 1)}" if isinstance(count, int) else str(count))
         if model.get("solver"):
             parts.append(f"solver {model['solver']}")
         if stability.get("verdict"):

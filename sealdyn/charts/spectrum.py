@@ -8,6 +8,8 @@ from .record import Run
 
 MOST_ROWS = 1 << 15
 FLOOR = 1e-5
+NOTHING = 1e-7  # um or urad: below what any run resolves
+CLEAR = 4  # lines
 HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 
 
@@ -18,35 +20,37 @@ def draw(archive_path, out_path, turns: float | None = None):
     with look():
         figure = sheet(11.5, 7.2)
         header(figure, run)
-        top = figure.add_axes((0.075, 0.46, 0.895, 0.345))
+        top = figure.add_axes((0.075, 0.48, 0.895, 0.325))
         panel(top, run, turns)
         for left, name, title in ((0.075, "axial_gap_change", "Axial motion"), (0.555, "h_min", "h_min")):
             ax = figure.add_axes((left, 0.075, 0.415, 0.255))
-            real_panel(ax, run, name, title, turns)
+            real_panel(ax, run, name, title, turns, said=False)
         return save(figure, out_path)
 
 
 def panel(ax, run: Run, turns: float | None = None) -> None:
     """Relative tilt, two-sided: positive orders whirl with the shaft, negative ones against it.  An
     aligned scene shows its axial motion instead."""
-    if not run.has("relative_tilt_x", "relative_tilt_y"):
-        real_panel(ax, run, "axial_gap_change", "Axial motion", turns)
+    first = run.last(turns or np.inf, MOST_ROWS)
+    tilts = [f"relative_tilt_{axis}" for axis in "xy"]
+    if not run.has(*tilts) or not any(run.values(tilt, first).any() for tilt in tilts):
+        real_panel(ax, run, "axial_gap_change", "Axial motion in orders of shaft speed", turns)
         return
     x, y = (lambda first, axis=axis: run.values(f"relative_tilt_{axis}", first) for axis in "xy")
     title = "Relative tilt in orders of shaft speed"
     show(ax, run, lambda first: x(first) + 1j * y(first), title, "amplitude, µrad", TILT, turns)
 
 
-def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None) -> None:
-    """A real series about its mean, one-sided."""
+def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, said=True) -> None:
+    """A real series about its mean, one-sided; `said`: state window and resolution below."""
     if not run.has(name):
         absent(ax, title)
         return
     colour = FILM if name == "h_min" else LEAK
-    show(ax, run, lambda first: run.values(name, first), title, "amplitude, µm", colour, turns)
+    show(ax, run, lambda first: run.values(name, first), title, "amplitude, µm", colour, turns, said)
 
 
-def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float | None) -> None:
+def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float | None, said=True):
     """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI)."""
     if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
         absent(ax, title, "fewer than two turns: no spectrum")
@@ -57,29 +61,42 @@ def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float |
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
     amplitude *= 1e6
     largest = amplitude.max()
-    if not largest > 0:
+    if not largest > NOTHING:
         absent(ax, title, "does not move")
         return
     named = peaks(orders, amplitude)
     reach = min(max(3.0, 1.15 * np.abs(orders[named]).max() if len(named) else 0), np.abs(orders).max())
     two_sided = orders[0] < 0
+    # Names that would lie upon one another: the larger peak keeps its own.
+    room = 0.5 / (ax.get_position().width * ax.figure.get_figwidth()) * reach * (1 + two_sided)
+    named = [at for n, at in enumerate(named) if (np.abs(orders[named[:n]] - orders[at]) > room).all()]
     ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
     ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * 12))
     for at in named:
         ax.annotate(
-            f"{orders[at]:.3g}×\n{amplitude[at]:.3g}",
+            f"{orders[at]:.3g}×\n{amplitude[at]:.3g}".replace("-", "−"),
             (orders[at], amplitude[at]),
             xytext=(0, 3),
             textcoords="offset points",
             ha="center",
             fontsize=7.5,
         )
-    how = ", speed varies: resampled over shaft angle" if resampled else ""
     sides = "against the shaft  ←   order   →  with the shaft" if two_sided else "order of shaft speed"
     ax.set(title=title, ylabel=label)
     span = run.turns[-1] - run.turns[first]
-    ax.set_xlabel(f"{sides}\nlast {span:.3g} turns, Hann window, resolution {resolution:.2g} orders{how}")
+    how = f"\nlast {span:.3g} turns, Hann window, resolution {resolution:.2g} orders"
+    how += "\nspeed varies: resampled over shaft angle" if resampled else ""
+    how += folded(run, first, np.abs(orders).max())
+    ax.set_xlabel(sides + how if said else sides)
+
+
+def folded(run: Run, first: int, highest: float) -> str:
+    """A warning when the housing shakes faster than the samples can follow: such tones show at wrong orders."""
+    slowest = np.abs(run.values("shaft_speed", first)).min()
+    tones = [tone.get("frequency") for kind in ("axial", "angular") for tone in run.housing(kind)]
+    fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
+    return f"\n{max(fast):.4g} Hz is above order {highest:.3g} and folds back: more samples_per_turn" if fast else ""
 
 
 def order_spectrum(turns, signal):
@@ -126,6 +143,9 @@ def cubic(at, x, y):
 def peaks(orders, amplitude, most: int = 5) -> np.ndarray:
     """Rows of the largest local maxima, above 1 % of the largest and clear of one another."""
     inside = np.r_[False, (amplitude[1:-1] >= amplitude[:-2]) & (amplitude[1:-1] > amplitude[2:]), False]
+    # A peak stands at least twice above what is a few lines to its left and to its right.
+    around = np.pad(amplitude, CLEAR, mode="reflect")
+    inside &= amplitude > 2 * np.maximum(around[: -2 * CLEAR], around[2 * CLEAR :])
     ranked = np.flatnonzero(inside & (amplitude > 0.01 * amplitude.max()))
     kept: list[int] = []
     for at in ranked[np.argsort(-amplitude[ranked])]:

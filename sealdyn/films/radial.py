@@ -165,7 +165,8 @@ def points_for(f, h_i, h_o):
 def angles_for(f, h_i, h_o, swing_i, swing_o):
     """Number of angles: the trapezoid's error falls as exp(-N eta), cosh(eta) = mean film / swing."""
     if h_i <= swing_i or h_o <= swing_o:
-        return MOST_ANGLES // 2
+        # Below the floor only trial states remain: smooth is enough.
+        return MOST_ANGLES // 8
     ratio = min(h_i / swing_i if swing_i > 0 else 1e9, h_o / swing_o if swing_o > 0 else 1e9)
     wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9))
     for i in range(len(ANGLES)):

@@ -37,7 +37,10 @@ ALLOWED = {
     "problem": PHYSICS | DOORS | {"layout", "modes", "signals", "watch"},
     "scenario": PHYSICS | DOORS | {"scenario"},
     "summary": PHYSICS | DOORS | {"modes", "scenario", "watch"},
-    "simulate": PHYSICS | DOORS | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},
+    "simulate": {"methods"}
+    | PHYSICS
+    | DOORS
+    | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},
     "validation": PHYSICS | {"modes", "problem", "recorder", "solve"},
     "charts": {"archive"},
     "studies": None,
