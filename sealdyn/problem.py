@@ -60,6 +60,7 @@ class Problem:
         self.memory = layout.memory(self, self.fast_time)
         self.begin(0)
         self.y0 = np.zeros(self.size)
+        self.warnings = []
         self.records = watch.fresh_records()
         self.last = (0.0, self.y0)
         self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
@@ -247,6 +248,16 @@ class Problem:
             return None
         moving = [w for w in self.rows[:, 7] if w != 0.0]
         return common_period([*moving, speed] if speed else moving)
+
+    def fastest_forcing(self) -> float:
+        """Highest angular frequency (rad/s) imposed at any leg's start or end; the shaft speed counts."""
+        scene, fastest = self.scene, 0.0
+        for leg in self.legs:
+            for row in oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg):
+                fastest = max(fastest, abs(row[7]), abs(row[7] + 2 * row[8] * leg.length))
+            speed, slope = constant_and_slope(scene.shaft.speed, leg)
+            fastest = max(fastest, abs(speed), abs(speed + slope * leg.length))
+        return fastest
 
     # --- the linear side ----------------------------------------------------------------------------
 

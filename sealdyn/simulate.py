@@ -224,11 +224,16 @@ def prepare(scenario):
     _check_method(problem, method)
     best = attainable(method, problem.memory)
     if best > scenario.run.accuracy:
-        problem.reasons.append(
-            f"ACCURACY: hardly damped over {problem.memory:.3g} periods, errors add up: "
-            f"{method} keeps {best:.1e} at best"
+        problem.warnings.append(
+            f"accuracy: hardly damped over {problem.memory:.3g} periods, errors add up: {method} keeps {best:.1e} at best"
         )
     _set_windows(problem)
+    fastest = problem.fastest_forcing()
+    if fastest * interval > math.pi:
+        problem.warnings.append(
+            f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
+            f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
+        )
     return problem, method, why, interval, count
 
 

@@ -57,6 +57,7 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
         "closed_form": _closed_form(problem, linear, tilt),
         "stability": stability(problem, outcome.leg, linear),
         "energy_residual": outcome.energy_residual,
+        "warnings": problem.warnings,
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,

@@ -1,13 +1,14 @@
 """Film thickness around the circle: as it changes over the last turns, and at its thinnest moment."""
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.colors import Normalize
 
 from .page import absent, header, look, save, sheet
 from .palette import CONTACT, THICKNESS
 from .record import BLOCK, Run
 
-MOST_COLUMNS = 1500
+MOST_COLUMNS, STEPS = 1500, 20
 AROUND = np.linspace(0, 2 * np.pi, 181)
 
 
@@ -48,14 +49,24 @@ def thickness(run: Run, radius, angle, first: int, stop: int):
 
 def map_over_turns(ax, run: Run, turns: float):
     """Angle against turns; the line follows the smallest film thickness."""
-    first = run.last(turns if run.turning else np.inf, MOST_COLUMNS)
+    first = run.last(turns, MOST_COLUMNS)
     radius = _edge(run, first)
     over = 1e6 * thickness(run, radius, AROUND, first, run.rows)
     progress = run.progress[first:]
     even = np.linspace(progress[0], progress[-1], len(progress))
     over = over[np.clip(np.searchsorted(progress, even), 0, len(progress) - 1)]
-    image = ax.imshow(over.T, origin="lower", aspect="auto", cmap=THICKNESS, extent=(progress[0], progress[-1], 0, 360))
-    if run.has("h_min_angle") and over.std() > 1e-9:
+    image = ax.imshow(
+        over.T,
+        origin="lower",
+        aspect="auto",
+        extent=(progress[0], progress[-1], 0, 360),
+        cmap=colormaps[THICKNESS].resampled(STEPS),
+        norm=_scale(over),
+        interpolation="bilinear",
+        interpolation_stage="data",
+    )
+    tilted = (over.max(1) - over.min(1)).max() > 1e-6
+    if run.has("h_min_angle") and tilted:
         angle = np.degrees(run.values("h_min_angle", first)) % 360
         ax.plot(progress, angle, ".", ms=1.6, color="white")
         ax.set_title("Film thickness around the circle  (white: where it is thinnest)")
@@ -77,17 +88,17 @@ def face_at_minimum(figure, ax, run: Run) -> None:
     radius = np.linspace(inner, outer, 12)
     over = 1e6 * thickness(run, radius[:, None], AROUND, at, at + 1)[0]
     over = np.broadcast_to(over, (len(radius), len(AROUND)))
-    spread = max(over.max() - over.min(), 1e-3 * abs(over.max()))
     image = ax.pcolormesh(
         AROUND,
         1e3 * radius,
         over,
         shading="gouraud",
-        cmap=THICKNESS,
-        norm=Normalize(over.min(), over.min() + spread),
+        cmap=colormaps[THICKNESS].resampled(STEPS),
+        norm=_scale(over),
     )
     low = np.unravel_index(over.argmin(), over.shape)
-    ax.plot(AROUND[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+    if np.ptp(over[low[0]]) > 1e-6:
+        ax.plot(AROUND[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     ax.set(ylim=(0, 1e3 * outer), yticks=[])
     ax.grid(False)
     unit = "turn" if run.turning else "ms"
@@ -96,6 +107,11 @@ def face_at_minimum(figure, ax, run: Run) -> None:
     ax.text(0, 0, f"{1e3 * inner:.4g}–{1e3 * outer:.4g} mm", ha="center", va="center")
     bar = figure.add_axes((0.945, 0.11, 0.011, 0.64))
     figure.colorbar(image, cax=bar, label="film thickness, µm")
+
+
+def _scale(over) -> Normalize:
+    """From the thinnest to the thickest, but never a scale so fine that nothing happens all over it."""
+    return Normalize(over.min(), max(over.max(), over.min() + 2e-3 * abs(over).max()))
 
 
 def _edge(run: Run, first: int) -> float:

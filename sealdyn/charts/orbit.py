@@ -35,7 +35,7 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     if not whole > 0:
         absent(ax, title, "faces aligned throughout")
         return
-    first = run.last(turns if run.turning else np.inf)
+    first = run.last(turns)
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
@@ -63,7 +63,8 @@ def _once(ax, label: str) -> str:
 def window(run: Run, first: int) -> str:
     """The drawn stretch in words."""
     amount = run.progress[-1] - run.progress[first]
-    return f"last {amount:.3g} {'turns' if run.turning else 'ms'}" if first else "whole run"
+    digits = 2 if amount < 10 else 3
+    return f"last {amount:.{digits}g} {'turns' if run.turning else 'ms'}" if first else "whole run"
 
 
 def hull(run: Run, prefix: str) -> np.ndarray:

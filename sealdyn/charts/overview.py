@@ -8,6 +8,7 @@ from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELL
 from .record import Run
 
 ML_PER_HOUR = 3.6e9
+PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 LEFT, MIDDLE, RIGHT = (0.055, 0.25), (0.375, 0.265), (0.715, 0.265)
 ROWS = ((0.64, 0.235), (0.37, 0.205), (0.085, 0.19))
 
@@ -53,7 +54,7 @@ def film_panel(ax, run: Run, first: int) -> None:
         ax.set_ylim(low - margin, top + margin)
     else:
         top = 1.15 * max(top, 1e6 * (run.clearance or 0))
-        ax.set_ylim(-0.03 * top, top)
+        ax.set_ylim(min(1.1 * low, -0.03 * top), top)
         _name(ax, 0, "contact", CONTACT)
     if run.clearance:
         ax.axhline(1e6 * run.clearance, color=GREY, ls="--", lw=0.9)
@@ -65,7 +66,7 @@ def film_panel(ax, run: Run, first: int) -> None:
         ax.plot(x[-1], 1e6 * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
         near_top = 1e6 * h[-1] > 0.75 * top
         ax.annotate(run.status, (x[-1], 1e6 * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
-                    textcoords="offset points", ha="right", weight="bold")  # fmt: skip
+                    textcoords="offset points", ha="right", weight="bold", bbox=PAPER)  # fmt: skip
 
 
 def tilt_panel(ax, run: Run, first: int) -> None:
@@ -114,7 +115,7 @@ def key_numbers(ax, run: Run) -> None:
     """A short table from the summary; rows the run does not have are left out."""
     ax.set_axis_off()
     ax.set_title("Key numbers")
-    rows = list(_numbers(run.summary)) or [("no summary yet", "the run has not finished")]
+    rows = list(_numbers(run.summary)) or [("no summary", run.status)]
     step = min(0.082, 0.97 / len(rows))
     for line, (name, value) in enumerate(rows):
         y = 0.95 - step * line
@@ -176,8 +177,7 @@ def _kept(name: str, value):
 def _name(ax, y: float, words: str, colour: str) -> None:
     """Names a horizontal line above its right end."""
     where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right", "va": "bottom"}
-    paper = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
-    ax.annotate(words, (1, y), xytext=(-2, 2), color=colour, fontsize=8, bbox=paper, **where)
+    ax.annotate(words, (1, y), xytext=(-2, 2), color=colour, fontsize=8, bbox=PAPER, **where)
 
 
 def _span(ax, run: Run, first: int) -> None:

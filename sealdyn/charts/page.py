@@ -66,7 +66,7 @@ def header(figure, run, lines_below: int = 2) -> None:
         figure.text(left, top - 1.3 * step, words, fontsize=9, va="center", color=BLACK)
     if lines_below > 1:
         words = f"{run.status}: {run.message}" if run.message else run.status
-        words = shortened(words, int(figure.get_figwidth() * 15.5))
+        words = shortened(words, int(figure.get_figwidth() * 12.5))
         colour = STATUS.get(run.status, BLACK)
         figure.text(left, top - 2.4 * step, words, fontsize=9, va="center", color=colour, weight="bold")
 

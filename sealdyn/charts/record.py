@@ -61,9 +61,10 @@ class Run:
         return "turns of the shaft" if self.turning else "time, ms"
 
     def last(self, amount: float, most_rows: int = POINTS) -> int:
-        """First row of the last `amount` of progress, at most `most_rows` back."""
-        if not self.rows:
-            return 0
+        """First row of the last `amount` of turns (of everything, if the shaft stands still), at most
+        `most_rows` back."""
+        if not self.turning:
+            return max(self.rows - most_rows, 0)
         first = int(np.searchsorted(self.progress, self.progress[-1] - amount * (1 + 1e-9)))
         return max(first, self.rows - most_rows, 0)
 

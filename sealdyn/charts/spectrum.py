@@ -6,7 +6,7 @@ from .page import absent, header, look, save, sheet
 from .palette import FILM, LEAK, TILT
 from .record import Run
 
-MOST_ROWS = 1 << 15
+MOST_ROWS = 1 << 14
 FLOOR = 1e-5
 NOTHING = 1e-7  # um or urad: below what any run resolves
 CLEAR = 4  # lines
@@ -96,7 +96,7 @@ def folded(run: Run, first: int, highest: float) -> str:
     slowest = np.abs(run.values("shaft_speed", first)).min()
     tones = [tone.get("frequency") for kind in ("axial", "angular") for tone in run.housing(kind)]
     fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
-    return f"\n{max(fast):.4g} Hz is above order {highest:.3g} and folds back: more samples_per_turn" if fast else ""
+    return f"\n{max(fast):.4g} Hz, above order {highest:.3g}, folds back: raise samples_per_turn" if fast else ""
 
 
 def order_spectrum(turns, signal):

@@ -77,11 +77,17 @@ BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
 FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
+@lru_cache(maxsize=16)
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre points and weights on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(points)
+
+
 def _rule_error(points: int, ratio: float, radius_ratio: float) -> float:
     """Worst relative error of the radial integrals with `points` Gauss points at one film ratio h_o/h_i."""
 
     def moments(n):
-        x, w = np.polynomial.legendre.leggauss(n)
+        x, w = gauss(n)
         q = ratio**0.25
         t = (q - 1) / (q + 1)
         u = (1 + t * x) / (1 - t * x)
@@ -110,7 +116,7 @@ def _rules(radius_ratio: float, error: float) -> np.ndarray:
             )
             # Force and moments are differences of these integrals: measured up to 15 times worse.
             low, high = (middle, high) if worst < max(error / 20, 3e-15) else (low, middle)
-        x, w = np.polynomial.legendre.leggauss(points)
+        x, w = gauss(points)
         row = np.zeros(RULE_SIZE)
         row[:2] = points, math.exp(low)
         row[2 : 2 + points] = x

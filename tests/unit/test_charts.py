@@ -272,9 +272,12 @@ def test_the_reach_of_an_orbit_holds_every_row(tmp_path):
     edge = np.roll(corners, -1, 1) - corners
     x, y = 1e6 * columns["relative_tilt_x"], 1e6 * columns["relative_tilt_y"]
     left_of = edge[0][:, None] * (y - corners[1][:, None]) - edge[1][:, None] * (x - corners[0][:, None])
-    # Distance outside any edge: the polygon has 72 directions, so a row may stick out a little.
-    length = np.maximum(np.hypot(*edge), 1e-12)[:, None]
-    assert (left_of / length)[np.hypot(*edge) > 0].min() > -1e-3 * np.hypot(x, y).max()
+    # Between two of 72 directions a row may stick out by half the edge times tan(half the angle), no more.
+    length = np.hypot(*edge)
+    kept = length > 0
+    outside = -left_of[kept] / length[kept, None]
+    assert (outside.max(1) <= length[kept] / 2 * np.tan(np.pi / 72) + 1e-9).all()
+    assert np.hypot(*corners).max() == pytest.approx(np.hypot(x, y).max(), rel=1e-3)
 
 
 def test_importing_the_charts_room_does_not_import_matplotlib():
