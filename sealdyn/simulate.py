@@ -225,7 +225,8 @@ def prepare(scenario):
     best = attainable(method, problem.memory)
     if best > scenario.run.accuracy:
         problem.warnings.append(
-            f"accuracy: hardly damped over {problem.memory:.3g} periods, errors add up: {method} keeps {best:.1e} at best"
+            f"accuracy: hardly damped over {problem.memory:.3g} periods, errors add up; {method} keeps "
+            f"{best:.1e} at best"
         )
     _set_windows(problem)
     fastest = problem.fastest_forcing()
