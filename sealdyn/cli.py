@@ -1,5 +1,6 @@
 """The verbs: run, check, schema, show, plot, validate.  Everything heavy is imported by the verb that needs it."""
 
+import contextlib
 import json
 import signal
 import sys
@@ -243,16 +244,13 @@ def plot(
     out: Annotated[Path | None, typer.Option(help="figure to write (default beside the archive)")] = None,
 ):
     """Draw a figure from an archive."""
-    import difflib
     import importlib
 
     from .archive import ArchiveError
 
     kinds = ("overview", "orbit", "film", "spectrum")
     if kind not in kinds:
-        near = difflib.get_close_matches(kind, kinds, 1)
-        hint = f'; nearest "{near[0]}"' if near else ""
-        raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{hint}')
+        raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     try:
@@ -274,6 +272,80 @@ def validate(as_json: AsJson = False):
     else:
         report(rows)
     raise typer.Exit(DONE if good else CHECK_FAILED)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def study(
+    context: typer.Context,
+    name: Annotated[str, typer.Argument(help="the study, e.g. critical-speed; an unknown name lists them")],
+    file: ScenarioFile,
+    set: Overrides = None,
+    out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>-<study>.h5)")] = None,
+    plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the study's figure beside the archive")] = True,
+    workers: Annotated[int | None, typer.Option(help="processes (default: all cores)")] = None,
+    as_json: AsJson = False,
+):
+    """Answer a question about a scenario; any setting of [study.NAME] may be given as --key value."""
+    import importlib
+
+    from .investigate import investigate, study_names
+    from .scenario import ScenarioError
+    from .scene import ImpossibleScene
+
+    names = study_names()
+    if name.replace("_", "-") not in names:
+        raise Stop("invalid", f'study: found "{name}"; expected one of {", ".join(names)}{_nearest(name, names)}')
+    scenario = _read(file, set)
+    _say_compiling(file=sys.stderr)
+    with _Progress() as bar:
+        try:
+            answer = investigate(
+                name, scenario, out, flags=_flags(context.args), workers=workers, progress=lambda t, end: bar(t, end)
+            )
+        except (ScenarioError, ImpossibleScene) as error:
+            where = "" if isinstance(error, ScenarioError) else f"{file}: "
+            raise Stop("invalid", f"{where}{error}") from None
+        except OSError as error:
+            raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
+    if plot:
+        figure = Path(answer["archive"]).with_suffix(".png")
+        importlib.import_module(f"sealdyn.charts.study_{answer['study']}").draw(answer["archive"], figure)
+        answer["figure"] = str(figure)
+    if as_json:
+        print(json.dumps(answer))
+    else:
+        print(f"{scenario.name}, study {name}:")
+        for line in answer.get("verdict", []):
+            print(f"  {line}")
+        print("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
+    raise typer.Exit(EXIT[answer["status"]])
+
+
+def _nearest(name: str, names) -> str:
+    import difflib
+
+    near = difflib.get_close_matches(name, names, 1)
+    return f'; nearest "{near[0]}"' if near else ""
+
+
+def _flags(words: list[str]) -> dict:
+    """`--key value` and `--key=value` of a study's settings; a key given several times becomes a list."""
+    flags, words = {}, list(words)
+    while words:
+        word = words.pop(0)
+        if not word.startswith("--"):
+            raise Stop("invalid", f'study: found "{word}"; expected settings as --key value')
+        key, equals, value = word[2:].partition("=")
+        if not equals:
+            if not words:
+                raise Stop("invalid", f"study: --{key} has no value")
+            value = words.pop(0)
+        with contextlib.suppress(ValueError):
+            value = json.loads(value)
+        key = key.replace("-", "_")
+        before = flags.get(key, [])
+        flags[key] = [*(before if isinstance(before, list) else [before]), value] if key in flags else value
+    return flags
 
 
 def main():

@@ -78,4 +78,4 @@ def above_floor(h, floor):
     continuation with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""
     if h >= floor:
         return h
-    return floor * math.exp((h - floor) / floor)
+    return floor * floor / (2.0 * floor - h)

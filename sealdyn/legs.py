@@ -22,13 +22,18 @@ getcontext().prec = max(getcontext().prec, 60)
 
 @dataclass(frozen=True)
 class Leg:
-    """One stretch of time: start and length (s, exact start kept as a fraction), and the exact angle turned
-    before it, of the shaft and of the stator's carrier (rad)."""
+    """One stretch of time: exact start and span (s), and the exact angle turned before it, of the shaft and of the
+    stator's carrier (rad)."""
 
     start: Fraction
-    length: float
+    span: Fraction
     rotor_angle: Fraction
     stator_angle: Fraction
+
+    @property
+    def length(self) -> float:
+        """Length of the leg (s)."""
+        return float(self.span)
 
     @property
     def time(self) -> float:
@@ -57,8 +62,7 @@ def reduced(angle: Fraction) -> float:
 def turned(speed, leg: Leg) -> Fraction:
     """Exact integral of the speed (rad/s, number or table) over a leg."""
     w, slope = constant_and_slope(speed, leg)
-    length = Fraction(leg.length)
-    return Fraction(w) * length + Fraction(slope) * length**2 / 2
+    return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
 
 
 def cut(duration: float, rotor_speed, stator_speed, quantities) -> list[Leg]:
@@ -70,12 +74,11 @@ def cut(duration: float, rotor_speed, stator_speed, quantities) -> list[Leg]:
     legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
     points = sorted(breaks)
     for begin, end in pairwise(points):
-        whole = Leg(Fraction(begin), end - begin, rotor_angle, stator_angle)
+        whole = Leg(Fraction(begin), Fraction(end) - Fraction(begin), rotor_angle, stator_angle)
         fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
         pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))
         for k in range(pieces):
-            start = Fraction(begin) + (Fraction(end) - Fraction(begin)) * k / pieces
-            leg = Leg(start, float((Fraction(end) - Fraction(begin)) / pieces), rotor_angle, stator_angle)
+            leg = Leg(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
             legs.append(leg)
             rotor_angle += turned(rotor_speed, leg)
             stator_angle += turned(stator_speed, leg)
@@ -95,7 +98,7 @@ def time_of_angle(speed, angle: float) -> float:
             raise ValueError("the shaft does not turn")
         return angle / abs(speed)
     t, left = 0.0, angle
-    for end in [b for b in speed.breaks() if b > 0.0] + [math.inf]:
+    for end in [b for b in _with_reversals(speed) if b > 0.0] + [math.inf]:
         w0 = abs(speed.at(t))
         if end == math.inf:
             if w0 == 0.0:
@@ -108,3 +111,12 @@ def time_of_angle(speed, angle: float) -> float:
             return t + 2 * left / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * left, 0.0)))
         t, left = end, left - turned_here
     raise AssertionError
+
+
+def _with_reversals(speed: Table) -> list[float]:
+    """Break points of a speed table, and the times in between at which the shaft reverses."""
+    times = set(speed.breaks())
+    for (t0, w0), (t1, w1) in pairwise(zip(speed.time, speed.value, strict=True)):
+        if w0 * w1 < 0.0 and t1 > t0:
+            times.add(t0 + (t1 - t0) * w0 / (w0 - w1))
+    return sorted(times)

@@ -165,14 +165,17 @@ def critical_speed(at_speed, low: float, high: float, points: int = 160) -> floa
     None if it does not, or only within rounding.  `at_speed(w)` gives the LinearScene at speed w."""
 
     def growth(w):
+        return max(mode.value.real for mode in at_speed(w).modes() if mode.kind == "tilt")
+
+    def beyond_rounding(w):
         tilt = [mode.value for mode in at_speed(w).modes() if mode.kind == "tilt"]
         rate = max(value.real for value in tilt)
         return rate if abs(rate) > NEUTRAL * max(map(abs, tilt)) else 0.0
 
     speeds = np.geomspace(low, high, points)
-    previous = growth(speeds[0])
+    previous = beyond_rounding(speeds[0])
     for a, b in pairwise(speeds):
-        present = growth(b)
+        present = beyond_rounding(b)
         if previous * present < 0:
             return float(brentq(growth, a, b, rtol=1e-13))
         previous = present

@@ -114,6 +114,7 @@ class Problem:
         head = np.array([x for pair in [*varying, closing] for x in pair] + [len(rows)])
         self.p = np.concatenate([self.layout.ring_block, head, rows.ravel()])
         self.leg, self.leg_index, self.rows = leg, index, rows
+        self.leg_pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * leg.length)) for r in rows), default=0.0)
         self._bind()
         return leg
 
@@ -203,7 +204,7 @@ class Problem:
         tolerance = 0.02 * self.accuracy * np.array([self.clearance, self.clearance / self.face[1]])
         return watch.watch(
             t, q, q_rate, count, begin, end, self.p, self.f, np.zeros(self.size), np.zeros(self.size),
-            self.w, self.s, windows, index, self.records, tolerance,
+            self.w, self.s, windows, index, self.records, tolerance, self.leg_pace,
         )  # fmt: skip
 
     def collapse_sentence(self, index: int, tau: float) -> str:
@@ -338,28 +339,24 @@ class Problem:
         kept = self._kept()
         return self.unknowns(q[kept], rate[kept])
 
-    def exact_motion(self, tau0, y0):
-        """Exact mechanical unknowns of a linear scene with constant parameters: harmonic balance plus the matrix
-        exponential of the free motion.  Returns a function of leg time."""
+    def exact_motion(self):
+        """Exact solution of a linear scene with constant parameters, in the order of the mechanical unknowns:
+        the forced motion as a function of leg time, the matrix exponential of the free motion as a function of a
+        time step, and the largest eigenvalue (1/s)."""
         from scipy.linalg import expm
 
         at, _, linear = self.steady_motion()
-        kept = self._kept()
-        places = [*range(self.n), *self.rate_places]
-        matrix = linear.state_matrix()
-        half = len(linear.mass)
-        rows = [*kept, *[half + i for i in kept]]
-        matrix = matrix[np.ix_(rows, rows)]
-        q, rate = at(tau0)
-        free = y0[places] - np.concatenate([q[kept], rate[kept]])
+        kept, places = self._kept(), [*range(self.n), *self.rate_places]
+        rows = [*kept, *[len(linear.mass) + i for i in kept]]
+        order = np.argsort(places)
+        matrix = linear.state_matrix()[np.ix_(rows, rows)][np.ix_(order, order)]
 
-        def exact(tau):
+        def forced(tau):
             q, rate = at(tau)
-            y = np.empty(self.n_mechanical)
-            y[places] = np.concatenate([q[kept], rate[kept]]) + expm(matrix * (tau - tau0)) @ free
-            return y
+            return np.concatenate([q[kept], rate[kept]])[order]
 
-        return exact
+        fastest = float(np.max(np.abs(np.linalg.eigvals(matrix))))
+        return forced, lambda step: expm(matrix * step), fastest
 
 
 def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None):

@@ -20,7 +20,8 @@ from .gap import h_min as smallest
 H, H_TAU, H_THETA, H_RADIUS, MOST, MOST_TAU, LEAST, LEAST_TAU, H_LEG, MOST_LEG, LEAST_LEG = range(11)
 RECORD = 11
 WINDOWS = 3
-SCAN = 6
+# Points looked at in a step: at least these, and at least so many per radian of the fastest imposed motion.
+SCAN, PER_RADIAN, MOST_SCAN = 6, 3.0, 4096
 # What is made small: the film thickness, minus the squared tilt, the squared tilt (smooth through zero).
 THICKNESS, MINUS_TILT, TILT = range(3)
 
@@ -89,12 +90,12 @@ def _first_below(low, high, floor, table, nodes, size, q, q_rate, y, yp, p, f, w
 
 
 @njit(cache=True)
-def _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen):
-    """The measures at SCAN + 1 times in [low, high] of step k, on the cubic between its ends."""
+def _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan):
+    """The measures at scan + 1 times in [low, high] of step k, on the cubic between its ends."""
     a, b = t[k], t[k + 1]
     span = b - a
-    for i in range(SCAN + 1):
-        x = (low + (high - low) * i / SCAN - a) / span
+    for i in range(scan + 1):
+        x = (low + (high - low) * i / scan - a) / span
         for j in range(len(q)):
             q0, q1 = q_all[k, j], q_all[k + 1, j]
             v0, v1 = span * q_rate_all[k, j], span * q_rate_all[k + 1, j]
@@ -104,61 +105,78 @@ def _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen):
 
 
 @njit(cache=True)
-def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance):
+def _held(record, kind, tolerance):
+    """The record so far in the measure of this kind, and the improvement not worth locating."""
+    if kind == THICKNESS:
+        return record[H], tolerance[0]
+    known = record[MOST] if kind == MINUS_TILT else record[LEAST]
+    if not abs(known) < np.inf:
+        return np.inf, 0.0
+    sign = -1.0 if kind == MINUS_TILT else 1.0
+    return sign * known * known, tolerance[1] * (2.0 * known + tolerance[1])
+
+
+@njit(cache=True)
+def _note(record, kind, out, at, theta, radius, leg):
+    if kind == THICKNESS:
+        record[H], record[H_TAU], record[H_LEG] = out[kind], at, leg
+        record[H_THETA], record[H_RADIUS] = theta, radius
+    elif kind == MINUS_TILT:
+        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, leg
+    else:
+        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, leg
+
+
+@njit(cache=True)
+def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace):
     """Update the records over steps [begin, end]; returns the leg time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
-    `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating.
+    `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
+    fastest imposed motion (rad/s).
     """
     n = q_all.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
-    q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((SCAN + 1, 3))
+    q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
     for k in range(begin, end):
         size = 0
         for window in range(WINDOWS):
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
                 continue
-            _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen)
+            scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+            _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
             record = records[window]
             for kind in range(3):
-                best = int(np.argmin(seen[:, kind]))
-                left, right = max(best - 1, 0), min(best + 1, SCAN)
-                # How far the measure may sink between the points: at most the rise to the farther neighbour.
-                far_left, far_right = min(left, SCAN - 2), max(right, 2)
-                dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
-                held = record[H] if kind == THICKNESS else record[MOST] if kind == MINUS_TILT else record[LEAST]
-                slack = tolerance[0]
-                if kind != THICKNESS:
-                    known = abs(held) < np.inf
-                    slack = tolerance[1] * (2.0 * held + tolerance[1]) if known else 0.0
-                    held = held * held * (-1.0 if kind == MINUS_TILT else 1.0) if known else np.inf
-                reach = seen[best, kind] - dip
-                sinks = kind == THICKNESS and reach < f[FLOOR]
-                if not sinks and reach >= held - slack:
-                    continue
-                if size == 0:
-                    size = fit(t, q_all, q_rate_all, k, count, table, nodes)
-                step = (high - low) / SCAN
-                at = _locate(
-                    kind, low + left * step, low + right * step,
-                    table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
-                )  # fmt: skip
-                value(table, nodes, size, at, q, q_rate)
-                theta, radius = _measures(at, q, y, yp, p, f, w, s, out)
-                if kind == THICKNESS and window == 0 and out[kind] < f[FLOOR]:
-                    fallen = _first_below(t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
-                    value(table, nodes, size, fallen, q, q_rate)
-                    theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
-                    record[H], record[H_TAU], record[H_LEG] = out[THICKNESS], fallen, leg
-                    record[H_THETA], record[H_RADIUS] = theta, radius
-                    return fallen
-                if out[kind] < held:
-                    if kind == THICKNESS:
-                        record[H], record[H_TAU], record[H_LEG] = out[kind], at, leg
+                for best in range(scan + 1):
+                    # Every dip of the scan, however many a long step holds.
+                    left, right = max(best - 1, 0), min(best + 1, scan)
+                    if seen[best, kind] > seen[left, kind] or seen[best, kind] > seen[right, kind]:
+                        continue
+                    # How far it may sink between the points: at most the rise to the farther neighbour.
+                    far_left, far_right = min(left, scan - 2), max(right, 2)
+                    dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
+                    held, slack = _held(record, kind, tolerance)
+                    reach = seen[best, kind] - dip
+                    sinks = kind == THICKNESS and reach < f[FLOOR]
+                    if not sinks and reach >= held - slack:
+                        continue
+                    if size == 0:
+                        size = fit(t, q_all, q_rate_all, k, count, table, nodes)
+                    step = (high - low) / scan
+                    at = _locate(
+                        kind, low + left * step, low + right * step,
+                        table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
+                    )  # fmt: skip
+                    value(table, nodes, size, at, q, q_rate)
+                    theta, radius = _measures(at, q, y, yp, p, f, w, s, out)
+                    if kind == THICKNESS and window == 0 and out[kind] < f[FLOOR]:
+                        fallen = _first_below(t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
+                        value(table, nodes, size, fallen, q, q_rate)
+                        theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
+                        record[H], record[H_TAU], record[H_LEG] = out[THICKNESS], fallen, leg
                         record[H_THETA], record[H_RADIUS] = theta, radius
-                    elif kind == MINUS_TILT:
-                        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, leg
-                    else:
-                        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, leg
+                        return fallen
+                    if out[kind] < held:
+                        _note(record, kind, out, at, theta, radius, leg)
     return -1.0

@@ -40,17 +40,16 @@ def pressure_lines(face, state, angles, cuts=()):
     scale += [scale[1] * r_m * width, scale[2] * r_m * width, scale[1] * r_m**2 * width, scale[2] * r_m**2 * width]
     scale += [r_o**4 / h_small, scale[1] * h_small * width, scale[2] * h_small * width]
     atol = np.repeat(np.array(scale) * 1e-18, n)
-    found = solve_ivp(slopes, (r_i, r_o), np.zeros(10 * n), "DOP853", rtol=2.3e-14, atol=atol)
+    found = solve_ivp(slopes, (r_i, r_o), np.zeros(10 * n), "DOP853", rtol=2.3e-14, atol=atol, max_step=width / 40)
     phi, p1, p0, f1, f0, m1, m0, drag, t1, t0 = found.y[:, -1].reshape(10, n)
     edge = (p_o - p_i - p1) / p0
     strip = r_m if planar else 1.0
     force = f1 + edge * f0 + p_i * (r_o**2 - r_i**2) / 2
     moment = m1 + edge * m0 + p_i * (r_o**3 - r_i**3) / 3
-    turn_mean = [np.zeros(n)] * 2
     # int dh/dtheta p r dr, whose constant part p_i integrates to zero around the circle.
-    turned = t1 + edge * t0 + turn_mean[0]
+    turned = t1 + edge * t0
     return theta, dict(
-        force=force, moment=moment, inner=-edge * strip, outer=-(edge + phi) * strip, drag=drag, turned=turned, edge=edge
+        force=force, moment=moment, inner=-edge * strip, outer=-(edge + phi) * strip, drag=drag, turned=turned
     )
 
 

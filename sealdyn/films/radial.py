@@ -107,15 +107,16 @@ def _rules(radius_ratio: float, error: float) -> np.ndarray:
     this error, points and weights.  The limit is found by trying, so no error constant is guessed."""
     rows = []
     for points in RADIAL_POINTS:
-        low, high = 0.0, 12.0  # ln of the film ratio
+        # ln of the film ratio; a rule that cannot even serve flat faces gets a limit below one.
+        low, high = -1.0, 12.0
         for _ in range(24):
-            middle = 0.5 * (low + high)
+            middle = 0.5 * (max(low, 0.0) + high) if low >= 0.0 else 0.0
             worst = max(
                 _rule_error(points, math.exp(middle), radius_ratio),
                 _rule_error(points, math.exp(-middle), radius_ratio),
             )
-            # Force and moments are differences of these integrals: measured up to 15 times worse.
-            low, high = (middle, high) if worst < max(error / 20, 3e-15) else (low, middle)
+            # Force and moments are differences of these integrals: measured up to 100 times worse.
+            low, high = (middle, high) if worst < max(error / 200, 3e-15) else (low, middle)
         x, w = gauss(points)
         row = np.zeros(RULE_SIZE)
         row[:2] = points, math.exp(low)
@@ -136,10 +137,9 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     if film.cavitation_pressure is not None:
         f[CAVITATION], f[HAS_CAVITATION] = film.cavitation_pressure, 1.0
     error = min(max(error, 1e-14), 1e-2)
-    f[LOG_ERROR] = math.log(1e3 / error)
-    # A cavity's edge leaves a weak kink around the circle: the trapezoid converges as N^-2.5 only, so
-    # the angles are multiplied (measured on the tilted reference seal, 0.08 and 0.014 C above contact).
-    f[CAVITY_ANGLES] = max(1.0, 0.25 * (1e3 * error) ** -0.4)
+    f[LOG_ERROR] = math.log(1e4 / error)
+    # A cavity's edge leaves a kink around the circle: the trapezoid converges as N^-2 only (measured: up to 40 / N^2).
+    f[CAVITY_ANGLES] = min(6.0 * error**-0.5, MOST_ANGLES)
     f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, error)
     f[ANGLE_COUNTS:COSINES] = ANGLES
     beta = 2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES
@@ -290,7 +290,7 @@ def _circle(f, s, complete):
 
 
 @njit(cache=True)
-def _circle_floored(f, s):
+def _circle_floored(f, s, crowded):
     """As `_circle`, with the pressure floored at the cavitation pressure after solving (half-Sommerfeld).
 
     **Source** Ludwig & Allen, NASA TN D-8102 (1976), who drop the sub-ambient half of the film.
@@ -306,11 +306,13 @@ def _circle_floored(f, s):
     h_o0 = h_i0 + f[CONING] * width
     swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
 
-    angles = MOST_ANGLES
-    wanted = f[CAVITY_ANGLES] * angles_for(f, h_i0, h_o0, swing_i, swing_o)
-    for i in range(len(ANGLES) - 1, -1, -1):
-        if f[ANGLE_COUNTS + i] >= wanted:
-            angles = int(f[ANGLE_COUNTS + i])
+    angles = angles_for(f, h_i0, h_o0, swing_i, swing_o)
+    if crowded:
+        wanted = max(angles, f[CAVITY_ANGLES])
+        angles = MOST_ANGLES
+        for i in range(len(ANGLES) - 1, -1, -1):
+            if f[ANGLE_COUNTS + i] >= wanted:
+                angles = int(f[ANGLE_COUNTS + i])
     stride = MOST_ANGLES // angles
     rule = RULES + RULE_SIZE * max(
         points_for(f, above_floor(h_i0 - swing_i, floor), above_floor(h_o0 - swing_o, floor)),
@@ -359,10 +361,19 @@ def _circle_floored(f, s):
 
 
 @njit(cache=True)
+def _floored(f, s):
+    """The floored film, on many angles if and only if there is a cavity; returns the drag of the pressure."""
+    drag = _circle_floored(f, s, False)
+    if s[CAVITATED] > 0.0:
+        drag = _circle_floored(f, s, True)
+    return drag
+
+
+@njit(cache=True)
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
     if f[HAS_CAVITATION] != 0.0:
-        _circle_floored(f, s)
+        _floored(f, s)
     else:
         _circle(f, s, False)
 
@@ -377,4 +388,4 @@ def flow(f, s):
         m_across = (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X]) / tilt if tilt > 0.0 else 0.0
         if f[TILT_AT_MEAN] == 0.0:
             s[TORQUE] -= 0.5 * tilt * m_across
-        s[TORQUE] += _circle_floored(f, s)
+        s[TORQUE] += _floored(f, s)

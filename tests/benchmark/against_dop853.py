@@ -72,7 +72,9 @@ def main():
     print("ratio DOP853 / Adams at equal achieved error:")
     for error in 10.0 ** -np.arange(4, 10):
         walls = [fastest_at(found[name], error) for name in found]
-        print(f"  {error:.0e}: {walls[0] * 1e3:6.1f} ms against {walls[1] * 1e3:6.1f} ms, {walls[1] / walls[0]:.2f} times")
+        print(
+            f"  {error:.0e}: {walls[0] * 1e3:6.1f} ms against {walls[1] * 1e3:6.1f} ms, {walls[1] / walls[0]:.2f} times"
+        )
     if len(sys.argv) > 1:
         draw(found, sys.argv[1])
 

@@ -68,9 +68,7 @@ def test_coefficients_from_a_displaced_film(geometry, coning):
     axial = -2 * np.pi * slope(geometry, coning, 1, "lift")
     # Flat faces have no axial stiffness: zero on the scale of the load per clearance.
     assert film.axial_stiffness == pytest.approx(axial, rel=1e-12, abs=1e-13 * DROP * R_O**2 / CLEARANCE)
-    assert film.axial_damping == pytest.approx(
-        -2 * np.pi * slope(geometry, coning, 1, "lift_rate"), rel=1e-12
-    )
+    assert film.axial_damping == pytest.approx(-2 * np.pi * slope(geometry, coning, 1, "lift_rate"), rel=1e-12)
 
 
 def test_numbers_of_the_reference_seal():
@@ -123,9 +121,7 @@ def test_aligned_film_by_a_boundary_value_solver():
     assert solution.success
     force, flow = solution.y[2, -1] * 5e5, solution.y[1, 0] * 5e5 * 1e-15 / (12 * 0.5e-3) * 2 * np.pi
     face = {name: REFERENCE[name] for name in FACE}
-    assert aligned_opening_force(**face, inner_pressure=0.0, outer_pressure=5e5) == pytest.approx(
-        force, rel=1e-8
-    )
+    assert aligned_opening_force(**face, inner_pressure=0.0, outer_pressure=5e5) == pytest.approx(force, rel=1e-8)
     assert aligned_leakage(**REFERENCE) == pytest.approx(flow, rel=1e-8)
 
 

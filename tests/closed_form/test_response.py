@@ -107,18 +107,12 @@ def test_extremes_of_an_integrated_ring(flexible):
 
     end, turn = 0.1, 2 * np.pi / w
     times = np.linspace(end - turn, end, 4001)
-    run = solve_ivp(
-        motion, (0, end), np.zeros(4), "DOP853", times, rtol=1e-10, atol=1e-16, max_step=turn / 20
-    )
+    run = solve_ivp(motion, (0, end), np.zeros(4), "DOP853", times, rtol=1e-10, atol=1e-16, max_step=turn / 20)
     relative = np.linalg.norm(run.y[:2].T - np.array([partner(t)[0] for t in times]), axis=1)
     if flexible == "rotor":
-        most, least = superposed(
-            closed_form.fmr_static(**seal) * other, closed_form.fmr_dynamic(**seal) * own
-        )
+        most, least = superposed(closed_form.fmr_static(**seal) * other, closed_form.fmr_dynamic(**seal) * own)
     else:
-        most, least = superposed(
-            closed_form.fms_static(**seal) * own, closed_form.fms_dynamic(**seal) * other
-        )
+        most, least = superposed(closed_form.fms_static(**seal) * own, closed_form.fms_dynamic(**seal) * other)
     assert relative.max() == pytest.approx(most, rel=1e-6)
     assert relative.min() == pytest.approx(least, rel=1e-6)
 

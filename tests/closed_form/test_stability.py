@@ -34,9 +34,7 @@ def crossing(seal, flexible, top=1e5):
     if growth.max() < 0:
         return None
     first = int(np.argmax(growth > 0))
-    speed = brentq(
-        lambda w: eigenvalues(seal, w, flexible).real.max(), speeds[first - 1], speeds[first], xtol=1e-9
-    )
+    speed = brentq(lambda w: eigenvalues(seal, w, flexible).real.max(), speeds[first - 1], speeds[first], xtol=1e-9)
     roots = eigenvalues(seal, speed, flexible)
     return speed, roots[roots.real.argmax()].imag / speed
 

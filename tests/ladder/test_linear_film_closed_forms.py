@@ -46,7 +46,7 @@ def test_extremes_of_the_relative_misalignment(flexible, c):
     """static, dynamic, maximum and minimum, each from its own run, to 1e-6 at accuracy 1e-8."""
     if flexible == "rotor":
         static, dynamic = closed_form.fmr_static(**numbers(c)), closed_form.fmr_dynamic(**numbers(c))
-        scenes = [fmr("linear", c, own=0.0), fmr("linear", c, stator=0.0), fmr("linear", c)]
+        scenes = [fmr("linear", c, own=0.0), fmr("linear", c, fixed=0.0), fmr("linear", c)]
     else:
         static, dynamic = closed_form.fms_static(**numbers(c)), closed_form.fms_dynamic(**numbers(c))
         scenes = [fms("linear", c, runout=0.0), fms("linear", c, own=0.0), fms("linear", c)]

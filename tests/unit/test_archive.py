@@ -172,9 +172,9 @@ def test_a_complete_archive_is_replaced_only_by_a_complete_one(tmp_path):
 
 
 def test_room_grows_for_rows_events_and_state(tmp_path, monkeypatch):
-    monkeypatch.setattr(archive, "SMALLEST_ROOM", 1)
-    monkeypatch.setattr(archive, "SLOT", 128)
-    monkeypatch.setattr(archive, "LOG", 16)
+    monkeypatch.setattr(archive.run, "SMALLEST_ROOM", 1)
+    monkeypatch.setattr(archive.run, "SLOT", 128)
+    monkeypatch.setattr(archive.run, "LOG", 16)
     path = tmp_path / "run.h5"
     run = writer(path, interval=0.0)
     for n in range(60):
@@ -190,7 +190,7 @@ def test_room_grows_for_rows_events_and_state(tmp_path, monkeypatch):
 CHILD = """
     import sys, numpy as np
     from sealdyn import archive
-    archive.SMALLEST_ROOM = 2
+    archive.run.SMALLEST_ROOM = 2
     series = {"h_min": archive.Series("m", "film"), "count": archive.Series("1", "row")}
     print("go", flush=True)
     while True:

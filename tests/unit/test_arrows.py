@@ -43,7 +43,13 @@ ALLOWED = {
     | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},
     "validation": PHYSICS | {"modes", "problem", "recorder", "solve"},
     "charts": {"archive"},
-    "studies": None,
+    "pool": set(),
+    "investigate": {"archive", "pool", "scenario", "studies"},
+    "studies": PHYSICS
+    | DOORS
+    | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
+    | {"solve", "summary", "validation", "watch", "whirl"},
+    "orbit": PHYSICS | DOORS | {"layout", "methods", "modes", "problem", "recorder", "solve", "watch"},
     "cli": None,
     "__init__": None,
 }

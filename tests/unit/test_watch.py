@@ -10,7 +10,7 @@ from scenes import CLEARANCE, INERTIA, NOTHING, R_I, SPEED, SUPPORT, film, fmr, 
 from sealdyn.motion import Shaft, Whirl
 from sealdyn.ring import AxialRunout, Rotor, Stator
 from sealdyn.scene import Initial, RingStart
-from sealdyn.watch import H, H_TAU, LEAST, LEAST_TAU, MOST, MOST_TAU
+from sealdyn.watch import H_TAU, LEAST, LEAST_TAU, MOST, MOST_TAU, H
 
 EMPTY_FILM = film("linear", coefficients=NOTHING)
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)
@@ -115,7 +115,8 @@ def test_a_short_dip_below_the_floor_is_a_collapse():
 
 def test_windows_see_only_their_own_time():
     """A decaying tilt: the last turn's largest is smaller than the first's."""
-    found = run(fmr("linear", own=0.0, fixed=0.0, initial=Initial(rotor=RingStart(tilt_x=50e-6))), turns=4)
+    found = run(fmr("linear", own=0.0, fixed=0.0, initial=Initial(rotor=RingStart(tilt_x=50e-6))), turns=2)
     whole, last, before = (found.record(k)[MOST] for k in range(3))
     assert whole == pytest.approx(50e-6, rel=1e-6)
-    assert last < before < whole
+    assert last < 0.1 * before
+    assert before == whole

@@ -1,0 +1,86 @@
+"""The answer of a study in one HDF5 file, the scenario inside."""
+
+import json
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .run import ArchiveError
+
+FORMAT = "sealdyn study 1"
+
+
+def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict[str, str]) -> Path:
+    """Write the answer: whole as JSON (`/answer`), and every list of numbers in it as a float64 dataset under its
+    dotted key with `units`, so that any HDF5 reader can plot it.  Replaces an existing file only when complete."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".new")
+    with h5py.File(fresh, "w") as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["program"] = "sealdyn"
+        file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
+        for name, value in meta.items():
+            file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
+        for name, text in (
+            ("scenario", scenario_text),
+            ("resolved", json.dumps(resolved)),
+            ("answer", json.dumps(answer)),
+        ):
+            file.create_dataset(name, data=text, dtype=h5py.string_dtype())
+        for key, values in _columns(answer):
+            column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
+            column.attrs["units"] = units.get(key, "")
+            column.attrs["long_name"] = key
+    os.replace(fresh, path)
+    return path
+
+
+def _columns(tree, key=""):
+    """Every list of numbers (any depth, rectangular) in the answer, with its path."""
+    if isinstance(tree, dict):
+        for name, below in tree.items():
+            yield from _columns(below, f"{key}/{name}" if key else name)
+    elif isinstance(tree, list) and tree and key:
+        try:
+            values = np.array([_numbers(entry) for entry in tree], dtype=float)
+        except (TypeError, ValueError):
+            return
+        yield key, values
+
+
+def _numbers(entry):
+    if isinstance(entry, list):
+        return [_numbers(e) for e in entry]
+    if entry is None:
+        return np.nan
+    if isinstance(entry, bool) or not isinstance(entry, int | float):
+        raise TypeError
+    return entry
+
+
+def read_study(path) -> dict:
+    """Everything of a study's file: `answer`, `scenario`, `resolved`, and the meta attributes (JSON ones decoded).
+    Raises ArchiveError."""
+    path = Path(path)
+    if not path.is_file():
+        raise ArchiveError(f"{path}: no such file")
+    try:
+        with h5py.File(path, "r") as file:
+            if file.attrs.get("format") != FORMAT:
+                raise ArchiveError(f"{path}: an HDF5 file, but not a sealdyn study")
+            info = {}
+            for name, value in file.attrs.items():
+                value = value.item() if hasattr(value, "item") else value
+                if isinstance(value, str) and value[:1] in "{[":
+                    value = json.loads(value)
+                info[name] = value
+            info["scenario"] = file["scenario"].asstr()[()]
+            info["resolved"] = json.loads(file["resolved"].asstr()[()])
+            info["answer"] = json.loads(file["answer"].asstr()[()])
+            return info
+    except OSError as error:
+        raise ArchiveError(f"{path}: not an HDF5 file, or damaged") from error

@@ -1,0 +1,67 @@
+"""The energy audit sees what it must: an equation that does not do what its works say."""
+
+import numpy as np
+import pytest
+from scenes import INERTIA, SPEED, SUPPORT, fmr, fms, fmsr, run
+
+from sealdyn.problem import Problem
+
+K_S, D_S = SUPPORT.tilt()
+
+
+def wrong(change):
+    """A Problem whose equation of motion is off by `change(y, rates' part)` while its works are as before."""
+
+    class Wrong(Problem):
+        def _bind(self):
+            super()._bind()
+            right, tilt, rate = self.rhs, self.n - 2, self.n_mechanical - 2
+
+            def rhs(tau, y, yp):
+                right(tau, y, yp)
+                push = change(complex(*y[tilt : tilt + 2]), complex(*y[rate : rate + 2])) / INERTIA
+                yp[rate] += push.real
+                yp[rate + 1] += push.imag
+
+            self.rhs = rhs
+
+    return Wrong
+
+
+MISTAKES = {
+    "damper pushes": lambda g, v: 2 * D_S * v,
+    "spring pushes": lambda g, v: 2 * K_S * g,
+    "spring 1 % stiff": lambda g, v: -0.01 * K_S * g,
+    "gyroscopic moment along the rate": lambda g, v: 0.01 * INERTIA * SPEED * v,
+    "rotating damper forgotten": lambda g, v: -1j * SPEED * D_S * g,
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+@pytest.mark.parametrize("scene", [fmr(), fms("linear")], ids=["fmr", "fms-linear"])
+def test_a_wrong_force_is_exposed(scene, mistake):
+    right = run(scene, turns=5, accuracy=1e-6)
+    found = run(scene, turns=5, accuracy=1e-6, problem_class=wrong(MISTAKES[mistake]))
+    assert right.outcome.energy_residual < 2e-6
+    # Ten times the accuracy is the line a sound run stays below.
+    assert found.outcome.energy_residual > 10e-6
+
+
+def test_gyroscopic_moment_does_no_work():
+    """Turning it the other way round is another seal, but no energy is missing: the audit is right to be silent."""
+    turned = wrong(lambda g, v: -2j * INERTIA * 2 * SPEED * v)
+    assert run(fmr(), turns=5, accuracy=1e-6, problem_class=turned).outcome.energy_residual < 1e-5
+
+
+def test_works_against_an_integral_of_the_trajectory():
+    """Each work once more, by Simpson's rule over sampled states, from the formulas of the sheet."""
+    found = run(fmsr("linear"), turns=2, accuracy=1e-9, per_turn=4096)
+    y = found.outcome.y
+    damper = 0.0
+    for name, spin in (("stator", 0.0), ("rotor", SPEED)):
+        at = found.problem.names.index(f"{name}_tilt_x")
+        g, v = found.tilt(name), found.rates[:, at] + 1j * found.rates[:, at + 1]
+        power = -D_S * ((v - 1j * spin * g) * np.conj(v)).real
+        step = found.times[1] - found.times[0]
+        damper += step / 3 * (power[0] + power[-1] + 4 * power[1:-1:2].sum() + 2 * power[2:-1:2].sum())
+    assert y[found.problem.n_mechanical] == pytest.approx(damper, rel=1e-7)

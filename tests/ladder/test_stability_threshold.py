@@ -1,0 +1,66 @@
+"""Just below and above the critical speed: growth or decay in time, at the rate the eigenvalues say."""
+
+import numpy as np
+import pytest
+from scenes import INERTIA, SUPPORT, fmr, fms, run
+
+from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_critical_speed
+from sealdyn.modes import critical_speed, verdict
+from sealdyn.scene import Initial, RingStart
+
+FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
+K_S, D_S = SUPPORT.tilt()
+NUMBERS = dict(
+    transverse_inertia=INERTIA, polar_inertia=INERTIA / 3, support_stiffness=K_S, support_damping=D_S,
+    film_stiffness=FILM.tilt_stiffness, film_damping=FILM.tilt_damping,
+)  # fmt: skip
+CRITICAL = {"fms": fms_critical_speed(**NUMBERS), "fmr": fmr_critical_speed(**NUMBERS)}
+# An aligned seal, nudged by a thousandth of the clearance.
+NUDGE = RingStart(tilt_x=2.5e-7)
+
+
+def scene(kind, speed):
+    if kind == "fms":
+        return fms("linear", 3.0, speed=speed, own=0.0, runout=0.0, initial=Initial(stator=NUDGE))
+    return fmr("linear", 3.0, speed=speed, own=0.0, fixed=0.0, initial=Initial(rotor=NUDGE))
+
+
+def eigenvalues(kind, speed):
+    """Roots of the ring's complex equation, written out here."""
+    film = FILM.tilt_stiffness - 0.5j * speed * FILM.tilt_damping
+    gyroscopic, turning = (0.0, 0.0) if kind == "fms" else (-1j * INERTIA / 3 * speed, -1j * speed * D_S)
+    return np.roots([INERTIA, D_S + FILM.tilt_damping + gyroscopic, K_S + film + turning])
+
+
+def test_critical_speeds_of_the_reference_seal():
+    assert CRITICAL["fms"] == pytest.approx(5.89e3, rel=1e-3)
+    assert CRITICAL["fmr"] == pytest.approx(8.684e3, rel=1e-3)
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853"])
+@pytest.mark.parametrize("share", [0.99, 1.01])
+@pytest.mark.parametrize("kind", ["fms", "fmr"])
+def test_verdict_and_rate_either_side(kind, share, method):
+    speed = share * CRITICAL[kind]
+    found = run(scene(kind, speed), turns=120, accuracy=1e-8, method=method, per_turn=8)
+    slowest = max(eigenvalues(kind, speed), key=lambda value: value.real)
+    modes = found.problem.linear_scene().modes()
+    assert modes[0].value == pytest.approx(slowest, rel=1e-8)
+    assert verdict(modes) == ("stable" if share < 1 else "unstable")
+    # After twenty turns the damped root is gone: one exponential is left.
+    late = found.times > found.times[-1] / 6
+    tilt = found.tilt("stator" if kind == "fms" else "rotor")[late]
+    rate = np.polyfit(found.times[late], np.log(np.abs(tilt)), 1)[0]
+    turning = np.polyfit(found.times[late], np.unwrap(np.angle(tilt)), 1)[0]
+    # An undamped circular whirl costs the error of one radian: rates to 1e-6 of the whirl's frequency.
+    assert rate == pytest.approx(slowest.real, abs=1e-6 * abs(slowest.imag))
+    assert turning == pytest.approx(slowest.imag, rel=1e-6)
+    assert (rate > 0) == (share > 1)
+
+
+@pytest.mark.parametrize("kind", ["fms", "fmr"])
+def test_critical_speed_by_eigenvalues(kind):
+    problem = run(scene(kind, 1000.0), turns=1).problem
+    found = critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4)
+    # Growth within 1e-9 of the eigenvalue counts as none: so much the threshold may be off, over its slope.
+    assert found == pytest.approx(CRITICAL[kind], rel=1e-8)
