@@ -14,9 +14,9 @@ import numpy as np
 # and always the same way; CVODE's Adams stays at low order on an undamped oscillation (its step may only grow by
 # half or more), so it takes some seventy steps a period whatever the tolerance.
 SAFETY = {
-    "adams": (120.0, 120.0),
-    "bdf": (400.0, 400.0),
-    "ida": (300.0, 400.0),
+    "adams": (60.0, 100.0),
+    "bdf": (200.0, 400.0),
+    "ida": (200.0, 400.0),
     "dop853": (60.0, 3.0),
     "radau": (30.0, 3.0),
     "expm": (1.0, 0.0),

@@ -183,6 +183,14 @@ class Problem:
             rate[:, i] = ys[:, place] if place >= 0 else yps[:, i]
         return np.ascontiguousarray(ys[:, : self.n]), rate
 
+    def accelerations(self, taus, ys) -> np.ndarray:
+        """Second derivatives (m, n) of the displacements at stored steps; every ring has mass."""
+        out, yp = np.empty((len(taus), self.n)), np.empty(self.size)
+        for i, (tau, y) in enumerate(zip(taus, ys, strict=True)):
+            self.rhs(tau, y, yp)
+            out[i] = yp[self.rate_places]
+        return out
+
     def energies(self, taus, ys) -> np.ndarray:
         """Kinetic and spring energy (J) at stored steps."""
         out = np.empty(len(taus))

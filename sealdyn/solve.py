@@ -2,7 +2,7 @@
 
 A problem offers `n` displacements first in its unknowns, `legs` (each with `length`), `begin(k)`,
 `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `start_rates`, `jacobian`, `scales`, `motion`, `energies`,
-`watch`, `y0`, `memory`; its last six unknowns are works.  A sink takes what has been integrated.
+`accelerations`, `watch`, `y0`, `memory`; its last six unknowns are works.  A sink takes what has been integrated.
 Nothing here knows of seals or files.
 """
 
@@ -113,9 +113,9 @@ def _run_leg(problem, index, leg, tau, y, steps, sink, audit, counts):
             q, q_rate = problem.motion(ys, yps)
             fallen = problem.watch(index, t, q, q_rate, count, watched, upto)
             audit.take(t, ys, watched, upto if fallen < 0 else int(np.searchsorted(t, fallen)) - 1)
-            done = _hand_over(index, t, q, q_rate, watched, upto, due, done, fallen, sink)
+            done = _hand_over(problem, index, t, ys, q, q_rate, watched, upto, due, done, fallen, sink)
             if fallen >= 0:
-                here, rate = _at(t, q, q_rate, watched, upto, np.array([fallen]))
+                here, rate = _at(problem, t, ys, q, q_rate, watched, upto, np.array([fallen]))
                 end = ys[int(np.searchsorted(t, fallen))].copy()
                 end[: problem.n_mechanical] = problem.unknowns(here[0], rate[0])[: problem.n_mechanical]
                 return fallen, end, problem.collapse_sentence(index, fallen)
@@ -127,13 +127,25 @@ def _run_leg(problem, index, leg, tau, y, steps, sink, audit, counts):
     return float(t[-1]), ys[-1].copy(), ""
 
 
-def _at(t, q, q_rate, begin, end, times):
-    out, out_rate = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
-    sample(t, q, q_rate, len(t), begin, end, times, out, out_rate)
-    return out, out_rate
+def _at(problem, t, ys, q, q_rate, begin, end, times):
+    """Displacements and rates at `times` inside steps [begin, end].
+
+    Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
+    magnify their error by one over the step.
+    """
+    first, last = max(0, begin - OVERLAP), min(len(t), end + OVERLAP + 1)
+    t, q, q_rate, count = t[first:last], q[first:last], q_rate[first:last], last - first
+    out, slope = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
+    sample(t, q, q_rate, count, begin - first, end - first, times, out, slope)
+    if problem.massless:
+        return out, slope
+    acceleration = problem.accelerations(t, ys[first:last])
+    rate = np.empty_like(out)
+    sample(t, q_rate, acceleration, count, begin - first, end - first, times, rate, slope)
+    return out, rate
 
 
-def _hand_over(index, t, q, q_rate, begin, end, due, done, fallen, sink) -> int:
+def _hand_over(problem, index, t, ys, q, q_rate, begin, end, due, done, fallen, sink) -> int:
     """Output due in steps [begin, end], or up to a collapse and at it; returns how many are done."""
     until = fallen if fallen >= 0 else t[end]
     last = int(np.searchsorted(due, until, side="right"))
@@ -141,5 +153,5 @@ def _hand_over(index, t, q, q_rate, begin, end, due, done, fallen, sink) -> int:
     if fallen >= 0 and not (len(times) and times[-1] == fallen):
         times = np.append(times, fallen)
     if len(times):
-        sink.take(index, times, *_at(t, q, q_rate, begin, end, times))
+        sink.take(index, times, *_at(problem, t, ys, q, q_rate, begin, end, times))
     return last
