@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import os
 import signal
 import sys
 from pathlib import Path
@@ -32,6 +33,19 @@ app = typer.Typer(
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
 AsJson = Annotated[bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")]
+
+
+@contextlib.contextmanager
+def _libraries_on_stderr():
+    """Keep standard output ours: SUNDIALS prints its warnings there, straight from C."""
+    sys.stdout.flush()
+    ours = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        os.dup2(ours, 1)
+        os.close(ours)
 
 
 class Stop(Exception):
@@ -81,7 +95,7 @@ def run(
         _check_resumable(out, scenario)
     _say_compiling(file=sys.stderr)
     flag = _catch_interrupt()
-    with _Progress() as bar:
+    with _Progress() as bar, _libraries_on_stderr():
         try:
             result = simulate(scenario, out, progress=bar, stop=lambda: bool(flag), resume=resume)
         except (ImpossibleScene, ArchiveError) as error:
@@ -265,7 +279,8 @@ def validate(as_json: AsJson = False):
     """Compare published numbers with three independent roads: formula, linear algebra, time domain."""
     from .validation import report, validate_all
 
-    rows = validate_all()
+    with _libraries_on_stderr():
+        rows = validate_all()
     good = all(row["verdict"] != "FAILED" for row in rows)
     if as_json:
         print(json.dumps({"status": "ok" if good else "failed", "checks": rows}))
@@ -297,7 +312,7 @@ def study(
         raise Stop("invalid", f'study: found "{name}"; expected one of {", ".join(names)}{_nearest(name, names)}')
     scenario = _read(file, set)
     _say_compiling(file=sys.stderr)
-    with _Progress() as bar:
+    with _Progress() as bar, _libraries_on_stderr():
         try:
             answer = investigate(
                 name, scenario, out, flags=_flags(context.args), workers=workers, progress=lambda t, end: bar(t, end)

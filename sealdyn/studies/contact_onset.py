@@ -1,0 +1,244 @@
+"""Contact onset: the forcing at which the steady film first touches, by continuation of the periodic orbit."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .. import modes
+from ..orbit import NoOrbit, Shooter
+from ..problem import Problem
+from ..scenario import parse_scenario
+from ..scenario_study import varied
+
+units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
+    `margin`: touch is h_min = margin x clearance; `over` and `values`: the onset as a curve over another key;
+    `floor`: also with the pressure floored at the lower boundary pressure (slower)."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    key: str | None = None
+    margin: float = 1e-3
+    over: str | None = None
+    values: tuple[float | str, ...] = ()
+    floor: bool = False
+    tolerance: float = 1e-6
+
+
+def run(scenario, settings, tools) -> dict:
+    """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
+    key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
+    base = {"text": scenario.text, "name": scenario.name, "overrides": scenario.overrides, "key": key,
+            "margin": settings.margin, "tolerance": settings.tolerance, "set": {}, "floor": False}  # fmt: skip
+    points = [base]
+    if settings.floor:
+        points.append({**base, "floor": True})
+    points += [{**base, "set": {settings.over: value}} for value in settings.values if settings.over]
+    rows = tools.map(onset, points, "onset")
+    first = rows[0]
+    if "failed" in first:
+        return {"status": "failed", "key": key, "formula": None, "nonlinear": None, "radius": None,
+                "margin": settings.margin, "verdict": [first["failed"]]}  # fmt: skip
+    floored = rows[1] if settings.floor else None
+    curve = rows[2 if settings.floor else 1 :]
+    answer = {**first, "floored": floored, "over": settings.over,
+              "curve": [{"value": v, **row} for v, row in zip(settings.values, curve, strict=False)]}  # fmt: skip
+    return {**answer, "verdict": _verdict(answer)}
+
+
+def onset(point: dict) -> dict:
+    """Linear and nonlinear onset of one scenario; `path` the orbits on the way."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    for key, value in point["set"].items():
+        scenario = varied(scenario, {key: value})
+    floor = min(scenario.scene.film.floor, point["margin"] / 4)
+    key = point["key"]
+
+    def scene(value):
+        made = varied(scenario, {key: value, "film.floor": floor, "run.start": '"steady"'}).scene
+        return made
+
+    formula, touching = linear_onset(scene, key)
+    follower = Follower(scene, point["margin"], scenario.run.accuracy)
+    value = follower.follow(formula, point["tolerance"])
+    clearance = follower.path[-1]["clearance"]
+    result = {
+        "key": key,
+        "formula": formula,
+        "linear_radius": touching,
+        "nonlinear": value,
+        "ratio": value / formula,
+        "radius": follower.path[-1]["radius"],
+        "margin": point["margin"],
+        "clearance": clearance,
+        "start": [float(x) for x in follower.start],
+        "axial_opening": follower.path[-1]["axial"] / clearance,
+        "path": {
+            "forcing": [p["forcing"] for p in follower.path],
+            "h_min": [p["h_min"] for p in follower.path],
+            "tilt": [p["tilt"] for p in follower.path],
+            "axial": [p["axial"] for p in follower.path],
+            "multiplier": [p["multiplier"] for p in follower.path],
+        },
+    }
+    if point["floor"]:
+        film = scenario.scene.film
+        lowest = min(float(film.inner_pressure), float(film.outer_pressure))
+        with_floor = Follower(
+            lambda v: _floored(scene(v), lowest), point["margin"], 1e-5, follower.monodromy, follower.start
+        )
+        result["nonlinear"] = with_floor.close(value, 1e-4)
+        result["ratio"] = result["nonlinear"] / formula
+        result["cavitation_pressure"] = lowest
+    return result
+
+
+def _floored(scene, pressure):
+    return replace(scene, film=replace(scene.film, cavitation_pressure=pressure))
+
+
+def linear_onset(scene, key: str) -> tuple[float, float]:
+    """Value of the key at which the linear steady state closes the gap, and the radius (m) where it does.
+    Raises NoOrbit if the linear response does not depend on the key."""
+
+    def excess(value):
+        problem = Problem(scene(value), 1.0, 1e-6)
+        linear = problem.linear_scene()
+        answers = [(h, linear.response(h)) for h in problem.harmonics()]
+        most, _, closing = modes.steady_extremes(linear, answers, problem.period())
+        inner, outer = problem.clearance, problem.clearance + problem.face[3] * (problem.face[1] - problem.face[0])
+        inner_left = inner - closing - problem.face[0] * most
+        outer_left = outer - closing - problem.face[1] * most
+        return min(inner_left, outer_left) / problem.clearance, problem.face[0 if inner_left <= outer_left else 1]
+
+    high = 1e-6
+    while excess(high)[0] > 0:
+        high *= 2
+        if high > 1.0:
+            raise NoOrbit(f"linear theory never touches however large {key} grows")
+    value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
+    return float(value), float(excess(value)[1])
+
+
+class Follower:
+    """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin."""
+
+    def __init__(self, scene, margin: float, accuracy: float, monodromy=None, start=None):
+        self.scene, self.margin, self.accuracy = scene, margin, min(accuracy, 1e-7)
+        self.monodromy, self.start, self.path = monodromy, start, []
+        self.known = []
+
+    def excess(self, value: float) -> float:
+        """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
+        shooter = Shooter(self.scene(value), self.accuracy, tight=1e-10)
+        guess = self._guess(value, shooter)
+        target = 1e-8 if shooter.scene.film.cavitation_pressure is None else 1e-6
+        orbit = shooter.find(guess, self.monodromy, target=target, most=25)
+        self.monodromy, self.start = orbit.monodromy, orbit.start
+        self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
+        low, problem = orbit.extremes["h_min"], shooter.problem
+        axial = self._mean_axial(problem, orbit)
+        self.path.append(
+            {
+                "forcing": value,
+                "h_min": low["value"],
+                "radius": low["radius"],
+                "tilt": orbit.extremes["relative_misalignment"]["max"],
+                "multiplier": float(np.max(np.abs(orbit.multipliers))),
+                "clearance": problem.clearance,
+                "axial": axial,
+            }
+        )
+        return low["value"] / problem.clearance - self.margin
+
+    def _guess(self, value, shooter):
+        """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
+        polynomial in the forcing through the orbits known (and through nothing at no forcing)."""
+        linear = shooter.guess()
+        if not self.known:
+            return linear if self.start is None else self.start
+        if len(self.known) == 1:
+            v, x, before = self.known[0]
+            return linear + (x - before) * (value / v) ** 2
+        nodes = [0.0, *(v for v, _, _ in self.known)]
+        added = [np.zeros_like(linear), *(x - before for _, x, before in self.known)]
+        total = np.zeros_like(linear)
+        for i, (node, part) in enumerate(zip(nodes, added, strict=True)):
+            others = [n for j, n in enumerate(nodes) if j != i]
+            total += part * np.prod([(value - n) / (node - n) for n in others])
+        return linear + total
+
+    @staticmethod
+    def _mean_axial(problem, orbit):
+        """Axial opening of the gap (m) at the start of the orbit: how far the seal has lifted."""
+        places = [
+            (i, 1.0 if name == "stator_z" else -1.0) for i, name in enumerate(problem.names) if name.endswith("_z")
+        ]
+        return float(sum(sign * orbit.start[i] for i, sign in places))
+
+    def follow(self, linear: float, tolerance: float) -> float:
+        """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
+        closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch."""
+        low, low_left, step = 0.0, 1.0 - self.margin, 0.4 * linear
+        for _ in range(80):
+            value = low + step
+            try:
+                left = self.excess(value)
+            except NoOrbit:
+                step *= 0.5
+                if abs(step) < 1e-6 * linear:
+                    raise
+                continue
+            slope = (left - low_left) / (value - low)
+            low, low_left = value, left
+            if abs(left) < 1e-6 or abs(step) < tolerance * value:
+                return float(value - left / slope)
+            aim = 0.3 * left if left > 0.03 else 0.0
+            step = min((aim - left) / slope, 0.2 * linear)
+            if value > 20 * linear:
+                raise NoOrbit("no touch up to twenty times the linear onset")
+        raise NoOrbit("the path of orbits did not reach touch in 80 steps")
+
+    def close(self, near: float, tolerance: float) -> float:
+        """The forcing that touches, by secants from a forcing already close."""
+        a, b = 0.97 * near, near
+        f_a, f_b = self.excess(a), self.excess(b)
+        for _ in range(12):
+            c = b - f_b * (b - a) / (f_b - f_a)
+            c = min(max(c, 0.8 * near), 1.2 * near)
+            a, f_a, b, f_b = b, f_b, c, self.excess(c)
+            if abs(b - a) < tolerance * near:
+                return float(b)
+        raise NoOrbit("the floored onset did not settle")
+
+
+def _verdict(answer) -> list[str]:
+    lines = [
+        f"{answer['key']}: linear theory touches at {answer['formula']:.6g}, the nonlinear steady state at "
+        f"{answer['nonlinear']:.6g} (SI), {100 * (answer['ratio'] - 1):+.1f} %, at r = {answer['radius'] * 1e3:.4g} mm",
+        f"the seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset, "
+        "which postpones the touch",
+    ]
+    if answer["path"]["multiplier"] and answer["path"]["multiplier"][-1] > 1:
+        lines.append("the orbit at the onset is unstable: the seal leaves it before it touches")
+    floored = answer["floored"]
+    if floored:
+        if "failed" in floored:
+            lines.append(f"with a cavitation floor: {floored['failed']}")
+        else:
+            change = 100 * (floored["nonlinear"] / answer["nonlinear"] - 1)
+            lines.append(
+                f"with the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
+                f"{floored['nonlinear']:.6g}, {change:+.2f} %"
+            )
+    failed = [row for row in answer["curve"] if "failed" in row]
+    if answer["curve"]:
+        lines.append(
+            f"curve over {answer['over']}: {len(answer['curve']) - len(failed)} of {len(answer['curve'])} points"
+        )
+    return lines

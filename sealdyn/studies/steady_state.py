@@ -1,0 +1,169 @@
+"""Steady state: the periodic response by shooting, with Floquet multipliers, instead of waiting for transients."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import modes
+from ..equilibrium import initially
+from ..orbit import NoOrbit, Shooter
+from ..problem import Problem
+from ..recorder import Recorder
+from ..scenario import parse_scenario
+from ..scenario_study import varied
+from ..solve import solve
+
+units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
+         "orbit/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`turns` of the forcing's common period taken as one period (2 finds half-frequency responses); `samples` per
+    period in the figure; `approach`: speeds, as parts of the critical speed, at which the cost is compared with a
+    transient (empty: no comparison); `longest` transient tried, in periods."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    turns: int = 1
+    samples: int = 256
+    approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
+    longest: int = 4000
+
+
+def run(scenario, settings, tools) -> dict:
+    """Orbit, multipliers, verdict on the nonlinear orbit; against harmonic balance; cost near the threshold."""
+    try:
+        shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
+    except NoOrbit as reason:
+        return _time_domain(scenario, str(reason))
+    try:
+        orbit = shooter.find()
+    except NoOrbit as reason:
+        return {"status": "failed", "period": shooter.period, "multipliers": None, "stable": None,
+                "verdict": [str(reason)]}  # fmt: skip
+    tools.say(0.1)
+    waves = shooter.extremes(orbit.start, settings.samples)
+    linear = shooter.problem.linear_scene()
+    answers = [(h, linear.response(h)) for h in shooter.problem.harmonics()]
+    most, least, _ = modes.steady_extremes(linear, answers, shooter.period)
+    critical = modes.critical_speed(lambda w: shooter.problem.linear_scene(speed=w), 10.0, 1e6)
+    rows = _near_threshold(scenario, settings, critical, tools) if critical and not shooter.problem.massless else []
+    extremes = orbit.extremes
+    answer = {
+        "period": orbit.period,
+        "multipliers": [[float(m.real), float(m.imag)] for m in orbit.multipliers],
+        "stable": orbit.stable,
+        "residual": orbit.residual,
+        "periods_used": orbit.periods_used,
+        "h_min": extremes["h_min"],
+        "relative_misalignment": extremes["relative_misalignment"],
+        "linear": {"relative_max": most, "relative_min": least, "verdict": modes.verdict(linear.modes())},
+        "unknowns": shooter.problem.names,
+        "start": {name: float(x) for name, x in zip(shooter.problem.names, orbit.start, strict=False)},
+        "orbit": _waves(shooter, waves),
+        "near_threshold": rows,
+        "critical_speed": critical,
+    }
+    return {**answer, "verdict": _verdict(answer)}
+
+
+def _waves(shooter, waves) -> dict:
+    """Relative tilt and h_min over one period, from the problem's own signals."""
+    from ..signals import signals
+
+    problem = shooter.problem
+    problem.begin(0)
+    columns = signals(problem, waves["times"], waves["displacements"], waves["rates"])
+    names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min", "shaft_angle")
+    return {name: [float(x) for x in columns[name]] for name in names}
+
+
+def _verdict(answer) -> list[str]:
+    size = max(math.hypot(*m) for m in answer["multipliers"])
+    tilt, low = answer["relative_misalignment"], answer["h_min"]
+    lines = [
+        f"the periodic steady state (period {answer['period']:.6g} s) is "
+        f"{'stable' if answer['stable'] else 'UNSTABLE'}: "
+        f"largest Floquet multiplier {size:.4g}",
+        f"relative misalignment {tilt['min'] * 1e6:.5g} to {tilt['max'] * 1e6:.5g} urad (linear: "
+        f"{answer['linear']['relative_min'] * 1e6:.5g} to {answer['linear']['relative_max'] * 1e6:.5g})",
+        f"h_min {low['value'] * 1e6:.5g} um, {low['of_clearance'] * 100:.4g} % of the clearance, at r = "
+        f"{low['radius'] * 1e3:.4g} mm",
+        f"found with {answer['periods_used']} periods of integration",
+    ]
+    done = [row for row in answer["near_threshold"] if "failed" not in row]
+    if done:
+        last = done[-1]
+        waited = f"{last['transient']}" if last["transient"] else "more than was tried"
+        lines.append(
+            f"at {last['part']:g} of the critical speed: {last['shooting']} periods by shooting, {waited} by waiting"
+        )
+    return lines
+
+
+def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
+    points = [
+        {"text": scenario.text, "name": scenario.name, "overrides": scenario.overrides, "part": part,
+         "speed": part * critical, "turns": settings.turns, "longest": settings.longest}
+        for part in settings.approach
+    ]  # fmt: skip
+    return tools.map(cost, points, "cost")
+
+
+def cost(point: dict) -> dict:
+    """Periods of integration that shooting needs at one speed, and periods until a transient from rest repeats
+    itself within the accuracy (None: not within `longest`)."""
+    scenario = varied(parse_scenario(point["text"], point["name"], point["overrides"]), {"shaft.speed": point["speed"]})
+    shooter = Shooter(scenario.scene, scenario.run.accuracy, point["turns"])
+    row = {"part": point["part"], "speed": point["speed"]}
+    orbit = shooter.find()
+    row |= {"shooting": orbit.periods_used, "multiplier": float(np.max(np.abs(orbit.multipliers)))}
+    row["transient"] = waiting(scenario.scene, shooter, orbit, scenario.run.accuracy, point["longest"])
+    return row
+
+
+def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> int | None:
+    """Periods until a transient from rest stays within the accuracy of the orbit."""
+    chunk, start = 32, 0
+    while start < longest:
+        problem = Problem(scene, shooter.period * (start + chunk), accuracy)
+        recorder = Recorder(problem, shooter.period)
+        outcome = solve(problem, "adams", accuracy, recorder)
+        _, q, _ = recorder.arrays()
+        if outcome.status == "collapsed":
+            return None
+        away = np.max(np.abs(q - orbit.start[: problem.n]) / problem.scales[: problem.n], axis=1)
+        late = np.nonzero(away > accuracy)[0]
+        if len(late) == 0 or late[-1] + 1 < len(away):
+            return int(late[-1] + 1) if len(late) else 0
+        start, chunk = start + chunk, 2 * (start + chunk)
+    return None
+
+
+def _time_domain(scenario, reason: str) -> dict:
+    """Without a common period: a long run, and it says so."""
+    scene = scenario.scene
+    speed = abs(initially(scene.shaft.speed)) or 1.0
+    turns = 200
+    problem = Problem(scene, turns * 2 * math.pi / speed, scenario.run.accuracy)
+    half = 0.5 * problem.duration
+    problem.windows[1:] = [[half, problem.duration], [half, problem.duration]]
+    outcome = solve(problem, problem.solver()[0], scenario.run.accuracy, Recorder(problem))
+    record = problem.records[1]
+    return {
+        "period": None,
+        "multipliers": None,
+        "stable": None,
+        "status": {"ok": "ok"}.get(outcome.status, outcome.status),
+        "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / problem.clearance)},
+        "relative_misalignment": {"max": float(record[4]), "min": float(record[6])},
+        "near_threshold": [],
+        "orbit": None,
+        "verdict": [
+            f"{reason}: fell back to the time domain, {turns} turns, extremes of the second half",
+            f"h_min {record[0] * 1e6:.5g} um, relative misalignment {record[6] * 1e6:.5g} to "
+            f"{record[4] * 1e6:.5g} urad",
+        ],
+    }

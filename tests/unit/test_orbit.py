@@ -1,0 +1,74 @@
+"""Periodic orbits by shooting: against harmonic balance, the matrix exponential and plain transients."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import fmr, fms, fmsr, free_ring
+
+import sealdyn
+from sealdyn.motion import Whirl
+from sealdyn.orbit import NoOrbit, Shooter
+from sealdyn.problem import Problem
+from sealdyn.recorder import Recorder
+from sealdyn.solve import solve
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring", "housing_vibration"]
+
+
+@pytest.mark.parametrize("scene", [fmr("linear"), fmr("linear", c=3.0), fms("linear"), fmsr("linear")])
+def test_linear_orbit_is_the_harmonic_balance(scene):
+    shooter = Shooter(scene)
+    # Start elsewhere: Newton must come home in one step.
+    orbit = shooter.find(np.zeros(shooter.size))
+    assert np.max(np.abs(orbit.start - shooter.guess()) / shooter.scales) < 1e-10
+
+
+@pytest.mark.parametrize("scene", [fmr("linear"), fms("linear"), fms("linear", speed=5500.0), fmsr("linear")])
+def test_multipliers_are_the_exponentials_of_the_eigenvalues(scene):
+    shooter = Shooter(scene)
+    orbit = shooter.find()
+    values, shapes = shooter.problem.linear_scene().eigen()
+    # A linear scene without axial forcing integrates its tilts only.
+    tilt = [v for v, s in zip(values, shapes.T, strict=True) if np.linalg.norm(s[0::3]) < 1e-6 * np.linalg.norm(s)]
+    assert len(tilt) == len(orbit.multipliers)
+    for exact in np.exp(np.array(tilt) * orbit.period):
+        nearest = orbit.multipliers[np.argmin(np.abs(orbit.multipliers - exact))]
+        assert abs(nearest - exact) < 1e-8 * max(1.0, abs(exact) / 1e-2 * 1e-2)
+        if abs(exact) > 1e-2:
+            assert abs(nearest / exact - 1) < 1e-8
+
+
+@pytest.mark.parametrize("name", PERIODIC)
+def test_orbit_agrees_with_a_long_transient(name):
+    scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml")
+    accuracy = scenario.run.accuracy
+    shooter = Shooter(scenario.scene, accuracy)
+    orbit = shooter.find()
+    turns = 60 if name != "housing_vibration" else 12
+    problem = Problem(scenario.scene, turns * orbit.period, accuracy)
+    recorder = Recorder(problem, orbit.period)
+    solve(problem, problem.solver()[0], accuracy, recorder)
+    _, q, _ = recorder.arrays()
+    assert np.max(np.abs(q[-1] - orbit.start[: problem.n]) / problem.scales[: problem.n]) < accuracy
+
+
+def test_orbit_is_periodic_and_stable_below_the_threshold_and_not_above():
+    for speed, stable in ((5500.0, True), (5650.0, False)):
+        orbit = Shooter(fms("radial", speed=speed)).find()
+        assert orbit.residual < 1e-10
+        assert orbit.stable is stable
+
+
+def test_incommensurate_forcing_has_no_period():
+    scene = fmr("linear")
+    scene = replace(scene, shaft=replace(scene.shaft, whirl=[Whirl(ratio=2**0.5, angle=1e-6)]))
+    with pytest.raises(NoOrbit, match="incommensurate"):
+        Shooter(scene)
+
+
+def test_an_undamped_ring_is_neutral():
+    orbit = Shooter(free_ring()).find()
+    assert np.max(np.abs(np.abs(orbit.multipliers) - 1)) < 1e-9
