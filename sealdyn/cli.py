@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import shlex
 import signal
 import sys
 from pathlib import Path
@@ -91,6 +92,8 @@ def run(
     if out is None:
         stem = f"{file.stem}-rerun" if file.suffix == ".h5" else scenario.name
         out = (file.parent if file.suffix == ".h5" else Path("outputs")) / f"{stem}.h5"
+    if out.is_dir() or out.suffix != ".h5":
+        raise Stop("invalid", f'--out: found "{out}"; expected a file name ending in .h5')
     if resume:
         _check_resumable(out, scenario)
     _say_compiling(file=sys.stderr)
@@ -115,7 +118,8 @@ def run(
         for line in lines(scenario, summary):
             print(line)
     if result.status == "interrupted":
-        print(f"go on with: sealdyn run {file} --continue", file=sys.stderr)
+        words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
+        print(f"go on with: sealdyn run {' '.join(words)}", file=sys.stderr)
     raise typer.Exit(EXIT[result.status])
 
 
@@ -265,6 +269,8 @@ def plot(
     kinds = ("overview", "orbit", "film", "spectrum")
     if kind not in kinds:
         raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
+    if out is not None and out.suffix != ".png":
+        raise Stop("invalid", f'--out: found "{out}"; expected a file name ending in .png')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     try:
@@ -367,18 +373,32 @@ def main():
     """Entry point: one line for every error, never a traceback."""
     as_json = "--json" in sys.argv
     try:
-        app()
+        code = app(standalone_mode=False)
+        sys.exit(code if isinstance(code, int) else DONE)
     except Stop as stop:
-        if as_json:
-            print(json.dumps({"status": stop.status, "message": stop.message}))
-        else:
-            print(stop.message, file=sys.stderr)
+        _refuse(stop.status, stop.message, as_json)
         sys.exit(stop.code)
     except BrokenPipeError:
+        # Whoever read us has seen enough; keep the interpreter from complaining at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         sys.exit(INTERRUPTED)
+    except Exception as error:
+        # A misused command line: the parser's own errors can say what they mean in one line.
+        if not hasattr(error, "format_message"):
+            raise
+        _refuse("invalid", f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
+        sys.exit(BAD_INPUT)
+
+
+def _refuse(status: str, message: str, as_json: bool):
+    line = " ".join(message.split())
+    if as_json:
+        print(json.dumps({"status": status, "message": line}))
+    else:
+        print(line, file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -127,7 +127,9 @@ class Layout:
     def memory(self, problem, fast_time: float) -> float:
         """Fastest periods for which the linearised scene remembers an error, at most those of the run."""
         speeds = {constant_and_slope(self.scene.shaft.speed, leg)[0]: k for k, leg in enumerate(problem.legs)}
-        slowest = max(float(np.max(problem.linear_scene(k).eigen()[0].real)) for k in speeds.values())
+        rates = [problem.linear_scene(k).eigen()[0].real for k in speeds.values()]
+        # A massless undamped ring has no free motion: it forgets at once.
+        slowest = max(float(np.max(rate, initial=-np.inf)) for rate in rates)
         longest = problem.duration if slowest * problem.duration > -1.0 else -1.0 / slowest
         return longest / fast_time
 

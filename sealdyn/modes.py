@@ -152,7 +152,9 @@ class LinearScene:
 
 
 def verdict(modes: list[Mode]) -> str:
-    """stable, neutral or unstable, from all modes."""
+    """stable, neutral or unstable, from all modes; a scene without any (massless, undamped) just stands: stable."""
+    if not modes:
+        return "stable"
     largest = max(abs(mode.value) for mode in modes)
     growth = modes[0].value.real
     if abs(growth) <= NEUTRAL * largest:

@@ -6,11 +6,22 @@ import pkgutil
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from . import dynamics, films, watch
 from .equilibrium import initially, settle
 from .films import Coefficients
-from .gap import FACE_SIZE, GAP_STATE_SIZE, INNER_PRESSURE, MEAN_SPIN, OUTER_PRESSURE, SPIN_DIFFERENCE, VISCOSITY
+from .gap import (
+    DZ,
+    FACE_SIZE,
+    FORCE,
+    GAP_STATE_SIZE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+)
 from .imposed import AXIAL, FIXED_AXIS, OWN, ROW, STATOR, oscillators
 from .layout import Layout
 from .legs import Leg, constant_and_slope, cut
@@ -45,10 +56,13 @@ class Problem:
         self.film_name = self.film.__name__.rsplit(".", 1)[1]
         self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self.film.opening_force)
         self.table = self._film_table()
-        self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
+        # A floored film converges slowly around the circle: it gets what the accuracy needs and no more.
+        error = accuracy / 100 if scene.film.cavitation_pressure is None else accuracy
+        self.f = self.film.parameters(self.table, self.clearance, max(error, 1e-13))
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
+        self._shifts = {}
         self.layout = layout = Layout(scene, self.legs, self.closing, self.film_name == "linear")
         self.names, self.n, self.rate_places = layout.names, layout.n, layout.rate_places
         self.n_mechanical, self.size, self.reasons = layout.n_mechanical, layout.size, layout.reasons
@@ -256,6 +270,9 @@ class Problem:
         if slope:
             return None
         moving = [w for w in self.rows[:, 7] if w != 0.0]
+        if not moving and not speed:
+            # Nothing moves: any stretch of time is a period.
+            return self.duration / 4
         return common_period([*moving, speed] if speed else moving)
 
     def fastest_forcing(self) -> float:
@@ -272,7 +289,40 @@ class Problem:
 
     def film_matrices(self, leg_index: int = 0):
         """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of that leg's start."""
-        return linearised_film(self.film, self.f, self.scene, self.clearance, self.legs[leg_index])
+        leg = self.legs[leg_index]
+        return linearised_film(self.film, self.f, self.scene, self.clearance, leg, shift=self.axial_shift(leg_index))
+
+    def axial_shift(self, leg_index: int) -> float:
+        """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force =
+        closing force + support springs.  0 if no such place is found between 2 % and 50 times the clearance."""
+        if leg_index not in self._shifts:
+            self._shifts[leg_index] = self._find_shift(leg_index)
+        return self._shifts[leg_index]
+
+    def _find_shift(self, leg_index: int) -> float:
+        leg, film, s = self.legs[leg_index], self.scene.film, np.zeros(GAP_STATE_SIZE)
+        s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
+            constant_and_slope(q, leg)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
+        )
+        closing = self.closing.over(leg, film)[0]
+        springs = [r.support.axial_stiffness for r in (self.scene.stator, self.scene.rotor) if r.support]
+        compliance = sum(1 / k if k > 0 else math.inf for k in springs)
+
+        def excess(shift):
+            s[DZ] = shift
+            self.film.wrench(self.f, s)
+            return s[FORCE] - closing - shift / compliance
+
+        if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
+            return 0.0
+        grid = self.clearance * np.concatenate([-np.linspace(0.98, 0.0, 50), np.geomspace(1e-3, 50, 80)])
+        values = [excess(x) for x in grid]
+        # The stable root nearest to the design clearance: the excess falls through zero.
+        roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
+        if not roots:
+            return 0.0
+        k = min(roots, key=lambda k: abs(grid[k]))
+        return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18))
 
     def linear_scene(self, leg_index: int = 0, speed: float | None = None) -> LinearScene:
         """The linearised scene at a leg's start, or at another shaft speed (rad/s)."""
@@ -280,7 +330,13 @@ class Problem:
         w_r = constant_and_slope(self.scene.shaft.speed, leg)[0] if speed is None else speed
         w_s = constant_and_slope(self.scene.stator.speed, leg)[0]
         stiffness, damping = linearised_film(
-            self.film, self.f, self.scene, self.clearance, leg, mean_spin=0.5 * (w_r + w_s)
+            self.film,
+            self.f,
+            self.scene,
+            self.clearance,
+            leg,
+            mean_spin=0.5 * (w_r + w_s),
+            shift=self.axial_shift(leg_index),
         )
         rings = []
         for k, ring in enumerate((self.scene.stator, self.scene.rotor)):
@@ -367,9 +423,12 @@ class Problem:
         return forced, lambda step: expm(matrix * step), fastest
 
 
-def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None):
-    """Stiffness and damping matrices (3, 3) of a film about the aligned rest state at a leg's start."""
+def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
+    """Stiffness and damping matrices (3, 3) of a film about the aligned rest state at a leg's start, the gap `shift`
+    (m) wider than the clearance."""
     s = np.zeros(GAP_STATE_SIZE)
+    s[DZ] = shift
+    clearance = clearance + shift
     first = (lambda q: constant_and_slope(q, leg)[0]) if leg else initially
     s[VISCOSITY] = first(scene.film.viscosity)
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)

@@ -88,7 +88,12 @@ def _stability_line(stability):
     text = f"  stability     {stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
-    text += f", critical speed {_n(critical)} rad/s" if critical else ", no critical speed"
+    if critical:
+        # Which side is the stable one follows from the verdict at this speed.
+        below = (stability["verdict"] == "stable") == (abs(stability["speed"]) < critical)
+        text += f", critical speed {_n(critical)} rad/s (stable {'below' if below else 'above'})"
+    else:
+        text += ", no critical speed"
     if stability["resonance_speeds"]:
         text += ", resonance at " + ", ".join(_n(w) for w in stability["resonance_speeds"]) + " rad/s"
     return text
@@ -166,6 +171,6 @@ def csv_rows(info: dict, column, block: int = 4096):
     names = ["time", *[n for n in info["series"] if n != "time"]]
     yield ",".join(f"{n} [{info['series'][n].units}]" for n in names)
     for start in range(0, info["rows"], block):
-        part = [column(name, slice(start, start + block)) for name in names]
+        part = [column(name, slice(start, min(start + block, info["rows"]))) for name in names]
         for row in zip(*part, strict=True):
             yield ",".join(repr(float(x)) for x in row)

@@ -120,6 +120,8 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
         raise explain(name, File, raw, error.errors(include_url=False)) from None
     except ImpossibleScene as error:
         raise ScenarioError(name, error.key, error.found, error.expected) from None
+    if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
+        raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     return Scenario(
         scene,
@@ -236,6 +238,11 @@ def _check_run_and_study(raw: dict, name: str) -> None:
         run.setdefault("turns", 60)
     if "samples" not in run:
         run.setdefault("samples_per_turn", 64)
+
+
+def _turns(speed) -> bool:
+    """Whether the shaft ever turns."""
+    return any(speed.value) if isinstance(speed, Table) else bool(speed)
 
 
 def _question(text: str) -> str:

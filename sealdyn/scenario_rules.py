@@ -129,8 +129,6 @@ def _run(shaft, run) -> None:
             f"{run.turns:g} turns of a shaft that makes {turns_of(shaft.speed):g}",
             "[run] duration, or a [shaft] speed that gets there",
         )
-    if run.samples_per_turn is not None and not any(points(shaft.speed)):
-        raise ImpossibleScene("run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
 
 
 def _open_at_start(scene) -> None:

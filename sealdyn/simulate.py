@@ -76,7 +76,7 @@ class Tally:
     largest: dict = None
 
     NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
-             "cavitated_fraction", "film_force", "shaft_speed")  # fmt: skip
+             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change")  # fmt: skip
 
     def add(self, columns):
         self.sums = self.sums or dict.fromkeys(self.NAMES, 0.0)
@@ -146,6 +146,16 @@ class ArchiveSink:
         self.waiting = None
 
 
+class TallySink(ArchiveSink):
+    """Takes the same samples, and keeps their means and maxima only."""
+
+    def __init__(self, problem, dt, count):
+        super().__init__(problem, None, dt, count, Tally(), None, None)
+
+    def take(self, index, taus, q, q_rate):
+        self.tally.add(signals(self.problem, taus, q, q_rate))
+
+
 def sampling(scenario) -> tuple[float, float, int]:
     """Duration (s), sample interval (s) and number of intervals of a scenario's run."""
     run, speed = scenario.run, scenario.scene.shaft.speed
@@ -212,6 +222,16 @@ def simulate(
     return Result(outcome.status, outcome.message, summary, path)
 
 
+def run_briefly(scenario) -> dict:
+    """A run without an archive: the summary of interface.md.  Raises ImpossibleScene or ArchiveError."""
+    begun = clock.perf_counter()
+    problem, method, why, interval, count = prepare(scenario)
+    sink = TallySink(problem, interval, count)
+    outcome = solve(problem, method, scenario.run.accuracy, sink)
+    summary = summarise(scenario, problem, outcome, sink.tally, method, why)
+    return {**summary, "wall_time": clock.perf_counter() - begun}
+
+
 def prepare(scenario):
     """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count.
     Raises ImpossibleScene or ArchiveError."""
@@ -225,8 +245,7 @@ def prepare(scenario):
     best = attainable(method, problem.memory)
     if best > scenario.run.accuracy:
         problem.warnings.append(
-            f"accuracy: hardly damped over {problem.memory:.3g} periods, errors add up; {method} keeps "
-            f"{best:.1e} at best"
+            f"accuracy: errors add up over {problem.memory:.3g} periods; {method} keeps {best:.1e} at best"
         )
     _set_windows(problem)
     fastest = problem.fastest_forcing()

@@ -57,7 +57,7 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
         "closed_form": _closed_form(problem, linear, tilt),
         "stability": stability(problem, outcome.leg, linear),
         "energy_residual": outcome.energy_residual,
-        "warnings": problem.warnings,
+        "warnings": [*problem.warnings, *_blown_open(problem, tally)],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -108,6 +108,14 @@ def _steady(problem, outcome):
     return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
 
 
+def _blown_open(problem, tally) -> list[str]:
+    """A gap many times its clearance is no seal any more."""
+    widest = tally.largest["axial_gap_change"] / problem.clearance if tally.largest else 0.0
+    if widest < 10:
+        return []
+    return [f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"]
+
+
 def _leakage(problem, tally):
     side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
     mean = tally.mean(side)
@@ -129,7 +137,7 @@ def _temperature_rise(problem, tally):
 def _film(problem, linear, tally):
     k, d = linear.film_k, linear.film_d
     return {
-        "clearance": problem.clearance,
+        "clearance": problem.clearance + problem.axial_shift(problem.leg_index),
         "axial_stiffness": k[0, 0],
         "axial_damping": d[0, 0],
         "tilt_stiffness": k[1, 1],
@@ -171,10 +179,11 @@ def _linear_steady(problem, linear):
 
 def _contact_margin(problem, linear, tilt):
     """Factor on the forcing at which linear theory closes the gap at either edge."""
-    if tilt is None:
+    if tilt is None or modes.verdict(linear.modes()) != "stable":
         return math.nan
     face, (most, _, closing, _) = problem.face, tilt
-    inner, outer = problem.clearance, problem.clearance + face[3] * (face[1] - face[0])
+    inner = problem.clearance + problem.axial_shift(problem.leg_index)
+    outer = inner + face[3] * (face[1] - face[0])
     reaches = [(inner, face[0] * most + closing), (outer, face[1] * most + closing)]
     return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
 
@@ -252,7 +261,7 @@ def stability(problem, leg_index: int, linear=None) -> dict:
         "whirl_ratio": whirl,
         "critical_speed": critical,
         "resonance_speeds": resonances,
-        "growth_rate": found[0].value.real,
+        "growth_rate": found[0].value.real if found else None,
         "speed": speed,
         "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
     }

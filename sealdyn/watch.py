@@ -174,8 +174,10 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                         fallen = _first_below(t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
                         value(table, nodes, size, fallen, q, q_rate)
                         theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
-                        record[H], record[H_TAU], record[H_LEG] = out[THICKNESS], fallen, leg
-                        record[H_THETA], record[H_RADIUS] = theta, radius
+                        for other in range(3):
+                            # The tilt's extremes up to the last instant, which belongs to the run.
+                            if other == THICKNESS or out[other] < _held(record, other, tolerance)[0]:
+                                _note(record, other, out, fallen, theta, radius, leg)
                         return fallen
                     if out[kind] < held:
                         _note(record, kind, out, at, theta, radius, leg)

@@ -1,0 +1,135 @@
+"""What is done with an archive (rerun, start from, show, plot), and the verbs that need none."""
+
+import csv
+import io
+import json
+import subprocess
+import sys
+import tomllib
+
+import h5py
+import numpy as np
+import pytest
+from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, started
+
+FEW = settings({"run.turns": 4, "rotor.misalignment": '"30 urad"'})
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with one archive, made with an override."""
+    folder = tmp_path_factory.mktemp("archives")
+    assert sealdyn("run", REFERENCE, *FEW, "--out", "first.h5", "--no-plot", cwd=folder).code == 0
+    return folder
+
+
+def series(path) -> dict:
+    with h5py.File(path) as file:
+        return {name: item[:] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+
+
+def test_rerun_equals_the_original(folder):
+    answer = sealdyn("run", "first.h5", "--json", "--no-plot", cwd=folder)
+    assert answer.code == 0 and answer.found["archive"] == "first-rerun.h5"
+    first, second = series(folder / "first.h5"), series(folder / "first-rerun.h5")
+    assert first.keys() == second.keys()
+    for name in first:
+        np.testing.assert_array_equal(first[name], second[name], err_msg=name)
+
+
+def test_rerun_takes_overrides(folder):
+    answer = sealdyn("run", "first.h5", "--set", "run.turns=1", "--json", "--no-plot", "--out", "one.h5", cwd=folder)
+    assert answer.found["end"]["time"] == pytest.approx(2e-3 * np.pi)
+    scene = sealdyn("check", folder / "one.h5", "--json", cwd=folder).found["scene"]
+    assert scene["rotor"]["misalignment"] == pytest.approx(30e-6)
+
+
+def test_a_run_starts_where_an_archive_ended(folder):
+    on = settings({"run.start": '"first.h5"', "run.turns": 1})
+    assert sealdyn("run", REFERENCE, *FEW, *on, "--out", "on.h5", "--no-plot", cwd=folder).code == 0
+    first, on = series(folder / "first.h5"), series(folder / "on.h5")
+    for name in ("rotor_z", "rotor_tilt_x", "rotor_tilt_y", "rotor_tilt_x_rate"):
+        assert on[name][0] == pytest.approx(first[name][-1], rel=1e-12), name
+
+
+def test_initial_overrides_the_start(folder):
+    given = settings({"initial.rotor.tilt_x": '"7 urad"', "run.start": '"steady"', "run.turns": 1})
+    assert sealdyn("run", REFERENCE, *given, "--out", "given.h5", "--no-plot", cwd=folder).code == 0
+    assert series(folder / "given.h5")["rotor_tilt_x"][0] == pytest.approx(7e-6, rel=1e-12)
+
+
+def test_show_and_csv(folder):
+    assert sealdyn("show", "first.h5", cwd=folder).out.startswith("first.h5: ok")
+    table = list(csv.reader(io.StringIO(sealdyn("show", "first.h5", "--csv", cwd=folder).out)))
+    kept = series(folder / "first.h5")
+    assert len(table) == 1 + len(kept["time"]) == 1 + 4 * 64 + 1
+    for place, title in enumerate(table[0]):
+        name = title.split(" [")[0]
+        # Every digit survives the text.
+        assert [float(row[place]) for row in table[1:]] == kept[name].tolist()
+
+
+@pytest.mark.parametrize("kind", ["overview", "orbit", "film", "spectrum"])
+def test_plot(kind, folder):
+    answer = sealdyn("plot", "first.h5", "--kind", kind, "--out", f"{kind}.png", cwd=folder)
+    assert answer.code == 0 and answer.out == f"{kind}.png\n"
+    picture = (folder / f"{kind}.png").read_bytes()
+    assert picture[:4] == b"\x89PNG" and len(picture) > 10_000
+
+
+def test_schema_knows_the_keys_of_the_shipped_scenarios(tmp_path):
+    schema = sealdyn("schema", cwd=tmp_path).found
+    assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"
+    for path in SCENARIOS.glob("*.toml"):
+        _within(tomllib.loads(path.read_text()), schema, schema, path.name)
+
+
+def _within(tree, schema, root, where):
+    """Every table of `tree` has the keys that its schema demands and none that it does not know."""
+    while "$ref" in schema:
+        schema = root["$defs"][schema["$ref"].rsplit("/", 1)[1]]
+    if isinstance(tree, list):
+        for item in tree:
+            _within(item, schema.get("items", schema), root, where)
+    if not isinstance(tree, dict):
+        return
+    options = schema.get("anyOf") or schema.get("oneOf") or [schema]
+    tables = [option for option in options if "$ref" in option or "properties" in option]
+    assert tables, f"{where}: no table expected"
+    if tables != [schema]:
+        # One of several: a quantity is a table only when it varies with time.
+        table = tables[0]
+        return _within(tree, table, root, where)
+    assert schema["additionalProperties"] is False, where
+    assert set(schema.get("required", [])) <= tree.keys() <= schema["properties"].keys(), where
+    for key, value in tree.items():
+        _within(value, schema["properties"][key], root, f"{where}: {key}")
+
+
+def test_check_resolves_to_si(tmp_path):
+    answer = sealdyn("check", SCENARIOS / "housing_vibration.toml", cwd=tmp_path)
+    assert answer.code == 0
+    resolved = answer.out
+    assert "viscosity = 0.0005" in resolved and "outer_pressure = 500000.0" in resolved
+    found = sealdyn("check", SCENARIOS / "housing_vibration.toml", "--json", cwd=tmp_path).found
+    assert found["scene"]["shaft"]["speed"] == pytest.approx(9600 * 2 * np.pi / 60)
+    assert found["scene"]["housing"]["axial"][0]["acceleration"] == pytest.approx(2 * 9.80665)
+    assert not list(tmp_path.iterdir())
+
+
+def test_validate_agrees(tmp_path):
+    answer = finished(started("validate", "--json", cwd=tmp_path))
+    assert answer.code == 0, answer.err
+    checks = answer.found["checks"]
+    assert len(checks) >= 10 and all(check["verdict"] != "FAILED" for check in checks)
+
+
+def test_help_imports_nothing_heavy():
+    """Every heavy import belongs to the verb that needs it."""
+    asked = "import sys; sys.argv = ['sealdyn', '--help']\nfrom sealdyn.cli import main\n"
+    asked += "try: main()\nexcept SystemExit: print(sorted(sys.modules), file=sys.stderr)\n"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert "validate" in done.stdout
+    loaded = {name.split(".")[0] for name in json.loads(done.stderr.replace("'", '"'))}
+    heavy = {"numpy", "scipy", "numba", "sksundae", "matplotlib", "pint", "pydantic", "h5py", "xarray"}
+    assert not loaded & heavy

@@ -1,0 +1,156 @@
+"""What goes wrong: bad input is one line and exit code 2, a closing film is a sentence and exit code 3."""
+
+import json
+import re
+
+import h5py
+import numpy as np
+import pytest
+from command import REFERENCE, sealdyn, settings
+
+LACKING = '[shaft]\nspeed = "1000 rad/s"\n'
+
+BAD = {
+    "no such file": ["run", "nothing.toml"],
+    "a folder": ["run", "."],
+    "no TOML": ["run", "broken.toml"],
+    "an empty file": ["run", "empty.toml"],
+    "tables missing": ["run", "lacking.toml"],
+    "bytes": ["run", "bytes.toml"],
+    "an archive that is none": ["run", "fake.h5"],
+    "unknown key": ["run", REFERENCE, "--set", "rotor.runot=1"],
+    "wrong dimension": ["run", REFERENCE, "--set", "film.clearance=10 kg"],
+    "not a number": ["run", REFERENCE, "--set", "film.coning=nan"],
+    "override without value": ["run", REFERENCE, "--set", "film.coning"],
+    "radii swapped": ["run", REFERENCE, "--set", "film.inner_radius=50 mm"],
+    "negative mass": ["run", REFERENCE, "--set", "rotor.mass=-1 kg"],
+    "no disk": ["run", REFERENCE, "--set", "rotor.polar_inertia=1 kg*m^2"],
+    "closed at the start": ["run", REFERENCE, "--set", "stator.misalignment=1 mrad"],
+    "unknown film": ["run", REFERENCE, "--set", "film.model=radail"],
+    "unknown solver": ["run", REFERENCE, "--set", "run.solver=euler"],
+    "exact steps of a nonlinear film": ["run", REFERENCE, "--set", "run.solver=expm"],
+    "no archive to start from": ["run", REFERENCE, "--set", "run.start=nothing.h5"],
+    "nothing to continue": ["run", REFERENCE, "--continue"],
+    "an archive in no folder": ["run", REFERENCE, "--out", "empty.toml/x.h5"],
+    "an archive that is a folder": ["run", REFERENCE, "--set", "run.turns=1", "--no-plot", "--out", "."],
+    "unknown option": ["run", REFERENCE, "--turns", "3"],
+    "no file": ["run"],
+    "unknown verb": ["rum", REFERENCE],
+    "check: unknown key": ["check", REFERENCE, "--set", "film.clearence=1"],
+    "show: no such file": ["show", "nothing.h5"],
+    "show: no archive": ["show", "fake.h5"],
+    "show: another HDF5 file": ["show", "other.h5"],
+    "plot: no archive": ["plot", "fake.h5"],
+    "plot: unknown kind": ["plot", "other.h5", "--kind", "orbti"],
+}
+HAVE_JSON = ("run", "check", "show", "rum")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bad")
+    (folder / "broken.toml").write_text("[film\nclearance = ")
+    (folder / "empty.toml").write_text("")
+    (folder / "lacking.toml").write_text(LACKING)
+    (folder / "bytes.toml").write_bytes(bytes(range(128, 256)))
+    (folder / "fake.h5").write_bytes(b"\x89PNG and so on" * 100)
+    h5py.File(folder / "other.h5", "w").close()
+    return folder
+
+
+@pytest.mark.parametrize("arguments", BAD.values(), ids=BAD)
+def test_bad_input_is_one_line(arguments, folder):
+    answer = sealdyn(*arguments, cwd=folder)
+    assert answer.code == 2
+    assert answer.out == ""
+    assert answer.err.count("\n") == 1 and len(answer.err) > 20, answer.err
+
+
+@pytest.mark.parametrize(
+    "arguments", [a for a in BAD.values() if a[0] in HAVE_JSON], ids=lambda a: " ".join(map(str, a))
+)
+def test_bad_input_is_one_object(arguments, folder):
+    answer = sealdyn(*arguments, "--json", cwd=folder)
+    assert answer.code == 2
+    assert answer.found["status"] == "invalid" and "\n" not in answer.found["message"]
+
+
+def test_bad_input_leaves_nothing_behind(folder):
+    before = sorted(folder.rglob("*"))
+    for arguments in (BAD["closed at the start"], BAD["unknown film"], BAD["no archive to start from"]):
+        sealdyn(*arguments, cwd=folder)
+    assert sorted(folder.rglob("*")) == before
+
+
+# A film that widens inwards: the faces are drawn together and close at the outer radius.
+DIVERGING = {"film.coning": '"-0.5 mrad"'}
+
+
+@pytest.fixture(scope="module")
+def collapse(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("collapse")
+    return folder, sealdyn("run", REFERENCE, *settings(DIVERGING), "--json", cwd=folder)
+
+
+def test_collapse_says_when_where_and_what_to_try(collapse):
+    _, answer = collapse
+    assert answer.code == 3
+    found = answer.found
+    assert found["status"] == "collapsed"
+    said = re.search(
+        r"at t = ([\d.]+) s.*outer radius 40 mm, theta = (-?[\d.]+) deg\.  Try .*coning.*clearance", found["message"]
+    )
+    assert said, found["message"]
+    assert float(said[1]) == pytest.approx(found["h_min"]["time"], rel=1e-5)
+    assert float(said[2]) == pytest.approx(np.degrees(found["h_min"]["theta"]), abs=0.06)
+    assert found["h_min"]["value"] == pytest.approx(1e-3 * 1e-5, rel=1e-6)
+    assert found["stability"]["verdict"] == "unstable"
+    assert found["relative_misalignment"]["steady_max"] is None
+    assert found["energy_residual"] < 10 * found["accuracy"]
+
+
+def test_archive_of_a_collapse_is_complete_to_that_instant(collapse):
+    folder, answer = collapse
+    found = answer.found
+    with h5py.File(folder / found["archive"]) as file:
+        assert file.attrs["status"] == "collapsed" and file.attrs["message"] == found["message"]
+        time, h_min = file["time"][:], file["h_min"][:]
+        assert time[-1] == pytest.approx(found["h_min"]["time"], rel=1e-12)
+        assert h_min[-1] == pytest.approx(1e-8, rel=1e-6) and (h_min[:-1] > 1e-8).all()
+        # Every sample that was due, 64 a turn of 2 pi ms, and the instant itself.
+        assert len(time) == int(time[-1] / (2e-3 * np.pi / 64)) + 2
+        assert list(file["events/kind"].asstr()) == ["collapse"]
+        assert file["events/time"][0] == time[-1]
+
+
+def test_extremes_of_a_collapse_include_its_last_instant(collapse):
+    folder, answer = collapse
+    found = answer.found
+    with h5py.File(folder / found["archive"]) as file:
+        assert found["relative_misalignment"]["max"] >= file["relative_misalignment"][:].max() * (1 - 1e-9)
+
+
+def test_a_collapse_has_no_margin_to_contact(collapse):
+    """The linear steady state of an unstable film is never approached: it predicts no contact."""
+    assert collapse[1].found["contact_margin"] is None
+
+
+def test_collapse_is_read_in_words_too(tmp_path):
+    answer = sealdyn("run", REFERENCE, *settings(DIVERGING), "--no-plot", cwd=tmp_path)
+    assert answer.code == 3
+    assert answer.out.startswith("fmr_reference: collapsed - film collapsed at t = ")
+
+
+def test_a_shaft_at_rest_is_a_scene(tmp_path):
+    """No turns to count samples by: 1000 in all."""
+    lines = REFERENCE.read_text().splitlines()
+    (tmp_path / "still.toml").write_text("\n".join(x for x in lines if not x.startswith("samples_per_turn")))
+    still = settings({"shaft.speed": 0, "run.duration": '"20 ms"'})
+    answer = sealdyn("run", "still.toml", *still, "--json", "--no-plot", cwd=tmp_path)
+    assert answer.code == 0, answer.out
+    with h5py.File(tmp_path / answer.found["archive"]) as file:
+        assert len(file["time"]) == 1001
+    tilt, form = answer.found["relative_misalignment"], answer.found["closed_form"]
+    assert "incommensurate" not in json.dumps([tilt["steady_said"], form])
+    # Nothing turns: both tilts stand, so the largest relative misalignment is also the smallest.
+    assert form["relative_min"] == pytest.approx(form["relative_max"])

@@ -1,0 +1,130 @@
+"""Ctrl-C, kill -9 and going on: nothing that was written is lost, and the end is that of an unbroken run."""
+
+import csv
+import io
+import random
+import signal
+import time
+
+import pytest
+from command import REFERENCE, finished, sealdyn, settings, started, until
+
+from sealdyn.archive import ArchiveError, column, partial_path, read_info
+
+# Both rings' forcing, no sample beyond need: some seconds of solving.
+LONG = settings({"run.turns": 6000, "run.samples_per_turn": 8})
+# Longer, for being killed twenty times on the way.
+LONGEST = settings({"run.turns": 12000, "run.samples_per_turn": 4})
+SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
+
+
+def rows(path) -> int:
+    """Rows that count in an archive, none if there is none yet."""
+    try:
+        return read_info(path)["rows"]
+    except ArchiveError:
+        return 0
+
+
+def agree(path, other, accuracy=1e-6):
+    """Both archives end alike, and are alike on the way."""
+    count = rows(path)
+    assert count == rows(other)
+    for name, scale in SCALES.items():
+        assert column(path, name) == pytest.approx(column(other, name), rel=0, abs=accuracy * scale), name
+
+
+@pytest.fixture(scope="module")
+def unbroken(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("unbroken")
+    assert sealdyn("run", REFERENCE, *LONG, "--no-plot", cwd=folder).code == 0
+    return folder / "outputs" / "fmr_reference.h5"
+
+
+@pytest.fixture(scope="module")
+def interrupted(tmp_path_factory):
+    """A short complete run, replaced by a long one that is looked at and interrupted while it is written."""
+    folder = tmp_path_factory.mktemp("interrupted")
+    archive = folder / "outputs" / "fmr_reference.h5"
+    assert sealdyn("run", REFERENCE, *settings({"run.turns": 2}), "--no-plot", cwd=folder).code == 0
+    seen = {"complete": archive.read_bytes(), "folder": folder, "archive": archive}
+    process = started("run", REFERENCE, *LONG, "--json", cwd=folder)
+    until(lambda: rows(partial_path(archive)) > 1000, process)
+    seen["show"] = sealdyn("show", partial_path(archive), cwd=folder)
+    seen["show json"] = sealdyn("show", partial_path(archive), "--json", cwd=folder)
+    seen["csv"] = sealdyn("show", partial_path(archive), "--csv", cwd=folder)
+    process.send_signal(signal.SIGINT)
+    seen["answer"] = finished(process)
+    return seen
+
+
+def test_show_works_while_a_run_writes(interrupted):
+    assert interrupted["show"].code == 0 and ": running" in interrupted["show"].out
+    found = interrupted["show json"].found
+    assert found["status"] == "running" and found["rows"] > 1000
+    table = list(csv.reader(io.StringIO(interrupted["csv"].out)))
+    assert table[0][0] == "time [s]" and "h_min [m]" in table[0]
+    assert len(table) > found["rows"]
+    times = [float(row[0]) for row in table[1:]]
+    assert times == sorted(set(times))
+    assert all(len(row) == len(table[0]) and "nan" not in row for row in table)
+
+
+def test_interrupt_ends_cleanly(interrupted):
+    answer = interrupted["answer"]
+    assert answer.code == 130
+    assert answer.found["status"] == "interrupted" and answer.found["figure"] is None
+    assert "--continue" in answer.err and "Traceback" not in answer.err
+    info = read_info(interrupted["folder"] / answer.found["archive"])
+    assert info["status"] == "interrupted"
+    assert 1000 < info["rows"] < 48001
+    assert info["summary"]["end"]["time"] < info["summary"]["end"]["asked"]
+
+
+def test_a_complete_archive_is_replaced_only_by_a_complete_one(interrupted):
+    assert interrupted["archive"].read_bytes() == interrupted["complete"]
+
+
+def test_an_interrupted_run_goes_on_to_where_an_unbroken_one_ends(interrupted, unbroken):
+    folder = interrupted["folder"]
+    other = sealdyn("run", REFERENCE, "--continue", "--json", cwd=folder)
+    assert other.code == 2 and "--set" in other.found["message"]
+    answer = sealdyn("run", REFERENCE, *LONG, "--continue", "--json", "--no-plot", cwd=folder)
+    assert answer.code == 0, answer.out
+    agree(interrupted["archive"], unbroken)
+    assert not partial_path(interrupted["archive"]).exists()
+    whole, found = read_info(unbroken)["summary"], answer.found
+    assert found["relative_misalignment"]["mean"] == pytest.approx(whole["relative_misalignment"]["mean"], rel=1e-5)
+    assert found["h_min"]["value"] == pytest.approx(whole["h_min"]["value"], abs=1e-11)
+    assert found["energy_residual"] < 1e-5
+    again = sealdyn("run", REFERENCE, *LONG, "--continue", "--json", cwd=folder)
+    assert again.code == 0 and "nothing to continue" in again.found["message"]
+
+
+@pytest.mark.slow
+def test_killed_at_twenty_random_instants(tmp_path):
+    """One run killed twenty times, each time continued; the archive is readable after every kill."""
+    archive, chance = tmp_path / "outputs" / "fmr_reference.h5", random.Random(1989)
+    reached = [0]
+    for kill in range(20):
+        process = started("run", REFERENCE, *LONGEST, "--no-plot", *["--continue"] * (reached[-1] > 0), cwd=tmp_path)
+        # A quarter of them while the program starts or takes over, the others while it writes.
+        if kill % 4:
+            until(lambda: rows(archive) > reached[-1], process)
+        time.sleep(chance.uniform(0.0, 0.4 if kill % 4 else 2.0))
+        assert process.poll() is None, f"done before kill {kill}: {process.communicate()}"
+        process.kill()
+        process.communicate()
+        assert not archive.exists()
+        if partial_path(archive).exists():
+            shown = sealdyn("show", partial_path(archive), "--json", cwd=tmp_path).found
+            assert shown["status"] == "running"
+            reached.append(shown["rows"])
+            for name in SCALES:
+                values = column(partial_path(archive), name)
+                assert len(values) == shown["rows"] and (values == values).all()
+    assert reached == sorted(reached) and len(set(reached)) > 10
+    assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--continue", cwd=tmp_path)).code == 0
+    whole = tmp_path / "whole.h5"
+    assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--out", whole, cwd=tmp_path)).code == 0
+    agree(archive, whole)

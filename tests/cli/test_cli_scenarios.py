@@ -1,0 +1,151 @@
+"""Every shipped scenario, shortened, through the command line: exit code, JSON contract, archive, figure."""
+
+import math
+
+import numpy as np
+import pytest
+from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, short, started
+
+from sealdyn import open_archive
+
+SHIPPED = sorted(SCENARIOS.glob("*.toml"))
+CONTRACT = {
+    "model": {"film", "unknowns", "solver", "reasons", "unused"},
+    "h_min": {"value", "time", "theta", "radius", "of_clearance"},
+    "relative_misalignment": {"max", "min", "mean", "steady_max", "steady_min"},
+    "leakage": {"mean", "max", "mean_ml_per_h"},
+    "friction": {"torque", "power"},
+    "film": {"axial_stiffness", "tilt_stiffness"},
+    "closing": {"force", "balance_ratio"},
+    "closed_form": set(),
+    "stability": {"verdict", "whirl_ratio", "critical_speed", "resonance_speeds"},
+    "counts": {"rhs", "steps"},
+}
+PLAIN = {"status", "message", "contact_margin", "energy_residual", "wall_time", "archive", "figure"}
+TILT_SCALE = 1e-5 / 0.04
+
+
+@pytest.fixture(scope="module", params=SHIPPED, ids=lambda path: path.stem)
+def run(request, tmp_path_factory):
+    """One shipped scenario, run once: its folder and what the command left."""
+    folder = tmp_path_factory.mktemp(request.param.stem)
+    return folder, sealdyn("run", request.param, *short(request.param), "--json", cwd=folder)
+
+
+def test_run_answers_with_the_whole_contract(run):
+    folder, answer = run
+    assert answer.code == 0, answer.err
+    found = answer.found
+    assert found["status"] == "ok"
+    assert found.keys() >= CONTRACT.keys() | PLAIN
+    for table, keys in CONTRACT.items():
+        assert found[table].keys() >= keys, table
+    assert found["model"]["unused"] == []
+    assert found["stability"]["verdict"] in ("stable", "neutral", "unstable")
+    assert found["energy_residual"] < 10 * found["accuracy"]
+    assert found["counts"]["rhs"] > 0 and found["counts"]["steps"] > 0 and found["wall_time"] > 0
+    assert (folder / found["figure"]).read_bytes()[:4] == b"\x89PNG"
+
+
+def test_run_leaves_archive_and_figure_and_nothing_else(run):
+    folder, answer = run
+    assert sorted(path.name for path in folder.iterdir()) == ["outputs"]
+    stem = answer.found["archive"].removeprefix("outputs/").removesuffix(".h5")
+    assert sorted(path.name for path in (folder / "outputs").iterdir()) == [f"{stem}.h5", f"{stem}.png"]
+
+
+def test_numbers_of_the_summary_are_those_of_the_archive(run):
+    folder, answer = run
+    found = answer.found
+    # An extremum between samples is at least as extreme as the samples, but for what is not worth locating.
+    slack = 0.02 * found["accuracy"]
+    with open_archive(folder / found["archive"]) as data:
+        low, tilt = found["h_min"], found["relative_misalignment"]
+        assert 0 < low["value"] <= float(data.h_min.min()) + slack * 1e-5
+        assert low["value"] > 0.95 * float(data.h_min.min())
+        assert 0 <= low["time"] <= found["end"]["time"] == pytest.approx(float(data.time[-1]), rel=2e-3)
+        assert low["radius"] in (0.032, 0.040) and -math.pi <= low["theta"] <= math.pi
+        assert tilt["max"] >= float(data.relative_misalignment.max()) - slack * TILT_SCALE
+        assert tilt["min"] <= float(data.relative_misalignment.min()) + slack * TILT_SCALE
+        assert tilt["mean"] == pytest.approx(float(data.relative_misalignment.mean()), rel=1e-12, abs=1e-30)
+        assert found["leakage"]["mean"] == pytest.approx(float(data.leakage_inner.mean()), rel=1e-12)
+        assert found["friction"]["power"] == pytest.approx(float(data.friction_power.mean()), rel=1e-12)
+        np.testing.assert_array_less(0, np.diff(data.time))
+        assert all(np.isfinite(series).all() for series in data.values())
+
+
+def test_leakage_and_friction_are_those_of_the_annulus(run):
+    """Thin film between narrow faces: flow h^3 dp over viscous resistance, shear viscosity r w / h."""
+    folder, answer = run
+    found = answer.found
+    with open_archive(folder / found["archive"]) as data:
+        if data.axial_gap_change[0] != 0:
+            pytest.skip("starts in motion, away from the design clearance")
+        r = np.linspace(0.032, 0.040, 20001)
+        middle, dr = 0.5 * (r[1:] + r[:-1]), r[1] - r[0]
+        h = 1e-5 + 3.125e-3 * (middle - 0.032)
+        flow = math.pi * 5e5 / (6 * 0.5e-3) / np.sum(dr / (middle * h**3))
+        torque = 2 * math.pi * 0.5e-3 * float(data.shaft_speed[0]) * np.sum(middle**3 * dr / h)
+        if found["model"]["film"] == "radial" and not data.cavitated_fraction.any():
+            assert float(data.leakage_inner[0]) == pytest.approx(flow, rel=0.02)
+        assert float(data.friction_torque[0]) == pytest.approx(torque, rel=0.06)
+    assert found["leakage"]["mean_ml_per_h"] == pytest.approx(found["leakage"]["mean"] * 1e6 * 3600)
+
+
+def test_archive_opens_for_a_stranger(run):
+    """xarray alone, without this package."""
+    import xarray
+
+    folder, answer = run
+    with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as data:
+        assert data.h_min.dims == ("time",)
+        assert all({"units", "long_name"} <= series.attrs.keys() for series in data.values())
+        assert data.attrs["status"] == "ok" and "[film]" in data.attrs["scenario"]
+
+
+def test_a_real_process_prints_what_an_engineer_reads_first(tmp_path):
+    answer = finished(started("run", REFERENCE, *short(REFERENCE), "--no-plot", cwd=tmp_path))
+    assert answer.code == 0, answer.err
+    for word in ("model", "h_min", "misalignment", "leakage", "friction", "stability", "energy audit", "files"):
+        assert f"\n  {word} " in answer.out
+    assert "WARNING" not in answer.out and "Traceback" not in answer.err
+    assert not list(tmp_path.rglob("*.png"))
+
+
+@pytest.mark.parametrize("name", ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring"])
+def test_small_forcing_reaches_the_closed_form(name, tmp_path):
+    small = {"run.turns": 20, "run.accuracy": 1e-8, "stator.misalignment": 2.5e-6, "run.samples_per_turn": 8}
+    small["rotor.runout" if name == "fms_reference" else "rotor.misalignment"] = 2.5e-6
+    if name == "fmsr_both_flexible":
+        small["run.turns"] = 60
+    found = sealdyn("run", SCENARIOS / f"{name}.toml", *settings(small), "--json", "--no-plot", cwd=tmp_path).found
+    steady, form = found["relative_misalignment"], found["closed_form"]
+    assert steady["steady_max"] == pytest.approx(form["relative_max"], rel=1e-5, abs=1e-8 * TILT_SCALE)
+    assert steady["steady_min"] == pytest.approx(form["relative_min"], rel=1e-5, abs=1e-8 * TILT_SCALE)
+
+
+def test_steady_start_has_no_transient(tmp_path):
+    steady = settings(
+        {"run.turns": 5, "run.start": '"steady"', "stator.misalignment": 1e-6, "rotor.misalignment": 1e-6}
+    )
+    found = sealdyn("run", REFERENCE, *steady, "--json", "--no-plot", cwd=tmp_path).found
+    tilt = found["relative_misalignment"]
+    assert tilt["max"] == pytest.approx(tilt["steady_max"], abs=1e-6 * TILT_SCALE)
+    assert tilt["min"] == pytest.approx(tilt["steady_min"], abs=1e-6 * TILT_SCALE)
+    with open_archive(tmp_path / found["archive"]) as data:
+        gap = data.relative_tilt_x.values
+        assert gap[:64] == pytest.approx(gap[-65:-1], abs=1e-6 * TILT_SCALE)
+
+
+def test_h_min_between_samples_is_that_of_a_dense_run(tmp_path):
+    """Sampled twice a turn or 2000 times: the thinnest film is the same, and the dense samples come close to it."""
+    asked = {"run.turns": 3, "stator.misalignment": '"100 urad"', "run.start": '"steady"'}
+    lows = []
+    for samples in (2, 2000):
+        changes = settings(asked | {"run.samples_per_turn": samples})
+        found = sealdyn("run", REFERENCE, *changes, "--json", "--no-plot", "--out", "x.h5", cwd=tmp_path).found
+        lows.append(found["h_min"]["value"])
+    with open_archive(tmp_path / "x.h5") as data:
+        dense = float(data.h_min.min())
+    assert lows[0] == pytest.approx(lows[1], abs=1e-6 * 1e-5)
+    assert lows[1] == pytest.approx(dense, abs=2e-6 * 1e-5)

@@ -1,0 +1,69 @@
+"""Near the threshold the verdict of a loosely held BDF is the method's, not the seal's; the study's survives.
+
+Green's FMR seal, c = 3, linear film, threshold 8684.05 rad/s (formula and eigenvalues).  CVODE's BDF climbs to orders
+that pump a whirl at 1e-4, and damps it at 1e-5: both signs of a false verdict from one method.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import INERTIA, SUPPORT, fmr
+
+from sealdyn.closed_form import film_coefficients, fmr_critical_speed
+from sealdyn.methods import METHODS, Counts
+from sealdyn.whirl import Whirling, contact_tilt_aligned, free_problem, growth_rate, least_damped
+
+FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
+K_S, D_S = SUPPORT.tilt()
+THRESHOLD = fmr_critical_speed(
+    transverse_inertia=INERTIA, polar_inertia=INERTIA / 3, support_stiffness=K_S, support_damping=D_S,
+    film_stiffness=FILM.tilt_stiffness, film_damping=FILM.tilt_damping,
+)  # fmt: skip
+TURNS = 200
+
+
+def exact(speed):
+    """Largest real part of the roots of the ring's complex equation, written out here (1/s)."""
+    d_f, k_f = FILM.tilt_damping, FILM.tilt_stiffness
+    damping = D_S + d_f - 1j * speed * INERTIA / 3
+    return max(np.roots([INERTIA, damping, K_S + k_f - 1j * speed * (D_S + d_f / 2)]).real)
+
+
+def rate_by_bdf(speed, tolerance):
+    """Growth rate (1/s) of a tenth of the contact tilt over 200 turns of CVODE BDF at a bare solver tolerance."""
+    problem = free_problem(fmr("linear", 3.0), speed, TURNS * 2 * math.pi / speed)
+    whirling = Whirling(problem)
+    frequency, shape = least_damped(problem, speed)
+    start = whirling.state(0.1 * contact_tilt_aligned(problem) * shape, frequency)
+    blocks = list(METHODS["bdf"](problem, problem.begin(0), 0.0, start, "bdf", tolerance, Counts()))
+    t = np.concatenate([block[0] for block in blocks])
+    size = np.abs(np.concatenate([whirling.relative(block[1][:, : problem.n].T) for block in blocks]))
+    late = t > 0.25 * t[-1]
+    return np.polyfit(t[late], np.log(size[late]), 1)[0]
+
+
+def test_loose_bdf_calls_an_unstable_seal_stable():
+    speed = 1.0002 * THRESHOLD
+    # Measured: -0.50 1/s at a tolerance of 1e-5, where the seal grows at +0.24.
+    assert exact(speed) > 0.2
+    assert rate_by_bdf(speed, 1e-5) < 0
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 3e-4])
+def test_looser_bdf_calls_a_stable_seal_unstable(tolerance):
+    speed = 0.998 * THRESHOLD
+    # Measured: +0.70 1/s at 1e-4 and +3.4 at 3e-4, where the seal decays at -2.44.
+    assert exact(speed) < -2
+    assert rate_by_bdf(speed, tolerance) > 0
+
+
+@pytest.mark.parametrize("share", [0.998, 0.9998, 1.0002, 1.002])
+@pytest.mark.parametrize("method", ["adams", "bdf"])
+def test_the_study_tightens_until_the_method_cannot_decide(share, method):
+    """Even BDF, begun at an accuracy of 1e-2, is right once its own damping is measured and made small."""
+    speed = share * THRESHOLD
+    found = growth_rate(fmr("linear", 3.0), speed, TURNS, method, 1e-2)
+    # Measured: within 1.1e-3 1/s, the method's own share stated as at most 0.1 of the rate.
+    assert found["decided"] and (found["rate"] > 0) == (share > 1)
+    assert found["rate"] == pytest.approx(exact(speed), abs=max(2 * found["uncertainty"], 1e-4))

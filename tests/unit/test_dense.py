@@ -1,0 +1,108 @@
+"""Interpolation between accepted steps: its order, what it reproduces exactly, and uneven steps."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import KroghInterpolator
+
+from sealdyn.dense import NODES, fit, sample, window
+
+
+def sampled(t, motion, times, begin=0, end=None):
+    """Displacements and rates (m, n) at `times` from the steps `t` of `motion(t) -> (q, q_rate)`."""
+    q, rate = (np.ascontiguousarray(np.stack(part, axis=1)) for part in motion(t))
+    out, out_rate = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
+    sample(t, q, rate, len(t), begin, len(t) - 1 if end is None else end, np.asarray(times), out, out_rate)
+    return out, out_rate
+
+
+def sines(t):
+    """Two unknowns, so that one's table may not spoil the other's."""
+    return (np.sin(t), 3 * np.cos(0.8 * t + 1)), (np.cos(t), -2.4 * np.sin(0.8 * t + 1))
+
+
+def error(t, motion, times, **window):
+    found = sampled(t, motion, times, **window)
+    exact = [np.stack(part, axis=1) for part in motion(times)]
+    return [np.max(np.abs(a - b)) for a, b in zip(found, exact, strict=True)]
+
+
+def test_order_on_sines():
+    """Six steps carry twelve conditions: displacement of order 12, rate of order 11, by regression."""
+    steps, errors = np.array([0.6, 0.75, 0.9, 1.1, 1.35, 1.6]), []
+    for step in steps:
+        t = step * np.arange(40)
+        errors.append(error(t, sines, np.linspace(t[8], t[-9], 3001)))
+    for part, order in enumerate((12, 11)):
+        slope = np.polyfit(np.log(steps), np.log(np.array(errors)[:, part]), 1)[0]
+        assert slope == pytest.approx(order, abs=0.3)
+    # At a sixth of a radian, a usual step, rounding is all that is left.
+    t = np.arange(40) / 6
+    assert max(error(t, sines, np.linspace(t[0], t[-1], 3001))) < 2e-13
+
+
+@pytest.mark.parametrize("degree", range(12))
+def test_polynomials_up_to_degree_eleven_are_exact(degree):
+    draw = np.random.default_rng(degree)
+    t = np.cumsum(draw.uniform(0.6, 1.5, 14))
+    t = (t - t[0]) / (t[-1] - t[0]) * 2 - 1
+    poly = np.polynomial.Chebyshev(draw.normal(size=degree + 1))
+    times = np.linspace(t[0], t[-1], 501)
+    # All intervals, those at the ends with all their neighbours on one side too.
+    assert max(error(t, lambda x: ((poly(x),), (poly.deriv()(x),)), times)) < 2e-10
+
+
+def test_degree_twelve_is_not():
+    """The check above can fail: one degree more and the error is plain."""
+    t = np.linspace(-1, 1, 8)
+    poly = np.polynomial.Chebyshev([0] * 12 + [1])
+    assert error(t, lambda x: ((poly(x),), (poly.deriv()(x),)), np.linspace(-1, 1, 501))[0] > 1e-5
+
+
+def test_steps_are_met_exactly_and_the_rate_is_the_slope():
+    t = np.cumsum(np.random.default_rng(3).uniform(0.1, 0.3, 30))
+    found, rate = sampled(t, sines, t)
+    (q, p), (q_rate, p_rate) = sines(t)
+    assert np.allclose(found, np.stack([q, p], axis=1), atol=1e-15)
+    assert np.allclose(rate, np.stack([q_rate, p_rate], axis=1), atol=1e-13)
+    step, times = 1e-5, np.linspace(t[3], t[-3], 200)
+    late, early = sampled(t, sines, times + step)[0], sampled(t, sines, times - step)[0]
+    assert np.allclose(sampled(t, sines, times)[1], (late - early) / (2 * step), atol=1e-9)
+
+
+def test_much_shorter_or_longer_neighbours_are_left_out():
+    t = np.array([0.0, 1.0, 2.0, 2.1, 2.2, 2.3, 3.3, 4.3])
+    # The long interval before the short ones keeps to the left, the short ones to themselves.
+    assert window(t, 1, len(t)) == (0, 3)
+    assert window(t, 4, len(t)) == (2, 6)
+    table, nodes = np.zeros((1, 2 * NODES)), np.zeros(2 * NODES)
+    q = np.zeros((len(t), 1))
+    assert fit(t, q, q, 4, len(t), table, nodes) == 8
+
+
+def test_uneven_steps_do_not_blow_up_noise():
+    """Step lengths over two decades at random, displacements that are noise alone: over 60 draws it comes out 80 times
+    as large, at worst 3400 times; six steps without leaving any out (SciPy's Krogh form) blow it up 2e6 times."""
+    worst, every = 0.0, 0.0
+    for seed in range(60):
+        draw = np.random.default_rng(seed)
+        t = np.concatenate([[0.0], np.cumsum(0.02 * 10 ** draw.uniform(-1, 1, 400))])
+        noise = draw.uniform(-1, 1, (len(t), 1))
+        times = np.sort(draw.uniform(t[0], t[-1], 8000))
+        out, out_rate = np.empty((8000, 1)), np.empty((8000, 1))
+        sample(t, noise, np.zeros_like(noise), len(t), 0, len(t) - 1, times, out, out_rate)
+        worst = max(worst, np.max(np.abs(out)))
+        for k in range(2, 12):
+            six, start, span = slice(k - 2, k + 4), t[k], t[k + 1] - t[k]
+            conditions = np.zeros(2 * NODES)
+            conditions[::2] = noise[six, 0]
+            through = KroghInterpolator(np.repeat((t[six] - start) / span, 2), conditions)
+            every = max(every, np.max(np.abs(through(np.linspace(0.1, 0.9, 5)))))
+    assert worst < 1e4 < 1e6 < every
+
+
+def test_only_the_asked_steps_are_walked():
+    """Sampling in the middle of a record gives what sampling the whole record gives."""
+    t = np.cumsum(np.random.default_rng(1).uniform(0.1, 0.4, 40))
+    times = np.linspace(t[10], t[20], 77)
+    part, whole = sampled(t, sines, times, begin=10, end=20), sampled(t, sines, times)
+    assert np.array_equal(part[0], whole[0]) and np.array_equal(part[1], whole[1])

@@ -1,0 +1,193 @@
+"""Clearance, balance ratio and spring force: two give the third; every root is found, against a film solved here."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run
+from scipy.integrate import quad
+
+from sealdyn.equilibrium import equilibria, settle
+from sealdyn.problem import Problem
+from sealdyn.scene import Closing, ImpossibleScene
+from sealdyn.units import Table
+
+AREA = math.pi * (R_O**2 - R_I**2)
+P_O, P_I = 6e5, 1e5
+
+
+def opening(clearance, coning=3.125e-3, p_i=P_I, p_o=P_O, geometry="cylindrical"):
+    """Opening force (N) from the pressure line itself: r h^3 p' = const, then int p 2 pi r dr, by quadrature."""
+
+    def per(r):
+        return 1 / (clearance + coning * (r - R_I)) ** 3 / (r if geometry == "cylindrical" else 1.0)
+
+    options = dict(epsabs=0.0, epsrel=1e-13, limit=400)
+    whole = quad(per, R_I, R_O, **options)[0]
+    # int p 2 pi r dr by parts: pi [p r^2] - pi int p' r^2 dr.
+    bent = quad(lambda r: per(r) * r * r, R_I, R_O, **options)[0] / whole
+    return math.pi * (p_o * R_O**2 - p_i * R_I**2 - (p_o - p_i) * bent)
+
+
+def closing_force(balance, spring, p_i=P_I, p_o=P_O):
+    return AREA * (max(p_i, p_o) * balance + min(p_i, p_o) * (1 - balance)) + spring
+
+
+def scene(closing=None, build=fms, **film_changes):
+    """An aligned seal with a flexible ring of 1 kg: its acceleration is the force in newtons."""
+    given = dict(outer_pressure=P_O, inner_pressure=P_I) | film_changes
+    still = dict(own=0.0, runout=0.0) if build is fms else dict(own=0.0, fixed=0.0)
+    return build(film=film(**given), closing=closing or Closing(), **still)
+
+
+# --- two of three -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("geometry", ["cylindrical", "planar"])
+@pytest.mark.parametrize("balance,spring", [(0.72, 40.0), (0.80, 0.0), (0.65, 120.0)])
+def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balance, spring):
+    problem = Problem(scene(Closing(balance, spring), clearance=None, geometry=geometry), 1e-3)
+    force = closing_force(balance, spring)
+    assert opening(problem.clearance, geometry=geometry) == pytest.approx(force, rel=1e-10)
+    root = problem.equilibria[0]
+    assert len(problem.equilibria) == 1 and root.stable
+    step = 1e-4 * problem.clearance
+    slope = opening(problem.clearance - step, geometry=geometry) - opening(problem.clearance + step, geometry=geometry)
+    assert root.stiffness == pytest.approx(slope / (2 * step), rel=1e-6)
+    # The aligned scene stands still there.
+    y, yp = np.zeros(problem.size), np.empty(problem.size)
+    problem.rhs(0.0, y, yp)
+    assert abs(yp[problem.rate_places[0]]) < 1e-10 * force
+
+
+def test_two_give_the_third_around_the_circle():
+    first = Problem(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
+    spring = Problem(scene(Closing(balance_ratio=0.72), clearance=first.clearance), 1e-3).closing.spring
+    balance = Problem(scene(Closing(spring_force=40.0), clearance=first.clearance), 1e-3).closing.balance_ratio
+    assert spring == pytest.approx(40.0, rel=1e-9)
+    assert balance == pytest.approx(0.72, rel=1e-12)
+
+
+def test_clearance_alone_is_held_by_hydraulic_closing():
+    problem = Problem(scene(), 1e-3)
+    assert problem.clearance == CLEARANCE and problem.closing.spring == 0.0
+    assert closing_force(problem.closing.balance_ratio, 0.0) == pytest.approx(opening(CLEARANCE), rel=1e-12)
+
+
+def test_equal_pressures_are_held_by_the_spring():
+    problem = Problem(scene(inner_pressure=P_O), 1e-3)
+    assert problem.closing.at(P_O, P_O, problem.closing.spring) == pytest.approx(P_O * AREA, rel=1e-12)
+    with pytest.raises(ImpossibleScene, match="equal pressures"):
+        Problem(scene(Closing(spring_force=40.0), inner_pressure=P_O), 1e-3)
+
+
+def test_a_pressure_step_moves_the_closing_force():
+    """Hydraulic closing follows the sealed pressure, the spring does not."""
+    step = Table((0.0, 0.01, 0.01, 0.02), (P_O, P_O, 4e5, 4e5))
+    problem = Problem(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
+    late = problem.closing.over(problem.legs[-1], problem.scene.film)
+    assert late[0] == pytest.approx(closing_force(0.72, 40.0, P_I, 4e5), rel=1e-12)
+    assert late[1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_ring_settles_at_the_new_clearance_after_a_pressure_step():
+    """In time, from the old equilibrium to the new one, the support's spring having moved its end with the ring."""
+    step = Table((0.0, 0.001, 0.001, 0.02), (P_O, P_O, 5.5e5, 5.5e5))
+    stepped = scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step)
+    found = run(stepped, duration=0.02)
+    z, clearance = found.q[-1, 0], found.problem.clearance
+    left = opening(clearance + z, p_o=5.5e5) - closing_force(0.72, 40.0, P_I, 5.5e5) - SUPPORT.axial_stiffness * z
+    assert found.problem.names == ["stator_z"] and abs(z) > 1e-8
+    assert abs(left) < 1e-5 * SUPPORT.axial_stiffness * CLEARANCE
+
+
+# --- mirrored -----------------------------------------------------------------------------------------
+
+
+def test_inside_pressurised_seal_is_the_outside_pressurised_one_mirrored():
+    """Narrow film: a face converging inwards under inner pressure.  The inner film of one is the outer of the other."""
+    coning, width = 3.125e-3, R_O - R_I
+    outside = Problem(scene(Closing(0.72, 40.0), model="linear", clearance=None, coning=coning), 1e-3)
+    inside = Problem(
+        scene(
+            Closing(0.72, 40.0), model="linear", clearance=None, coning=-coning,
+            outer_pressure=P_I, inner_pressure=P_O,
+        ), 1e-3,
+    )  # fmt: skip
+    assert not inside.closing.outer_is_high and outside.closing.outer_is_high
+    assert inside.clearance == pytest.approx(outside.clearance + coning * width, rel=1e-9)
+    assert inside.equilibria[0].stiffness == pytest.approx(outside.equilibria[0].stiffness, rel=1e-7)
+
+
+def test_inside_pressurised_cylindrical_film_balances():
+    problem = Problem(
+        scene(Closing(0.72, 40.0), clearance=None, coning=-3.125e-3, outer_pressure=P_I, inner_pressure=P_O), 1e-3
+    )
+    force = closing_force(0.72, 40.0, P_O, P_I)
+    assert opening(problem.clearance, -3.125e-3, P_O, P_I) == pytest.approx(force, rel=1e-10)
+    assert problem.equilibria[-1].stable
+
+
+# --- several roots, or none ---------------------------------------------------------------------------
+
+
+def bumpy(table, clearance, inner, outer):
+    """A film with three equilibria at 1000 N: 5, 12 and 40 um."""
+    x = clearance * 1e6
+    return 1000.0 - 0.5 * (x - 5) * (x - 12) * (x - 40) / (1 + (x / 30) ** 3)
+
+
+def test_all_roots_are_found_and_the_widest_stable_one_is_taken():
+    roots = equilibria(film(), bumpy, 1000.0, P_I, P_O)
+    assert [root.clearance for root in roots] == pytest.approx([5e-6, 12e-6, 40e-6], rel=1e-9)
+    assert [root.stable for root in roots] == [True, False, True]
+    slope = -(bumpy(None, 12.001e-6, 0, 0) - bumpy(None, 11.999e-6, 0, 0)) / 2e-9
+    assert roots[1].stiffness == pytest.approx(slope, rel=1e-5)
+    spring = 1000.0 - closing_force(0.5, 0.0)
+    clearance, _, every, said = settle(scene(Closing(0.5, spring), clearance=None), bumpy)
+    assert clearance == pytest.approx(40e-6, rel=1e-9) and len(every) == 3
+    assert "3 equilibrium" in said and "2 stable" in said and "widest" in said
+
+
+@pytest.mark.parametrize("balance", [1.2, 0.3])
+def test_too_much_or_too_little_closing_has_no_equilibrium(balance):
+    with pytest.raises(ImpossibleScene, match="no equilibrium clearance") as raised:
+        Problem(scene(Closing(balance, 0.0), clearance=None), 1e-3)
+    assert raised.value.key == "closing.balance_ratio"
+    # What is expected brackets what a converging film can carry.
+    least, most = (float(word) for word in raised.value.expected.split() if word.replace(".", "").isdigit())
+    assert least == pytest.approx(min(opening(25e-6 / 100), opening(25e-6 * 100)), rel=1e-3)
+    assert most == pytest.approx(max(opening(25e-6 / 100), opening(25e-6 * 100)), rel=1e-3)
+
+
+def test_a_diverging_film_has_only_an_unstable_one():
+    force = opening(20e-6, coning=-1e-3)
+    spring = force - closing_force(0.3, 0.0)
+    with pytest.raises(ImpossibleScene, match="only unstable equilibria") as raised:
+        Problem(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
+    assert "20 um" in raised.value.found
+
+
+def test_flat_faces_have_none():
+    """The same force at every clearance: whatever the closing force, nothing decides the clearance."""
+    for spring in (0.0, opening(1e-5, 0.0) - closing_force(0.5, 0.0)):
+        with pytest.raises(ImpossibleScene):
+            Problem(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
+
+
+def test_a_root_far_from_the_coning_is_found():
+    """Coning of 25 um, clearances from 0.1 um to 1 mm."""
+    for clearance in (0.1e-6, 1e-6, 1e-4, 1e-3):
+        force = opening(clearance)
+        problem = Problem(scene(Closing(0.5, force - closing_force(0.5, 0.0)), clearance=None), 1e-3)
+        # The force hardly knows a clearance far from the coning: rounding over its slope.
+        assert problem.clearance == pytest.approx(clearance, rel=1e-8)
+
+
+def test_a_flexible_rotor_finds_the_same_clearance():
+    one, other = (Problem(scene(Closing(0.72, 40.0), build, clearance=None), 1e-3) for build in (fms, fmr))
+    assert one.clearance == other.clearance
+    y, yp = np.zeros(other.size), np.empty(other.size)
+    other.rhs(0.0, y, yp)
+    place = other.rate_places[other.names.index("rotor_z")]
+    assert abs(yp[place]) < 1e-9 * closing_force(0.72, 40.0)

@@ -1,0 +1,173 @@
+"""The scene chooses its unknowns: which, why, and where they stand."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import CLEARANCE, NOTHING, R_O, SPEED, SUPPORT, film, fmr, fms, fmsr, ring
+
+from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.problem import Problem
+from sealdyn.ring import AxialRunout, Rotor, Support
+from sealdyn.scene import Closing, Initial, RingStart
+from sealdyn.units import Table
+
+TURN = 2 * math.pi / SPEED
+ALIGNED = dict(own=0.0, fixed=0.0)
+TILTS = ["rotor_tilt_x", "rotor_tilt_y"]
+MASSLESS = dict(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)
+
+
+def layout(scene):
+    return Problem(scene, TURN)
+
+
+def said(problem, words):
+    return any(words in reason for reason in problem.reasons)
+
+
+# --- which ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", ["radial", "linear"])
+def test_aligned_scene_has_axial_unknowns_only(model):
+    """Nothing tilts: axial runout, axial vibration and axial starts keep it so."""
+    runout = Rotor(**ring(), axial_runout=[AxialRunout(order=2, amplitude=1e-6)])
+    shaking = Housing(axial=[AxialVibration(frequency=100.0, displacement=1e-6)])
+    start = Initial(rotor=RingStart(z=1e-6))
+    for more in ({}, dict(rotor=runout), dict(housing=shaking), dict(initial=start)):
+        problem = layout(fmr(model, **(ALIGNED | more)))
+        assert problem.names == ["rotor_z"]
+        assert said(problem, "aligned faces and no angular forcing: axial unknowns only")
+
+
+def test_both_rings_of_an_aligned_scene():
+    assert layout(fmsr(own=0.0, fixed=0.0)).names == ["stator_z", "rotor_z"]
+
+
+def driven():
+    angular = Housing(angular=[AngularVibration(frequency=75.0, displacement=1e-6)])
+    return {
+        "own misalignment": fmr("linear", fixed=0.0),
+        "stator misalignment": fmr("linear", own=0.0),
+        "growing misalignment": fmr("linear", own=0.0, fixed=Table((0.0, 1.0), (0.0, 1e-6))),
+        "whirl": fmr("linear", **ALIGNED, shaft=Shaft(speed=SPEED, whirl=[Whirl(ratio=0.4, angle=1e-6)])),
+        "angular vibration": fmr("linear", **ALIGNED, housing=angular),
+        "start": fmr("linear", **ALIGNED, initial=Initial(rotor=RingStart(tilt_x=1e-6))),
+        "start rate": fmr("linear", **ALIGNED, initial=Initial(rotor=RingStart(tilt_y_rate=1e-3))),
+    }
+
+
+@pytest.mark.parametrize("name", driven())
+def test_linear_film_without_axial_forcing_has_tilts_only(name):
+    problem = layout(driven()[name])
+    assert problem.names == TILTS and problem.size == 4 + 6
+    assert said(problem, "linear film and no axial forcing")
+
+
+def test_linear_film_with_both_drives_keeps_both():
+    drives = [
+        dict(housing=Housing(axial=[AxialVibration(frequency=100.0, displacement=1e-6)])),
+        dict(initial=Initial(rotor=RingStart(z=1e-6))),
+        dict(film=film("linear", outer_pressure=Table((0.0, 1.0), (5e5, 6e5)))),
+        dict(film=film("linear", clearance=None), closing=Closing(0.75, Table((0.0, 1.0), (0.0, 1.0)))),
+    ]
+    for more in drives:
+        problem = layout(fmr("linear", **more))
+        assert problem.names == ["rotor_z", *TILTS]
+        assert said(problem, "axial and angular motion decouple, both are driven")
+
+
+def test_nonlinear_film_with_tilt_keeps_all():
+    problem = layout(fmsr())
+    assert problem.names == [f"{r}_{p}" for r in ("stator", "rotor") for p in ("z", "tilt_x", "tilt_y")]
+    assert not said(problem, "decouple") and not said(problem, "axial unknowns only")
+
+
+def test_a_start_of_a_rigid_ring_tilts_nothing():
+    """Only a ring that floats can start anywhere."""
+    assert layout(fmr(**ALIGNED, initial=Initial(stator=RingStart(tilt_x=1e-6)))).names == ["rotor_z"]
+
+
+@pytest.mark.parametrize(
+    "build,words", [(fmr, "FMR: support under rotor"), (fms, "FMS: support under stator"),
+                    (fmsr, "FMSR: support under stator and rotor")],
+)  # fmt: skip
+def test_arrangement_follows_from_the_supports(build, words):
+    assert said(layout(build()), words)
+
+
+def test_auto_film_says_what_it_is():
+    problem = layout(fmr("auto"))
+    assert problem.film_name == "radial" and said(problem, "film auto")
+    assert not said(layout(fmr()), "film auto")
+
+
+# --- massless ------------------------------------------------------------------------------------------
+
+
+def test_massless_ring_has_no_rates():
+    problem = layout(fmr(rotor=Rotor(**ring(**MASSLESS), misalignment=1e-6)))
+    assert problem.massless and list(problem.rate_places) == [-1] * 3
+    assert problem.n_mechanical == 3 and problem.size == 9 and problem.algebraic == []
+    assert said(problem, "massless ring") and problem.solver()[0] == "ida" and "massless" in problem.solver()[1]
+
+
+def test_a_ring_may_lack_one_inertia_only():
+    """Mass without transverse inertia: the axial motion keeps its rate."""
+    problem = layout(fmr(rotor=Rotor(**ring(transverse_inertia=0.0, polar_inertia=0.0), misalignment=1e-6)))
+    assert problem.massless and list(problem.rate_places) == [3, -1, -1] and problem.n_mechanical == 4
+
+
+def test_mass_of_a_motion_that_is_not_integrated_does_not_matter():
+    """Linear film, tilt only: a ring without mass but with inertia is an ordinary ring."""
+    problem = layout(fmr("linear", rotor=Rotor(**ring(mass=0.0), misalignment=1e-6)))
+    assert problem.names == TILTS and not problem.massless and problem.solver()[0] != "ida"
+
+
+def test_massless_and_undamped_is_algebraic():
+    spring = Support(axial_stiffness=5e5, radius=0.04)
+    rotor = Rotor(**ring(**MASSLESS, support=spring), misalignment=1e-6)
+    assert layout(fmr("linear", film=film("linear", coefficients=NOTHING), rotor=rotor)).algebraic == [0, 1]
+    # The film's damping makes it first order again.
+    assert layout(fmr("linear", rotor=rotor)).algebraic == []
+
+
+# --- places and scales ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("build", [fmr, fms, fmsr])
+def test_every_unknown_has_its_own_place(build):
+    problem = layout(build())
+    assert sorted([*range(problem.n), *problem.rate_places]) == list(range(problem.n_mechanical))
+    q, rate = np.arange(1.0, problem.n + 1), -np.arange(1.0, problem.n + 1)
+    y = problem.unknowns(q, rate)
+    found = problem.motion(y[None, :], np.zeros((1, problem.size)))
+    assert np.array_equal(found[0][0], q) and np.array_equal(found[1][0], rate)
+
+
+def test_scales_are_the_clearance_and_its_tilt_and_the_shaft_speed():
+    problem = layout(fmr())
+    expected = [CLEARANCE, CLEARANCE / R_O, CLEARANCE / R_O]
+    assert np.allclose(problem.scales[:3], expected, rtol=1e-15)
+    assert np.allclose(problem.scales[problem.rate_places], np.array(expected) * SPEED, rtol=1e-15)
+    assert problem.pace == SPEED and np.all(problem.scales > 0)
+
+
+def test_a_shaft_at_rest_takes_its_pace_from_what_shakes_it():
+    shaking = Housing(axial=[AxialVibration(frequency=400.0, acceleration=20.0)])
+    problem = Problem(fms(**dict(own=0.0, runout=0.0), speed=0.0, housing=shaking), 0.01)
+    assert problem.pace == pytest.approx(2 * math.pi * 400.0, rel=1e-15)
+
+
+def test_memory_is_the_run_for_an_undamped_ring_and_short_for_a_damped_one():
+    undamped = fmr(
+        film=film("linear", coefficients=NOTHING),
+        rotor=Rotor(**ring(support=Support(axial_stiffness=5e5, radius=0.04))),
+        fixed=1e-6,
+    )
+    free, damped = Problem(undamped, 1000 * TURN), Problem(fmr("linear"), 1000 * TURN)
+    # Fastest period of the free ring: the forward root of -I w^2 + J W w + K_s = 0.
+    fastest = SPEED + math.sqrt(SPEED**2 + SUPPORT.tilt()[0] / 8e-4)
+    assert free.memory == pytest.approx(1000 * TURN * fastest / (2 * math.pi), rel=1e-9)
+    assert damped.memory < 10

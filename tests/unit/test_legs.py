@@ -1,0 +1,200 @@
+"""Phases after a million turns, tables cut at their kinks and steps, and the time a shaft angle takes."""
+
+import math
+from fractions import Fraction
+from itertools import pairwise
+
+import mpmath
+import numpy as np
+import pytest
+from scenes import fmr, ring
+from scipy.integrate import quad
+
+from sealdyn.imposed import (
+    OSCILLATOR_COUNT,
+    OSCILLATORS,
+    PER_RING,
+    ROW,
+    STATOR,
+    TILT_X,
+    TILT_X_RATE,
+    TILT_Y,
+    TILT_Y_RATE,
+    Z,
+    impose,
+    oscillators,
+)
+from sealdyn.legs import constant_and_slope, cut, reduced, time_of_angle
+from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.ring import AxialRunout, Rotor, Stator
+from sealdyn.units import Table
+
+SPEED = 1047.1975511965977  # 10 000 rpm, not a whole number of rad/s
+MILLION = 2 * math.pi * 1e6 / SPEED
+
+
+def exact(number):
+    return mpmath.mpf(number.numerator) / number.denominator if isinstance(number, Fraction) else mpmath.mpf(number)
+
+
+@pytest.fixture(autouse=True)
+def fifty_digits():
+    with mpmath.workdps(50):
+        yield
+
+
+def circle(phase):
+    return complex(mpmath.cos(phase), mpmath.sin(phase))
+
+
+def imposed(scene, leg, tau):
+    """State of both carriers, (2, PER_RING), from the compiled kernel."""
+    rows = oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
+    p = np.zeros(OSCILLATORS + ROW * len(rows))
+    p[OSCILLATOR_COUNT], p[OSCILLATORS:] = len(rows), rows.ravel()
+    c = np.zeros(2 * PER_RING)
+    impose(tau, p, c)
+    return c.reshape(2, PER_RING)
+
+
+# --- phases ---------------------------------------------------------------------------------------------
+
+
+def test_phase_after_a_million_turns():
+    legs = cut(MILLION, SPEED, -300.0, [])
+    assert len(legs) >= 500
+    for leg in (legs[1], legs[len(legs) // 2], legs[-1]):
+        for spin, angle in ((SPEED, leg.rotor_angle), (-300.0, leg.stator_angle)):
+            turned = mpmath.mpf(spin) * exact(leg.start)
+            assert abs(circle(reduced(angle)) - circle(turned)) < 1e-15
+    # What plain floating point makes of the same angle: 1.2e-10 rad at the last leg's start.
+    naive = abs(circle(SPEED * legs[-1].time) - circle(mpmath.mpf(SPEED) * exact(legs[-1].start)))
+    assert naive > 1e-11
+
+
+def test_imposed_motion_after_a_million_turns():
+    """Runout, whirl at 0.42 of the speed and a housing tone, inside the last leg: 1e-12 of their amplitude."""
+    tone, ratio = 53.7, 0.42
+    scene = fmr(
+        shaft=Shaft(speed=SPEED, whirl=[Whirl(ratio=ratio, angle=1.0, phase=0.3)]),
+        rotor=Rotor(axial_runout=[AxialRunout(order=3, amplitude=1.0, phase=1.0)], **ring()),
+        stator=Stator(),
+        housing=Housing(axial=[AxialVibration(frequency=tone, displacement=1.0)]),
+    )
+    leg = cut(MILLION, SPEED, 0.0, [])[-1]
+    for tau in (0.0, 0.01 * leg.length):
+        stator, rotor = imposed(scene, leg, tau)
+        t = exact(leg.start) + mpmath.mpf(tau)
+        angle = mpmath.mpf(SPEED) * t
+        whirl = circle(mpmath.mpf(ratio) * angle + mpmath.mpf(0.3))
+        assert abs(complex(rotor[TILT_X], rotor[TILT_Y]) - whirl) < 1e-12
+        assert abs(rotor[Z] - circle(3 * angle + 1).real) < 1e-12
+        assert abs(stator[Z] - circle(2 * mpmath.pi * mpmath.mpf(tone) * t).real) < 1e-12
+
+
+def test_phase_of_a_ramp():
+    """The angle is the integral of a speed table, whatever legs it is cut into."""
+    speed = Table((0.0, 10.0, 2010.0, 2020.0), (0.0, 1000.0, 1500.0, -200.0))
+    legs = cut(2020.0, speed, 0.0, [speed])
+    assert len(legs) > 100
+    ends = {0.0: 0, 10.0: 5000, 2010.0: 5000 + 2000 * 1250, 2020.0: 5000 + 2000 * 1250 + 6500}
+    for leg in legs:
+        if leg.time in ends:
+            assert abs(float(leg.rotor_angle - ends[leg.time])) < 1e-9
+        # Inside: w0 t + slope t^2 / 2 of the straight piece.
+        since = exact(leg.start) - 10
+        if 0 < since < 2000:
+            turned = 5000 + 1000 * since + since**2 / 8
+            # A table's own slope is a float: some 1e-13 of half a million turns.
+            assert abs(exact(leg.rotor_angle) - turned) < 1e-8
+
+
+def test_rates_are_the_slopes_of_the_imposed_motion():
+    """Ramped speed, ramped runout, fixed-axis and turning motions: rates against differences of the displacements."""
+    ramp = Table((0.0, 1.0), (100.0, 900.0))
+    scene = fmr(
+        shaft=Shaft(speed=ramp, whirl=[Whirl(ratio=-0.5, angle=0.5)]),
+        rotor=Rotor(runout=Table((0.0, 1.0), (0.2, 1.2)), runout_phase=0.4),
+        stator=Stator(**ring()),
+        housing=Housing(angular=[AngularVibration(frequency=31.0, displacement=0.7, direction=0.6, phase=0.2)]),
+    )
+    leg = cut(1.0, ramp, 0.0, [ramp])[0]
+    step, tau = 1e-6, 0.37
+    late, early, now = (imposed(scene, leg, tau + x) for x in (step, -step, 0.0))
+    for ring_index in range(2):
+        for place, rate in ((TILT_X, TILT_X_RATE), (TILT_Y, TILT_Y_RATE)):
+            slope = (late[ring_index, place] - early[ring_index, place]) / (2 * step)
+            assert now[ring_index, rate] == pytest.approx(slope, rel=1e-6, abs=1e-4)
+    tilt = 0.7 * math.cos(2 * math.pi * 31.0 * tau + 0.2) * np.exp(0.6j)
+    assert complex(now[STATOR, TILT_X], now[STATOR, TILT_Y]) == pytest.approx(tilt, rel=1e-12)
+    angle = 100 * tau + 400 * tau**2
+    tilt = (0.2 + tau) * np.exp(1j * (angle + 0.4)) + 0.5 * np.exp(-0.5j * angle)
+    assert complex(now[1, TILT_X], now[1, TILT_Y]) == pytest.approx(tilt, rel=1e-12)
+
+
+# --- legs -----------------------------------------------------------------------------------------------
+
+
+STEPPED = Table((0.0, 1.0, 1.0, 2.0, 3.5), (5.0, 7.0, -2.0, -2.0, 4.0))
+
+
+def test_legs_tile_time_and_stop_at_every_kink():
+    other = Table((0.5, 2.2), (1.0, 2.0))
+    legs = cut(4.0, 100.0, 0.0, [100.0, STEPPED, other])
+    assert [leg.time for leg in legs] == [0.0, 0.5, 1.0, 2.0, 2.2, 3.5]
+    for a, b in pairwise(legs):
+        assert a.start + a.span == b.start
+    assert legs[-1].start + legs[-1].span == 4
+    # A table beyond the run leaves no leg behind.
+    assert len(cut(0.4, 100.0, 0.0, [STEPPED, other])) == 1
+
+
+def test_value_and_slope_on_each_side_of_a_step():
+    legs = cut(5.0, 0.0, 0.0, [STEPPED])
+    found = [constant_and_slope(STEPPED, leg) for leg in legs]
+    expected = [(5.0, 2.0), (-2.0, 0.0), (-2.0, 4.0), (4.0, 0.0)]
+    assert np.allclose(found, expected, rtol=0, atol=1e-13)
+    assert constant_and_slope(3.25, legs[0]) == (3.25, 0.0)
+    # Held before the first time of a table.
+    late = Table((1.0, 2.0), (3.0, 4.0))
+    assert np.allclose([constant_and_slope(late, leg) for leg in cut(2.0, 0.0, 0.0, [late])], [(3, 0), (3, 1)])
+
+
+# --- time of an angle ----------------------------------------------------------------------------------
+
+
+def turned_by(table, t):
+    """Angle turned, either way round, by quadrature between the table's times and sign changes."""
+    places = sorted({x for x in table.time if 0 < x < t} | {0.0, t})
+    total = 0.0
+    for a, b in pairwise(places):
+        early, late = table.at(a + 1e-9 * (b - a)), table.at(b - 1e-9 * (b - a))
+        turning = [a + (b - a) * early / (early - late)] if early * late < 0 else None
+        total += quad(lambda x: abs(table.at(x)), a, b, points=turning, epsabs=1e-12, epsrel=1e-12)[0]
+    return total
+
+
+TABLES = {
+    "run-up from rest": Table((0.0, 2.0), (0.0, 800.0)),
+    "reversal": Table((0.0, 1.0, 3.0, 4.0), (300.0, 300.0, -500.0, -500.0)),
+    "steps": Table((0.0, 1.0, 1.0, 2.0), (100.0, 100.0, 400.0, 50.0)),
+    "a stop between": Table((0.0, 1.0, 2.0, 3.0), (200.0, 0.0, 0.0, 600.0)),
+    "late table": Table((2.0, 3.0), (100.0, 700.0)),
+}
+
+
+@pytest.mark.parametrize("table", TABLES.values(), ids=TABLES)
+def test_time_of_an_angle(table):
+    for angle in (0.5, 30.0, 200.0, 431.0, 2500.0):
+        assert turned_by(table, time_of_angle(table, angle)) == pytest.approx(angle, rel=1e-9)
+
+
+def test_time_of_an_angle_at_constant_speed():
+    assert time_of_angle(500.0, 100.0) == pytest.approx(0.2, rel=1e-15)
+    assert time_of_angle(-500.0, 100.0) == pytest.approx(0.2, rel=1e-15)
+
+
+@pytest.mark.parametrize("speed", [0.0, Table((0.0, 1.0), (100.0, 0.0))])
+def test_an_angle_that_is_never_turned(speed):
+    with pytest.raises(ValueError, match="turn"):
+        time_of_angle(speed, 51.0)
