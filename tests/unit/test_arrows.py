@@ -48,7 +48,10 @@ ALLOWED = {
     "studies": PHYSICS
     | DOORS
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
-    | {"solve", "summary", "validation", "watch", "whirl"},
+    | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"},
+    "twin": PHYSICS | DOORS | {"modes", "problem"},
+    "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
+    "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "watch"},
     "orbit": PHYSICS | DOORS | {"layout", "methods", "modes", "problem", "recorder", "solve", "watch"},
     "cli": None,
     "__init__": None,

@@ -1,0 +1,226 @@
+"""Campbell diagram: whirl frequencies over shaft speed, each mode followed through crossings, with its damping."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from scipy.linalg import eig
+from scipy.optimize import brentq, linear_sum_assignment
+
+from ..modes import NEUTRAL
+from ..problem import Problem
+from ..twin import held
+from ..units import Speed
+
+units = {"speed": "rad/s", "modes/frequency": "rad/s"}
+# Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
+ALIKE, HALVINGS = 0.97, 7
+NOT_OSCILLATING = 1e-9
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Speeds from `speed_from` to `speed_to` (default six times the scenario's), `points` of them; `unit` of the
+    figure's axes; `lines`: orders of the shaft speed drawn beside the modes, besides 1x and 1/2x."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    speed_from: Speed = 0.0
+    speed_to: Speed | None = None
+    points: int = 241
+    unit: Literal["rpm", "rad/s"] = "rpm"
+    lines: tuple[float, ...] | float = ()
+
+
+def run(scenario, settings, tools) -> dict:
+    """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
+    scene = held(scenario.scene)
+    problem, own = Problem(scene, 1.0), abs(scene.shaft.speed)
+    top = settings.speed_to if settings.speed_to is not None else 6 * own or 6000.0
+    speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
+
+    def pencil(w):
+        linear = problem.linear_scene(speed=float(w))
+        n = len(linear.mass)
+        zero, one = np.zeros((n, n)), np.eye(n)
+        left = np.block([[zero, one], [-linear.stiffness, -linear.damping]])
+        return left, np.block([[one, zero], [zero, linear.mass]])
+
+    values, shapes = follow(pencil, speeds, tools.say)
+    count = len(problem.linear_scene().mass)
+    modes = described(values, shapes[:, :, :count], speeds)
+    more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
+    lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)
+    answer = {
+        "speed": speeds.tolist(),
+        "unit": settings.unit,
+        "own_speed": own,
+        "lines": lines,
+        "modes": modes,
+        "crossings": crossings(modes, speeds, lines),
+        "thresholds": thresholds(modes, speeds),
+    }
+    return answer | {"verdict": _verdict(answer)}
+
+
+# --- following modes -----------------------------------------------------------------------------------
+
+
+def follow(pencil, speeds, say=lambda fraction: None) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues (modes, speeds) and shapes (modes, speeds, n) of `left x = s right x`, each row one mode.
+
+    `pencil(speed)` gives (left, right).  Neighbours are matched by biorthogonality of left and right vectors, which
+    two modes that merely meet in frequency do not share; where the match is weak, speeds between are looked at.
+    """
+    here = _solve(*pencil(speeds[0]))
+    values, shapes = [here[0]], [here[1]]
+    for k, (a, b) in enumerate(pairwise(speeds)):
+        here = _step(pencil, a, here, b, HALVINGS)
+        values.append(here[0])
+        shapes.append(here[1])
+        say(0.9 * (k + 1) / len(speeds))
+    return np.array(values).T, np.array(shapes).transpose(2, 0, 1)
+
+
+def _solve(left, right):
+    """Finite eigenvalues (m,), right vectors (n, m) and left vectors times `right` (m, n), so scaled that the product
+    of both is one."""
+    values, from_left, vectors = eig(left, right, left=True, right=True)
+    finite = np.isfinite(values) & (np.abs(values) < 1e12)
+    values, vectors, from_left = values[finite], vectors[:, finite], from_left[:, finite]
+    duals = from_left.conj().T @ right
+    products = np.einsum("mn,nm->m", duals, vectors)
+    # A defective pair has no such scale; its frequency must do.
+    products = np.where(np.abs(products) < 1e-14, 1.0, products)
+    return values, vectors, duals / products[:, None]
+
+
+def _step(pencil, a, here, b, halvings, there=None):
+    """Modes at speed b in the order of those `here` at speed a."""
+    there = there if there is not None else _solve(*pencil(b))
+    order, resemblance = _match(here, there)
+    if resemblance < ALIKE and halvings > 0:
+        middle = 0.5 * (a + b)
+        between = _step(pencil, a, here, middle, halvings - 1)
+        return _step(pencil, middle, between, b, halvings - 1, there)
+    return tuple(part[order] if i != 1 else part[:, order] for i, part in enumerate(there))
+
+
+def _match(here, there) -> tuple[np.ndarray, float]:
+    """Which mode there continues each mode here, and how well the worst one does."""
+    # Both products, so that the length of a vector does not matter.
+    overlap = np.sqrt(np.abs(here[2] @ there[1]) * np.abs(there[2] @ here[1]).T)
+    overlap = np.minimum(overlap, 1.0)
+    scale = max(np.max(np.abs(here[0])), 1e-300)
+    distance = np.abs(here[0][:, None] - there[0][None, :]) / scale
+    # Vectors decide; among equal ones (a symmetric pair at rest) the nearer frequency does.
+    rows, order = linear_sum_assignment(distance * 0.1 - overlap)
+    return order, float(np.min(overlap[rows, order]))
+
+
+def described(values, shapes, speeds) -> list[dict]:
+    """Modes as interface.md wants them, from all eigenvalues (each twice, with its conjugate).
+
+    Of a tilt pair the member that turns as x + i y is kept: its frequency is signed, positive forward.
+    """
+    found = []
+    for row, shape in zip(values, shapes, strict=True):
+        axial, x, y = shape[:, 0::3], shape[:, 1::3], shape[:, 2::3]
+        total = np.linalg.norm(shape, axis=1)
+        kind = "axial" if np.median(np.linalg.norm(axial, axis=1) / total) > 0.5 else "tilt"
+        turns = np.linalg.norm(x + 1j * y, axis=1) - np.linalg.norm(x - 1j * y, axis=1)
+        keep = np.median(turns / total) > 0 if kind == "tilt" else not np.median(row.imag) < -NOT_OSCILLATING
+        if keep:
+            found.append((kind, row))
+    # Slowest first; modes are numbered in this order.
+    found.sort(key=lambda pair: (pair[0] == "axial", np.median(np.abs(pair[1].imag))))
+    return [_mode(kind, row) for kind, row in found]
+
+
+def _mode(kind: str, row) -> dict:
+    still = np.abs(row.imag) <= NOT_OSCILLATING * np.abs(row)
+    # A growth rate within rounding is none.
+    row = np.where(np.abs(row.real) <= NEUTRAL * np.max(np.abs(row)), 1j * row.imag, row)
+    signed = np.where(still, 0.0, row.imag)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        decrement = np.where(still, np.nan, -2 * np.pi * row.real / np.abs(signed))
+    whirl = np.sign(signed)
+    directions = ["none" if w == 0 else "forward" if w > 0 else "backward" for w in whirl]
+    if kind == "axial":
+        directions = ["none" if w == 0 else "axial" for w in whirl]
+    return {
+        "kind": kind,
+        "frequency": np.abs(signed).tolist(),
+        "signed_frequency": signed.tolist(),
+        "direction": max(dict.fromkeys(directions), key=directions.count),
+        "directions": directions,
+        "growth_rate": row.real.tolist(),
+        "log_decrement": [float(d) if np.isfinite(d) else None for d in decrement],
+    }
+
+
+# --- what the diagram says -----------------------------------------------------------------------------
+
+
+def _zeros(speeds, values) -> list[float]:
+    """Speeds where a smooth function of speed, given at points, changes sign: cubic through four neighbours."""
+    found = []
+    for k in range(len(speeds) - 1):
+        if values[k] * values[k + 1] < 0:
+            near = slice(max(0, k - 1), min(len(speeds), k + 3))
+            x, y = np.asarray(speeds[near]) - speeds[k], np.asarray(values[near])
+            width = speeds[k + 1] - speeds[k]
+            curve = np.polynomial.Polynomial.fit(x, y, len(x) - 1)
+            ends = curve(0.0) * curve(width) < 0
+            found.append(float(speeds[k] + (brentq(curve, 0.0, width) if ends else width / 2)))
+    return found
+
+
+def crossings(modes, speeds, lines) -> list[dict]:
+    """Shaft speeds (rad/s) where a forward tilt mode (or an axial one) meets an order line."""
+    found = []
+    for number, mode in enumerate(modes, 1):
+        signed = np.array(mode["signed_frequency"])
+        for order in lines:
+            for speed in _zeros(speeds, signed - order * np.asarray(speeds)):
+                at = order * speed
+                found.append({"line": order, "mode": number, "speed": speed, "frequency": at})
+    return found
+
+
+def thresholds(modes, speeds) -> list[dict]:
+    """Speeds (rad/s) where a mode loses or regains its damping, and where it changes its direction of whirl."""
+    found = []
+    for number, mode in enumerate(modes, 1):
+        for speed in _zeros(speeds, mode["growth_rate"]):
+            ratio = float(np.interp(speed, speeds, mode["signed_frequency"])) / speed if speed else None
+            found.append({"mode": number, "what": "damping", "speed": speed, "whirl_ratio": ratio})
+        for speed in _zeros(speeds, mode["signed_frequency"]):
+            found.append({"mode": number, "what": "direction", "speed": speed, "whirl_ratio": 0.0})
+    return found
+
+
+def _verdict(answer) -> list[str]:
+    said = []
+    for number, mode in enumerate(answer["modes"], 1):
+        low, high = mode["frequency"][0], mode["frequency"][-1]
+        damping = "" if any(mode["growth_rate"]) else ", undamped"
+        way = {"none": "does not oscillate", "axial": "oscillates"}.get(
+            mode["direction"], f"mostly {mode['direction']}"
+        )
+        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {low:.5g} to {high:.5g} rad/s.")
+    for point in answer["thresholds"]:
+        if point["what"] == "damping":
+            ratio = (
+                "" if point["whirl_ratio"] is None else f", whirling at {point['whirl_ratio']:.3g} of the shaft speed"
+            )
+            said.append(f"Mode {point['mode']} loses or regains its damping at {point['speed']:.5g} rad/s{ratio}.")
+        else:
+            said.append(f"Mode {point['mode']} changes its direction of whirl at {point['speed']:.5g} rad/s.")
+    synchronous = [c for c in answer["crossings"] if c["line"] == 1.0]
+    for c in synchronous:
+        said.append(f"Mode {c['mode']} meets once per turn at {c['speed']:.5g} rad/s.")
+    if not synchronous:
+        said.append("No mode meets once per turn in this range.")
+    return said

@@ -1,0 +1,270 @@
+"""Stiffness and damping of the film, 3 x 3 on (dz, tilt about xi, tilt about eta): aligned, tilted, over speed and
+clearance."""
+
+import cmath
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..gap import (
+    DZ,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+    edge_gaps,
+)
+from ..modes import linearise
+from ..problem import Problem
+from ..scene import ImpossibleScene
+from ..twin import held
+from ..units import Angle, Length, Speed
+
+# Rows and columns of the matrices.
+ORDER = ("axial", "tilt_x", "tilt_y")
+STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
+DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else u + "*s" for u in row]
+                 for row in STIFFNESS_UNITS]  # fmt: skip
+STEP = 0.02
+
+units = {
+    "against_speed/speed": "rad/s",
+    "against_clearance/clearance": "m",
+    "against_tilt/tilt": "rad",
+    "against_tilt/axial_opening": "m",
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`tilt`: relative misalignment of the tilted state (default: the mean of the linear steady state, or, if that is
+    nothing, its turning part); `tilt_direction` from xi; sweeps over `speed_to`, `clearance_from` to `clearance_to`,
+    and the tilt, `points` each."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    tilt: Angle | None = None
+    tilt_direction: Angle = 0.0
+    speed_to: Speed | None = None
+    clearance_from: Length | None = None
+    clearance_to: Length | None = None
+    points: int = 41
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the film is linearised: axial gap change (m), relative tilt (rad, complex), its rate of turning (rad/s)."""
+
+    dz: float = 0.0
+    tilt: complex = 0.0
+    whirl: float = 0.0
+
+
+def run(scenario, settings, tools) -> dict:
+    """Matrices aligned and tilted, and sweeps."""
+    scene = held(scenario.scene)
+    problem, speed = Problem(scene, 1.0, 1e-10), scene.shaft.speed
+    stiffness, damping = matrices(problem, State())
+    answer = {
+        "order": list(ORDER),
+        "film": problem.film_name,
+        "stiffness": stiffness.tolist(),
+        "damping": damping.tolist(),
+        "stiffness_units": STIFFNESS_UNITS,
+        "damping_units": DAMPING_UNITS,
+        "at": _at(problem, State(), speed),
+        "tilted": _tilted(problem, settings, speed),
+        "against_speed": _against_speed(problem, settings, speed),
+        "against_clearance": _against_clearance(scene, problem, settings),
+        "against_tilt": _against_tilt(problem, settings),
+    }
+    return answer | {"verdict": _verdict(answer)}
+
+
+def matrices(problem: Problem, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
+    lose per displacement and per rate of (dz, g_x, g_y).  Raises ValueError where the faces touch."""
+    s = gap_state(problem, state, speed)
+    thinnest = min(edge_gaps(problem.face, state.dz, abs(state.tilt)))
+    if thinnest <= problem.face[4]:
+        raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
+    # Eight differences reach four steps to either side: stay clear of the other face.
+    length = STEP * min(problem.clearance, thinnest)
+    tilt = length / problem.face[1]
+    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    return linearise(problem.film.wrench, problem.f, s, (length, tilt, length * pace, tilt * pace))
+
+
+def gap_state(problem: Problem, state: State, speed: float | None = None) -> np.ndarray:
+    """The gap-state array of a state at a shaft speed (rad/s)."""
+    scene, s = problem.scene, np.zeros(GAP_STATE_SIZE)
+    w_r, w_s = scene.shaft.speed if speed is None else speed, scene.stator.speed
+    s[DZ], s[GX], s[GY] = state.dz, state.tilt.real, state.tilt.imag
+    turning = 1j * state.whirl * state.tilt
+    s[GX_RATE], s[GY_RATE] = turning.real, turning.imag
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (w_r + w_s), w_r - w_s
+    s[VISCOSITY] = scene.film.viscosity
+    s[INNER_PRESSURE], s[OUTER_PRESSURE] = scene.film.inner_pressure, scene.film.outer_pressure
+    return s
+
+
+def opened(problem: Problem, tilt: complex, whirl: float) -> float:
+    """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
+    scene = problem.scene
+    stiffness = [ring.support.axial_stiffness for ring in (scene.stator, scene.rotor) if ring.support]
+    # Two supports carry the same force: in series.
+    support = 1 / sum(1 / k for k in stiffness) if all(stiffness) else 0.0
+    leg = problem.leg
+    closing = problem.closing.over(leg, scene.film)[0]
+
+    def excess(dz):
+        s = gap_state(problem, State(dz, tilt, whirl))
+        problem.film.wrench(problem.f, s)
+        return s[FORCE] - closing - support * dz
+
+    thinnest = min(edge_gaps(problem.face, 0.0, abs(tilt)))
+    # From faces that all but touch upwards.
+    low, reach = 1.01 * problem.face[4] - thinnest, problem.clearance
+    high = max(low, 0.0)
+    while excess(high) > 0 and high < 100 * reach:
+        low, high = high, high + 0.25 * reach
+    if excess(low) * excess(high) > 0:
+        raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
+    return float(brentq(excess, low, high, xtol=1e-9 * reach))
+
+
+def steady_tilt(problem: Problem) -> tuple[complex, float, str]:
+    """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
+    linear = problem.linear_scene()
+    parts: dict[float, complex] = {}
+    for harmonic in problem.harmonics():
+        g = linear.relative(harmonic, linear.response(harmonic))
+        # Re(g e^{iwt}) is a forward and a backward circle.
+        w = harmonic.frequency
+        parts[w] = parts.get(w, 0.0) + (g[1] + 1j * g[2]) / 2
+        parts[-w] = parts.get(-w, 0.0) + ((g[1] - 1j * g[2]) / 2).conjugate()
+    mean = parts.pop(0.0, 0.0)
+    if abs(mean) > 0:
+        return complex(mean), 0.0, "mean tilt of the linear steady state"
+    if parts:
+        w, largest = max(parts.items(), key=lambda item: abs(item[1]))
+        if abs(largest) > 0:
+            return complex(largest), float(w), "turning tilt of the linear steady state, at one instant"
+    return 0.0, 0.0, "no forcing tilts this scene: aligned"
+
+
+def _tilted(problem, settings, speed) -> dict:
+    if settings.tilt is not None:
+        tilt, whirl, said = cmath.rect(settings.tilt, settings.tilt_direction), 0.0, "mean tilt given"
+    else:
+        tilt, whirl, said = steady_tilt(problem)
+    try:
+        state = State(opened(problem, tilt, whirl), tilt, whirl)
+        stiffness, damping = matrices(problem, state)
+    except ValueError as reason:
+        return {"stiffness": None, "damping": None, "at": None, "said": f"{said}: {reason}"}
+    return {
+        "stiffness": stiffness.tolist(),
+        "damping": damping.tolist(),
+        "at": _at(problem, state, speed),
+        "said": said,
+    }
+
+
+def _at(problem, state: State, speed) -> dict:
+    thinnest = min(edge_gaps(problem.face, state.dz, abs(state.tilt)))
+    return {
+        "clearance": problem.clearance,
+        "axial_opening": state.dz,
+        "tilt_x": state.tilt.real,
+        "tilt_y": state.tilt.imag,
+        "whirl": state.whirl,
+        "h_min": float(thinnest),
+        "speed": float(speed),
+    }
+
+
+# --- sweeps --------------------------------------------------------------------------------------------
+
+
+def _row(found) -> dict:
+    stiffness, damping = found
+    return {"stiffness": stiffness.tolist(), "damping": damping.tolist()}
+
+
+def _columns(name, values, rows) -> dict:
+    """Matrices over a sweep; a point that cannot be is None."""
+    return {
+        name: [float(v) for v in values],
+        "stiffness": [row.get("stiffness") for row in rows],
+        "damping": [row.get("damping") for row in rows],
+        "failed": [row.get("failed") for row in rows],
+    }
+
+
+def _against_speed(problem, settings, speed) -> dict:
+    top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
+    speeds = np.linspace(0.0, top, max(2, settings.points))
+    return _columns("speed", speeds, [_row(matrices(problem, State(), w)) for w in speeds])
+
+
+def _against_clearance(scene, problem, settings) -> dict:
+    low = settings.clearance_from or 0.3 * problem.clearance
+    high = settings.clearance_to or 3 * problem.clearance
+    clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
+    for clearance in clearances:
+        try:
+            rows.append(_row(matrices(Problem(held(scene, clearance=float(clearance)), 1.0, 1e-10), State())))
+        except (ImpossibleScene, ValueError) as error:
+            rows.append({"failed": str(error)})
+    return _columns("clearance", clearances, rows)
+
+
+def _against_tilt(problem, settings) -> dict:
+    """About a standing tilt up to nearly touching, the faces opening as they tilt."""
+    inner, outer = edge_gaps(problem.face, 0.0, 0.0)
+    touch = min(inner / problem.face[0], outer / problem.face[1])
+    tilts, rows, opening = np.linspace(0.0, 0.95 * touch, max(2, settings.points)), [], []
+    for tilt in tilts:
+        try:
+            dz = opened(problem, complex(tilt), 0.0)
+            rows.append(_row(matrices(problem, State(dz, complex(tilt), 0.0))))
+            opening.append(dz)
+        except ValueError as error:
+            rows.append({"failed": str(error)})
+            opening.append(None)
+    return {**_columns("tilt", tilts, rows), "axial_opening": opening}
+
+
+def _verdict(answer) -> list[str]:
+    k, d, at = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"]
+    said = [
+        f"Aligned at {at['clearance'] * 1e6:.4g} um, {at['speed']:.5g} rad/s ({answer['film']} film): axial "
+        f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
+        f"Cross stiffness {k[1, 2]:.5g} N m/rad: {_ratio(k[1, 2], d[1, 1], at)}",
+    ]
+    tilted = answer["tilted"]
+    if tilted["stiffness"] is None:
+        return [*said, f"Tilted: {tilted['said']}."]
+    t, where = np.array(tilted["stiffness"]), tilted["at"]
+    size, opening = math.hypot(where["tilt_x"], where["tilt_y"]) * 1e6, where["axial_opening"] * 1e6
+    said.append(
+        f"Tilted by {size:.4g} urad ({tilted['said']}) the seal opens by {opening:.3g} um; tilt stiffness "
+        f"{t[1, 1]:.5g} and {t[2, 2]:.5g} N m/rad, axial to tilt {np.abs(t[0, 1:]).max():.3g} N/rad."
+    )
+    return said
+
+
+def _ratio(cross, damping, at) -> str:
+    if not damping or not at["speed"]:
+        return "no damping or no speed to compare with."
+    return f"{cross / damping / at['speed']:.4g} of the shaft speed times the damping (half, for a wedge film)."

@@ -1,0 +1,114 @@
+"""Equilibria: every clearance at which the film carries the closing force, with stiffness and stability."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..equilibrium import ClosingForce, equilibria, initially, settle
+from ..problem import film_module
+from ..scene import ImpossibleScene
+from ..twin import held
+from ..units import Length
+
+units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/stiffness": "N/m"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Clearances from `clearance_from` to `clearance_to` (default: a range that shows every equilibrium), `points`
+    of the curve of opening force."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    clearance_from: Length | None = None
+    clearance_to: Length | None = None
+    points: int = 241
+
+
+def run(scenario, settings, tools) -> dict:
+    """All equilibria in the range, the opening force over clearance and the closing force."""
+    scene = held(scenario.scene)
+    film, opening = scene.film, film_module(scene.film.model).opening_force
+    inner, outer = film.inner_pressure, film.outer_pressure
+    law, said = closing_force(scene, opening)
+    closing = law.at(inner, outer, initially(law.spring))
+    roots = equilibria(film, opening, closing, inner, outer)
+    low, high = _range(film, roots, settings)
+    roots = [root for root in roots if low <= root.clearance <= high]
+    clearance = np.geomspace(low, high, max(3, settings.points))
+    force = np.array([opening(film, c, inner, outer) for c in clearance])
+    stiffness = np.array([_stiffness(opening, film, c, inner, outer) for c in clearance])
+    support = sum(ring.support.axial_stiffness for ring in (scene.rotor, scene.stator) if ring.support)
+    answer = {
+        "roots": [{**vars(root), "stable": bool(root.stable)} for root in roots],
+        "closing_force": float(closing),
+        "balance_ratio": float(law.balance_ratio),
+        "spring_force": float(initially(law.spring)),
+        "closing_said": said,
+        "support_stiffness": support,
+        "range": [float(low), float(high)],
+        "curve": {
+            "clearance": clearance.tolist(),
+            "opening_force": force.tolist(),
+            "stiffness": stiffness.tolist(),
+        },
+    }
+    return answer | {"verdict": _verdict(answer)}
+
+
+def closing_force(scene, opening) -> tuple[ClosingForce, str]:
+    """The closing force and a sentence; unlike `settle`, also of a scene without a stable equilibrium."""
+    if scene.film.clearance is not None:
+        _, law, _, said = settle(scene, opening)
+        return law, said
+    film, closing = scene.film, scene.closing
+    if closing.balance_ratio is None or closing.spring_force is None:
+        raise ImpossibleScene("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+    area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
+    law = ClosingForce(area, closing.balance_ratio, closing.spring_force, film.outer_pressure >= film.inner_pressure)
+    return law, "closing force from balance ratio and spring"
+
+
+def _range(film, roots, settings) -> tuple[float, float]:
+    """Clearances to look at, (m): a decade around what was found, open faces only."""
+    drop = film.coning * (film.outer_radius - film.inner_radius)
+    found = [root.clearance for root in roots] or [film.clearance or max(abs(drop), 1e-6)]
+    least = max(0.0, -drop) * (1 + 1e-6)
+    low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10
+    high = settings.clearance_to if settings.clearance_to is not None else max(found) * 10
+    low = max(low, least + 0.01 * max(found))
+    if not low < high:
+        wanted = f"clearances above {least:.4g} m, where the faces are open"
+        raise ImpossibleScene("study.equilibrium.clearance_to", f"{high:.4g} m", wanted)
+    return float(low), float(high)
+
+
+def _stiffness(opening, film, clearance, inner, outer) -> float:
+    """-dF/dC (N/m), central difference, one step smaller than the distance to closed faces."""
+    least = max(0.0, -film.coning * (film.outer_radius - film.inner_radius))
+    step = 1e-4 * (clearance - least)
+    f = [opening(film, clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
+    return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
+
+
+def _verdict(answer) -> list[str]:
+    low, high = answer["range"]
+    roots, stable = answer["roots"], [r for r in answer["roots"] if r["stable"]]
+    said = [
+        f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
+        f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
+        f"{len(roots)} equilibrium clearance(s) from {low * 1e6:.4g} to {high * 1e6:.4g} um, {len(stable)} stable.",
+    ]
+    for root in roots:
+        kind = "stable" if root["stable"] else "unstable"
+        words = f"{root['clearance'] * 1e6:.6g} um: {kind}, film stiffness {root['stiffness']:.5g} N/m"
+        if not root["stable"] and root["stiffness"] + answer["support_stiffness"] > 0:
+            words += f" (the support's {answer['support_stiffness']:.3g} N/m would hold it)"
+        said.append(words + ".")
+    if len(stable) > 1:
+        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
+    if not roots:
+        curve = answer["curve"]["opening_force"]
+        said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
+    return said

@@ -1,0 +1,286 @@
+"""Transmissibility: how much misalignment reaches the film of the FMR and of the FMS seal, over shaft speed.
+
+Static: per unit misalignment fixed in space; dynamic: per unit misalignment turning with the shaft; total: both 1.
+Three roads: formula, harmonic balance, and the equations of motion in time.
+**Source** Green (1989), Fig. 8 and Table 1.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .. import closed_form as cf
+from .. import modes
+from ..films import Coefficients
+from ..problem import Problem
+from ..recorder import Recorder
+from ..scenario import parse_scenario
+from ..scene import Scene
+from ..signals import signals
+from ..solve import solve
+from ..twin import SEALS, Seal, arrangement, held, seals_of
+from ..units import Speed
+from ..watch import MOST
+
+QUANTITIES = ("static", "dynamic", "total")
+NAMES = {
+    "static": "static_transmissibility",
+    "dynamic": "dynamic_transmissibility",
+    "total": "maximum_relative_misalignment",
+}
+# Forcing of a time-domain point, as part of the thinnest edge film, and what may be left of its transient.
+AMPLITUDE, LEFT, PER_TURN = 0.2, 1e-9, 64
+COARSER = 100.0
+# Relative difference below which both arrangements transmit the same.
+SAME = 1e-9
+
+units = {"speed": "rad/s", "time_domain/speed": "rad/s"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Speeds from `speed_from` to `speed_to` (default three times the scenario's), `points` of them; `unit` of the
+    figure's axis; `time_points` speeds in the time domain at `accuracy`, of runs of at most `longest` turns."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    speed_from: Speed = 0.0
+    speed_to: Speed | None = None
+    points: int = 301
+    unit: Literal["rad/s", "rpm"] = "rad/s"
+    time_points: int = 12
+    accuracy: float = 1e-7
+    longest: float = 4000.0
+
+
+def run(scenario, settings, tools) -> dict:
+    """Transmissibilities of both arrangements by three roads, the speeds at which they cross, and the table."""
+    seals = seals_of(scenario)
+    own_speed = abs(held(scenario.scene).shaft.speed)
+    top = settings.speed_to if settings.speed_to is not None else 3 * own_speed or 3000.0
+    speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
+    by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
+    answer = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
+    for name, seal in seals.items():
+        algebra = np.array([seal.algebra(w) for w in speeds]).T
+        lines = np.array(seal.formula(speeds)) if by_formula else algebra
+        answer[name] = dict(zip(QUANTITIES, lines.tolist(), strict=True))
+        answer[name]["linear_algebra"] = dict(zip(QUANTITIES, algebra.tolist(), strict=True))
+        answer[name]["stable"] = [seal.growth(w) < 0 for w in speeds]
+    answer["formula_holds"] = by_formula
+    answer["roads_apart"] = _apart(answer)
+    tools.say(0.05)
+    answer["crossings"] = crossings(seals, speeds)
+    answer["crossovers"] = {
+        q: next((c["speed"] for c in reversed(answer["crossings"]) if c["quantity"] == q), None) for q in QUANTITIES
+    }
+    answer["better"] = {q: _better(answer, q) for q in QUANTITIES}
+    answer["time_domain"] = _in_time(scenario, settings, speeds, own_speed, tools)
+    answer["table"] = table(seals, own_speed, by_formula, answer["time_domain"]) if own_speed else []
+    return answer | {"verdict": _verdict(answer, own_speed)}
+
+
+def crossings(seals: dict[str, Seal], speeds) -> list[dict]:
+    """Every speed (rad/s) inside the range where one arrangement overtakes the other, located to rounding; at rest
+    both transmit the same."""
+    found = []
+    moving = [w for w in speeds if w != 0]
+    for i, quantity in enumerate(QUANTITIES):
+
+        def excess(w, i=i):
+            fmr, fms = (seals[name].algebra(w)[i] for name in SEALS)
+            return fmr - fms if abs(fmr - fms) > SAME * fmr else 0.0
+
+        values = [excess(w) for w in moving]
+        for (a, b), (low, high) in zip(pairwise(moving), pairwise(values), strict=True):
+            if low * high < 0:
+                speed = float(brentq(excess, a, b, rtol=1e-12))
+                better = "fms" if high > 0 else "fmr"
+                found.append({"quantity": quantity, "speed": speed, "better_above": better})
+    return found
+
+
+def _better(answer, quantity: str) -> str | None:
+    """The arrangement that transmits less at the highest speed; None if both transmit the same."""
+    fmr, fms = (answer[s][quantity][-1] for s in SEALS)
+    return None if abs(fmr - fms) <= SAME * fmr else ("fmr" if fmr < fms else "fms")
+
+
+def _apart(answer) -> float:
+    """Largest distance of formula and linear algebra, relative to the largest of a curve."""
+    far = 0.0
+    for seal in SEALS:
+        for q in QUANTITIES:
+            line, dashes = np.array(answer[seal][q]), np.array(answer[seal]["linear_algebra"][q])
+            far = max(far, float(np.max(np.abs(line - dashes)) / (np.max(np.abs(line)) or 1.0)))
+    return far
+
+
+# --- the third road ----------------------------------------------------------------------------------
+
+
+def _in_time(scenario, settings, speeds, own_speed, tools) -> list[dict]:
+    """Rows of a dozen speeds, the scenario's own among them."""
+    if settings.time_points < 1:
+        return []
+    chosen = np.linspace(speeds[0], speeds[-1], settings.time_points + (speeds[0] == 0))
+    chosen = sorted({float(w) for w in [*chosen, own_speed] if w != 0})
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    points = [
+        {**base, "seal": seal, "speed": w, "accuracy": settings.accuracy, "longest": settings.longest}
+        for w in chosen
+        for seal in SEALS
+    ]
+    rows = tools.map(measured, points, "time domain")
+    return [{"seal": p["seal"], "speed": p["speed"], **row} for p, row in zip(points, rows, strict=True)]
+
+
+def measured(point: dict) -> dict:
+    """Static, dynamic and total of one arrangement at one speed, from a run on the linear film in the film's own
+    coefficients; `error`: the difference to a run at a hundred times coarser accuracy."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    seal = seals_of(scenario)[point["seal"]]
+    decay = -seal.growth(point["speed"])
+    turn = 2 * math.pi / abs(point["speed"])
+    if decay <= 0:
+        kind = "unstable" if decay < 0 else "undamped"
+        raise ValueError(f"{kind} at {point['speed']:.5g} rad/s: no steady state")
+    turns = math.ceil(-math.log(LEFT) / decay / turn) + 4
+    if turns > point["longest"]:
+        raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
+    amplitude = _amplitude(seal, point["speed"])
+    scene = _forced(seal, point["speed"], amplitude)
+    fine = np.array(_steady(scene, turns, point["accuracy"])) / amplitude
+    coarse = np.array(_steady(scene, turns, COARSER * point["accuracy"])) / amplitude
+    names = dict(zip(QUANTITIES, fine.tolist(), strict=True))
+    return names | {"error": dict(zip(QUANTITIES, np.abs(fine - coarse).tolist(), strict=True)), "turns": turns}
+
+
+def _amplitude(seal: Seal, speed: float) -> float:
+    """Forcing (rad) that leaves the film open."""
+    film = seal.scene.film
+    thinnest = min(film.clearance, film.clearance + film.coning * (film.outer_radius - film.inner_radius))
+    return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
+
+
+def _forced(seal: Seal, speed: float, amplitude: float) -> Scene:
+    """The arrangement with both forcings, on the linear film."""
+    linear = seal.linear(speed)
+    own = Coefficients(
+        tilt_stiffness=linear.film_k[1, 1],
+        tilt_damping=linear.film_d[1, 1],
+        axial_stiffness=linear.film_k[0, 0],
+        axial_damping=linear.film_d[0, 0],
+    )
+    scene = held(seal.scene, speed)
+    return replace(
+        scene,
+        film=replace(scene.film, model="linear", coefficients=own),
+        stator=replace(scene.stator, misalignment=amplitude, misalignment_direction=0.0),
+        rotor=replace(scene.rotor, misalignment=amplitude, runout=amplitude, misalignment_phase=0.0, runout_phase=0.0),
+    )
+
+
+def _steady(scene: Scene, turns: int, accuracy: float) -> tuple[float, float, float]:
+    """Amplitudes (rad) of the relative tilt standing still, turning with the shaft, and its largest value, over the
+    last turn of a run from rest."""
+    speed = scene.shaft.speed
+    turn = 2 * math.pi / abs(speed)
+    problem = Problem(scene, turns * turn, accuracy)
+    problem.windows[1] = [problem.duration - turn, problem.duration]
+    recorder = Recorder(problem, turn / PER_TURN)
+    outcome = solve(problem, problem.solver()[0], accuracy, recorder)
+    if outcome.status != "ok":
+        raise ValueError(outcome.message)
+    t, q, rate = (a[-PER_TURN:] for a in recorder.arrays())
+    seen = signals(problem, t, q, rate)
+    tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
+    turning = np.exp(-1j * speed * t)
+    standing = np.exp(-1j * scene.stator.speed * t)
+    return (
+        float(abs(np.mean(tilt * standing))),
+        float(abs(np.mean(tilt * turning))),
+        float(problem.records[1, MOST]),
+    )
+
+
+# --- the table ---------------------------------------------------------------------------------------
+
+
+def table(seals: dict[str, Seal], speed: float, by_formula: bool, rows: list[dict]) -> list[dict]:
+    """FMR against FMS in the form of Green's Table 1, at one speed (rad/s), by every road that goes there."""
+    roads = {"formula": {}, "linear_algebra": {}, "time_domain": {}}
+    for name, seal in seals.items():
+        roads["linear_algebra"][name] = [*seal.algebra(speed)]
+        roads["formula"][name] = [float(v) for v in seal.formula(speed)] if by_formula else [None] * 3
+        row = next((r for r in rows if r["seal"] == name and r["speed"] == speed and "failed" not in r), {})
+        roads["time_domain"][name] = [row.get(q) for q in QUANTITIES]
+    for road, both in roads.items():
+        for name, values in both.items():
+            values.append(_critical_misalignment(seals[name], values))
+            values.append(_critical_speed(seals[name], road, by_formula))
+    kinds = [*((n, "1") for n in NAMES.values()), ("critical_misalignment", "C/r_o"), ("critical_speed", "rad/s")]
+    best = "formula" if by_formula else "linear_algebra"
+    return [
+        {"quantity": quantity, "unit": unit, "fmr": roads[best]["fmr"][i], "fms": roads[best]["fms"][i]}
+        | {road: {name: both[name][i] for name in SEALS} for road, both in roads.items()}
+        for i, (quantity, unit) in enumerate(kinds)
+    ]
+
+
+def _critical_misalignment(seal: Seal, values) -> float | None:
+    """Partner's misalignment at first touch, in units of C/r_o, with a unit own misalignment."""
+    if values[0] is None:
+        return None
+    film = seal.scene.film
+    touch = cf.contact_tilt(film.inner_radius, film.outer_radius, film.clearance, film.coning)
+    own, forcing = (values[1], values[0]) if seal.name == "fmr" else (values[0], values[1])
+    found = cf.critical_forcing(float(touch) * film.outer_radius / film.clearance, own, forcing)
+    return float(found) if np.isfinite(found) else None
+
+
+def _critical_speed(seal: Seal, road: str, by_formula: bool) -> float | None:
+    if road == "time_domain" or (road == "formula" and not by_formula):
+        return None
+    if road == "linear_algebra":
+        return modes.critical_speed(seal.linear, 1.0, 1e6, 240)
+    numbers = seal.tilt_numbers(1.0)
+    numbers.pop("speed")
+    try:
+        return (cf.fmr_critical_speed if seal.name == "fmr" else cf.fms_critical_speed)(**numbers)
+    except ValueError:
+        return None
+
+
+def _verdict(answer: dict, own_speed: float) -> list[str]:
+    said = []
+    if answer["arrangement"] == "FMSR":
+        said.append("Both rings float: each arrangement is this scene with the other ring held rigid.")
+    for quantity in QUANTITIES:
+        found = [c for c in answer["crossings"] if c["quantity"] == quantity]
+        if not found:
+            better = answer["better"][quantity]
+            said.append(f"{quantity}: {better.upper()} is better over the whole range." if better else
+                        f"{quantity}: both arrangements transmit the same.")  # fmt: skip
+        for c in found:
+            said.append(f"{quantity}: {c['better_above'].upper()} is better above {c['speed']:.6g} rad/s.")
+    for row in answer["table"][:3]:
+        name = row["quantity"].replace("_", " ")
+        said.append(f"At {own_speed:.5g} rad/s {name}: FMR {row['fmr']:.4g}, FMS {row['fms']:.4g}.")
+    for name in SEALS:
+        stable = answer[name]["stable"]
+        if not all(stable):
+            first = answer["speed"][stable.index(False)]
+            said.append(f"{name.upper()} is not damped at speeds from about {first:.4g} rad/s: no steady state there.")
+    failed = [r for r in answer["time_domain"] if "failed" in r]
+    good = len(answer["time_domain"]) - len(failed)
+    said.append(f"Formula and linear algebra agree to {answer['roads_apart']:.1e}; {good} points in the time domain.")
+    if not answer["formula_holds"]:
+        said[-1] = "No closed form for this film or a turning stator: lines are linear algebra."
+    if failed:
+        said.append(f"{len(failed)} time-domain points failed, e.g. {failed[0]['failed']}")
+    return said

@@ -1,0 +1,141 @@
+"""Campbell diagram: modes followed through a constructed crossing and a veering, against roots written out here."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sealdyn import read_scenario
+from sealdyn.studies import campbell
+from sealdyn.studies.campbell import Settings, follow
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+
+
+class Tools:
+    def say(self, fraction):
+        pass
+
+
+def answer(name, overrides=(), **settings):
+    return campbell.run(read_scenario(SCENARIOS / f"{name}.toml", overrides), Settings(**settings), Tools())
+
+
+def green():
+    """Film stiffness and damping of the reference seal, appendix of Green (1989), dimensional."""
+    ratio, b, mu = 0.8, 12.5, 0.5e-3
+    stiffness = np.pi * 5e5 * (b * ratio - 1) * ((1 - ratio**2) / (4 + 2 * b * (1 - ratio))) ** 2 * 0.04**4 / 1e-5
+    x = b * (1 - ratio)
+    g = (np.log(1 + x) - 2 * x / (2 + x)) / (b**3 * (1 - ratio) ** 2)
+    damping = 2 * np.pi * ((1 + ratio) / 2) ** 3 * g * 6 * mu * (0.04 / 1e-5) ** 2 * (1 - ratio) ** 2 * 0.04**4 / 1e-5
+    return stiffness, damping
+
+
+def two_oscillators(coupling):
+    """Frequencies 1 + w and 3 - w, which meet at w = 1; coupled, they veer apart."""
+
+    def pencil(w):
+        stiffness = np.array([[(1 + w) ** 2, coupling], [coupling, (3 - w) ** 2]])
+        zero, one = np.zeros((2, 2)), np.eye(2)
+        left = np.block([[zero, one], [-stiffness, -np.diag([0.02, 0.1])]])
+        return left, np.eye(4)
+
+    return pencil
+
+
+@pytest.mark.parametrize("points", [7, 20, 101])
+def test_modes_go_straight_through_a_crossing(points):
+    speeds = np.linspace(0, 2, points)
+    values, shapes = follow(two_oscillators(0.0), speeds)
+    for row, shape in zip(values, shapes, strict=True):
+        place = int(np.argmax(np.abs(shape[0, :2])))
+        wanted = 1 + speeds if place == 0 else 3 - speeds
+        damping = 0.02 if place == 0 else 0.1
+        assert np.abs(row.imag) == pytest.approx(np.sqrt(wanted**2 - damping**2 / 4), rel=1e-9)
+        assert row.real == pytest.approx(np.full(points, -damping / 2), rel=1e-9)
+
+
+def test_sorting_by_frequency_would_have_swapped_them():
+    """The failing way: the damping of the mode of lowest frequency jumps at the crossing."""
+    values, _ = follow(two_oscillators(0.0), np.linspace(0, 2, 21))
+    upper = [sorted((v for v in column if v.imag > 0), key=lambda v: v.imag)[0].real for column in values.T]
+    assert np.ptp(upper) > 0.03
+
+
+def test_coupled_modes_veer_and_exchange_their_shapes():
+    # Six speeds would leap over the narrow gap, were none looked at between them.
+    speeds = np.linspace(0, 2, 6)
+    values, shapes = follow(two_oscillators(0.4), speeds)
+    for row, shape in zip(values, shapes, strict=True):
+        share = np.abs(shape[:, 0]) > np.abs(shape[:, 1])
+        assert share[0] != share[-1]
+        assert np.all(np.diff(np.sign(row.imag)) == 0)
+    upper = [row for row in values if row[0].imag > 0]
+    assert len({int(s) for s in np.sign(upper[0].imag - upper[1].imag)}) == 1
+
+
+def test_gyroscopic_ring_on_springs():
+    """-I s^2 + J W s + K = 0 for the undamped rotor: frequencies (J W +- sqrt((J W)^2 + 4 I K)) / 2 I."""
+    found = answer("free_precession", points=31)
+    speed, inertia, polar, k = np.array(found["speed"]), 8e-4, 16e-4, 400.0
+    root = np.sqrt((polar * speed) ** 2 + 4 * inertia * k)
+    tilt = [m for m in found["modes"] if m["kind"] == "tilt"]
+    assert [m["direction"] for m in tilt] == ["backward", "forward"]
+    assert tilt[0]["frequency"] == pytest.approx((root - polar * speed) / (2 * inertia), rel=1e-8)
+    assert tilt[1]["frequency"] == pytest.approx((root + polar * speed) / (2 * inertia), rel=1e-8)
+    assert not found["thresholds"] and set(tilt[0]["log_decrement"]) == {0.0}
+    axial = next(m for m in found["modes"] if m["kind"] == "axial")
+    assert axial["frequency"] == pytest.approx(np.full(31, np.sqrt(5e5)), rel=1e-9)
+
+
+@pytest.mark.parametrize("name, ring", [("fmr_reference", "rotor"), ("fms_reference", "stator")])
+@pytest.mark.parametrize("c", [0.5, 3.0])
+def test_tilt_modes_are_the_roots_of_greens_complex_equation(name, ring, c):
+    overrides = ["film.model=linear", f"{ring}.polar_inertia={8e-4 / c!r}"]
+    found = answer(name, overrides, points=41, speed_to=12000.0)
+    k, d = green()
+    k_s, d_s, inertia = 400.0, 0.24, 8e-4
+    tilt = [m for m in found["modes"] if m["kind"] == "tilt"]
+    assert len(tilt) == 2
+    for i, w in enumerate(found["speed"]):
+        turn = w if ring == "rotor" else 0.0
+        roots = np.roots(
+            [inertia, d_s + d - 1j * inertia / c * turn, k_s + k - 1j * (d_s * turn + d * w / 2)],
+        )
+        got = sorted(m["signed_frequency"][i] for m in tilt)
+        assert got == pytest.approx(sorted(roots.imag), rel=1e-7, abs=1e-3)
+        for m in tilt:
+            near = roots[np.argmin(np.abs(roots.imag - m["signed_frequency"][i]))]
+            if m["frequency"][i] > 50:
+                assert m["log_decrement"][i] == pytest.approx(-2 * np.pi * near.real / abs(near.imag), rel=1e-6)
+    critical = [p["speed"] for p in found["thresholds"] if p["what"] == "damping"]
+    nu = (d_s + d / 2) / (d_s + d) if ring == "rotor" else d / 2 / (d_s + d)
+    if ring == "stator":
+        assert critical == [pytest.approx(np.sqrt((k_s + k) / inertia) / nu, rel=1e-5)]
+    elif c == 3.0:
+        assert critical == [pytest.approx(np.sqrt((k_s + k) / inertia / (nu * (nu - 1 / c))), rel=1e-5)]
+    else:
+        assert critical == []
+
+
+def test_four_modes_of_two_rings_are_smooth():
+    found = answer("fmsr_both_flexible", points=121)
+    tilt = [m for m in found["modes"] if m["kind"] == "tilt"]
+    assert len(tilt) == 4
+    for mode in tilt:
+        bends = np.abs(np.diff(mode["signed_frequency"], 2))
+        assert bends.max() < 60.0
+
+
+def test_order_lines_meet_modes_where_they_say():
+    found = answer("fms_reference", ["film.model=linear"], points=61, lines=2.0)
+    assert found["lines"] == [2.0, 1.0, 0.5]
+    for crossing in found["crossings"]:
+        mode = found["modes"][crossing["mode"] - 1]
+        at = np.interp(crossing["speed"], found["speed"], mode["frequency"])
+        assert at == pytest.approx(crossing["line"] * crossing["speed"], rel=2e-3)
+
+
+def test_massless_ring_has_one_tilt_mode_and_no_rate():
+    found = answer("massless_ring", points=11)
+    assert [m["kind"] for m in found["modes"]] == ["tilt", "axial"]

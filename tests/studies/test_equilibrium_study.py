@@ -1,0 +1,77 @@
+"""Equilibrium study: forces integrated here, several clearances, none at all."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from sealdyn import read_scenario
+from sealdyn.scenario import parse_scenario
+from sealdyn.studies import equilibrium
+from sealdyn.studies.equilibrium import Settings
+
+REFERENCE = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
+
+
+def answer(scenario, **settings):
+    return equilibrium.run(scenario, Settings(**settings), None)
+
+
+def balanced(coning, ratio, spring, inner="0 bar"):
+    text = REFERENCE.read_text().replace('clearance = "10 um"', "").replace('"3.125 mrad"', f'"{coning} mrad"')
+    text = text.replace('inner_pressure = "0 bar"', f'inner_pressure = "{inner}"')
+    return parse_scenario(text + f"[closing]\nbalance_ratio = {ratio}\nspring_force = {spring}\n", "balanced")
+
+
+def opening(clearance, coning, inner=0.0, r_i=0.032, r_o=0.040, outer=5e5):
+    """p from r h^3 p' = const by quadrature, then the force."""
+
+    def flow(r):
+        return quad(lambda s: 1 / (s * (clearance + coning * (s - r_i)) ** 3), r_i, r, epsrel=1e-12)[0]
+
+    whole = flow(r_o)
+    return quad(lambda r: 2 * np.pi * r * (inner + (outer - inner) * flow(r) / whole), r_i, r_o, epsrel=1e-9)[0]
+
+
+def test_converging_film_rides_where_the_forces_balance():
+    found = answer(balanced(3.125, 0.75, 50.0))
+    area = np.pi * (0.04**2 - 0.032**2)
+    wanted = brentq(lambda c: opening(c, 3.125e-3) - (0.75 * 5e5 * area + 50), 1e-6, 1e-4)
+    (root,) = found["roots"]
+    assert root["clearance"] == pytest.approx(wanted, rel=1e-7) and root["stable"]
+    step = 1e-8
+    slope = (opening(wanted + step, 3.125e-3) - opening(wanted - step, 3.125e-3)) / (2 * step)
+    assert root["stiffness"] == pytest.approx(-slope, rel=1e-4)
+
+
+def test_given_clearance_is_its_own_equilibrium():
+    found = answer(read_scenario(REFERENCE))
+    assert [r["clearance"] for r in found["roots"]] == [pytest.approx(10e-6, rel=1e-9)]
+    assert found["closing_force"] == pytest.approx(opening(10e-6, 3.125e-3), rel=1e-8)
+
+
+def test_diverging_film_has_an_unstable_equilibrium_and_says_so():
+    found = answer(balanced(-0.1, 0.45, 0.0))
+    (root,) = found["roots"]
+    assert not root["stable"] and root["stiffness"] < 0
+    assert any("unstable" in words for words in found["verdict"])
+    assert root["clearance"] == pytest.approx(
+        brentq(lambda c: opening(c, -1e-4) - found["closing_force"], 0.9e-6, 1e-3), rel=1e-6
+    )
+
+
+def test_no_equilibrium_is_an_answer_not_an_error():
+    found = answer(balanced(3.125, 0.3, 0.0))
+    assert found["roots"] == [] and any("never the closing force" in words for words in found["verdict"])
+
+
+def test_range_limits_what_is_reported():
+    assert answer(read_scenario(REFERENCE), clearance_from=2e-5, clearance_to=1e-4)["roots"] == []
+
+
+def test_curve_is_the_opening_force():
+    found = answer(read_scenario(REFERENCE), points=7)["curve"]
+    for clearance, force in zip(found["clearance"], found["opening_force"], strict=True):
+        assert force == pytest.approx(opening(clearance, 3.125e-3), rel=1e-7)

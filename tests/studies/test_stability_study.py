@@ -1,0 +1,151 @@
+"""Stability map: against eigenvalues of the rebuilt scene, Green's thresholds, and the time domain."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sealdyn import read_scenario
+from sealdyn.problem import Problem
+from sealdyn.scenario import parse_scenario
+from sealdyn.scenario_errors import ScenarioError
+from sealdyn.scenario_study import varied
+from sealdyn.stability_map import Grid, growth_rates
+from sealdyn.studies import stability
+from sealdyn.studies.stability import Settings
+from sealdyn.twin import held
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+FMR, FMS, FMSR = (SCENARIOS / f"{n}.toml" for n in ("fmr_reference", "fms_reference", "fmsr_both_flexible"))
+
+
+class Tools:
+    def map(self, function, points, what="points"):
+        rows = []
+        for point in points:
+            try:
+                rows.append(function(point))
+            except Exception as error:
+                rows.append({"failed": str(error)})
+        return rows
+
+    def say(self, fraction):
+        pass
+
+
+def one_by_one(scenario, values) -> tuple[float, float]:
+    """Growth rates of all modes and of the tilts from the 3 x 3 matrices of the scene rebuilt with these values."""
+    c = values.pop("inertia_ratio", None)
+    if c is not None:
+        for ring in ("rotor", "stator"):
+            if getattr(scenario.scene, ring).support:
+                values[f"{ring}.polar_inertia"] = getattr(scenario.scene, ring).transverse_inertia / c
+    changed = varied(scenario, {**values, "run.start": '"steady"'})
+    modes = Problem(held(changed.scene), 1.0).linear_scene().modes()
+    return modes[0].value.real, max(m.value.real for m in modes if m.kind == "tilt")
+
+
+@pytest.mark.parametrize(
+    "path, overrides, axes",
+    [
+        (FMR, ["film.model=linear"], {"shaft.speed": (100, 12000), "inertia_ratio": (0.5, 4)}),
+        (FMR, [], {"shaft.speed": (100, 12000), "rotor.polar_inertia": (0, 16e-4)}),
+        (FMR, ["film.geometry=planar"], {"film.coning": (-1e-4, 5e-3), "film.outer_pressure": (0, 1e6)}),
+        (FMR, ["film.tilt_radius=mean"], {"film.coning": (1e-3, 5e-3), "shaft.speed": (100, 9000)}),
+        (FMR, ["film.model=linear", "film.coefficients=radial"], {"film.viscosity": (1e-4, 1e-3),
+                                                                "film.clearance": (5e-6, 2e-5)}),
+        (FMS, [], {"stator.support.tilt_stiffness": (0, 1e3), "stator.transverse_inertia": (8e-4, 2e-3)}),
+        (FMS, [], {"stator.support.radius": (0.02, 0.05), "stator.mass": (0, 2)}),
+        (FMSR, [], {"shaft.speed": (100, 9000), "inertia_ratio": (0.5, 4)}),
+        (FMSR, ["stator.speed=-300"], {"rotor.support.axial_damping": (0, 600),
+                                       "stator.transverse_inertia": (8e-4, 2e-3)}),
+        (SCENARIOS / "massless_ring.toml", [], {"shaft.speed": (100, 9000), "film.coning": (1e-3, 5e-3)}),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_map_equals_the_scene_rebuilt_point_by_point(path, overrides, axes):
+    scenario = read_scenario(path, overrides)
+    values = {key: np.linspace(*ends, 4) for key, ends in axes.items()}
+    total, tilt = Grid(scenario, values).rates()
+    (x_key, x), (y_key, y) = values.items()
+    for j, i in ((0, 0), (1, 2), (3, 3), (2, 0)):
+        try:
+            wanted = one_by_one(scenario, {x_key: float(x[i]), y_key: float(y[j])})
+        except ScenarioError:
+            assert np.isnan(total[j, i])
+            continue
+        assert (total[j, i], tilt[j, i]) == pytest.approx(wanted, rel=1e-6, abs=1e-6)
+
+
+def test_impossible_scenes_are_blank():
+    scenario = read_scenario(FMR)
+    total, _ = Grid(
+        scenario, {"rotor.polar_inertia": np.array([8e-4, 17e-4]), "film.coning": np.array([-2e-3, 3e-3])}
+    ).rates()
+    assert np.isfinite(total).tolist() == [[False, False], [True, False]]
+    for c, possible in ((0.5, True), (0.49, False)):
+        total, _ = Grid(scenario, {"shaft.speed": np.array([1e3, 2e3]), "inertia_ratio": np.array([c, 1.0])}).rates()
+        assert np.isfinite(total[0, 0]) == possible
+
+
+def test_a_balance_that_finds_the_clearance_is_solved_along_its_axis():
+    text = FMR.read_text().replace('clearance = "10 um"', "") + "[closing]\nbalance_ratio = 0.75\nspring_force = 50\n"
+    scenario = parse_scenario(text, "balanced")
+    spring = np.array([20.0, 60.0, 1e5])
+    total, _ = Grid(scenario, {"shaft.speed": np.array([500.0, 7000.0]), "closing.spring_force": spring}).rates()
+    assert np.isnan(total[2]).all()
+    wanted = one_by_one(scenario, {"shaft.speed": 7000.0, "closing.spring_force": 60.0})[0]
+    assert total[1, 1] == pytest.approx(wanted, rel=1e-6)
+
+
+def test_thresholds_of_green_lie_on_the_maps_zero():
+    """FMR, c = 3: 8.684e3 rad/s; FMS: 2 (1 + D_s/D_f) sqrt(K/I) = 5.89e3 rad/s, written out here."""
+    k, d, k_s, d_s, inertia = 5791.0375, 4.0815, 400.0, 0.24, 8e-4
+    nu = (d_s + d / 2) / (d_s + d)
+    for path, critical, c in (
+        (FMR, np.sqrt((k_s + k) / inertia / (nu * (nu - 1 / 3))), 3.0),
+        (FMS, 2 * (1 + d_s / d) * np.sqrt((k_s + k) / inertia), 0.5),
+    ):
+        speeds = critical * np.array([0.998, 1.002])
+        total, _ = Grid(read_scenario(path, ["film.model=linear"]),
+                        {"shaft.speed": speeds, "inertia_ratio": np.array([c, 2 * c])}).rates()  # fmt: skip
+        assert total[0, 0] < 0 < total[0, 1]
+
+
+def test_quadratic_keeps_its_digits_and_takes_no_mass():
+    # A small root beside a fast one: the plain formula loses the small one, and with it the other's real part.
+    small, fast = -np.e, -np.sqrt(2) + 1e7j * np.pi
+    assert growth_rates([1.0], [-(small + fast)], [small * fast], 0.0, 0.0) == pytest.approx(fast.real, rel=1e-6)
+    assert growth_rates([0.0], [2.0], [6.0], 0.0, 0.0) == pytest.approx(-3.0)
+
+
+def answer(path, overrides=(), **settings):
+    return stability.run(read_scenario(path, overrides), Settings(**settings), Tools())
+
+
+def test_answer_states_limit_margin_and_confirms_in_time():
+    found = answer(FMR, ["film.model=linear", "rotor.polar_inertia=2.6666666667e-4"],
+                   x="shaft.speed=8000 rad/s:9400 rad/s:8", y="inertia_ratio=2.9:3.1:3", confirm=2)  # fmt: skip
+    d, d_s = 4.0815, 0.24
+    assert found["unconditional"]["limit"] == pytest.approx((d_s + d) / (d_s + d / 2), rel=1e-4)
+    assert not found["unconditional"]["holds"]
+    assert found["margins"]["critical_speed"] == pytest.approx(8.684e3, rel=1e-3)
+    assert np.shape(found["growth_rate"]) == (3, 8)
+    assert [p["agrees"] for p in found["confirmed"]] == [True, True]
+    for point in found["confirmed"]:
+        assert point["time_domain"] == pytest.approx(point["growth_rate"], rel=1e-3)
+
+
+def test_twin_sided_confirmation_of_a_nonlinear_film_and_two_rings():
+    found = answer(FMSR, x="shaft.speed=4500:5700:7", y="inertia_ratio=0.5:0.6:2", confirm=2)
+    assert [p["agrees"] for p in found["confirmed"]] == [True, True]
+
+
+@pytest.mark.parametrize(
+    "words", ["shaft.speed", "shaft.speeed=1:2:3", "shaft.speed=1 mm:2 mm:5", "shaft.speed=1:1:5", "film.model=0:1:3",
+              "inertia_ratio=0:1:5"],
+)  # fmt: skip
+def test_axes_that_cannot_be_are_refused_in_one_line(words):
+    with pytest.raises(ScenarioError) as refused:
+        answer(FMR, x=words)
+    assert "[study.stability] x" in str(refused.value) and "\n" not in str(refused.value)

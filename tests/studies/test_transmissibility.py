@@ -1,0 +1,140 @@
+"""Transmissibility study: Green's Table 1, crossovers from formulas written here, the three roads."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from scipy.optimize import brentq
+
+from sealdyn import read_scenario
+from sealdyn.closed_form import GREEN_1989
+from sealdyn.pool import Journal
+from sealdyn.problem import Problem
+from sealdyn.studies import transmissibility
+from sealdyn.studies.transmissibility import Settings
+from sealdyn.twin import held, one_flexible, twin
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+
+
+class Tools:
+    """Evaluates in this process."""
+
+    def __init__(self, folder):
+        self.journal = Journal(folder / "j", "x")
+
+    def map(self, function, points, what="points"):
+        return [self.one(function, p) for p in points]
+
+    def one(self, function, point):
+        try:
+            return function(point)
+        except Exception as error:
+            return {"failed": str(error)}
+
+    def say(self, fraction):
+        pass
+
+
+def answer(folder, file="fmr_reference.toml", overrides=("film.model=linear",), **settings):
+    return transmissibility.run(read_scenario(SCENARIOS / file, overrides), Settings(**settings), Tools(folder))
+
+
+@pytest.mark.parametrize("file, ring", [("fmr_reference.toml", "rotor"), ("fms_reference.toml", "stator")])
+@pytest.mark.parametrize("c", [0.5, 3.0])
+def test_greens_table_1_follows_from_either_scenario(tmp_path, file, ring, c):
+    overrides = ["film.model=linear", f"{ring}.polar_inertia={8e-4 / c!r}"]
+    found = answer(tmp_path, file, overrides, points=31, time_points=1, speed_to=1000.0)
+    rows = {row["quantity"]: row for row in found["table"]}
+    for printed in GREEN_1989:
+        if printed.inertia_ratio not in (None, c):
+            continue
+        row, seal = rows[printed.quantity], printed.arrangement.lower()
+        for road in ("formula", "linear_algebra"):
+            value = row[road][seal]
+            if printed.value is None:
+                assert value is None
+            elif printed.quantity == "critical_misalignment":
+                # The print follows from rounded inputs.
+                assert value == pytest.approx(printed.value, rel=0.01)
+            elif seal == "fmr" and printed.quantity == "critical_speed":
+                # Printed 8.4e3: K_f in place of K.  The formula gives 8.684e3.
+                assert value == pytest.approx(8.684e3, rel=1e-4)
+            else:
+                assert abs(value - printed.value) <= 1.0001 * printed.last_digit
+        if printed.quantity in ("static_transmissibility", "dynamic_transmissibility", "maximum_relative_misalignment"):
+            assert row["time_domain"][seal] == pytest.approx(row["formula"][seal], rel=1e-4)
+
+
+def test_crossovers_solve_greens_formulas(tmp_path):
+    """K_s 400 N m, D_s 0.24 N m s, K_f 5791 N m, D_f 4.082 N m s of the paper's Fig. 8, c = 1/2."""
+    seal = read_scenario(SCENARIOS / "fmr_reference.toml", ["film.model=linear"])
+    k, d = (m[1, 1] for m in Problem(seal.scene, 1.0).film_matrices())
+    assert (k, d) == (pytest.approx(5791, rel=1e-4), pytest.approx(4.082, rel=1e-3))
+    inertia, polar, k_s, d_s = 8e-4, 16e-4, 400.0, 0.24
+
+    def fmr(w):
+        return abs((k_s - 1j * d_s * w) / (k_s + k - 1j * (d_s + d / 2) * w)), abs(
+            k_s / ((polar - inertia) * w**2 + k_s + k + 0.5j * w * d)
+        )
+
+    def fms(w):
+        ring = k_s - inertia * w**2 + 1j * w * d_s
+        return abs(k_s / (k_s + k - 0.5j * w * d)), abs(ring / (ring + k + 0.5j * w * d))
+
+    found = answer(tmp_path, points=61, time_points=0)["crossovers"]
+    assert found["dynamic"] == pytest.approx(brentq(lambda w: fmr(w)[1] - fms(w)[1], 500, 2000), rel=1e-6)
+    assert found["total"] == pytest.approx(brentq(lambda w: sum(fmr(w)) - sum(fms(w)), 500, 2000), rel=1e-6)
+    assert found["static"] is None
+
+
+def test_the_three_roads_agree_on_the_films_own_coefficients(tmp_path):
+    found = answer(tmp_path, overrides=["film.model=radial"], points=5, time_points=3)
+    assert found["formula_holds"] and found["roads_apart"] < 1e-9
+    assert len(found["time_domain"]) >= 6
+    at = {w: i for i, w in enumerate(found["speed"])}
+    checked = 0
+    for row in found["time_domain"]:
+        if row["speed"] not in at:
+            continue
+        for quantity in ("static", "dynamic", "total"):
+            line = found[row["seal"]][quantity][at[row["speed"]]]
+            assert abs(row[quantity] - line) < 0.1 * row["error"][quantity] + 1e-6
+            checked += 1
+    assert checked >= 6
+
+
+def test_a_point_without_a_steady_state_is_a_row_with_its_reason(tmp_path):
+    found = answer(tmp_path, points=3, speed_to=8000.0, time_points=1)
+    failed = [row for row in found["time_domain"] if "failed" in row]
+    assert [row["seal"] for row in failed] == ["fms"] and "unstable" in failed[0]["failed"]
+    assert found["fms"]["stable"] == [True, True, False]
+
+
+def test_the_twin_of_the_twin_is_the_scene():
+    for name in ("fmr_reference", "fms_reference"):
+        scene = read_scenario(SCENARIOS / f"{name}.toml").scene
+        assert twin(twin(scene)) == scene
+        assert twin(scene) != scene
+
+
+def test_the_twin_of_greens_fmr_is_greens_fms():
+    fmr = read_scenario(SCENARIOS / "fmr_reference.toml").scene
+    fms = read_scenario(SCENARIOS / "fms_reference.toml").scene
+    assert twin(fmr) == fms and twin(fms) == fmr
+
+
+def test_two_floating_rings_are_compared_with_either_held():
+    scene = read_scenario(SCENARIOS / "fmsr_both_flexible.toml").scene
+    assert one_flexible(scene, "FMR").stator.support is None
+    assert one_flexible(scene, "FMS").rotor.runout == scene.rotor.misalignment
+
+
+def test_held_scene_keeps_its_clearance_when_the_balance_gave_it():
+    text = (SCENARIOS / "fmr_reference.toml").read_text().replace('clearance = "10 um"', "")
+    from sealdyn.scenario import parse_scenario
+
+    scene = parse_scenario(text + "[closing]\nbalance_ratio = 0.78\nspring_force = 0\n", "x").scene
+    clearance = Problem(scene, 1.0).clearance
+    assert Problem(held(scene, 50.0, clearance), 1.0).clearance == clearance
+    assert replace(held(scene), shaft=scene.shaft) == scene
