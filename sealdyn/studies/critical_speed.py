@@ -1,0 +1,296 @@
+"""Critical speed: the stability threshold of the aligned seal by three roads, and what the film makes of it beyond.
+
+Linear: published formula with the film's own coefficients, eigenvalues, growth of a small disturbance in time.
+Beyond: the family of circular whirls that leaves the threshold (whirl.py), and runs in time that must agree.
+"""
+
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+
+from .. import closed_form, modes
+from ..equilibrium import initially
+from ..imposed import ROTOR, STATOR
+from ..scenario import parse_scenario
+from ..whirl import (
+    bounded_or_not,
+    branch,
+    contact_tilt_aligned,
+    free_problem,
+    growth_rate,
+    tipping_disturbance,
+)
+
+units = {
+    "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
+    "nonlinear/branch/speed": "rad/s", "nonlinear/branch/amplitude": "rad", "nonlinear/branch/frequency": "rad/s",
+    "nonlinear/branch/growth_rate": "1/s", "nonlinear/branch/opening": "m", "nonlinear/branch/h_min": "m",
+}  # fmt: skip
+
+# Speeds, relative to the eigenvalues' threshold, at which a disturbance is let grow or decay.
+SHARES = (0.95, 0.98, 0.998, 1.002, 1.02, 1.05)
+NARROW = 2e-5
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`method`, `accuracy`: integrator and accuracy to begin with (tightened until it cannot decide a verdict);
+    `turns`: length of a growth measurement; `speeds`: points along the whirl family; `beyond`: go beyond linear."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    method: str = "adams"
+    accuracy: float = 1e-7
+    turns: int = 200
+    speeds: int = 4
+    beyond: bool = True
+
+
+def run(scenario, settings, tools) -> dict:
+    """The threshold by three roads, and the whirl beyond it."""
+    scene = scenario.scene
+    problem = free_problem(scene, initially(scene.shaft.speed))
+    pace = max((abs(mode.value) for mode in problem.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
+    eigenvalue = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
+    formula, why = by_formula(problem)
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    base |= {"method": "ida" if problem.massless else settings.method, "accuracy": settings.accuracy}
+    base |= {"turns": settings.turns}
+    answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
+    answer |= in_time(problem, eigenvalue, base, tools, pace)
+    answer["nonlinear"] = beyond(problem, scene, eigenvalue, base, settings, tools)
+    return {**answer, "verdict": sentences(answer)}
+
+
+def by_formula(problem) -> tuple[float | None, str]:
+    """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
+    scene = problem.scene
+    if problem.floats[STATOR] and problem.floats[ROTOR]:
+        return None, "both rings float: no published formula"
+    if scene.stator.speed != 0.0:
+        return None, "the stator turns: no published formula"
+    kind, ring = ("fmr", scene.rotor) if problem.floats[ROTOR] else ("fms", scene.stator)
+    if ring.transverse_inertia == 0.0:
+        return None, "a ring without inertia has no threshold"
+    stiffness, damping = ring.support.tilt()
+    film_k, film_d = problem.film_matrices()
+    try:
+        speed = getattr(closed_form, f"{kind}_critical_speed")(
+            transverse_inertia=ring.transverse_inertia,
+            polar_inertia=ring.polar_inertia,
+            support_stiffness=stiffness,
+            support_damping=damping,
+            film_stiffness=float(film_k[1, 1]),
+            film_damping=float(film_d[1, 1]),
+        )
+    except ValueError as error:
+        return None, str(error)
+    return speed, "" if speed is not None else f"{kind.upper()}: stable at every speed"
+
+
+def growth(point: dict) -> dict:
+    """Growth rate of a small disturbance at one speed, by eigenvalues and in the time domain."""
+    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
+    return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
+
+
+def in_time(problem, eigenvalue, base, tools, pace) -> dict:
+    """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
+    if eigenvalue is None:
+        speeds = [factor * pace for factor in (0.3, 1.0, 3.0, 10.0)]
+        rows = tools.map(growth, [{**base, "speed": w} for w in speeds], "growth")
+        signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
+        said = "a disturbance grows at some of the speeds tried"
+        if len(signs) == 1:
+            said = f"a disturbance {'grows' if signs.pop() else 'dies out'} at every speed tried"
+        elif not signs:
+            said = "neither growth nor decay beyond the method's own"
+        return {"time_domain": {"value": None, "uncertainty": None, "reason": said}, "growth": columns(rows, speeds)}
+    speeds = [share * eigenvalue for share in SHARES]
+    rows = tools.map(growth, [{**base, "speed": w} for w in speeds], "growth")
+    around = between(rows, speeds)
+    if around is None:
+        reason = "growth does not change sign within 5 % of the eigenvalues' threshold"
+        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
+    # Two more on either side of where the line between them crosses zero: a bracket of a few hundred-thousandths.
+    crossing, _ = line_crossing(*around)
+    near = [crossing * (1 - NARROW), crossing * (1 + NARROW)]
+    closer = tools.map(growth, [{**base, "speed": w} for w in near], "growth")
+    last = between(closer, near) or around
+    value, uncertainty = line_crossing(*last)
+    order = np.argsort([*speeds, *near])
+    speeds, rows = [[*speeds, *near][i] for i in order], [[*rows, *closer][i] for i in order]
+    bracket = [last[0][0], last[1][0]]
+    found = {"value": value, "uncertainty": uncertainty, "bracket": bracket, "method": base["method"]}
+    ends = [row for _, row in last]
+    found["accuracy"] = min(row["accuracy"] for row in ends)
+    found["numerical_damping"] = max(row["numerical_damping"] for row in ends)
+    found["against_eigenvalue"] = max(abs(row["rate"] - row["eigenvalue"]) for row in ends)
+    return {"time_domain": found, "growth": columns(rows, speeds)}
+
+
+def between(rows, speeds):
+    """The neighbouring ((speed, row), (speed, row)) between which decay turns into growth, both decided; or None."""
+    good = [(w, row) for w, row in zip(speeds, rows, strict=True) if "failed" not in row and row["decided"]]
+    for a, b in pairwise(good):
+        if a[1]["rate"] < 0 < b[1]["rate"]:
+            return a, b
+    return None
+
+
+def line_crossing(a, b) -> tuple[float, float]:
+    """Speed (rad/s) where the line between two rates crosses zero, and its uncertainty: theirs over the slope."""
+    (low, p), (high, q) = a, b
+    slope = (q["rate"] - p["rate"]) / (high - low)
+    return float(low - p["rate"] / slope), float(max(p["uncertainty"], q["uncertainty"]) / slope)
+
+
+def columns(rows, speeds) -> dict:
+    names = {"eigenvalue": "eigenvalue", "time_domain": "rate", "uncertainty": "uncertainty"}
+    found = {"speed": list(speeds), **{k: [row.get(n) for row in rows] for k, n in names.items()}}
+    found["decided"] = [row.get("decided", False) for row in rows]
+    return {**found, "failed": [row.get("failed") for row in rows]}
+
+
+# --- beyond linear ------------------------------------------------------------------------------------
+
+
+def tipping(point: dict) -> dict:
+    """The disturbance that tips the seal at one speed, and the whirl it passes on the way."""
+    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
+    return tipping_disturbance(scene, point["speed"])
+
+
+def fate(point: dict) -> dict:
+    """What becomes of a small or large whirl at one speed."""
+    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
+    return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
+
+
+def beyond(problem, scene, threshold, base, settings, tools) -> dict | None:
+    """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
+    if not settings.beyond:
+        return None
+    if problem.linear:
+        return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
+    if threshold is None:
+        return {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+    at_threshold = free_problem(scene, threshold)
+    family = branch(at_threshold, threshold)
+    if not family:
+        return {"verdict": "no family of circular whirls was found at the threshold", "tipping": []}
+    unit = contact_tilt_aligned(at_threshold)
+    found = {"kind": kind_of(family, threshold), "branch": family_columns(family), "contact_tilt": unit}
+    ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
+    found["contact_speed"] = family[-1].speed if ends_in_contact else None
+    low, high = min(w.speed for w in family), max(w.speed for w in family)
+    own = {k: base[k] for k in ("text", "name", "overrides")}
+    inner = ((np.arange(settings.speeds) + 0.5) / settings.speeds).tolist()
+    below = [threshold - (threshold - low) * x for x in inner] if low < 0.9995 * threshold else []
+    rows = tools.map(tipping, [{**own, "speed": w} for w in below], "tipping")
+    found["tipping"] = [compared({"speed": w, **row}, family, False) for w, row in zip(below, rows, strict=True)]
+    above = [threshold + (high - threshold) * x for x in inner] if high > 1.0005 * threshold else []
+    outside = [min(low - 0.005 * threshold, 0.998 * threshold), max(high + 0.005 * threshold, 1.002 * threshold)]
+    points = []
+    for w in sorted([*below, *above, *outside]):
+        points += [{**own, "speed": w, "start": "small", "shape": None, "frequency": None}]
+        points += [{**own, "speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
+                    "frequency": family[-1].frequency}]  # fmt: skip
+    rows = tools.map(fate, points, "fate")
+    found["directions"] = [
+        compared({"speed": p["speed"], "start": p["start"], **row}, family, True)
+        for p, row in zip(points, rows, strict=True)
+    ]
+    return {"verdict": " ".join(nonlinear_sentences(found, threshold)), **found}
+
+
+def kind_of(family, threshold) -> str:
+    """subcritical (the family leaves towards lower speed), supercritical, or with a fold."""
+    speeds = np.array([threshold, *[w.speed for w in family]])
+    falls, rises = np.all(np.diff(speeds) < 0), np.all(np.diff(speeds) > 0)
+    if falls or rises:
+        return "subcritical" if falls else "supercritical"
+    return "subcritical, then turning" if speeds[1] < threshold else "supercritical, then turning"
+
+
+def family_columns(family) -> dict:
+    names = {n: n for n in ("speed", "amplitude", "frequency", "opening", "h_min")} | {"growth_rate": "growth"}
+    return {key: [asdict(w)[name] for w in family] for key, name in names.items()}
+
+
+def compared(row: dict, family, stable: bool) -> dict:
+    """The row with the family's amplitude at its speed (rad; None where the family has none of that stability)."""
+    amplitudes, speeds = np.array([w.amplitude for w in family]), np.array([w.speed for w in family])
+    speed_of, row["branch"], row["difference"] = CubicSpline(amplitudes, speeds), None, None
+    for k in np.flatnonzero(np.diff(np.sign(speeds - row["speed"]))):
+        if (family[k + 1].growth < 0) == stable:
+            row["branch"] = float(brentq(lambda a: speed_of(a) - row["speed"], amplitudes[k], amplitudes[k + 1]))
+            row["difference"] = row["whirl"] / row["branch"] - 1 if row.get("whirl") else None
+    return row
+
+
+def sentences(answer) -> list[str]:
+    """The verdict."""
+    said, eigen, time = [], answer["eigenvalue"], answer["time_domain"]
+    if eigen is None:
+        said.append(f"No critical speed: {answer['formula_reason'] or 'eigenvalues cross at no speed'}; in time "
+                    f"{time['reason']}.")  # fmt: skip
+    else:
+        formula = answer["formula"]
+        roads = f"eigenvalues {eigen:.6g}"
+        roads += f", formula {formula:.6g}" if formula else f" ({answer['formula_reason']})"
+        if time["value"] is None:
+            roads += f"; in time: {time['reason']}"
+        else:
+            roads += f", in time {time['value']:.6g} +- {time['uncertainty']:.1g}"
+        said.append(f"Critical speed {eigen:.5g} rad/s ({eigen * 30 / np.pi:.0f} rpm): {roads}.")
+    if time.get("numerical_damping") is not None:
+        closest = min(abs(v) for v in answer["growth"]["time_domain"] if v is not None)
+        said.append(
+            f"{time['method']} itself damps or pumps by at most {time['numerical_damping']:.1g} 1/s there (against the "
+            f"eigenvalues {time['against_eigenvalue']:.1g}); the closest verdict rests on {closest:.2g} 1/s."
+        )
+    if answer["nonlinear"]:
+        said.append(answer["nonlinear"]["verdict"])
+    return said
+
+
+def nonlinear_sentences(found, threshold) -> list[str]:
+    said = [f"Beyond linear: {found['kind']} (contact: the film at its floor)."]
+    unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
+    speed = found["contact_speed"]
+    at = f"{speed:.5g} rad/s ({speed / threshold:.4f} of the threshold)" if speed else "no speed followed"
+    if found["kind"] == "subcritical":
+        said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
+                    f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
+    elif found["kind"] == "supercritical":
+        said.append("Above the threshold the film bounds the whirl, which grows with speed and touches at "
+                    f"{at}, its tilt {touching / unit:.3g} of what closes an unopened gap; contact beyond; no "
+                    "hysteresis.")  # fmt: skip
+    else:
+        said.append(f"The family of whirls turns back on its way to contact at {at}: hysteresis between the turns.")
+    for row in found["tipping"]:
+        if row.get("disturbance"):
+            said.append(f"At {row['speed'] / threshold:.4f} of the threshold a whirl of "
+                        f"{row['disturbance'] * 1e6:.0f} urad ({row['disturbance'] / unit:.3g} of the contact tilt) "
+                        "tips it.")  # fmt: skip
+    said += [fates(found["directions"], start) for start in ("small", "large")]
+    apart = [abs(row["difference"]) for row in (*found["tipping"], *found["directions"]) if row["difference"]]
+    if apart:
+        said.append(f"Whirls by continuation and in time agree within {max(apart):.1e} ({len(apart)} compared).")
+    return said
+
+
+def fates(rows, start) -> str:
+    """What became of the small or large whirls, from low to high speed."""
+    rows = [row for row in rows if row["start"] == start and "failed" not in row]
+    parts, last = [], None
+    for row in rows:
+        if row["fate"] != last:
+            parts.append([row["fate"], row["speed"], row["speed"]])
+        parts[-1][2], last = row["speed"], row["fate"]
+    words = [f"{what} at {a:.5g}" + (f" to {b:.5g}" if b > a else "") for what, a, b in parts]
+    return f"{start.capitalize()} whirls in time: {', '.join(words)} rad/s."

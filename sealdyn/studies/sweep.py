@@ -1,0 +1,189 @@
+"""Sweep: any scenario keys over any grid or list, any numbers of the run's summary."""
+
+import contextlib
+import difflib
+import itertools
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..scenario import parse_scenario
+from ..scenario_errors import ScenarioError
+from ..scenario_study import varied
+from ..scene import ImpossibleScene
+from ..simulate import prepare, run_briefly
+from ..unit_names import dimension_and_factor
+
+OUTPUTS = (
+    "h_min.value",
+    "h_min.of_clearance",
+    "relative_misalignment.max",
+    "relative_misalignment.steady_max",
+    "leakage.mean",
+    "friction.power",
+    "contact_margin",
+    "stability.verdict",
+)
+UNITS = {
+    "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
+    "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
+    "friction.power": "W", "friction.max_power": "W", "stability.critical_speed": "rad/s", "film.clearance": "m",
+    "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m", "film.tilt_stiffness": "N m/rad",
+    "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad", "closing.force": "N",
+}  # fmt: skip
+NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`vary`: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes
+    that of its neighbours, none means SI; several make a grid.  `outputs`: dotted keys of the run's summary."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    vary: list[str] | str = ()
+    outputs: list[str] | str = OUTPUTS
+
+
+def run(scenario, settings, tools) -> dict:
+    """One short run at every point of the grid; the first key varies slowest."""
+    vary = [settings.vary] if isinstance(settings.vary, str) else list(settings.vary)
+    if not vary:
+        raise ScenarioError(scenario.name, "study.sweep.vary", "nothing to vary", '--vary "rotor.runout=0:1 mrad:21"')
+    outputs = settings.outputs
+    outputs = [w.strip() for w in outputs.split(",")] if isinstance(outputs, str) else list(outputs)
+    axes = [axis(words, scenario.name) for words in vary]
+    keys = [a["key"] for a in axes]
+    if len(set(keys)) < len(keys):
+        raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
+    grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
+    make_ready(scenario, grid)
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "outputs": outputs}
+    found = tools.map(one_run, [{**base, "set": values} for values in grid], "runs")
+    places = itertools.product(*(a["values"] for a in axes))
+    rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
+    answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
+    return {**answer, "rows": rows, "verdict": sentences(keys, outputs, rows)}
+
+
+def one_run(point: dict) -> dict:
+    """The outputs of one point's run, its status, and its message when it did not end well."""
+    scenario = varied(parse_scenario(point["text"], point["name"], point["overrides"]), point["set"])
+    summary = run_briefly(scenario)
+    row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
+    return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
+
+
+def looked_up(summary: dict, key: str):
+    """The value at a dotted key of the summary; ValueError names the nearest key there is."""
+    place = summary
+    for part in key.split("."):
+        if not isinstance(place, dict) or part not in place:
+            near = difflib.get_close_matches(key, leaves(summary), 1, 0.3)
+            raise ValueError(f"the run's summary has no {key}" + (f"; nearest {near[0]}" if near else ""))
+        place = place[part]
+    if isinstance(place, dict):
+        raise ValueError(f"{key} holds several numbers: one of {', '.join(f'{key}.{k}' for k in place)}")
+    return place
+
+
+def leaves(tree: dict, key: str = "") -> list[str]:
+    """Dotted keys of all values."""
+    found = []
+    for name, below in tree.items():
+        found += leaves(below, f"{key}{name}.") if isinstance(below, dict) else [f"{key}{name}"]
+    return found
+
+
+def make_ready(scenario, grid):
+    """Find what is wrong with every point before any is run, and have the kernels loaded once for all processes.
+    Raises the first point's error if no point can be read."""
+    first = None
+    for values in grid:
+        try:
+            ready = varied(scenario, values)
+        except ScenarioError as error:
+            first = first or error
+            continue
+        with contextlib.suppress(ImpossibleScene):
+            prepare(ready)
+        return
+    raise first
+
+
+def axis(words: str, name: str) -> dict:
+    """`{key, unit, given, values}` of "key=from:to:count[:log]" or "key=a,b,c": `given` strings as a scenario would
+    have them, `values` the numbers in `unit` (or the words themselves)."""
+    key, equals, written = (part.strip() for part in words.partition("="))
+    wanted = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
+    if not (key and equals and written):
+        raise ScenarioError(name, "study.sweep.vary", repr(words), wanted)
+    parts = written.split(":")
+    if len(parts) == 1:
+        entries = [entry.strip() for entry in written.split(",")]
+        matches = [NUMBER.fullmatch(entry) for entry in entries]
+        if not all(matches) or not all(is_unit(m[2]) for m in matches):
+            return {"key": key, "unit": None, "given": entries, "values": entries}
+        values, unit = in_one_unit(matches)
+    else:
+        ends = [NUMBER.fullmatch(part) for part in parts[:2]]
+        count, even_ratio = parts[2:3], parts[3:] == ["log"]
+        if not all(ends) or not (count and count[0].strip().isdecimal()) or (parts[3:] and not even_ratio):
+            raise ScenarioError(name, "study.sweep.vary", repr(words), wanted)
+        (low, high), unit = in_one_unit(ends)
+        if even_ratio and not low * high > 0:
+            raise ScenarioError(name, "study.sweep.vary", repr(words), "ends of one sign, not zero, for log")
+        spread = np.geomspace if even_ratio else np.linspace
+        # Twelve digits: 0.3 mrad is written so, not as 0.30000000000000004 mrad.
+        values = [float(f"{v:.12g}") for v in spread(low, high, int(count[0]))]
+    return {"key": key, "unit": unit, "given": [f"{v!r} {unit}".strip() for v in values], "values": values}
+
+
+def is_unit(words: str) -> bool:
+    if not words:
+        return True
+    try:
+        dimension_and_factor(words)
+    except ValueError:
+        return False
+    return True
+
+
+def in_one_unit(matches) -> tuple[list[float], str]:
+    """Numbers in the last unit written; those without a unit are in it already."""
+    units = [m[2] for m in matches]
+    unit = next((u for u in reversed(units) if u), "")
+
+    def number(match):
+        own = match[2]
+        if own in ("", unit) or not (is_unit(own) and is_unit(unit)):
+            return float(match[1])
+        return float(match[1]) * float(dimension_and_factor(own)[1] / dimension_and_factor(unit)[1])
+
+    return [number(m) for m in matches], unit
+
+
+def unit_of(output: str) -> str:
+    return UNITS.get(output) or UNITS.get(output.partition(".")[0]) or ""
+
+
+def sentences(keys, outputs, rows) -> list[str]:
+    """The verdict: how many ended how, and the range of each output."""
+    bad = [row for row in rows if "failed" in row]
+    said = [f"{len(rows)} points over {' and '.join(keys)}: "
+            + ", ".join(f"{n} {what}" for what, n in counted([r.get("status", "not possible") for r in rows]))
+            + "."]  # fmt: skip
+    if bad:
+        said.append(f"First failure: {bad[0]['failed']}")
+    for output in outputs:
+        values = [row[output] for row in rows if row.get(output) is not None]
+        if values and all(isinstance(v, int | float) for v in values):
+            said.append(f"{output}: {min(values):.5g} to {max(values):.5g} {unit_of(output)}".rstrip() + ".")
+        elif values:
+            said.append(f"{output}: " + ", ".join(f"{n} {what}" for what, n in counted(values)) + ".")
+    return said
+
+
+def counted(words) -> list[tuple[str, int]]:
+    return [(word, words.count(word)) for word in dict.fromkeys(words)]

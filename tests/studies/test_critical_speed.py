@@ -1,0 +1,97 @@
+"""The threshold by three roads against printed numbers and roots written out here; the whirl beyond it."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import INERTIA, SUPPORT, fmr, fms
+
+from sealdyn.investigate import investigate
+from sealdyn.scenario import parse_scenario
+from sealdyn.whirl import growth_rate
+
+K_S, D_S = SUPPORT.tilt()
+# Green's film coefficients of his reference seal, N m/rad and N m s/rad (Green 1989, Fig. 8).
+K_F, D_F = 5791.0, 4.082
+THREE = ["rotor.polar_inertia=2.6667e-4"]
+LINEAR = ['film.model="linear"']
+
+
+def study(scenario, tmp_path, overrides=(), **flags):
+    from pathlib import Path
+
+    path = Path(__file__).parents[2] / "scenarios" / f"{scenario}.toml"
+    read = parse_scenario(path.read_text(), scenario, [*overrides])
+    return investigate("critical-speed", read, tmp_path / "out.h5", flags=flags, workers=1)
+
+
+@pytest.mark.parametrize(
+    "scenario, overrides, printed", [("fms_reference", LINEAR, 5.89e3), ("fmr_reference", LINEAR + THREE, 8.684e3)]
+)
+def test_three_roads_to_the_printed_threshold(scenario, overrides, printed, tmp_path):
+    answer = study(scenario, tmp_path, overrides)
+    roads = [answer["formula"], answer["eigenvalue"], answer["time_domain"]["value"]]
+    assert roads == pytest.approx([printed] * 3, rel=1e-3)
+    assert max(roads) / min(roads) - 1 < 1e-7
+    # The stated uncertainty covers the distance to the eigenvalues' answer, and is honest in size.
+    assert abs(roads[2] - roads[1]) < 3 * answer["time_domain"]["uncertainty"] < 0.01
+    assert answer["time_domain"]["numerical_damping"] < 0.1 * min(map(abs, answer["growth"]["time_domain"]))
+    assert answer["nonlinear"]["tipping"] == []
+
+
+@pytest.mark.parametrize("share", [0.998, 1.002])
+@pytest.mark.parametrize("kind", ["fms", "fmr"])
+def test_verdict_at_two_thousandths_of_the_threshold(kind, share):
+    nu = 0.5 * D_F / (D_S + D_F) if kind == "fms" else (D_S + 0.5 * D_F) / (D_S + D_F)
+    speed = share * math.sqrt((K_S + K_F) / INERTIA / (nu**2 if kind == "fms" else nu * (nu - 1 / 3)))
+    scene = (fms if kind == "fms" else fmr)("linear", 3.0, speed=speed)
+    found = growth_rate(scene, speed, 150, "adams", 1e-7)
+    gyroscopic, turning = (0.0, 0.0) if kind == "fms" else (1j * speed * INERTIA / 3, 1j * speed * D_S)
+    roots = np.roots([INERTIA, D_S + D_F - gyroscopic, K_S + K_F - 0.5j * speed * D_F - turning])
+    assert found["decided"]
+    assert (found["rate"] > 0) == (share > 1)
+    assert found["rate"] == pytest.approx(max(roots.real), rel=0.05)
+
+
+def test_unconditionally_stable_rotor_has_no_critical_speed(tmp_path):
+    answer = study("fmr_reference", tmp_path)
+    assert answer["formula"] is None and answer["eigenvalue"] is None and answer["time_domain"]["value"] is None
+    assert all(rate < 0 for rate in answer["growth"]["time_domain"])
+
+
+def test_two_floating_rings_have_no_formula(tmp_path):
+    answer = study("fmsr_both_flexible", tmp_path, beyond=False)
+    assert answer["formula"] is None and "no published formula" in answer["formula_reason"]
+    assert answer["time_domain"]["value"] == pytest.approx(answer["eigenvalue"], rel=1e-6)
+
+
+def test_stator_tips_below_its_threshold(tmp_path):
+    """Subcritical: what tips it is found by bisection in time, and the whirl it lingers at is the family's."""
+    answer = study("fms_reference", tmp_path, speeds=2)
+    found = answer["nonlinear"]
+    assert found["kind"] == "subcritical"
+    assert found["contact_speed"] == pytest.approx(0.958 * answer["eigenvalue"], rel=1e-3)
+    row = found["tipping"][0]
+    assert row["speed"] < answer["eigenvalue"]
+    assert row["whirl"] == pytest.approx(row["branch"], rel=2e-4)
+    assert 0.9 * row["whirl"] < row["disturbance"] < row["whirl"]
+    fates = {(r["start"], r["speed"] > answer["eigenvalue"]): r["fate"] for r in found["directions"]}
+    assert fates["small", False] == "decays" and fates["small", True] == "contact"
+    assert [r["fate"] for r in found["directions"] if r["start"] == "large"] == ["decays", *["contact"] * 3]
+
+
+def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
+    """Supercritical: small and large whirls end in the same bounded one, the family's, until it touches."""
+    answer = study("fmr_reference", tmp_path, THREE, speeds=2)
+    found = answer["nonlinear"]
+    assert found["kind"] == "supercritical" and found["tipping"] == []
+    assert found["contact_speed"] == pytest.approx(1.0111 * answer["eigenvalue"], rel=1e-3)
+    inside = [r for r in found["directions"] if answer["eigenvalue"] < r["speed"] < found["contact_speed"]]
+    assert len(inside) == 4
+    for row in inside:
+        assert row["fate"] == "bounded" and row["whirl"] == pytest.approx(row["branch"], rel=1e-4)
+    outside = {
+        (r["start"], r["speed"] > answer["eigenvalue"]): r["fate"] for r in found["directions"] if r not in inside
+    }
+    assert outside == {("small", False): "decays", ("large", False): "decays",
+                       ("small", True): "contact", ("large", True): "contact"}  # fmt: skip

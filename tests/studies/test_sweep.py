@@ -1,0 +1,117 @@
+"""A sweep's rows are single runs' numbers; broken points are rows; a killed sweep goes on and repeats nothing."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sealdyn.investigate import investigate
+from sealdyn.scenario import parse_scenario
+from sealdyn.scenario_errors import ScenarioError
+from sealdyn.simulate import simulate
+from sealdyn.studies.sweep import axis
+
+PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SHORT = ["run.turns=6", 'run.start="steady"']
+
+
+def sweep(tmp_path, vary, outputs=None, workers=1, overrides=SHORT):
+    scenario = parse_scenario(PATH.read_text(), "fms_reference", list(overrides))
+    flags = {"vary": vary} | ({"outputs": outputs} if outputs else {})
+    return investigate("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=workers)
+
+
+@pytest.mark.parametrize(
+    "words, values, unit, first",
+    [
+        ("rotor.runout=0:1mrad:5", [0, 0.25, 0.5, 0.75, 1], "mrad", "0.0 mrad"),
+        ("rotor.runout=0:1 mrad:3", [0, 0.5, 1], "mrad", "0.0 mrad"),
+        ("rotor.runout=500 urad:1 mrad:2", [0.5, 1], "mrad", "0.5 mrad"),
+        ("shaft.speed=100:10000:3:log", [100, 1000, 10000], "", "100.0"),
+        ("film.coning=1 mrad, 2 mrad,3 mrad", [1, 2, 3], "mrad", "1.0 mrad"),
+        ("film.coning=1,2,3 mrad", [1, 2, 3], "mrad", "1.0 mrad"),
+        ("film.viscosity=0.5 mPa*s:1 mPa*s:2", [0.5, 1], "mPa*s", "0.5 mPa*s"),
+        ("film.model=linear,radial", ["linear", "radial"], None, "linear"),
+        ("shaft.speed=-1:1:3", [-1, 0, 1], "", "-1.0"),
+    ],
+)
+def test_what_is_varied(words, values, unit, first):
+    found = axis(words, "here")
+    assert found["key"] == words.split("=")[0]
+    assert found["values"] == (pytest.approx(values) if unit is not None else values)
+    assert found["unit"] == unit and found["given"][0] == first
+
+
+@pytest.mark.parametrize(
+    "words", ["rotor.runout", "=1,2", "rotor.runout=", "a=1:2", "a=1:2:x", "a=0:1:3:log", "a=1:2:3:odd"]
+)
+def test_what_cannot_be_varied(words):
+    with pytest.raises(ScenarioError):
+        axis(words, "here")
+
+
+def test_rows_equal_single_runs(tmp_path):
+    answer = sweep(tmp_path, ["rotor.runout=20,40 urad", "film.coning=2 mrad,3 mrad"])
+    assert answer["keys"] == ["rotor.runout", "film.coning"]
+    assert [(row["rotor.runout"], row["film.coning"]) for row in answer["rows"]] == [(20, 2), (20, 3), (40, 2), (40, 3)]
+    row = answer["rows"][2]
+    single = parse_scenario(PATH.read_text(), "one", [*SHORT, 'rotor.runout="40 urad"', 'film.coning="2 mrad"'])
+    summary = simulate(single, tmp_path / "one.h5").summary
+    assert row["status"] == summary["status"] == "ok"
+    assert row["h_min.value"] == summary["h_min"]["value"]
+    assert row["relative_misalignment.steady_max"] == summary["relative_misalignment"]["steady_max"]
+    assert row["leakage.mean"] == summary["leakage"]["mean"]
+    assert row["stability.verdict"] == "stable"
+
+
+def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):
+    answer = sweep(tmp_path, "film.coning=3,-9 mrad", "h_min.value")
+    good, bad = answer["rows"]
+    assert good["h_min.value"] > 0 and "failed" not in good
+    assert bad["film.coning"] == -9 and "expected an open film" in bad["failed"]
+
+
+def test_an_unknown_key_or_output_is_named(tmp_path):
+    with pytest.raises(ScenarioError, match="runout"):
+        sweep(tmp_path, "rotor.runuot=1,2")
+    with pytest.raises(ScenarioError, match="vary"):
+        sweep(tmp_path, [])
+    answer = sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
+    assert "nearest h_min.value" in answer["rows"][0]["failed"]
+
+
+def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
+    """Killed by SIGKILL half-way: what was finished is kept as it was, the rest is done, the numbers are the same."""
+    command = [
+        sys.executable, "-m", "sealdyn.cli", "study", "sweep", str(PATH), "--vary", "rotor.runout=10:60 urad:8",
+        "--set", "run.turns=300", "--out", str(tmp_path / "s.h5"), "--workers", "1", "--no-plot", "--json",
+    ]  # fmt: skip
+    journal = tmp_path / "s.partial.jsonl"
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    begun = time.monotonic()
+    while not (journal.exists() and len(journal.read_text().splitlines()) > 3):
+        assert process.poll() is None and time.monotonic() - begun < 120
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    kept = [json.loads(line) for line in journal.read_text().splitlines()[1:] if line.endswith("}}")]
+    assert 3 <= len(kept) < 8
+    # A mark in what is kept shows in the answer if, and only if, these points are not run again.
+    marked = journal.read_text().splitlines()
+    entry = json.loads(marked[1])
+    entry["row"]["h_min.of_clearance"] = 0.123456
+    journal.write_text("\n".join([marked[0], json.dumps(entry), *marked[2:]]) + "\n")
+    again = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    assert not journal.exists()
+    marks = [row["h_min.of_clearance"] == 0.123456 for row in again["rows"]]
+    assert sum(marks) == 1
+    whole = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    for a, b, mark in zip(again["rows"], whole["rows"], marks, strict=True):
+        assert {k: v for k, v in a.items() if not mark or k != "h_min.of_clearance"}.items() <= b.items()
+    assert np.all(np.diff([row["h_min.value"] for row in whole["rows"]]) < 0)
