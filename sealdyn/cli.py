@@ -258,7 +258,7 @@ def show(
 @app.command()
 def plot(
     file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
-    kind: Annotated[str, typer.Option(help="overview, orbit, film or spectrum")] = "overview",
+    kind: Annotated[str, typer.Option(help="overview, orbit, film, spectrum or poincare")] = "overview",
     out: Annotated[Path | None, typer.Option(help="figure to write (default beside the archive)")] = None,
 ):
     """Draw a figure from an archive."""
@@ -266,7 +266,7 @@ def plot(
 
     from .archive import ArchiveError
 
-    kinds = ("overview", "orbit", "film", "spectrum")
+    kinds = ("overview", "orbit", "film", "spectrum", "poincare")
     if kind not in kinds:
         raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
     if out is not None and out.suffix != ".png":

@@ -13,7 +13,7 @@ from sealdyn.archive import ArchiveWriter, Series
 from sealdyn.charts import record
 from sealdyn.charts.record import Run
 
-KINDS = ["overview", "orbit", "film", "spectrum"]
+KINDS = ["overview", "orbit", "film", "spectrum", "poincare"]
 FILM = {"inner_radius": 0.032, "outer_radius": 0.04, "clearance": 1e-5, "coning": 3e-3}
 SCENARIO = "# Does a flexibly mounted rotor follow a misaligned stator?  Expected: mostly.\n[shaft]\nspeed = 1000\n"
 SUMMARY = {
