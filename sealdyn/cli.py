@@ -192,27 +192,22 @@ class _Progress:
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
+    from .archive import ArchiveError
     from .report import resolved_lines
-    from .scenario import unused_keys
     from .scene import ImpossibleScene
     from .simulate import prepare
+    from .summary import model
 
     scenario = _read(file, set)
     try:
         problem, method, why, *_ = prepare(scenario)
-    except ImpossibleScene as error:
+    except (ImpossibleScene, ArchiveError) as error:
         raise Stop("invalid", f"{file}: {error}") from None
     found = {
         "status": "ok",
         "message": "the scene is possible",
         "scene": scenario.resolved(),
-        "model": {
-            "film": problem.film_name,
-            "unknowns": problem.names,
-            "solver": method,
-            "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
-            "unused": unused_keys(scenario),
-        },
+        "model": model(scenario, problem, method, why),
         "clearance": problem.clearance,
         "equilibria": [vars(e) for e in problem.equilibria],
     }

@@ -120,8 +120,8 @@ class _TooLong(Exception):
     """A chunk costs more evaluations than any healthy one."""
 
 
-def _counting(function, counts):
-    """`function` counted, and a switch that limits how many calls more it takes."""
+def _counting(counts):
+    """A counter to call before each evaluation, and a switch that limits how many more there may be."""
     limit = [None]
 
     def allow(calls):
@@ -139,7 +139,7 @@ def _cvode(problem, leg, tau, y, method, tolerance, counts):
     from sksundae.cvode import CVODE
 
     rhs, jacobian = problem.rhs, problem.jacobian
-    check, allow = _counting(rhs, counts)
+    check, allow = _counting(counts)
 
     def counted(t, y, yp):
         check()
@@ -165,7 +165,7 @@ def _ida(problem, leg, tau, y, method, tolerance, counts):
     from sksundae.ida import IDA
 
     inner = problem.residual
-    check, allow = _counting(inner, counts)
+    check, allow = _counting(counts)
 
     def counted(t, y, yp, res):
         check()

@@ -7,7 +7,7 @@ Nothing here knows of seals or files.
 """
 
 import time as clock
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,7 +32,6 @@ class Outcome:
     y: np.ndarray
     tolerance: float
     energy_residual: float = 0.0
-    extra: dict = field(default_factory=dict)
 
 
 def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=None) -> Outcome:

@@ -13,6 +13,17 @@ from .watch import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
+def model(scenario, problem, method: str, why: str) -> dict:
+    """What the scene chose: film rung, unknowns, solver, the reasons, and keys it does not use."""
+    return {
+        "film": problem.film_name,
+        "unknowns": problem.names,
+        "solver": method,
+        "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
+        "unused": unused_keys(scenario),
+    }
+
+
 def summarise(scenario, problem, outcome, tally, method, why) -> dict:
     """The summary (interface.md, `run --json`) of a finished run, SI; no value is a NaN or infinite."""
     problem.begin(outcome.leg)
@@ -23,13 +34,7 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
     summary = {
         "status": outcome.status,
         "message": outcome.message,
-        "model": {
-            "film": problem.film_name,
-            "unknowns": problem.names,
-            "solver": method,
-            "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
-            "unused": unused_keys(scenario),
-        },
+        "model": model(scenario, problem, method, why),
         "h_min": {
             "value": record[H],
             "time": problem.legs[int(record[H_LEG])].time + record[H_TAU],
