@@ -15,7 +15,7 @@ class Audit:
         spring energy jumps (its end is moved in no time): that work is booked here."""
         energy = float(self.problem.energies(np.array([tau]), y[None, :])[0])
         if self.energy0 is None:
-            self.energy0, self.works0 = energy, y[-6:-1].sum()
+            self.energy0, self.works0 = energy, y[self.problem.works].sum()
         else:
             self.energy0 += energy - self.last
         self.last = energy
@@ -25,7 +25,7 @@ class Audit:
         if end <= begin:
             return
         energies = self.problem.energies(t[begin + 1 : end + 1], ys[begin + 1 : end + 1])
-        works = ys[begin + 1 : end + 1, -6:-1].sum(axis=1)
+        works = ys[begin + 1 : end + 1, self.problem.works].sum(axis=1)
         defects = np.abs(energies - self.energy0 - (works - self.works0))
         self.worst = max(self.worst, float(defects.max()))
         self.last, self.moved = float(energies[-1]), float(ys[end, -1])

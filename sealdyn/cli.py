@@ -193,6 +193,7 @@ class _Progress:
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
     from .archive import ArchiveError
+    from .design_rules import followability
     from .report import resolved_lines
     from .scene import ImpossibleScene
     from .simulate import prepare
@@ -210,6 +211,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model(scenario, problem, method, why),
         "clearance": problem.clearance,
         "equilibria": [vars(e) for e in problem.equilibria],
+        "design_rules": followability(problem),
     }
     if as_json:
         print(json.dumps(found))

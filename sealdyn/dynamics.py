@@ -7,14 +7,20 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
     I gamma'' = sg M_film + i J W gamma' - D_s [(gamma - gamma_c)' - i W (gamma - gamma_c)]
                 - K_s (gamma - gamma_c - gamma_own)
 **Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
+Contact of the faces adds to F_film and M_film; friction of a secondary seal (secondary_seal.py) acts on its ring,
+and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
 
-Unknowns `y`: displacements, then their rates (a massless ring has none), then five works and the sum of
-absolute works.  Parameter block `p`: both rings, the index of the works, then the leg (imposed.py).
+Unknowns `y`: displacements, then their rates (a massless ring has none), with contact or a secondary seal the
+impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both rings, the index of the
+works, whether there are two more of them, then the leg (imposed.py).
 """
 
 from numba import njit
 
 from .gap import (
+    CONTACT_FORCE,
+    CONTACT_X,
+    CONTACT_Y,
     DZ,
     DZ_RATE,
     FORCE,
@@ -42,29 +48,42 @@ from .imposed import (
     ROTOR_SPEED,
     STATOR_SPEED,
     TILT_X,
+    TILT_X_ACCELERATION,
     TILT_X_RATE,
     TILT_Y,
+    TILT_Y_ACCELERATION,
     TILT_Y_RATE,
     VISCOSITY_AT,
+    Z_ACCELERATION,
     Z_RATE,
     Z,
     impose,
 )
+from .secondary_seal import excess, sliding
 
 # Slots of one ring in the parameter block: it floats?, inertia, support, where its unknowns are in `y`
-# (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself).
+# (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself); its secondary seal:
+# friction per length, radius, sliding speed below which it fades, a smooth law?, and whether it sticks now.
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
-RING = 12
+SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK = range(12, 17)
+RING = 17
 WORKS_AT = 2 * RING
-LEG_AT = WORKS_AT + 1
+EXTENDED = WORKS_AT + 1
+LEG_AT = WORKS_AT + 2
 
-# Scratch `w`: imposed state of both rings, their own state, the net force and moments on each.
+# Scratch `w`: imposed state of both rings, their own state, the net force and moments on each; then per ring the
+# friction of its secondary seal, its sliding speed, how far what it must hold lies outside what it can, and the
+# acceleration that follows the carrier.
 OWN_STATE = 2 * PER_RING
 NET = OWN_STATE + 2 * 6
-SCRATCH = NET + 2 * 3
+SEALS = NET + 2 * 3
+SEAL_SPEED, SEAL_EXCESS, FOLLOWING = 3, 4, 5
+PER_SEAL = 8
+SCRATCH = SEALS + 2 * PER_SEAL
 
-# The works, in the order of `y`.
-WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic")
+# The works, in the order of `y`; the last two only with contact or a secondary seal.
+WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact", "secondary_seal")
+PLAIN = 5
 
 
 @njit(cache=True)
@@ -125,24 +144,67 @@ def _net(tau, k, p, w, s, power):
     spring_y = -p[ring + TILT_K] * (d_y - w[c + OWN_Y])
     gyro_x, gyro_y = -p[ring + POLAR] * spin * v_y, p[ring + POLAR] * spin * v_x
 
-    w[net] = sign * (s[FORCE] - closing) + damper + spring
-    w[net + 1] = sign * s[MOMENT_X] + damper_x + spring_x + gyro_x
-    w[net + 2] = sign * s[MOMENT_Y] + damper_y + spring_y + gyro_y
+    w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring
+    w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x
+    w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y
 
     # An unknown that is not integrated (tilt of an axial scene, z of a tilt scene) has rate zero.
     power[0] += damper * v + damper_x * v_x + damper_y * v_y
     power[1] += sign * (s[FORCE] * v + s[MOMENT_X] * v_x + s[MOMENT_Y] * v_y)
     power[2] -= sign * closing * v
     power[4] += gyro_x * v_x + gyro_y * v_y
+    if len(power) > PLAIN:
+        power[5] += sign * (s[CONTACT_FORCE] * v + s[CONTACT_X] * v_x + s[CONTACT_Y] * v_y)
+        if p[ring + SEAL_LINE] > 0.0:
+            power[6] += _secondary_seal(k, spin, leg[spin_at + 1], p, w)
     return spring * v + spring_x * v_x + spring_y * v_y
+
+
+@njit(cache=True)
+def _secondary_seal(k, spin, spin_rate, p, w):
+    """Friction of ring k's secondary seal onto its net load; returns the power of that friction."""
+    ring, c, x, net, seal = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k, SEALS + PER_SEAL * k
+    line, radius = p[ring + SEAL_LINE], p[ring + SEAL_RADIUS]
+    v, v_x, v_y = w[x + Z_RATE], w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
+    d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
+    dv_x, dv_y = v_x - w[c + TILT_X_RATE], v_y - w[c + TILT_Y_RATE]
+
+    # What it would take to carry the ring along with its carrier.
+    follow = w[seal + FOLLOWING : seal + FOLLOWING + 3]
+    follow[0] = w[c + Z_ACCELERATION]
+    follow[1] = w[c + TILT_X_ACCELERATION] - spin * dv_y - spin_rate * d_y
+    follow[2] = w[c + TILT_Y_ACCELERATION] + spin * dv_x + spin_rate * d_x
+    force = p[ring + MASS] * follow[0] - w[net] if p[ring + AT_Z] >= 0.0 else 0.0
+    moment_x = moment_y = 0.0
+    if p[ring + AT_TILT] >= 0.0:
+        moment_x = p[ring + INERTIA] * follow[1] - w[net + 1]
+        moment_y = p[ring + INERTIA] * follow[2] - w[net + 2]
+    w[seal + SEAL_EXCESS] = excess(force, moment_x, moment_y, line, radius)
+
+    friction = w[seal : seal + 3]
+    if p[ring + STUCK] != 0.0:
+        friction[0], friction[1], friction[2] = force, moment_x, moment_y
+        w[seal + SEAL_SPEED] = 0.0
+    else:
+        w[seal + SEAL_SPEED] = sliding(
+            v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x,
+            line, radius, p[ring + SEAL_BAND], p[ring + SEAL_SMOOTH] != 0.0, friction,
+        )  # fmt: skip
+    for i in range(3):
+        w[net + i] += friction[i]
+    return friction[0] * v + friction[1] * v_x + friction[2] * v_y
 
 
 @njit(cache=True)
 def _works(tau, p, w, s, yp, at):
     """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers, gyroscopic
-    term (zero), and the sum of absolute powers, springs included.  The springs' energy is a state function,
+    term (zero), contact and secondary seals, and the sum of absolute powers, springs included; the contact force, whose
+    integral is the impulse, just before them.  The springs' energy is a state function,
     so what counts as work is that of their moving ends (carrier, own misalignment)."""
-    power = yp[at : at + 5]
+    count = PLAIN
+    if p[EXTENDED] != 0.0:
+        count, yp[at - 1] = PLAIN + 2, s[CONTACT_FORCE]
+    power = yp[at : at + count]
     power[:] = 0.0
     springs = 0.0
     for k in range(2):
@@ -157,8 +219,10 @@ def _works(tau, p, w, s, yp, at):
                 power[3] -= p[ring + TILT_K] * (
                     e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE]) + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
                 )
-    exchanged = abs(power[0]) + abs(power[1]) + abs(power[2]) + abs(power[3]) + abs(power[4])
-    yp[at + 5] = exchanged + abs(springs)
+    exchanged = abs(springs)
+    for i in range(count):
+        exchanged += abs(power[i])
+    yp[at + count] = exchanged
 
 
 @njit(cache=True)
@@ -171,12 +235,17 @@ def rates(tau, y, p, w, s, yp):
         z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
         if z_rate >= 0:
             yp[int(p[ring + AT_Z])] = w[x + Z_RATE]
-            yp[z_rate] = w[net] / p[ring + MASS]
+            yp[z_rate] = w[net] / p[ring + MASS] if p[ring + STUCK] == 0.0 else w[SEALS + PER_SEAL * k + FOLLOWING]
         if tilt_rate >= 0:
             tilt = int(p[ring + AT_TILT])
             yp[tilt], yp[tilt + 1] = w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
-            yp[tilt_rate] = w[net + 1] / p[ring + INERTIA]
-            yp[tilt_rate + 1] = w[net + 2] / p[ring + INERTIA]
+            if p[ring + STUCK] == 0.0:
+                yp[tilt_rate] = w[net + 1] / p[ring + INERTIA]
+                yp[tilt_rate + 1] = w[net + 2] / p[ring + INERTIA]
+            else:
+                # Not the sum of forces, which is the same but for rounding: a stuck ring does not creep.
+                yp[tilt_rate] = w[SEALS + PER_SEAL * k + FOLLOWING + 1]
+                yp[tilt_rate + 1] = w[SEALS + PER_SEAL * k + FOLLOWING + 2]
 
 
 @njit(cache=True)
@@ -185,7 +254,8 @@ def residual(tau, y, yp, p, w, s, work, res):
     `work` is scratch of the size of y."""
     at = int(p[WORKS_AT])
     _works(tau, p, w, s, work, at)
-    for i in range(at, at + 6):
+    first, count = (at - 1, 9) if p[EXTENDED] != 0.0 else (at, 6)
+    for i in range(first, first + count):
         res[i] = yp[i] - work[i]
     for k in range(2):
         ring, x, net = k * RING, OWN_STATE + 6 * k, NET + 3 * k

@@ -20,16 +20,19 @@ DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)
 MEAN_SPIN, SPIN_DIFFERENCE, VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE = range(6, 11)
 FORCE, MOMENT_X, MOMENT_Y = range(11, 14)
 FLOW_INNER, FLOW_OUTER, TORQUE, CAVITATED = range(14, 18)
-GAP_STATE_SIZE = 18
+CONTACT_FORCE, CONTACT_X, CONTACT_Y = range(18, 21)
+CONTACT_TORQUE, CONTACT_AREA, CONTACT_PRESSURE, CONTACT_ENERGY, WEAR = range(21, 26)
+GAP_STATE_SIZE = 26
 
 # Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
-INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR = range(7)
-FACE_SIZE = 7
+INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE = range(9)
+FACE_SIZE = 9
 
 
 def face_block(film, clearance: float) -> np.ndarray:
     """The face part of a film's parameter block, shape (FACE_SIZE,): radii and clearance in m, coning in
-    rad, the floor of the film thickness in m, and two flags."""
+    rad, the floor of the film thickness in m, two flags, the thickness at which the faces touch and the one at
+    which the run ends (m); contact.py moves the floor and the last two."""
     return np.array(
         [
             film.inner_radius,
@@ -39,6 +42,8 @@ def face_block(film, clearance: float) -> np.ndarray:
             film.floor * clearance,
             film.tilt_radius == "mean",
             film.geometry == "planar",
+            -np.inf,
+            film.floor * clearance,
         ],
         dtype=np.float64,
     )

@@ -23,9 +23,10 @@ STATOR, ROTOR = 0, 1
 # a fixed axis; the ring's own misalignment in its carrier, which its springs feel.
 AXIAL, TURNING, FIXED_AXIS, OWN = range(4)
 
-# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment.
+# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration.
 Z, TILT_X, TILT_Y, Z_RATE, TILT_X_RATE, TILT_Y_RATE, OWN_X, OWN_Y, OWN_X_RATE, OWN_Y_RATE = range(10)
-PER_RING = 10
+Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
+PER_RING = 13
 
 
 def oscillators(shaft, housing, rotor, stator, leg: Leg) -> np.ndarray:
@@ -83,16 +84,23 @@ def impose(tau, p, c):
         phase = p[row + 6] + tau * (p[row + 7] + tau * p[row + 8])
         w = p[row + 7] + 2.0 * tau * p[row + 8]
         cos, sin = math.cos(phase), math.sin(phase)
+        # Second derivative of a exp(i phase): (a'' = 0, phase'' = 2 a2) along and across.
+        along, across = -a * w * w, 2.0 * (a_rate * w + a * p[row + 8])
         if kind == AXIAL:
             c[base + Z] += a * cos
             c[base + Z_RATE] += a_rate * cos - a * w * sin
+            c[base + Z_ACCELERATION] += along * cos - across * sin
         elif kind == TURNING:
+            c[base + TILT_X_ACCELERATION] += along * cos - across * sin
+            c[base + TILT_Y_ACCELERATION] += along * sin + across * cos
             c[base + TILT_X] += a * cos
             c[base + TILT_Y] += a * sin
             c[base + TILT_X_RATE] += a_rate * cos - a * w * sin
             c[base + TILT_Y_RATE] += a_rate * sin + a * w * cos
         elif kind == FIXED_AXIS:
-            rate = a_rate * cos - a * w * sin
+            rate, acceleration = a_rate * cos - a * w * sin, along * cos - across * sin
+            c[base + TILT_X_ACCELERATION] += acceleration * p[row + 4]
+            c[base + TILT_Y_ACCELERATION] += acceleration * p[row + 5]
             c[base + TILT_X] += a * cos * p[row + 4]
             c[base + TILT_Y] += a * cos * p[row + 5]
             c[base + TILT_X_RATE] += rate * p[row + 4]

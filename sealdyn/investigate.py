@@ -11,7 +11,7 @@ from pathlib import Path
 from . import __version__, studies
 from .archive import write_study
 from .pool import Journal, evaluate
-from .scenario_study import study_settings
+from .scenario_study import study_settings, without_contact
 
 
 def study_names() -> list[str]:
@@ -48,7 +48,11 @@ def investigate(name: str, scenario, out=None, *, flags=None, workers=None, prog
     plain = json.loads(json.dumps(asdict(settings), default=str))
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain], sort_keys=True)
     journal = Journal(out.with_suffix(".partial.jsonl"), identity)
-    answer = module.run(scenario, settings, Tools(journal, workers, progress))
+    studied, left_out = (scenario, []) if getattr(module, "WITH_CONTACT", False) else without_contact(scenario)
+    answer = module.run(studied, settings, Tools(journal, workers, progress))
+    if left_out:
+        said = f"a study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out"
+        answer = {**answer, "verdict": [*answer.get("verdict", []), said]}
     answer = {"status": "ok", "message": " ".join(answer.get("verdict", [])), "study": name, **answer}
     libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
         "python": platform.python_version()

@@ -9,7 +9,8 @@ from .imposed import AXIAL, ROTOR, STATOR, oscillators
 from .legs import constant_and_slope
 from .units import Table
 
-WORKS = 6
+# Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
+WORKS, MORE = 6, 3
 RING_NAMES = ("stator", "rotor")
 
 
@@ -18,11 +19,19 @@ class Layout:
 
     `names` of the `n` displacements, which come first in `y`; `rate_places` where their rates stand (-1: massless);
     `n_mechanical` displacements and rates, `size` with the works; `ring_block` the constant part of the parameters;
-    `floats` per ring, `with_axial`, `with_tilt`, `massless`, `linear`, `constant` (no table anywhere), `reasons`.
+    `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `massless`, `linear`,
+    `constant` (no table anywhere), `extended` (contact or a secondary seal), places of `impulse` and `works`,
+    `reasons`.
     """
 
     def __init__(self, scene, legs, closing, linear: bool):
-        self.scene, self.linear = scene, linear
+        self.scene = scene
+        self.seals = [
+            k for k, ring in ((STATOR, scene.stator), (ROTOR, scene.rotor)) if ring.support and ring.secondary_seal
+        ]
+        self.extended = bool(scene.contact or self.seals)
+        # Contact and friction couple what a linear film keeps apart.
+        self.linear = linear = linear and not self.extended
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
         rows = np.vstack([oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg) for leg in legs])
@@ -68,10 +77,14 @@ class Layout:
         blocks = [self.ring_block[dynamics.RING * k : dynamics.RING * (k + 1)] for k in range(2)]
         place = 0
         for k, (ring, block) in enumerate(zip(rings, blocks, strict=True)):
-            block[dynamics.AT_Z :] = -1
+            block[dynamics.AT_Z : dynamics.SEAL_LINE] = -1
             if not self.floats[k]:
                 continue
-            support = ring.support
+            support, seal = ring.support, ring.secondary_seal
+            block[dynamics.SEAL_LINE :] = 0.0
+            if seal:
+                block[dynamics.SEAL_LINE], block[dynamics.SEAL_RADIUS] = seal.line(), seal.radius
+                block[dynamics.SEAL_SMOOTH] = seal.law == "regularised"
             block[dynamics.FLOATS : dynamics.AXIAL_K] = 1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia
             block[dynamics.AXIAL_K : dynamics.AT_Z] = support.axial_stiffness, support.axial_damping, *support.tilt()
             if self.with_axial:
@@ -91,8 +104,10 @@ class Layout:
                 block[dynamics.AT_TILT_RATE] = place
                 self.rate_places[tilt : tilt + 2] = place, place + 1
                 place += 2
-        self.n_mechanical, self.size = place, place + WORKS
-        self.ring_block[dynamics.WORKS_AT] = place
+        self.n_mechanical, self.size = place, place + WORKS + (MORE if self.extended else 0)
+        self.impulse = place if self.extended else None
+        self.works = slice(self.size - WORKS - (2 if self.extended else 0), self.size - 1)
+        self.ring_block[dynamics.WORKS_AT], self.ring_block[dynamics.EXTENDED] = self.works.start, self.extended
 
     def algebraic(self, film_damping: np.ndarray) -> list[int]:
         """Displacements without mass and without any damping on them: algebraic unknowns."""
@@ -122,6 +137,8 @@ class Layout:
         for i, place in enumerate(self.rate_places):
             if place >= 0:
                 scales[place] = displacement[i] * pace
+        if self.impulse is not None:
+            scales[self.impulse] = max(abs(problem.closing_force()), 1.0) / pace
         return scales, pace, 2 * math.pi / max([pace, *forced, natural])
 
     def memory(self, problem, fast_time: float) -> float:

@@ -25,6 +25,8 @@ TIGHTEST = 3e-14
 # Blocks of single steps; chunks of SUNDIALS' steps, and what a healthy one may cost (evaluations per
 # fastest forcing period): beyond it something is closing or crawling, and it is walked step by step.
 BLOCK, FIRST_CHUNK, STEPS_PER_CHUNK, BUDGET = 192, 20.0, 3000, 400.0
+# Steps handed over at once where the equations may change.
+FEW = 12
 
 
 class SolverFailure(RuntimeError):
@@ -64,6 +66,12 @@ def _tolerances(problem, tolerance):
     return absolute
 
 
+def _longest(problem):
+    """Longest step as SUNDIALS wants it: 0 means any."""
+    longest = problem.longest_step()
+    return longest if np.isfinite(longest) else 0.0
+
+
 def _in_chunks(solver, problem, leg, tau, y, yp, method, counts, allow):
     """Steps of a SUNDIALS solver over a leg, many at a time.
 
@@ -72,6 +80,10 @@ def _in_chunks(solver, problem, leg, tau, y, yp, method, counts, allow):
     The integrator restarts at each chunk, some thirty short steps in thousands.
     """
     span, end = FIRST_CHUNK * problem.fast_time, leg.length
+    if problem.sticking:
+        # Equations that may change at any step are not integrated far ahead.
+        yield from _one_by_one(solver, end, tau, y, yp, method, FEW)
+        return
     while tau < end:
         # No crumb at the end of a leg: its steps would drown in rounding.
         stop = end if tau + 1.2 * span >= end else tau + span
@@ -96,7 +108,7 @@ def _in_chunks(solver, problem, leg, tau, y, yp, method, counts, allow):
         span = (stop - tau + span) * min(max(STEPS_PER_CHUNK / max(taken, 1), 0.2), 4.0)
 
 
-def _one_by_one(solver, end, tau, y, yp, method):
+def _one_by_one(solver, end, tau, y, yp, method, block=BLOCK):
     """The same, step by step: for stretches that may not end well."""
     solver.init_step(tau, y) if yp is None else solver.init_step(tau, y, yp)
     ts, ys, yps = [], [], []
@@ -108,7 +120,7 @@ def _one_by_one(solver, end, tau, y, yp, method):
             ts.append(tau)
             ys.append(result.y)
             yps.append(None if yp is None else result.yp)
-        if ts and (len(ts) >= BLOCK or tau >= end or not result.success):
+        if ts and (len(ts) >= block or tau >= end or not result.success):
             yield np.array(ts), np.array(ys), None if yp is None else np.array(yps)
             _one_by_one.last = (ts[-1], ys[-1], yps[-1])
             ts, ys, yps = [], [], []
@@ -156,6 +168,7 @@ def _cvode(problem, leg, tau, y, method, tolerance, counts):
         rtol=tolerance,
         atol=_tolerances(problem, tolerance),
         jacfn=counted_jacobian,
+        max_step=_longest(problem),
         max_num_steps=1_000_000,
     )
     yield from _in_chunks(solver, problem, leg, tau, y, None, method, counts, allow)
@@ -172,7 +185,8 @@ def _ida(problem, leg, tau, y, method, tolerance, counts):
         inner(t, y, yp, res)
 
     options = {"algebraic_idx": problem.algebraic} if len(problem.algebraic) else {}
-    solver = IDA(counted, rtol=tolerance, atol=_tolerances(problem, tolerance), max_num_steps=1_000_000, **options)
+    solver = IDA(counted, rtol=tolerance, atol=_tolerances(problem, tolerance), max_num_steps=1_000_000,
+                 max_step=_longest(problem), **options)  # fmt: skip
     yield from _in_chunks(solver, problem, leg, tau, y, problem.start_rates(tau, y), method, counts, allow)
 
 
@@ -191,7 +205,8 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
 
     kind = DOP853 if method == "dop853" else Radau
     # DOP853's norm is an average: the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
-    solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=absolute)
+    solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=absolute,
+                  max_step=problem.longest_step())  # fmt: skip
     while solver.status == "running":
         # A trial stage may fly off and overflow; the error norm then refuses the step.
         with np.errstate(all="ignore"):

@@ -59,6 +59,8 @@ class Shooter:
         period = probe.period()
         if period is None or not probe.constant:
             raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
+        if probe.sticking:
+            raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
         self.period = float(turns * period)
         self.problem = Problem(scene, self.period, accuracy)
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.

@@ -8,19 +8,24 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq
 
-from . import dynamics, films, watch
+from . import contact, dynamics, films, watch
 from .equilibrium import initially, settle
 from .films import Coefficients
 from .gap import (
+    COLLAPSE,
+    CONTACT_FORCE,
     DZ,
     FACE_SIZE,
+    FLOOR,
     FORCE,
     GAP_STATE_SIZE,
     INNER_PRESSURE,
     MEAN_SPIN,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
+    TOUCH,
     VISCOSITY,
+    face_block,
 )
 from .imposed import AXIAL, FIXED_AXIS, OWN, ROW, STATOR, oscillators
 from .layout import Layout
@@ -28,9 +33,14 @@ from .legs import Leg, constant_and_slope, cut
 from .modes import Harmonic, LinearScene, RingNumbers, common_period, linearise
 from .scene import ImpossibleScene, Scene
 from .signals import signals
+from .sticking import Sticking
+from .touches import IMPULSE, KIND, LIFTED, OPEN, ContactTally, contact_event, fresh_state, touches
+from .touches import ROW as TOUCH_ROW
 
 # Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
 STIFF = 60.0
+# Steps per fastest period while a ring sticks: its load is looked at twice in each.
+PER_PERIOD = 32
 
 
 def film_module(name: str):
@@ -54,11 +64,15 @@ class Problem:
         self.scene, self.duration, self.accuracy = scene, duration, accuracy
         self.film = film_module(scene.film.model)
         self.film_name = self.film.__name__.rsplit(".", 1)[1]
-        self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self.film.opening_force)
+        self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self._opening_force)
         self.table = self._film_table()
         # A floored film converges slowly around the circle: it gets what the accuracy needs and no more.
         error = accuracy / 100 if scene.film.cavitation_pressure is None else accuracy
         self.f = self.film.parameters(self.table, self.clearance, max(error, 1e-13))
+        self.contact = None
+        if scene.contact:
+            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact.levels(scene.contact)
+            self.contact = contact.parameters(scene.contact, self.f[:FACE_SIZE])
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
@@ -72,7 +86,11 @@ class Problem:
         self.algebraic = layout.algebraic(self.film_matrices()[1]) if layout.massless else []
         self.scales, self.pace, self.fast_time = layout.scales(self)
         self.memory = layout.memory(self, self.fast_time)
+        self.works, self.touching, self.contacts = layout.works, fresh_state(), []
+        self.contact_tally = ContactTally()
+        self._set_bands()
         self.begin(0)
+        self.sticking = Sticking(self) if any(self._coulomb(k) for k in layout.seals) else None
         self.y0 = np.zeros(self.size)
         self.warnings = []
         self.records = watch.fresh_records()
@@ -92,6 +110,34 @@ class Problem:
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
         return replace(table, coefficients=taken)
+
+    def _opening_force(self, table, clearance, inner_pressure, outer_pressure):
+        """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
+        force = self.film.opening_force(table, clearance, inner_pressure, outer_pressure)
+        if not self.scene.contact:
+            return force
+        face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
+        face[FLOOR], face[TOUCH], face[COLLAPSE] = contact.levels(self.scene.contact)
+        contact.press(contact.parameters(self.scene.contact, face), face, s)
+        return force + s[CONTACT_FORCE]
+
+    def seal(self, k: int):
+        """Secondary seal of ring k (0 stator, 1 rotor), or None."""
+        return (self.scene.stator, self.scene.rotor)[k].secondary_seal
+
+    def _coulomb(self, k) -> bool:
+        return self.seal(k).law == "coulomb"
+
+    def _set_bands(self):
+        """Sliding speeds (m/s) at which friction fades: the user's width, or the accuracy times the scale of rates."""
+        self.band = self.accuracy * self.clearance * self.pace
+        for k in self.layout.seals:
+            band = self.band if self._coulomb(k) else self.seal(k).width
+            self.layout.ring_block[dynamics.RING * k + dynamics.SEAL_BAND] = band
+
+    def closing_force(self) -> float:
+        """Closing force (N) at the start."""
+        return self.closing.over(self.legs[0], self.scene.film)[0]
 
     def _legs(self) -> list[Leg]:
         scene = self.scene
@@ -141,7 +187,7 @@ class Problem:
             dynamics.residual,
             self.film.wrench,
         )
-        work = np.zeros(self.size)
+        work, block, press = np.zeros(self.size), self.contact, contact.press
 
         def rhs(tau, y, yp):
             kinematics(tau, y, yp, p, w, s)
@@ -153,7 +199,21 @@ class Problem:
             wrench(f, s)
             balance(tau, y, yp, p, w, s, work, res)
 
-        self.rhs, self.residual = rhs, residual
+        def touching_rhs(tau, y, yp):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            press(block, f, s)
+            rates(tau, y, p, w, s, yp)
+
+        def touching_residual(tau, y, yp, res):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            press(block, f, s)
+            balance(tau, y, yp, p, w, s, work, res)
+
+        # A scene without contact does not even ask.
+        pair = (rhs, residual) if block is None else (touching_rhs, touching_residual)
+        self.rhs, self.residual = pair
 
     def jacobian(self, tau, y, yp, jac):
         """d y'/d y (size, size) by forward differences over the mechanical unknowns; works feed nothing back."""
@@ -205,6 +265,15 @@ class Problem:
             out[i] = yp[self.rate_places]
         return out
 
+    def impulses(self, ys) -> np.ndarray:
+        """Impulse of contact (N s) so far at stored steps."""
+        return np.ascontiguousarray(ys[:, self.layout.impulse]) if self.layout.extended else np.zeros(len(ys))
+
+    def longest_step(self) -> float:
+        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do, else any."""
+        held = self.sticking is not None and any(self.sticking.stuck.values())
+        return self.fast_time / PER_PERIOD if held else math.inf
+
     def energies(self, taus, ys) -> np.ndarray:
         """Kinetic and spring energy (J) at stored steps."""
         out = np.empty(len(taus))
@@ -220,22 +289,65 @@ class Problem:
                 y[place] = q_rate[i]
         return y
 
-    def watch(self, index, t, q, q_rate, count, begin, end) -> float:
-        """Update the records of extremes over some steps; leg time of collapse or -1."""
+    def watch(self, index, t, q, q_rate, impulse, count, begin, end) -> float:
+        """Update the records of extremes, and of contacts, over some steps; leg time of collapse or -1."""
         windows = np.array(self.windows) - self.legs[index].time
         tolerance = 0.02 * self.accuracy * np.array([self.clearance, self.clearance / self.face[1]])
-        return watch.watch(
-            t, q, q_rate, count, begin, end, self.p, self.f, np.zeros(self.size), np.zeros(self.size),
-            self.w, self.s, windows, index, self.records, tolerance, self.leg_pace,
-        )  # fmt: skip
+        scratch = (self.p, self.f, np.zeros(self.size), np.zeros(self.size), self.w, self.s)
+        fallen = watch.watch(
+            t, q, q_rate, count, begin, end, *scratch, windows, index, self.records, tolerance, self.leg_pace
+        )
+        if self.contact is not None:
+            rows = np.empty((64 * (end - begin) + 64, TOUCH_ROW))
+            upto = end if fallen < 0 else int(np.searchsorted(t, fallen))
+            found = touches(
+                t, q, q_rate, impulse, count, begin, upto, *scratch, self.legs[index].time, self.leg_pace,
+                self.gap_error(), self.touching, rows,
+            )  # fmt: skip
+            self.contacts.extend(rows[:found])
+        return fallen
+
+    def tell_contacts(self, log, last: bool = False):
+        """Hand the contacts that have ended (at the `last` call also one that goes on) to `log` as events, and add
+        them to the tally of contacts."""
+        rows, self.contacts = self.contacts, []
+        if last and self.touching[OPEN]:
+            row = self.touching[:TOUCH_ROW].copy()
+            row[KIND], row[LIFTED], row[IMPULSE] = 1.0, np.nan, np.nan
+            rows.append(row)
+        if rows:
+            self.contact_tally.add(rows)
+            log([contact_event(row, self.face[TOUCH]) for row in rows])
+
+    def kept_modes(self) -> dict:
+        """What a continued run needs beside the unknowns: contacts so far, and which rings stick."""
+        return {
+            "touching": self.touching,
+            "contacts": vars(self.contact_tally),
+            "sticking": self.sticking.kept() if self.sticking else None,
+        }
+
+    def restore_modes(self, kept: dict):
+        """Go on from `kept`."""
+        self.touching[:] = kept["touching"]
+        self.contact_tally = ContactTally(**kept["contacts"])
+        if self.sticking:
+            self.sticking.restore(kept["sticking"])
+
+    def gap_error(self) -> float:
+        """How exactly (m) the gap is known: the accuracy on the axial gap and on the tilt at the outer radius."""
+        return 2.0 * self.accuracy * self.clearance
 
     def collapse_sentence(self, index: int, tau: float) -> str:
         """When, where, and what to try."""
         record = self.records[0]
+        what, limit = (
+            ("film collapsed", "floor") if self.contact is None else ("asperities crushed flat", "all flat at")
+        )
         side = "inner" if record[watch.H_RADIUS] == self.face[0] else "outer"
         return (
-            f"film collapsed at t = {self.legs[index].time + tau:.6g} s: thickness {record[watch.H] * 1e6:.3g} um "
-            f"(floor {self.face[4] * 1e6:.3g} um) at the {side} radius {record[watch.H_RADIUS] * 1e3:.4g} mm, "
+            f"{what} at t = {self.legs[index].time + tau:.6g} s: thickness {record[watch.H] * 1e6:.3g} um "
+            f"({limit} {self.face[COLLAPSE] * 1e6:.3g} um) at the {side} radius {record[watch.H_RADIUS] * 1e3:.4g} mm, "
             f"theta = {math.degrees(record[watch.H_THETA]):.1f} deg.  Try less misalignment or runout, "
             'more coning or clearance, a stiffer or more damped support, run.start = "steady".'
         )
@@ -254,11 +366,12 @@ class Problem:
         """Raises ImpossibleScene if the film is closed at the start."""
         at = self.y0[: self.n][None, :]
         low = signals(self, np.zeros(1), at, np.zeros_like(at))
-        if low["h_min"][0] <= self.face[4]:
+        if low["h_min"][0] <= self.face[COLLAPSE]:
             raise ImpossibleScene(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low['h_min'][0] * 1e6:.4g} um)",
-                f'more than the floor, {self.face[4] * 1e6:.3g} um: less tilt, more clearance, or run.start = "steady"',
+                f"more than the floor, {self.face[COLLAPSE] * 1e6:.3g} um: less tilt, more clearance, "
+                'or run.start = "steady"',
             )
 
     def period(self) -> float | None:

@@ -25,6 +25,9 @@ class Recorder:
     def state(self, index, tau, y):
         pass
 
+    def event(self, index, tau, event):
+        pass
+
     def arrays(self):
         """Times (m,), displacements (m, n), rates (m, n)."""
         return tuple(np.concatenate([part[i] for part in self.parts]) for i in range(3))

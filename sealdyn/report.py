@@ -40,6 +40,7 @@ def lines(scenario, summary: dict) -> list[str]:
         f"  closing       {_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
         f"{_n(closing['spring_force'])} N, duty {_n(closing['duty'], 1e-5)} bar)"
     )
+    out += _contact_lines(summary["contact"]) + _seal_lines(summary["secondary_seal"])
     if film["max_cavitated_fraction"]:
         out.append(
             f"  cavitation    up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure "
@@ -53,6 +54,40 @@ def lines(scenario, summary: dict) -> list[str]:
     out += [f"  WARNING       {warning}" for warning in summary["warnings"]]
     files = [summary["archive"]] + ([summary["figure"]] if summary.get("figure") else [])
     out.append(f"  files         {', '.join(files)}")
+    return out
+
+
+def _contact_lines(contact):
+    if contact is None:
+        return []
+    grazing = f"; {contact['grazing']} grazing within {_n(contact['gap_error'], MICRO)} um, undecided"
+    grazing = grazing if contact["grazing"] else ""
+    if not contact["touches"]:
+        return [f"  touch         never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"]
+    return [
+        f"  touch         {contact['touches']} contacts, first at t = {_n(contact['first'])} s, deepest "
+        f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse {_n(contact['impulse'])} N s"
+        + grazing,
+        f"                carries {_n(contact['share_of_closing'], 100)} % of the closing force, up to "
+        f"{_n(contact['force']['max'])} N and {_n(contact['max_pressure'], 1e-6)} MPa on "
+        f"{_n(contact['max_area_fraction'], 100)} % of the face; wear {_n(contact['wear_rate'], 3.6e9)} um/h",
+    ]
+
+
+def _seal_lines(seals):
+    if seals is None:
+        return []
+    out = [
+        f"  o-ring        {name}: {seal['law']} friction, breaks away at {_n(seal['breakaway_force'])} N or "
+        f"{_n(seal['breakaway_moment'])} N m"
+        for name, seal in seals["rings"].items()
+    ]
+    if seals["sticks"] is not None:
+        held = ", ".join(seals["stuck_at_end"])
+        out.append(
+            f"                stuck {seals['sticks']} times, slipped {seals['slips']} times"
+            + (f"; at the end stuck: {held}" if held else "; at the end sliding")
+        )
     return out
 
 
@@ -115,6 +150,7 @@ def resolved_lines(found: dict) -> list[str]:
         kind = "stable" if root["stable"] else "not stable by the film alone"
         where = f"{_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m"
         out.append(f"# equilibrium clearance {where}, {kind}")
+    out += [f"# {'ok' if rule['holds'] else 'WARNING'}: {rule['said']}" for rule in found["design_rules"]]
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
     return out

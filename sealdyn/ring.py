@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from .secondary_seal import SecondarySeal
 from .units import (
     Angle,
     Damping,
@@ -68,6 +69,7 @@ class Stator:
     misalignment_direction: Angle = 0.0
     speed: Varying[Speed] = 0.0
     support: Support | None = None
+    secondary_seal: SecondarySeal | None = None
 
 
 @dataclass(frozen=True)
@@ -87,3 +89,4 @@ class Rotor:
     runout_phase: Angle = 0.0
     axial_runout: list[AxialRunout] = field(default_factory=list)
     support: Support | None = None
+    secondary_seal: SecondarySeal | None = None

@@ -4,6 +4,7 @@ import cmath
 import difflib
 import math
 
+from . import contact, secondary_seal
 from .scenario_errors import film_models
 from .scene import ImpossibleScene
 from .units import Table
@@ -15,6 +16,9 @@ def refuse_impossible(scene, run) -> None:
     _closing(scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         _ring(name, ring)
+    if scene.contact:
+        for key, found, expected in contact.faults(scene.contact):
+            raise ImpossibleScene(f"contact.{key}", found, expected)
     if not (scene.stator.support or scene.rotor.support):
         raise ImpossibleScene(
             "rotor.support",
@@ -97,6 +101,8 @@ def _ring(name: str, ring) -> None:
     if ring.polar_inertia > 0 and ring.transverse_inertia == 0:
         raise ImpossibleScene(f"{name}.transverse_inertia", "0 beside a polar_inertia", "an inertia > 0")
     support = ring.support
+    if ring.secondary_seal:
+        _secondary_seal(name, ring)
     if support is None:
         return
     key = f"{name}.support"
@@ -107,6 +113,16 @@ def _ring(name: str, ring) -> None:
         raise ImpossibleScene(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
     if support.radius is not None and support.radius <= 0:
         raise ImpossibleScene(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
+
+
+def _secondary_seal(name: str, ring) -> None:
+    key = f"{name}.secondary_seal"
+    for part, found, expected in secondary_seal.faults(ring.secondary_seal):
+        raise ImpossibleScene(f"{key}.{part}", found, expected)
+    if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
+        raise ImpossibleScene(
+            key, "a ring without mass or inertia", "mass and transverse_inertia > 0 to stick and slip"
+        )
 
 
 def _vibrations(housing) -> None:
@@ -145,7 +161,8 @@ def _open_at_start(scene) -> None:
     tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
     at_inner = gap - tilt * film.inner_radius
     at_outer = gap + film.coning * (film.outer_radius - film.inner_radius) - tilt * film.outer_radius
-    if not min(at_inner, at_outer) > film.floor * film.clearance:
+    lowest = film.floor * film.clearance if scene.contact is None else contact.levels(scene.contact)[2]
+    if not min(at_inner, at_outer) > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
         if (scene.rotor.support and scene.stator.support) or _given(scene.initial):
             blame = "initial"
@@ -154,8 +171,9 @@ def _open_at_start(scene) -> None:
             blame,
             f"a film closed at the start ({min(at_inner, at_outer):g} m at the {where} radius, "
             f"relative misalignment {tilt:g} rad)",
-            f"more than floor x clearance = {film.floor * film.clearance:g} m",
-        )
+            f"more than floor x clearance = {lowest:g} m" if scene.contact is None
+            else f"more than {lowest:g} m, where all asperities are flat",
+        )  # fmt: skip
 
 
 def _start(ring) -> tuple[float, complex]:
@@ -197,7 +215,7 @@ def unused(scene, given: set[str]) -> list[str]:
     leaves = []
     for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
         if ring.support is None:
-            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}."]
+            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}.", f"{name}.secondary_seal."]
     if scene.rotor.support is None:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:

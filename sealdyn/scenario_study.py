@@ -1,12 +1,19 @@
-"""What a study asks of a scenario: its settings, and the same scenario with other values."""
+"""What a study asks of a scenario: its settings, the values of a key it goes through, and the same scenario with
+other values."""
 
 import dataclasses
+import re
 from typing import Any
 
+import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from .scenario import Scenario, parse_scenario
 from .scenario_errors import ScenarioError
+from .unit_names import dimension_and_factor
+
+NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
 
 
 def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, Any]):
@@ -40,7 +47,83 @@ def varied(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     return parse_scenario(scenario.text, scenario.name, [*scenario.overrides, *more], scenario.path)
 
 
+SMOOTH = ("contact", "stator.secondary_seal", "rotor.secondary_seal")
+
+
+def _not_smooth(scene) -> list[str]:
+    tables = (scene.contact, scene.stator.secondary_seal, scene.rotor.secondary_seal)
+    return [name for name, table in zip(SMOOTH, tables, strict=True) if table]
+
+
+def without_contact(scenario: Scenario) -> tuple[Scenario, list[str]]:
+    """The scenario without its contact and secondary-seal tables, for questions about the film alone, and the names of
+    the tables that were left out.  Raises ScenarioError if one is not written as a table."""
+    names = _not_smooth(scenario.scene)
+    if not names:
+        return scenario, []
+    text = scenario.text
+    for name in names:
+        text = re.sub(rf"(?ms)^[ \t]*\[\s*{re.escape(name)}\s*\].*?(?=^[ \t]*\[|\Z)", "", text)
+    overrides = [words for words in scenario.overrides if not words.strip().startswith(tuple(f"{n}." for n in names))]
+    film_alone = parse_scenario(text, scenario.name, overrides, scenario.path)
+    if _not_smooth(film_alone.scene):
+        raise ScenarioError(scenario.name, names[0], "keys outside a table", f"a table headed [{names[0]}]")
+    return film_alone, names
+
+
 def _written(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return repr(float(value)) if isinstance(value, int | float) else str(value)
+
+
+def axis(words: str, name: str, where: str) -> dict:
+    """`{key, unit, given, values}` of "key=from:to:count[:log]" or "key=a,b,c": `given` strings as a scenario would
+    have them, `values` the numbers in `unit` (or the words themselves, `unit` None).  A number without a unit takes
+    that of its neighbours.  Raises ScenarioError that names scenario `name` and setting `where`."""
+    key, equals, written = (part.strip() for part in words.partition("="))
+    if not (key and equals and written):
+        raise ScenarioError(name, where, repr(words), AXIS)
+    parts = written.split(":")
+    if len(parts) == 1:
+        entries = [entry.strip() for entry in written.split(",")]
+        matches = [NUMBER.fullmatch(entry) for entry in entries]
+        if not all(matches) or not all(_is_unit(m[2]) for m in matches):
+            return {"key": key, "unit": None, "given": entries, "values": entries}
+        values, unit = _in_one_unit(matches)
+    else:
+        ends = [NUMBER.fullmatch(part) for part in parts[:2]]
+        count, even_ratio = parts[2:3], parts[3:] == ["log"]
+        if not all(ends) or not (count and count[0].strip().isdecimal()) or (parts[3:] and not even_ratio):
+            raise ScenarioError(name, where, repr(words), AXIS)
+        (low, high), unit = _in_one_unit(ends)
+        if even_ratio and not low * high > 0:
+            raise ScenarioError(name, where, repr(words), "ends of one sign, not zero, for log")
+        spread = np.geomspace if even_ratio else np.linspace
+        # Twelve digits: 0.3 mrad is written so, not as 0.30000000000000004 mrad.
+        values = [float(f"{v:.12g}") for v in spread(low, high, int(count[0]))]
+    return {"key": key, "unit": unit, "given": [f"{v!r} {unit}".strip() for v in values], "values": values}
+
+
+def _is_unit(words: str) -> bool:
+    if not words:
+        return True
+    try:
+        dimension_and_factor(words)
+    except ValueError:
+        return False
+    return True
+
+
+def _in_one_unit(matches) -> tuple[list[float], str]:
+    """Numbers in the last unit written; those without a unit are in it already."""
+    units = [m[2] for m in matches]
+    unit = next((u for u in reversed(units) if u), "")
+
+    def number(match):
+        own = match[2]
+        if own in ("", unit) or not (_is_unit(own) and _is_unit(unit)):
+            return float(match[1])
+        return float(match[1]) * float(dimension_and_factor(own)[1] / dimension_and_factor(unit)[1])
+
+    return [number(m) for m in matches], unit

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from .contact import Contact
 from .films import Film
 from .motion import Housing, Shaft
 from .ring import Rotor, Stator
@@ -56,6 +57,7 @@ class Scene:
     housing: Housing = field(default_factory=Housing)
     closing: Closing = field(default_factory=Closing)
     initial: Initial = field(default_factory=Initial)
+    contact: Contact | None = None
 
 
 class ImpossibleScene(ValueError):

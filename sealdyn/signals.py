@@ -2,9 +2,15 @@
 
 import numpy as np
 
-from . import dynamics
+from . import contact, dynamics
 from .gap import (
     CAVITATED,
+    CONTACT_AREA,
+    CONTACT_FORCE,
+    CONTACT_PRESSURE,
+    CONTACT_TORQUE,
+    CONTACT_X,
+    CONTACT_Y,
     DZ,
     FLOW_INNER,
     FLOW_OUTER,
@@ -16,11 +22,22 @@ from .gap import (
     MOMENT_Y,
     SPIN_DIFFERENCE,
     TORQUE,
+    WEAR,
     h_min,
 )
 from .layout import RING_NAMES
 from .legs import constant_and_slope, reduced
 
+# What contact adds.
+CONTACT_SIGNALS = {
+    "contact_force": CONTACT_FORCE,
+    "contact_moment_x": CONTACT_X,
+    "contact_moment_y": CONTACT_Y,
+    "contact_torque": CONTACT_TORQUE,
+    "contact_area_fraction": CONTACT_AREA,
+    "contact_pressure": CONTACT_PRESSURE,
+    "wear_rate": WEAR,
+}
 PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
 
 
@@ -34,10 +51,15 @@ def signals(problem, taus, q, q_rate) -> dict[str, np.ndarray]:
     massive = problem.rate_places >= 0
     ys[:, : problem.n] = q
     ys[:, problem.rate_places[massive]] = q_rate[:, massive]
+    out = np.empty(problem.size)
     for i in range(m):
         yps[: problem.n] = q_rate[i]
         dynamics.kinematics(taus[i], ys[i], yps, p, w, s)
         flow(f, s)
+        if problem.contact is not None:
+            contact.rub(problem.contact, f, s)
+        if problem.layout.seals:
+            dynamics.rates(taus[i], ys[i], p, w, s, out)
         gap[i], scratch[i] = s, w
         low[i] = h_min(face, s[DZ], s[GX], s[GY])
     return _columns(problem, np.asarray(taus), gap, scratch, low)
@@ -66,7 +88,17 @@ def _columns(problem, taus, gap, scratch, low):
     sign = -1.0 if problem.closing.outer_is_high else 1.0
     columns["leakage_inner"] = sign * gap[:, FLOW_INNER]
     columns["leakage_outer"] = sign * gap[:, FLOW_OUTER]
-    columns["friction_torque"] = gap[:, TORQUE]
-    columns["friction_power"] = gap[:, TORQUE] * gap[:, SPIN_DIFFERENCE]
+    torque = gap[:, TORQUE] + gap[:, CONTACT_TORQUE]
+    columns["friction_torque"], columns["friction_power"] = torque, torque * gap[:, SPIN_DIFFERENCE]
     columns["cavitated_fraction"] = gap[:, CAVITATED]
+    if problem.contact is not None:
+        for name, slot in CONTACT_SIGNALS.items():
+            columns[name] = gap[:, slot]
+    for k in problem.layout.seals:
+        at = dynamics.SEALS + dynamics.PER_SEAL * k
+        names = ("seal_friction", "seal_moment_x", "seal_moment_y", "seal_sliding_speed")
+        for i, name in enumerate(names):
+            columns[f"{RING_NAMES[k]}_{name}"] = scratch[:, at + i]
+        stuck = problem.p[dynamics.RING * k + dynamics.STUCK]
+        columns[f"{RING_NAMES[k]}_seal_stuck"] = np.full(len(taus), stuck)
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}

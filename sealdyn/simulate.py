@@ -47,6 +47,22 @@ SERIES = {
     "friction_power": Series("W", "friction power"),
     "cavitated_fraction": Series("1", "share of the face at the cavitation pressure"),
 }
+CONTACT_SERIES = {
+    "contact_force": Series("N", "contact force, opening"),
+    "contact_moment_x": Series("N m", "contact moment on the stator about xi"),
+    "contact_moment_y": Series("N m", "contact moment on the stator about eta"),
+    "contact_torque": Series("N m", "friction torque of contact on the rotor"),
+    "contact_area_fraction": Series("1", "share of the face that touches"),
+    "contact_pressure": Series("Pa", "largest contact pressure"),
+    "wear_rate": Series("m/s", "wear depth rate of both faces, mean over the face"),
+}
+SEAL_SERIES = {
+    "seal_friction": ("N", "axial friction of the secondary seal on the {}"),
+    "seal_moment_x": ("N m", "friction moment of the secondary seal on the {} about xi"),
+    "seal_moment_y": ("N m", "friction moment of the secondary seal on the {} about eta"),
+    "seal_sliding_speed": ("m/s", "sliding speed of the {} on its secondary seal"),
+    "seal_stuck": ("1", "1 while the {} sticks on its secondary seal"),
+}
 PARTS = {
     "z": ("m", "axial displacement"),
     "tilt_x": ("rad", "tilt about xi"),
@@ -55,6 +71,10 @@ PARTS = {
     "tilt_x_rate": ("rad/s", "tilt rate about xi"),
     "tilt_y_rate": ("rad/s", "tilt rate about eta"),
 }
+
+
+# Single events kept in an archive; a seal that rubs for hours has more, which are counted.
+MOST_EVENTS = 20_000
 
 
 @dataclass(frozen=True)
@@ -76,18 +96,20 @@ class Tally:
     largest: dict = None
 
     NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
-             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change")  # fmt: skip
+             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change", "closing_force", "contact_force",
+             "contact_torque", "contact_area_fraction", "contact_pressure", "wear_rate")  # fmt: skip
 
     def add(self, columns):
-        self.sums = self.sums or dict.fromkeys(self.NAMES, 0.0)
-        self.largest = self.largest or dict.fromkeys(self.NAMES, -math.inf)
+        names = [name for name in self.NAMES if name in columns]
+        self.sums = self.sums or dict.fromkeys(names, 0.0)
+        self.largest = self.largest or dict.fromkeys(names, -math.inf)
         self.rows += len(columns["time"])
-        for name in self.NAMES:
+        for name in self.sums:
             self.sums[name] += float(columns[name].sum())
             self.largest[name] = max(self.largest[name], float(columns[name].max()))
 
     def mean(self, name: str) -> float:
-        return self.sums[name] / self.rows if self.rows else math.nan
+        return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
 
 
 class ArchiveSink:
@@ -98,6 +120,7 @@ class ArchiveSink:
         self.tally, self.progress, self.stop = tally, progress, stop
         self.audit = None
         self.waiting = None
+        self.logged = 0
 
     def due(self, index: int) -> np.ndarray:
         """Leg times of the samples in leg `index`, counted from the nearest sample so that they stay exact."""
@@ -121,7 +144,18 @@ class ArchiveSink:
         else:
             self.waiting = {k: np.concatenate([self.waiting[k], columns[k]]) for k in columns}
 
+    def event(self, index, tau, event):
+        self.log([{**event, "time": self.problem.legs[index].time + tau}])
+
+    def log(self, events):
+        """Events into the archive as they come; beyond the most that are kept they are only counted."""
+        kept = events[: max(MOST_EVENTS - self.logged, 0)]
+        self.logged += len(kept)
+        if kept:
+            self.writer.events(kept)
+
     def state(self, index, tau, y):
+        self.problem.tell_contacts(self.log)
         self.flush(index, tau, y)
         if self.progress:
             leg = self.problem.legs[index]
@@ -140,6 +174,7 @@ class ArchiveSink:
             "records": problem.records.ravel(),
             "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
             "audit": self.audit.kept(),
+            "modes": problem.kept_modes() | {"logged": self.logged},
             "names": problem.names,
         }
         self.writer.append(self.waiting, state)
@@ -154,6 +189,12 @@ class TallySink(ArchiveSink):
 
     def take(self, index, taus, q, q_rate):
         self.tally.add(signals(self.problem, taus, q, q_rate))
+
+    def log(self, events):
+        pass
+
+    def flush(self, index, tau, y):
+        pass
 
 
 def sampling(scenario) -> tuple[float, float, int]:
@@ -211,6 +252,7 @@ def simulate(
     sink.audit = audit
     restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
     outcome = solve(problem, method, scenario.run.accuracy, sink, audit=audit, resume=restart)
+    problem.tell_contacts(sink.log, last=outcome.status == "ok" or outcome.status == "collapsed")
     sink.flush(outcome.leg, outcome.tau, outcome.y)
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     summary["wall_time"] = clock.perf_counter() - begun
@@ -228,6 +270,7 @@ def run_briefly(scenario) -> dict:
     problem, method, why, interval, count = prepare(scenario)
     sink = TallySink(problem, interval, count)
     outcome = solve(problem, method, scenario.run.accuracy, sink)
+    problem.tell_contacts(sink.log, last=True)
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
@@ -291,7 +334,7 @@ def _check_method(problem, method):
     if problem.massless and method != "ida":
         raise ImpossibleScene("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
     if method == "expm" and not (problem.linear and problem.constant):
-        what = "a nonlinear film" if not problem.linear else "parameters that change with time"
+        what = "a nonlinear film, contact or friction" if not problem.linear else "parameters that change with time"
         raise ImpossibleScene("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')
 
 
@@ -311,6 +354,8 @@ def _resumed(problem, writer, sink, audit):
     tally = state["tally"]
     sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
     audit.restore(state["audit"])
+    problem.restore_modes(state["modes"])
+    sink.logged = int(state["modes"]["logged"])
     return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
 
 
@@ -320,6 +365,11 @@ def _series(problem) -> dict[str, Series]:
         for part in list(PARTS)[: 6 if problem.floats[k] else 3]:
             units, long_name = PARTS[part]
             series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
+    if problem.contact is not None:
+        series |= CONTACT_SERIES
+    for k in problem.layout.seals:
+        for part, (units, long_name) in SEAL_SERIES.items():
+            series[f"{RING_NAMES[k]}_{part}"] = Series(units, long_name.format(RING_NAMES[k]))
     return {**series, **SERIES}
 
 

@@ -2,21 +2,25 @@
 
 A problem offers `n` displacements first in its unknowns, `legs` (each with `length`), `begin(k)`,
 `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `start_rates`, `jacobian`, `scales`, `motion`, `energies`,
-`accelerations`, `watch`, `y0`, `memory`; its last six unknowns are works.  A sink takes what has been integrated.
-Nothing here knows of seals or files.
+`accelerations`, `watch`, `y0`, `memory`, `works` (where they stand), `impulses`, `longest_step`,
+and `sticking`: None, or what finds and makes changes of the equations between steps.
+A sink takes what has been integrated.  Nothing here knows of seals or files.
 """
 
 import time as clock
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
 from .audit import Audit
 from .dense import sample
-from .methods import BLOCK, METHODS, Counts, SolverFailure, tolerance_for
+from .methods import BLOCK, FEW, METHODS, Counts, SolverFailure, tolerance_for
 
 # Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
 OVERLAP = 4
+CRUMB = 1e-14
 
 
 @dataclass
@@ -40,7 +44,7 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
     `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an Audit to go on with;
     `resume` = (leg, tau, y) continues.
     The sink offers `due(leg_index) -> leg times of output`, `take(leg_index, times, q, q_rate)`,
-    `state(leg_index, tau, y)`, and may raise KeyboardInterrupt from `take` to stop.
+    `state(leg_index, tau, y)`, `event(leg_index, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
     Returns an Outcome; a failed run is a result.
     """
     begun = clock.perf_counter()
@@ -48,12 +52,17 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
     counts, audit = Counts(), audit or Audit(problem)
     first, tau, y = resume if resume else (0, 0.0, problem.y0.copy())
     status, message, index = "ok", "done", first
+    method_over = partial(_over, problem, method, tolerance, counts)
     try:
         for index in range(first, len(problem.legs)):
             leg = problem.begin(index)
-            counts.restarts += 1
-            steps = METHODS[method](problem, leg, tau, y, method, tolerance, counts)
-            tau, y, collapse = _run_leg(problem, index, leg, tau, y, steps, sink, audit, counts)
+            if problem.sticking and index == first and not resume:
+                problem.sticking.start(tau, y)
+            while True:
+                counts.restarts += 1
+                tau, y, collapse = _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts)
+                if collapse or tau >= leg.length:
+                    break
             if collapse:
                 status, message = "collapsed", collapse
                 break
@@ -66,15 +75,30 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
     return Outcome(status, message, counts, clock.perf_counter() - begun, index, tau, y, tolerance, audit.residual())
 
 
-def _blocks(steps):
-    """Steps gathered into blocks of at least BLOCK, so that what follows is done on arrays; a solver that gives
+def _over(problem, method, tolerance, counts, leg, tau, y):
+    """Blocks of steps of a method over a leg."""
+    return METHODS[method](problem, leg, tau, y, method, tolerance, counts)
+
+
+def _advance(problem, leg, method_over, tau, y, until):
+    """Unknowns at `until`, integrated from tau."""
+    if until - tau <= CRUMB * max(abs(until), leg.length):
+        # Too short for any solver's first step: nothing moves in it.
+        return y.copy()
+    for _, ys, _ in method_over(replace(leg, span=Fraction(until)), tau, y):
+        last = ys[-1]
+    return last.copy()
+
+
+def _blocks(steps, least):
+    """Steps gathered into blocks of at least `least`, so that what follows is done on arrays; a solver that gives
     up hands over what it has before it says so."""
     waiting, count = [], 0
     try:
         for t, y, yp in steps:
             waiting.append((t, y, yp))
             count += len(t)
-            if count >= BLOCK:
+            if count >= least:
                 yield _joined(waiting)
                 waiting, count = [], 0
     except SolverFailure as failure:
@@ -91,26 +115,36 @@ def _joined(waiting):
     return t, y, yp
 
 
-def _run_leg(problem, index, leg, tau, y, steps, sink, audit, counts):
-    """Integrate one leg; returns the last leg time, unknowns, and the sentence of a collapse (or "")."""
+def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts):
+    """Integrate one leg, or up to a change of its equations; returns the last leg time, unknowns, and the sentence
+    of a collapse (or "")."""
+    sticking = problem.sticking
+    steps, change = method_over(leg, tau, y), None
     t, ys = np.array([tau]), y[None, :].copy()
     yps = problem.start_rates(tau, y)[None, :] if problem.massless else np.zeros_like(ys)
     audit.begin(tau, y)
     due = sink.due(index)
     done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
-    watched = 0
+    watched = looked = 0
     problem.last = (tau, y)
-    for block_t, block_y, block_yp, *failed in _blocks(steps):
+    for block_t, block_y, block_yp, *failed in _blocks(steps, BLOCK if sticking is None else FEW):
         counts.steps += len(block_t)
         t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
+        if sticking:
+            change = sticking.find(t, ys, looked, len(t) - 1, partial(_advance, problem, leg, method_over))
+            if change:
+                step, at, there, ring = change
+                t, ys = np.append(t[: step + 1], at), np.vstack([ys[: step + 1], there])
+                yps, failed = np.zeros_like(ys), []
+            looked = len(t) - 1
         count = len(t)
-        last_block = t[-1] >= leg.length or bool(failed)
+        last_block = t[-1] >= leg.length or bool(failed) or change is not None
         # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
         upto = count - 1 if last_block else count - 1 - OVERLAP
         if upto > watched:
             q, q_rate = problem.motion(ys, yps)
-            fallen = problem.watch(index, t, q, q_rate, count, watched, upto)
+            fallen = problem.watch(index, t, q, q_rate, problem.impulses(ys), count, watched, upto)
             audit.take(t, ys, watched, upto if fallen < 0 else int(np.searchsorted(t, fallen)) - 1)
             done = _hand_over(problem, index, t, ys, q, q_rate, watched, upto, due, done, fallen, sink)
             if fallen >= 0:
@@ -120,9 +154,14 @@ def _run_leg(problem, index, leg, tau, y, steps, sink, audit, counts):
                 return fallen, end, problem.collapse_sentence(index, fallen)
             problem.last = (float(t[upto]), ys[upto].copy())
             sink.state(index, *problem.last)
+        if change:
+            tau, y = float(t[-1]), ys[-1].copy()
+            y, event = sticking.change(tau, y, ring)
+            sink.event(index, tau, event)
+            return tau, y, ""
         # Keep neighbours to the left of what comes next.
         keep = max(0, upto - OVERLAP)
-        t, ys, yps, watched = t[keep:], ys[keep:], yps[keep:], upto - keep
+        t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep
     return float(t[-1]), ys[-1].copy(), ""
 
 

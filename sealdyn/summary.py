@@ -5,7 +5,9 @@ import math
 import numpy as np
 
 from . import closed_form, modes
+from .gap import TOUCH
 from .imposed import ROTOR, STATOR
+from .layout import RING_NAMES
 from .legs import constant_and_slope
 from .scenario import unused_keys
 from .watch import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
@@ -56,6 +58,8 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
             "max_power": tally.largest["friction_power"] if tally.largest else math.nan,
             "temperature_rise": _temperature_rise(problem, tally),
         },
+        "contact": _contact(problem, tally),
+        "secondary_seal": _secondary_seal(problem),
         "film": _film(problem, linear, tally),
         "closing": _closing(problem),
         "contact_margin": _contact_margin(problem, linear, tilt),
@@ -119,6 +123,51 @@ def _blown_open(problem, tally) -> list[str]:
     if widest < 10:
         return []
     return [f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"]
+
+
+def _contact(problem, tally):
+    """What the faces did where they touched; None without a [contact] table."""
+    if problem.contact is None:
+        return None
+    found, largest, level = problem.contact_tally, tally.largest or {}, problem.face[TOUCH]
+    closing = tally.mean("closing_force")
+    return {
+        "touches": found.count,
+        "grazing": found.grazing,
+        "gap_error": problem.gap_error(),
+        "touch_at": level,
+        "first": found.first,
+        "lowest": found.lowest,
+        "depth": None if found.lowest is None else level - found.lowest,
+        "longest": found.longest,
+        "impulse": found.impulse,
+        "force": {"mean": tally.mean("contact_force"), "max": largest.get("contact_force")},
+        "share_of_closing": tally.mean("contact_force") / closing if closing else None,
+        "torque": tally.mean("contact_torque"),
+        "max_area_fraction": largest.get("contact_area_fraction"),
+        "max_pressure": largest.get("contact_pressure"),
+        "wear_rate": tally.mean("wear_rate"),
+    }
+
+
+def _secondary_seal(problem):
+    """Friction of secondary seals: what holds them, and how often they stuck and slipped; None without one."""
+    if not problem.layout.seals:
+        return None
+    rings = {}
+    for k in problem.layout.seals:
+        force, moment = problem.seal(k).breakaway()
+        rings[RING_NAMES[k]] = {"breakaway_force": force, "breakaway_moment": moment, "law": problem.seal(k).law}
+    found = problem.sticking
+    if found is None:
+        return {"rings": rings, "sticks": None, "slips": None, "energy_dropped": None, "stuck_at_end": None}
+    return {
+        "rings": rings,
+        "sticks": found.sticks,
+        "slips": found.slips,
+        "energy_dropped": found.dropped,
+        "stuck_at_end": [RING_NAMES[k] for k, held in found.stuck.items() if held],
+    }
 
 
 def _leakage(problem, tally):

@@ -20,7 +20,8 @@ from .units import Table
 
 SEALS = ("fmr", "fms")
 FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fms_dynamic)}
-CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support")
+CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support",
+           "secondary_seal")  # fmt: skip
 
 
 def arrangement(scene: Scene) -> str:
@@ -96,16 +97,34 @@ class Seal:
     def linear(self, speed: float) -> modes.LinearScene:
         return self.problem.linear_scene(speed=float(speed))
 
-    def algebra(self, speed: float) -> tuple[float, float, float]:
-        """Static, dynamic, total by harmonic balance."""
+    def relative_tilts(self, speed: float) -> tuple[complex, complex]:
+        """Static and dynamic relative tilt (stator minus rotor) per unit forcing, in its frame, by harmonic balance."""
         linear, found = self.linear(speed), []
         for ring, frequency in ((STATOR, self.stator_speed), (ROTOR, speed)):
             none, circle = np.zeros(3, dtype=complex), np.array([0, 1, -1j])
             own = linear.rings[ring].floats
             forcing = modes.Harmonic(float(frequency), ring, none if own else circle, circle if own else none)
             tilt = linear.relative(forcing, linear.response(forcing))
-            found.append(float(abs(tilt[1] + 1j * tilt[2])) / 2)
-        return found[0], found[1], found[0] + found[1]
+            found.append(complex(tilt[1] + 1j * tilt[2]) / 2)
+        return tuple(found)
+
+    def formula_tilts(self, speeds) -> np.ndarray:
+        """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives; complex, shape (2, n)."""
+        n = self.tilt_numbers(speeds)
+        w, k_s, d_s, k, d = (n[name] for name in ("speed", "support_stiffness", "support_damping",
+                                                       "film_stiffness", "film_damping"))  # fmt: skip
+        behind = k - 0.5j * d * w
+        if self.name == "fmr":
+            support = k_s - 1j * d_s * w
+            inertial = (n["polar_inertia"] - n["transverse_inertia"]) * w**2
+            return np.array([support / (support + behind), -k_s / (inertial + k_s + behind.conj())])
+        ring = k_s - n["transverse_inertia"] * w**2 + 1j * d_s * w
+        return np.array([k_s / (k_s + behind), -ring / (ring + behind.conj())])
+
+    def algebra(self, speed: float) -> tuple[float, float, float]:
+        """Static, dynamic, total by harmonic balance."""
+        static, dynamic = map(abs, self.relative_tilts(speed))
+        return static, dynamic, static + dynamic
 
     def growth(self, speed: float) -> float:
         """Growth rate (1/s) of the least damped tilt mode; 0 within rounding."""

@@ -12,7 +12,7 @@ from numba import njit
 
 from .dense import NODES, fit, value
 from .dynamics import kinematics
-from .gap import DZ, FLOOR, GX, GY
+from .gap import COLLAPSE, DZ, GX, GY
 from .gap import h_min as smallest
 
 # One record per window: value, leg time, angle, radius of h_min; value and time of the largest and of the
@@ -158,7 +158,7 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                     dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
                     held, slack = _held(record, kind, tolerance)
                     reach = seen[best, kind] - dip
-                    sinks = kind == THICKNESS and reach < f[FLOOR]
+                    sinks = kind == THICKNESS and reach < f[COLLAPSE]
                     if not sinks and reach >= held - slack:
                         continue
                     if size == 0:
@@ -170,8 +170,10 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                     )  # fmt: skip
                     value(table, nodes, size, at, q, q_rate)
                     theta, radius = _measures(at, q, y, yp, p, f, w, s, out)
-                    if kind == THICKNESS and window == 0 and out[kind] < f[FLOOR]:
-                        fallen = _first_below(t[k], at, f[FLOOR], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
+                    if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:
+                        fallen = _first_below(
+                            t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                        )
                         value(table, nodes, size, fallen, q, q_rate)
                         theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
                         for other in range(3):

@@ -110,7 +110,7 @@ class Sink:
     def __init__(self, problem, interval):
         self.problem, self.interval = problem, interval
         self.count = round(problem.duration / interval)
-        self.times, self.q, self.rates, self.parts = [], [], [], []
+        self.times, self.q, self.rates, self.parts, self.events = [], [], [], [], []
 
     def due(self, index):
         leg = self.problem.legs[index]
@@ -128,6 +128,9 @@ class Sink:
     def state(self, *anything):
         pass
 
+    def event(self, index, tau, event):
+        self.events.append({**event, "time": self.problem.legs[index].time + tau})
+
 
 class Run:
     """A finished run: problem, outcome, times (m,), displacements and rates (m, n), signals by name."""
@@ -137,7 +140,7 @@ class Run:
         self.times = np.concatenate(sink.times) if sink.times else np.empty(0)
         self.q = np.concatenate(sink.q) if sink.q else np.empty((0, problem.n))
         self.rates = np.concatenate(sink.rates) if sink.rates else np.empty((0, problem.n))
-        self.parts = sink.parts
+        self.parts, self.events = sink.parts, sink.events
 
     def __getitem__(self, name):
         return np.concatenate([part[name] for part in self.parts])

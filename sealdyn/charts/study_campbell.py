@@ -38,30 +38,44 @@ def draw(archive_path, out_path):
 def _frequencies(ax, answer, speed, factor):
     modes = answer["modes"]
     highest = factor * max((max(m["frequency"]) for m in modes), default=1.0)
-    for number, mode in enumerate(modes):
-        _by_direction(ax, speed, factor * np.array(mode["frequency"]), mode["directions"], number)
+    top = min(1.08 * highest, 1.25 * speed[-1])
+    curves = [factor * np.array(m["frequency"]) for m in modes]
+    for number, (mode, values) in enumerate(zip(modes, curves, strict=True)):
+        _by_direction(ax, speed, values, mode["directions"], number)
+    ax.set(xlim=(speed[0], speed[-1]), ylim=(0, top), ylabel=f"whirl frequency, {_per(answer)}",
+           title="Whirl frequency")  # fmt: skip
     for order in answer["lines"]:
         ax.plot(speed, order * speed, color=GREY, lw=0.9)
-        _name_line(ax, order, speed, min(1.08 * highest, 1.25 * speed[-1]))
+    named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
+    for order in answer["lines"]:
+        _name_line(ax, order, speed, top, curves, named, [k for k in answer["lines"] if k != order])
     for c in answer["crossings"]:
         ax.plot(factor * c["speed"], factor * c["frequency"], "o", mfc="white", mec=BLACK, ms=6, zorder=4)
     if speed[0] < factor * answer["own_speed"] < speed[-1]:
         ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":")
-    ax.set(ylim=(0, min(1.08 * highest, 1.25 * speed[-1])), ylabel=f"whirl frequency, {_per(answer)}",
-           title="Whirl frequency")  # fmt: skip
 
 
 def _per(answer) -> str:
     return "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
 
 
-def _name_line(ax, order, speed, top):
-    at = min(speed[-1], top / order if order else speed[-1])
+def _name_line(ax, order, speed, top, curves, points, others):
+    """The order's name on its line, where it lies farthest from curves, other lines and marks."""
     name = {0.5: "½×", 1.0: "1×"}.get(order, f"{order:g}×")
-    offset = (-4, 3) if at < speed[-1] else (3, 0)
-    ax.annotate(name, (at, order * at), xytext=offset, textcoords="offset points", fontsize=8.5, color=GREY,
-                ha="right" if at < speed[-1] else "left", va="top" if at < speed[-1] else "center",
-                annotation_clip=False)  # fmt: skip
+    last = min(speed[-1], top / order) if order > 0 else speed[-1]
+    places = speed[0] + (last - speed[0]) * np.linspace(0.25, 0.95, 71)
+    width, height = speed[-1] - speed[0], top
+
+    def away(x):
+        # In parts of the panel: to every curve, as far as it lies beside or above.
+        near = [np.hypot((speed - x) / width, (values - order * x) / height).min() for values in
+                [*curves, *(k * speed for k in others)]]  # fmt: skip
+        near += [np.hypot((p[0] - x) / width, (p[1] - order * x) / height) for p in points]
+        return min([*near, 0.1])
+
+    at = max(places, key=lambda x: (away(x), x))
+    ax.text(at, order * at, name, fontsize=8.5, color=GREY, ha="center", va="center", zorder=5,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})  # fmt: skip
 
 
 def _by_direction(ax, speed, values, directions, number):
@@ -70,7 +84,9 @@ def _by_direction(ax, speed, values, directions, number):
     for k in range(1, len(directions) + 1):
         if k == len(directions) or directions[k] != directions[start]:
             part = slice(start, min(k + 1, len(directions)))
-            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]], lw=1.8)
+            # Dashes over lines, so that two modes of one frequency are both seen.
+            above = 2.0 if directions[start] == "forward" else 2.5
+            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]], lw=1.8, zorder=above)
             start = k
 
 
@@ -91,15 +107,26 @@ def _decrements(ax, answer, speed, factor):
     ax.minorticks_off()
     ax.axhline(0.0, color=BLACK, lw=1.0)
     bottom = max(1.3 * lowest, -MOST_DECREMENT) if lowest < 0 else -0.15
+    if any(p["what"] == "damping" for p in answer["thresholds"]):
+        # Room for the threshold's number below zero.
+        bottom = min(bottom, -np.sinh(0.09 * np.arcsinh(highest)))
     ax.axhspan(bottom, 0.0, color=VERMILLION, alpha=0.08, lw=0)
     ax.set(ylim=(bottom, 1.05 * highest), ylabel="logarithmic decrement", title="Damping")
     for point in (p for p in answer["thresholds"] if p["what"] == "damping"):
-        at = factor * point["speed"]
-        ax.plot(at, 0.0, "o", mfc="white", mec=VERMILLION, ms=7, zorder=4)
-        ax.annotate(f"{at:.5g}", (at, 0.0), xytext=(0, 8), textcoords="offset points", ha="right", fontsize=8.5,
-                    color=VERMILLION)  # fmt: skip
+        _name_threshold(ax, factor * point["speed"], speed, shown)
     if bottom < -0.3:
         ax.text(speed[0] + 0.02 * (speed[-1] - speed[0]), 0.5 * bottom, "unstable", color=VERMILLION, va="center")
+
+
+def _name_threshold(ax, at, speed, curves):
+    """The speed at which damping changes sign, on the side of its curve that is free."""
+    falling = any(np.interp(at, speed, v) < 0.3 and np.interp(at, speed, np.gradient(v)) < 0 for v in curves)
+    left = at > 0.5 * (speed[0] + speed[-1])
+    below = falling == left
+    ax.plot(at, 0.0, "o", mfc="white", mec=VERMILLION, ms=7, zorder=4)
+    ax.annotate(f"{at:.5g}", (at, 0.0), xytext=(-6 if left else 6, -6 if below else 6), textcoords="offset points",
+                ha="right" if left else "left", va="top" if below else "bottom", fontsize=8.5,
+                color=VERMILLION)  # fmt: skip
 
 
 def _handles(answer):

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..archive import read_study
 from .page import absent, look, save, sheet, shortened
-from .palette import BLUE, CONTACT, FILM, GREY, THEORY, TILT
+from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
 
 
 def draw(archive_path, out_path):
@@ -61,20 +61,31 @@ def _opening(ax, answer):
 
 
 def _curve(ax, answer):
-    rows = [row for row in answer["curve"] if "failed" not in row]
+    rows = answer["curve"]
     if not rows:
         return absent(ax, "Onset over another key", "no study.contact_onset.over asked for")
-    values = [row["value"] if isinstance(row["value"], int | float) else i for i, row in enumerate(rows)]
-    ax.plot(values, [1e3 * row["nonlinear"] for row in rows], "o-", color=TILT, label="nonlinear")
-    ax.plot(values, [1e3 * row["formula"] for row in rows], "--", color=THEORY, label="linear theory")
-    if any(isinstance(row["value"], str) for row in rows):
-        ax.set_xticks(values, [str(row["value"]) for row in rows])
-    for i, row in enumerate(answer["curve"]):
-        if "failed" in row:
-            ax.plot(row["value"] if isinstance(row["value"], int | float) else i, 0, "x", color=CONTACT)
-    ax.set_ylim(0, None)
+    words = any(isinstance(row["value"], str) for row in rows)
+    at = list(range(len(rows))) if words else [row["value"] for row in rows]
+    floored = [row.get("floored", {}) for row in rows]
+    # Where an onset was not found the curve has a gap, and a cross on the axis.
+    for found, name, style in (
+        (rows, "nonlinear", {"color": TILT, "marker": "o", "ms": 4.5, "label": "nonlinear"}),
+        (
+            floored,
+            "nonlinear",
+            {"color": PURPLE, "marker": "s", "ms": 4.5, "mfc": "white", "label": "pressure floored"},
+        ),
+        (rows, "formula", {"color": THEORY, "ls": "--", "marker": ".", "label": "linear theory"}),
+    ):
+        if any(found):
+            ax.plot(at, [1e3 * row[name] if row.get(name) is not None else np.nan for row in found], **style)
+    missing = [x for x, *pair in zip(at, rows, floored, strict=True) if any("failed" in row for row in pair)]
+    if missing:
+        ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found")
+    if words:
+        ax.set_xticks(at, [str(row["value"]) for row in rows])
+    ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
     ax.set_title(f"Onset over {answer['over']}")
-    ax.set_xlabel(answer["over"])
+    ax.set_xlabel(answer["over"] if words else f"{answer['over']}, SI")
     ax.set_ylabel(f"{answer['key']} at touch, mrad")
-    ax.legend(loc="best")
-    ax.tick_params(colors=GREY)
+    ax.legend(loc="upper right")

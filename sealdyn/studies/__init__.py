@@ -9,6 +9,8 @@ What every study module offers (the contract):
             `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
             cores, remembers finished points across interruptions, and returns a list of rows: the function's dict,
             or `{"failed": reason}`.  `tools.say(fraction)` reports progress of anything else.
+`WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without
+            them, and its verdict says so.
 `units`     dict: result key (dotted) -> units, for the archive.
 
 The chart of a study has the same name in `charts` with the prefix `study_`, and draws from the study's archive only.

@@ -18,7 +18,7 @@ units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI 
 class Settings:
     """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
     `margin`: touch is h_min = margin x clearance; `over` and `values`: the onset as a curve over another key;
-    `floor`: also with the pressure floored at the lower boundary pressure (slower)."""
+    `floor`: also with the pressure floored at the lower boundary pressure, along the curve too (slower)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -35,20 +35,25 @@ def run(scenario, settings, tools) -> dict:
     key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
     base = {"text": scenario.text, "name": scenario.name, "overrides": scenario.overrides, "key": key,
             "margin": settings.margin, "tolerance": settings.tolerance, "set": {}, "floor": False}  # fmt: skip
-    points = [base]
-    if settings.floor:
-        points.append({**base, "floor": True})
-    points += [{**base, "set": {settings.over: value}} for value in settings.values if settings.over]
-    rows = tools.map(onset, points, "onset")
-    first = rows[0]
-    if "failed" in first:
-        return {"status": "failed", "key": key, "formula": None, "nonlinear": None, "radius": None,
-                "margin": settings.margin, "verdict": [first["failed"]]}  # fmt: skip
-    floored = rows[1] if settings.floor else None
-    curve = rows[2 if settings.floor else 1 :]
-    answer = {**first, "floored": floored, "over": settings.over,
-              "curve": [{"value": v, **row} for v, row in zip(settings.values, curve, strict=False)]}  # fmt: skip
+    # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
+    floors = [False, True] if settings.floor else [False]
+    sets = [{}, *({settings.over: value} for value in settings.values if settings.over)]
+    rows = tools.map(onset, [{**base, "set": s, "floor": f} for s in sets for f in floors], "onset")
+    plain, floored = rows[:: len(floors)], rows[1::2] if settings.floor else [None] * len(sets)
+    curve = [
+        {"value": value, **row} | ({"floored": brief(below)} if below else {})
+        for value, row, below in zip(settings.values, plain[1:], floored[1:], strict=False)
+    ]
+    answer = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
+              **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
+    if "failed" in answer:
+        answer["status"] = "failed"
     return {**answer, "verdict": _verdict(answer)}
+
+
+def brief(row: dict) -> dict:
+    """What a point of the floored curve says: the rest is its plain neighbour's."""
+    return {k: row[k] for k in ("nonlinear", "ratio", "cavitation_pressure", "failed") if k in row}
 
 
 def onset(point: dict) -> dict:
@@ -221,6 +226,8 @@ class Follower:
 
 
 def _verdict(answer) -> list[str]:
+    if "failed" in answer:
+        return [answer["failed"], *_curve_sentences(answer)]
     lines = [
         f"{answer['key']}: linear theory touches at {answer['formula']:.6g}, the nonlinear steady state at "
         f"{answer['nonlinear']:.6g} (SI), {100 * (answer['ratio'] - 1):+.1f} %, at r = {answer['radius'] * 1e3:.4g} mm",
@@ -230,18 +237,24 @@ def _verdict(answer) -> list[str]:
     if answer["multiplier"] > 1:
         lines.append("the orbit at the onset is unstable: the seal leaves it before it touches")
     floored = answer["floored"]
-    if floored:
-        if "failed" in floored:
-            lines.append(f"with a cavitation floor: {floored['failed']}")
-        else:
-            change = 100 * (floored["nonlinear"] / answer["nonlinear"] - 1)
-            lines.append(
-                f"with the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
-                f"{floored['nonlinear']:.6g}, {change:+.2f} %"
-            )
-    failed = [row for row in answer["curve"] if "failed" in row]
-    if answer["curve"]:
+    if floored and "failed" in floored:
+        lines.append(f"with a cavitation floor: {floored['failed']}")
+    elif floored:
+        change = 100 * (floored["nonlinear"] / answer["nonlinear"] - 1)
         lines.append(
-            f"curve over {answer['over']}: {len(answer['curve']) - len(failed)} of {len(answer['curve'])} points"
+            f"with the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
+            f"{floored['nonlinear']:.6g}, {change:+.2f} %"
         )
+    return [*lines, *_curve_sentences(answer)]
+
+
+def _curve_sentences(answer) -> list[str]:
+    """How many points of the curve were found, and why the first one was not."""
+    curve, lines = answer["curve"], []
+    below = [row["floored"] for row in curve if "floored" in row]
+    for name, rows in (("curve", curve), ("floored curve", below)):
+        failed = [row["failed"] for row in rows if "failed" in row]
+        if rows:
+            why = f"; first failure: {failed[0]}" if failed else ""
+            lines.append(f"{name} over {answer['over']}: {len(rows) - len(failed)} of {len(rows)} points{why}")
     return lines

@@ -13,7 +13,7 @@ from ..motion import Housing, Shaft
 from ..problem import Problem
 from ..scenario import File, parse_scenario
 from ..scenario_errors import ScenarioError, tables
-from ..scenario_study import varied
+from ..scenario_study import axis, varied
 from ..scene import ImpossibleScene
 from ..stability_map import INERTIA_RATIO, Grid
 from ..twin import arrangement, held
@@ -27,8 +27,8 @@ GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 @dataclass(frozen=True)
 class Settings:
     """`x` and `y`: "key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over
-    polar, transverse kept), ":log" at the end for even ratios; `confirm`: how many points beside the threshold are
-    confirmed in the time domain."""
+    polar, transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; `confirm`: how many points beside the
+    threshold are confirmed in the time domain."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -41,7 +41,7 @@ def run(scenario, settings, tools) -> dict:
     """Map, margins at the scenario's own values, and confirmed points."""
     scene = held(scenario.scene)
     wanted = (settings.x or _default_x(scene), settings.y or _default_y(scene))
-    axes = [axis(scenario, words, name) for name, words in zip("xy", wanted, strict=True)]
+    axes = [si_axis(scenario, words, name) for name, words in zip("xy", wanted, strict=True)]
     if axes[0]["key"] == axes[1]["key"]:
         raise ScenarioError(scenario.name, "study.stability.y", axes[1]["key"], "another key than x has")
     try:
@@ -63,33 +63,39 @@ def run(scenario, settings, tools) -> dict:
     return answer | {"verdict": _verdict(answer, scenario, axes, total)}
 
 
-def axis(scenario, words: str, name: str) -> dict:
-    """ "key=from:to:count[:log]" as key, unit and SI values."""
-    key, _, span = words.partition("=")
-    key, parts = key.strip(), [p.strip() for p in span.split(":")]
+def si_axis(scenario, words: str, name: str) -> dict:
+    """An axis of the map with its values in SI and its key known to hold numbers."""
     where = f"study.stability.{name}"
-    form = 'key=from:to:count, for example "shaft.speed=100:10000:120" or "film.coning=0:5 mrad:60:log"'
-    if len(parts) not in (3, 4) or not parts[2].isdecimal() or (len(parts) == 4 and parts[3] != "log"):
-        raise ScenarioError(scenario.name, where, f'"{words}"', form)
-    table, _, leaf = key.rpartition(".")
-    if key == INERTIA_RATIO:
-        holds, unit = float, "1"
-    else:
-        holds = tables(File).get(table, {}).get(leaf)
-        if holds is None or table in ("run", "study", ""):
-            known = [f"{t}.{k}" for t, keys in tables(File).items() for k in keys if t not in ("run", "")]
-            near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
-            hint = f"; nearest {near[0]}" if near else ""
-            raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
-        unit = _unit(holds)
-    ends = [_value(scenario, where, key, holds, text) for text in parts[:2]]
-    count = int(parts[2])
-    if not 2 <= count <= 100_000 or ends[0] == ends[1]:
-        raise ScenarioError(scenario.name, where, f'"{words}"', "2 to 100000 values between different ends")
-    if (len(parts) == 4 or key == INERTIA_RATIO) and min(ends) <= 0:
+    found = axis(words, scenario.name, where)
+    key, written = found["key"], found["values"]
+    holds, unit = _held_by(scenario, where, key)
+    if not 2 <= len(written) <= 100_000 or len(set(written)) < len(written) or not _in_order(written):
+        raise ScenarioError(scenario.name, where, f'"{words}"', "2 to 100000 different values, rising or falling")
+    ends = [_value(scenario, where, key, holds, text) for text in (found["given"][0], found["given"][-1])]
+    if key == INERTIA_RATIO and min(ends) <= 0:
         raise ScenarioError(scenario.name, where, f'"{words}"', "values above zero")
-    values = np.geomspace(*ends, count) if len(parts) == 4 else np.linspace(*ends, count)
+    # The unit is one for all: what turns the ends into SI turns every value.
+    shares = (np.array(written) - written[0]) / (written[-1] - written[0])
+    values = ends[0] + (ends[1] - ends[0]) * shares
     return {"key": key, "unit": unit, "values": values.tolist()}
+
+
+def _in_order(values) -> bool:
+    return sorted(values) in (values, values[::-1])
+
+
+def _held_by(scenario, where, key):
+    """What a key holds, as a type, and its SI unit; refuses keys that are none."""
+    if key == INERTIA_RATIO:
+        return float, "1"
+    table, _, leaf = key.rpartition(".")
+    holds = tables(File).get(table, {}).get(leaf)
+    if holds is None or table in ("run", "study", ""):
+        known = [f"{t}.{k}" for t, keys in tables(File).items() for k in keys if t not in ("run", "")]
+        near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
+        hint = f"; nearest {near[0]}" if near else ""
+        raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
+    return holds, _unit(holds)
 
 
 def _value(scenario, where, key, holds, text) -> float:

@@ -14,6 +14,7 @@ from ..scenario import parse_scenario
 from ..scenario_study import varied
 from ..solve import solve
 
+WITH_CONTACT = True
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
          "orbit/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
 

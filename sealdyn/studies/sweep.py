@@ -3,18 +3,15 @@
 import contextlib
 import difflib
 import itertools
-import re
 from dataclasses import dataclass
-
-import numpy as np
 
 from ..scenario import parse_scenario
 from ..scenario_errors import ScenarioError
-from ..scenario_study import varied
+from ..scenario_study import axis, varied
 from ..scene import ImpossibleScene
 from ..simulate import prepare, run_briefly
-from ..unit_names import dimension_and_factor
 
+WITH_CONTACT = True
 OUTPUTS = (
     "h_min.value",
     "h_min.of_clearance",
@@ -32,7 +29,6 @@ UNITS = {
     "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m", "film.tilt_stiffness": "N m/rad",
     "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad", "closing.force": "N",
 }  # fmt: skip
-NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 
 
 @dataclass(frozen=True)
@@ -53,7 +49,7 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.sweep.vary", "nothing to vary", '--vary "rotor.runout=0:1 mrad:21"')
     outputs = settings.outputs
     outputs = [w.strip() for w in outputs.split(",")] if isinstance(outputs, str) else list(outputs)
-    axes = [axis(words, scenario.name) for words in vary]
+    axes = [axis(words, scenario.name, "study.sweep.vary") for words in vary]
     keys = [a["key"] for a in axes]
     if len(set(keys)) < len(keys):
         raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
@@ -110,58 +106,6 @@ def make_ready(scenario, grid):
             prepare(ready)
         return
     raise first
-
-
-def axis(words: str, name: str) -> dict:
-    """`{key, unit, given, values}` of "key=from:to:count[:log]" or "key=a,b,c": `given` strings as a scenario would
-    have them, `values` the numbers in `unit` (or the words themselves)."""
-    key, equals, written = (part.strip() for part in words.partition("="))
-    wanted = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
-    if not (key and equals and written):
-        raise ScenarioError(name, "study.sweep.vary", repr(words), wanted)
-    parts = written.split(":")
-    if len(parts) == 1:
-        entries = [entry.strip() for entry in written.split(",")]
-        matches = [NUMBER.fullmatch(entry) for entry in entries]
-        if not all(matches) or not all(is_unit(m[2]) for m in matches):
-            return {"key": key, "unit": None, "given": entries, "values": entries}
-        values, unit = in_one_unit(matches)
-    else:
-        ends = [NUMBER.fullmatch(part) for part in parts[:2]]
-        count, even_ratio = parts[2:3], parts[3:] == ["log"]
-        if not all(ends) or not (count and count[0].strip().isdecimal()) or (parts[3:] and not even_ratio):
-            raise ScenarioError(name, "study.sweep.vary", repr(words), wanted)
-        (low, high), unit = in_one_unit(ends)
-        if even_ratio and not low * high > 0:
-            raise ScenarioError(name, "study.sweep.vary", repr(words), "ends of one sign, not zero, for log")
-        spread = np.geomspace if even_ratio else np.linspace
-        # Twelve digits: 0.3 mrad is written so, not as 0.30000000000000004 mrad.
-        values = [float(f"{v:.12g}") for v in spread(low, high, int(count[0]))]
-    return {"key": key, "unit": unit, "given": [f"{v!r} {unit}".strip() for v in values], "values": values}
-
-
-def is_unit(words: str) -> bool:
-    if not words:
-        return True
-    try:
-        dimension_and_factor(words)
-    except ValueError:
-        return False
-    return True
-
-
-def in_one_unit(matches) -> tuple[list[float], str]:
-    """Numbers in the last unit written; those without a unit are in it already."""
-    units = [m[2] for m in matches]
-    unit = next((u for u in reversed(units) if u), "")
-
-    def number(match):
-        own = match[2]
-        if own in ("", unit) or not (is_unit(own) and is_unit(unit)):
-            return float(match[1])
-        return float(match[1]) * float(dimension_and_factor(own)[1] / dimension_and_factor(unit)[1])
-
-    return [number(m) for m in matches], unit
 
 
 def unit_of(output: str) -> str:

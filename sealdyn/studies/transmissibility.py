@@ -1,8 +1,10 @@
 """Transmissibility: how much misalignment reaches the film of the FMR and of the FMS seal, over shaft speed.
 
 Static: per unit misalignment fixed in space; dynamic: per unit misalignment turning with the shaft; total: both 1.
+Phase (deg): how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that
+forcing in the forcing's own frame, against the sense of the shaft's rotation; 0 where it follows at once.
 Three roads: formula, harmonic balance, and the equations of motion in time.
-**Source** Green (1989), Fig. 8 and Table 1.
+**Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients.
 """
 
 import math
@@ -27,6 +29,11 @@ from ..units import Speed
 from ..watch import MOST
 
 QUANTITIES = ("static", "dynamic", "total")
+PHASES = ("static_phase", "dynamic_phase")
+PHASE = (
+    "Phase: how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that forcing "
+    "in the forcing's own frame, against the shaft's rotation (negative: ahead)."
+)
 NAMES = {
     "static": "static_transmissibility",
     "dynamic": "dynamic_transmissibility",
@@ -38,7 +45,9 @@ COARSER = 100.0
 # Relative difference below which both arrangements transmit the same.
 SAME = 1e-9
 
-units = {"speed": "rad/s", "time_domain/speed": "rad/s"}
+units = {"speed": "rad/s"} | {
+    f"{seal}/{road}{phase}": "deg" for seal in SEALS for road in ("", "linear_algebra/") for phase in PHASES
+}
 
 
 @dataclass(frozen=True)
@@ -65,14 +74,17 @@ def run(scenario, settings, tools) -> dict:
     speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
     answer = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
+    answer["phase"] = PHASE
     for name, seal in seals.items():
-        algebra = np.array([seal.algebra(w) for w in speeds]).T
-        lines = np.array(seal.formula(speeds)) if by_formula else algebra
-        answer[name] = dict(zip(QUANTITIES, lines.tolist(), strict=True))
-        answer[name]["linear_algebra"] = dict(zip(QUANTITIES, algebra.tolist(), strict=True))
+        algebra = curves(speeds, np.array([seal.relative_tilts(w) for w in speeds]).T)
+        answer[name] = dict(algebra)
+        if by_formula:
+            answer[name] = curves(speeds, seal.formula_tilts(speeds))
+            answer[name] |= dict(zip(QUANTITIES, np.array(seal.formula(speeds)).tolist(), strict=True))
+        answer[name]["linear_algebra"] = algebra
         answer[name]["stable"] = [seal.growth(w) < 0 for w in speeds]
     answer["formula_holds"] = by_formula
-    answer["roads_apart"] = _apart(answer)
+    answer["roads_apart"], answer["phases_apart"] = _apart(answer)
     tools.say(0.05)
     answer["crossings"] = crossings(seals, speeds)
     answer["crossovers"] = {
@@ -110,14 +122,34 @@ def _better(answer, quantity: str) -> str | None:
     return None if abs(fmr - fms) <= SAME * fmr else ("fmr" if fmr < fms else "fms")
 
 
-def _apart(answer) -> float:
-    """Largest distance of formula and linear algebra, relative to the largest of a curve."""
-    far = 0.0
+def _apart(answer) -> tuple[float, float]:
+    """Largest distance of formula and linear algebra: of amplitudes relative to the largest of a curve, of phases
+    in deg."""
+    far = {}
     for seal in SEALS:
-        for q in QUANTITIES:
-            line, dashes = np.array(answer[seal][q]), np.array(answer[seal]["linear_algebra"][q])
-            far = max(far, float(np.max(np.abs(line - dashes)) / (np.max(np.abs(line)) or 1.0)))
-    return far
+        for name in (*QUANTITIES, *PHASES):
+            line, dashes = np.array(answer[seal][name]), np.array(answer[seal]["linear_algebra"][name])
+            scale = 1.0 if name in PHASES else np.max(np.abs(line)) or 1.0
+            far[seal, name] = float(np.max(np.abs(line - dashes)) / scale)
+    return tuple(max(far[seal, name] for seal in SEALS for name in names) for names in (QUANTITIES, PHASES))
+
+
+# --- amplitude and phase -----------------------------------------------------------------------------
+
+
+def phases(speeds, static, dynamic) -> tuple:
+    """Phases (deg) of the relative tilts (stator minus rotor, in the frame of the forcing) behind their forcings."""
+    sense = np.where(np.asarray(speeds) < 0, -1.0, 1.0)
+    # The rotor carries the dynamic forcing: counted from it, the relative tilt has the other sign.  (+ 0 for no -0.)
+    return tuple(0.0 - sense * np.degrees(np.angle(tilt)) + 0.0 for tilt in (static, -np.asarray(dynamic)))
+
+
+def curves(speeds, tilts) -> dict:
+    """Amplitudes and phases over speed, phases without jumps."""
+    static, dynamic = np.abs(tilts)
+    lags = [np.unwrap(lag, period=360.0).tolist() for lag in phases(speeds, *tilts)]
+    amplitudes = [a.tolist() for a in (static, dynamic, static + dynamic)]
+    return dict(zip((*QUANTITIES, *PHASES), (*amplitudes, *lags), strict=True))
 
 
 # --- the third road ----------------------------------------------------------------------------------
@@ -145,7 +177,9 @@ def measured(point: dict) -> dict:
     scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     seal = seals_of(scenario)[point["seal"]]
     decay = -seal.growth(point["speed"])
-    turn = 2 * math.pi / abs(point["speed"])
+    if point["speed"] == seal.stator_speed:
+        raise ValueError("the stator turns with the shaft: static and dynamic are one")
+    turn = 2 * math.pi / abs(point["speed"] - seal.stator_speed)
     if decay <= 0:
         kind = "unstable" if decay < 0 else "undamped"
         raise ValueError(f"{kind} at {point['speed']:.5g} rad/s: no steady state")
@@ -154,10 +188,15 @@ def measured(point: dict) -> dict:
         raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
     amplitude = _amplitude(seal, point["speed"])
     scene = _forced(seal, point["speed"], amplitude)
-    fine = np.array(_steady(scene, turns, point["accuracy"])) / amplitude
-    coarse = np.array(_steady(scene, turns, COARSER * point["accuracy"])) / amplitude
-    names = dict(zip(QUANTITIES, fine.tolist(), strict=True))
-    return names | {"error": dict(zip(QUANTITIES, np.abs(fine - coarse).tolist(), strict=True)), "turns": turns}
+    fine = np.array(_steady(scene, turns, point["accuracy"], amplitude))
+    coarse = np.array(_steady(scene, turns, COARSER * point["accuracy"], amplitude))
+    away = np.abs(fine - coarse)
+    # 359 deg apart is 1 deg apart.
+    away[3:] = np.minimum(away[3:], 360.0 - away[3:])
+    names = (*QUANTITIES, *PHASES)
+    return dict(zip(names, fine.tolist(), strict=True)) | {
+        "error": dict(zip(names, away.tolist(), strict=True)), "turns": turns
+    }  # fmt: skip
 
 
 def _amplitude(seal: Seal, speed: float) -> float:
@@ -185,11 +224,12 @@ def _forced(seal: Seal, speed: float, amplitude: float) -> Scene:
     )
 
 
-def _steady(scene: Scene, turns: int, accuracy: float) -> tuple[float, float, float]:
-    """Amplitudes (rad) of the relative tilt standing still, turning with the shaft, and its largest value, over the
-    last turn of a run from rest."""
+def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tuple:
+    """Relative tilt per unit forcing over the last turn of a run from rest: what turns with the stator, what with
+    the shaft, the largest, and the phases (deg) of the first two."""
     speed = scene.shaft.speed
-    turn = 2 * math.pi / abs(speed)
+    # A turn of the shaft seen from the stator: over it the two frequencies are orthogonal and meet once.
+    turn = 2 * math.pi / abs(speed - scene.stator.speed)
     problem = Problem(scene, turns * turn, accuracy)
     problem.windows[1] = [problem.duration - turn, problem.duration]
     recorder = Recorder(problem, turn / PER_TURN)
@@ -199,13 +239,9 @@ def _steady(scene: Scene, turns: int, accuracy: float) -> tuple[float, float, fl
     t, q, rate = (a[-PER_TURN:] for a in recorder.arrays())
     seen = signals(problem, t, q, rate)
     tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
-    turning = np.exp(-1j * speed * t)
-    standing = np.exp(-1j * scene.stator.speed * t)
-    return (
-        float(abs(np.mean(tilt * standing))),
-        float(abs(np.mean(tilt * turning))),
-        float(problem.records[1, MOST]),
-    )
+    static, dynamic = (np.mean(tilt * np.exp(-1j * w * t)) / amplitude for w in (scene.stator.speed, speed))
+    largest = problem.records[1, MOST] / amplitude
+    return tuple(float(v) for v in (abs(static), abs(dynamic), largest, *phases(speed, static, dynamic)))
 
 
 # --- the table ---------------------------------------------------------------------------------------
@@ -278,7 +314,8 @@ def _verdict(answer: dict, own_speed: float) -> list[str]:
             said.append(f"{name.upper()} is not damped at speeds from about {first:.4g} rad/s: no steady state there.")
     failed = [r for r in answer["time_domain"] if "failed" in r]
     good = len(answer["time_domain"]) - len(failed)
-    said.append(f"Formula and linear algebra agree to {answer['roads_apart']:.1e}; {good} points in the time domain.")
+    said.append(f"Formula and linear algebra agree to {answer['roads_apart']:.1e}, phases to "
+                f"{answer['phases_apart']:.1e} deg; {good} points in the time domain.")  # fmt: skip
     if not answer["formula_holds"]:
         said[-1] = "No closed form for this film or a turning stator: lines are linear algebra."
     if failed:

@@ -13,7 +13,8 @@ from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.scenario_study import varied
 from sealdyn.solve import solve
-from sealdyn.studies.contact_onset import onset
+from sealdyn.studies import contact_onset
+from sealdyn.studies.contact_onset import Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CASES = {
@@ -68,6 +69,69 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
         problem = Problem(scene, 40 * shooter.period, 1e-6)
         start = np.array(answer["start"])
         # Below, the orbit lies within a trial of Newton; above, the film must be reached from the touching one.
-        problem.y0[: len(start)] = shooter.find(start).start if status == "ok" else start
+        if status == "ok":
+            below = shooter.find(start)
+            start = below.start
+            # The touching orbit itself attracts, about as its neighbour does.
+            assert answer["multiplier"] < 1
+            assert answer["multiplier"] == pytest.approx(np.max(np.abs(below.multipliers)), rel=0.2)
+        problem.y0[: len(start)] = start
         outcome = solve(problem, "adams", 1e-6, Recorder(problem))
         assert outcome.status == status, (part, problem.records[0, 0])
+
+
+class Tools:
+    """Answers made up from what is asked, so that what belongs to which point shows; two of them fail."""
+
+    def map(self, function, points, what="points"):
+        assert function is onset
+        return [self.row(p["set"].get("film.coning", 1.0), p["floor"]) for p in points]
+
+    @staticmethod
+    def row(coning, floor):
+        if (coning, floor) in ((3.0, True), (4.0, False)):
+            return {"failed": f"no orbit at {coning}, {floor}"}
+        kept = {"formula": coning, "nonlinear": (2.5 if floor else 2.0) * coning, "ratio": 2.0, "radius": 0.032,
+                "axial_opening": 0.3, "multiplier": 0.5, "clearance": 1e-5,
+                "path": {n: [0.5, 1.0] for n in ("forcing", "h_min", "tilt", "axial")}}  # fmt: skip
+        return {**kept, "cavitation_pressure": 0.0} if floor else kept
+
+
+@pytest.mark.parametrize("floor", [False, True])
+def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
+    from sealdyn.archive import write_study
+    from sealdyn.charts import study_contact_onset
+
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
+    settings = Settings(over="film.coning", values=(2.0, 3.0, 4.0), floor=floor)
+    answer = contact_onset.run(scenario, settings, Tools())
+    assert answer["nonlinear"] == 2.0 and (answer["floored"] or {}).get("nonlinear") == (2.5 if floor else None)
+    assert [row["value"] for row in answer["curve"]] == [2.0, 3.0, 4.0]
+    assert [row.get("nonlinear") for row in answer["curve"]] == [4.0, 6.0, None]
+    assert "no orbit at 4.0, False" in answer["curve"][2]["failed"]
+    assert "curve over film.coning: 2 of 3 points; first failure: no orbit at 4.0, False" in answer["verdict"]
+    if floor:
+        below = [row["floored"] for row in answer["curve"]]
+        assert [row.get("nonlinear") for row in below] == [5.0, None, 10.0]
+        assert below[1] == {"failed": "no orbit at 3.0, True"}
+    else:
+        assert not any("floored" in row for row in answer["curve"])
+    meta = {"name": "x", "question": "?"}
+    path = write_study(tmp_path / "c.h5", scenario.text, {}, meta, answer, contact_onset.units)
+    assert study_contact_onset.draw(path, tmp_path / "c.png").exists()
+
+
+def test_a_failed_onset_leaves_its_curve(tmp_path):
+    from sealdyn.archive import write_study
+    from sealdyn.charts import study_contact_onset
+
+    class Broken(Tools):
+        def map(self, function, points, what="points"):
+            return [{"failed": "no orbit"} if not p["set"] else self.row(2.0, False) for p in points]
+
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
+    answer = contact_onset.run(scenario, Settings(over="film.coning", values=(2.0,)), Broken())
+    assert answer["status"] == "failed" and answer["nonlinear"] is None and answer["verdict"][0] == "no orbit"
+    assert answer["curve"][0]["nonlinear"] == 4.0
+    path = write_study(tmp_path / "c.h5", "", {}, {"name": "x", "question": "?"}, answer, contact_onset.units)
+    assert study_contact_onset.draw(path, tmp_path / "c.png").exists()

@@ -149,3 +149,23 @@ def test_axes_that_cannot_be_are_refused_in_one_line(words):
     with pytest.raises(ScenarioError) as refused:
         answer(FMR, x=words)
     assert "[study.stability] x" in str(refused.value) and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "words, values",
+    [
+        ("film.coning=1:5 mrad:3", [1e-3, 3e-3, 5e-3]),
+        ("film.coning=1 mrad,2 mrad,5 mrad", [1e-3, 2e-3, 5e-3]),
+        ("film.coning=500 urad:2 mrad:3:log", [5e-4, 1e-3, 2e-3]),
+        ("shaft.speed=300:100:3", [300, 200, 100]),
+        ("inertia_ratio=0.5:2:3:log", [0.5, 1, 2]),
+    ],
+)
+def test_axes_are_read_as_a_sweep_reads_them(words, values):
+    found = stability.si_axis(read_scenario(FMR), words, "x")
+    assert found["values"] == pytest.approx(values, rel=1e-12)
+
+
+def test_the_values_of_an_axis_come_in_order():
+    with pytest.raises(ScenarioError, match="rising or falling"):
+        stability.si_axis(read_scenario(FMR), "film.coning=1 mrad,5 mrad,2 mrad", "x")

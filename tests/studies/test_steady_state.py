@@ -1,8 +1,9 @@
-"""The steady-state study through its front door."""
+"""The steady-state study through its front door, and against roots and formulas written out here."""
 
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import sealdyn
 from sealdyn.archive import read_study
@@ -19,6 +20,12 @@ def test_answer_archive_and_figure(tmp_path):
     low, high = answer["near_threshold"]
     # Waiting takes ever longer, shooting does not.
     assert high["transient"] > 3 * low["transient"] and high["shooting"] <= 60
+    for row in (low, high):
+        assert row["speed"] == pytest.approx(row["part"] * answer["critical_speed"])
+        assert row["multiplier"] == pytest.approx(slowest_root(row["speed"], *RADIAL), rel=2e-3)
+        # From rest, 0.03 to 1 of the scales away, down to the accuracy at the pace of the slowest multiplier.
+        at_most, at_least = np.log(np.array([1.0, 0.03]) / 1e-6) / -np.log(row["multiplier"])
+        assert at_least < row["transient"] < at_most
     kept = read_study(tmp_path / "s.h5")
     assert kept["answer"]["h_min"] == answer["h_min"] and kept["scenario"] == scenario.text
     from sealdyn.charts import study_steady_state
@@ -27,10 +34,51 @@ def test_answer_archive_and_figure(tmp_path):
     assert not list(tmp_path.glob("*.jsonl"))
 
 
+# Film stiffness and damping in tilt of the reference seal, N m/rad and N m s/rad: of Green (1989), Fig. 8, and of the
+# cylindrical radial film.  Ring and support of the paper.
+GREEN, RADIAL = (5791.0, 4.082), (5099.5, 3.649)
+INERTIA, K_S, D_S = 8e-4, 400.0, 0.24
+
+
+def tilt_roots(speed, k, d):
+    """Eigenvalues (1/s) of a flexible stator in tilt, as a complex number."""
+    return np.roots([INERTIA, D_S + d, K_S + k - 0.5j * d * speed])
+
+
+def slowest_root(speed, k, d):
+    return np.exp(max(tilt_roots(speed, k, d).real) * 2 * np.pi / speed)
+
+
+def test_a_linear_scene_answers_with_roots_and_formulas(tmp_path):
+    speed = 5000.0
+    overrides = ["film.model=linear", f"shaft.speed={speed}"]
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", overrides)
+    answer = investigate("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
+    assert answer["period"] == pytest.approx(2 * np.pi / speed)
+    k, d = GREEN
+    multipliers = [complex(*pair) for pair in answer["multipliers"]]
+    for root in tilt_roots(speed, k, d):
+        for wanted in (np.exp(root * answer["period"]), np.exp(root.conjugate() * answer["period"])):
+            assert min(abs(wanted - m) for m in multipliers) < 2e-3 * abs(wanted) + 1e-7
+    behind = K_S + k - 0.5j * d * speed
+    ring = K_S - INERTIA * speed**2 + 1j * D_S * speed
+    static, dynamic = 25e-6 * abs(K_S / behind), 25e-6 * abs(ring / (ring + k + 0.5j * d * speed))
+    for found in (
+        [answer["linear"]["relative_max"], answer["linear"]["relative_min"]],
+        [answer["relative_misalignment"]["max"], answer["relative_misalignment"]["min"]],
+        [max(answer["orbit"]["relative_misalignment"]), min(answer["orbit"]["relative_misalignment"])],
+    ):
+        assert found == pytest.approx([static + dynamic, abs(static - dynamic)], rel=1e-3)
+    assert min(answer["orbit"]["h_min"]) == pytest.approx(answer["h_min"]["value"], rel=1e-3)
+
+
 def test_incommensurate_forcing_falls_back_and_says_so(tmp_path):
     text = (SCENARIOS / "fmr_reference.toml").read_text() + "[[shaft.whirl]]\nratio = 0.41421356\nangle = 2e-6\n"
     from sealdyn.scenario import parse_scenario
 
     answer = investigate("steady-state", parse_scenario(text, "x.toml"), tmp_path / "s.h5", workers=1)
     assert answer["period"] is None and "time domain" in answer["verdict"][0]
-    assert np.isfinite(answer["relative_misalignment"]["max"])
+    # 0.076 of the stator's tilt and 0.058 of its own, 25 urad each, and at most the whirl's 2 urad more or less.
+    tilt = answer["relative_misalignment"]
+    assert 3.35e-6 < tilt["max"] < 5.4e-6 and 0 <= tilt["min"] < tilt["max"]
+    assert 0.97 < answer["h_min"]["of_clearance"] < 0.999

@@ -14,8 +14,8 @@ import pytest
 from sealdyn.investigate import investigate
 from sealdyn.scenario import parse_scenario
 from sealdyn.scenario_errors import ScenarioError
+from sealdyn.scenario_study import axis
 from sealdyn.simulate import simulate
-from sealdyn.studies.sweep import axis
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']
@@ -42,7 +42,7 @@ def sweep(tmp_path, vary, outputs=None, workers=1, overrides=SHORT):
     ],
 )
 def test_what_is_varied(words, values, unit, first):
-    found = axis(words, "here")
+    found = axis(words, "here", "study.sweep.vary")
     assert found["key"] == words.split("=")[0]
     assert found["values"] == (pytest.approx(values) if unit is not None else values)
     assert found["unit"] == unit and found["given"][0] == first
@@ -53,7 +53,7 @@ def test_what_is_varied(words, values, unit, first):
 )
 def test_what_cannot_be_varied(words):
     with pytest.raises(ScenarioError):
-        axis(words, "here")
+        axis(words, "here", "study.sweep.vary")
 
 
 def test_rows_equal_single_runs(tmp_path):

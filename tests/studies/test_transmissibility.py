@@ -3,6 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from scipy.optimize import brentq
 
@@ -102,6 +103,77 @@ def test_the_three_roads_agree_on_the_films_own_coefficients(tmp_path):
             assert abs(row[quantity] - line) < 0.1 * row["error"][quantity] + 1e-6
             checked += 1
     assert checked >= 6
+
+
+def lags(seal, w, k, d, c=0.5):
+    """Phases (deg) behind a fixed and a turning forcing, and amplitudes, by the equations of motion written out in
+    shaft-fixed and space-fixed axes as real pairs: nothing of the package, no complex quotient of the paper."""
+    inertia, k_s, d_s = 8e-4, 400.0, 0.24
+    turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    polar = inertia / c if seal == "fmr" else 0.0
+    spin = w if seal == "fmr" else 0.0
+    found = []
+    for frame in (0.0, w):
+        # In axes turning at `frame`, at rest: d/dt = frame * turn, d2/dt2 = -frame^2.
+        ring = -inertia * frame**2 * np.eye(2) - polar * w * frame * (turn @ turn) + k_s * np.eye(2)
+        ring += d_s * (frame - spin) * turn
+        film = k * np.eye(2) + d * (frame - w / 2) * turn
+        own = (seal == "fmr") == (frame != 0)
+        # A tilt of 1 about the first axis: the ring's own, or its partner's.
+        push = np.array([k_s, 0.0]) if own else film @ [1.0, 0.0]
+        tilt = np.linalg.solve(ring + film, push)
+        seen = tilt if own else np.array([1.0, 0.0]) - tilt
+        found.append((-np.degrees(np.arctan2(seen[1], seen[0])), np.hypot(*seen)))
+    return found
+
+
+@pytest.mark.parametrize("c", [0.5, 3.0])
+def test_phases_follow_from_the_equations_in_turning_axes(tmp_path, c):
+    overrides = ["film.model=linear", f"rotor.polar_inertia={8e-4 / c!r}"]
+    found = answer(tmp_path, overrides=overrides, points=7, speed_to=4200.0, time_points=3)
+    k, d = (
+        m[1, 1] for m in Problem(read_scenario(SCENARIOS / "fmr_reference.toml", overrides).scene, 1).film_matrices()
+    )
+    assert found["phases_apart"] < 1e-9 and "behind" in found["phase"]
+    for seal in ("fmr", "fms"):
+        for i, w in enumerate(found["speed"]):
+            for name, (phase, size) in zip(("static", "dynamic"), lags(seal, w, k, d, c), strict=True):
+                for road in (found[seal], found[seal]["linear_algebra"]):
+                    assert road[f"{name}_phase"][i] == pytest.approx(phase, abs=1e-8)
+                    assert road[name][i] == pytest.approx(size, rel=1e-9)
+    timed = [row for row in found["time_domain"] if "failed" not in row]
+    assert len(timed) >= 7
+    for row in timed:
+        for name, (phase, _) in zip(("static", "dynamic"), lags(row["seal"], row["speed"], k, d, c), strict=True):
+            assert row[f"{name}_phase"] == pytest.approx(phase, abs=0.01)
+            assert row["error"][f"{name}_phase"] < 0.1
+    # A spinning rotor is dragged back by the film's and the support's drag; a stator is carried along by the film.
+    assert found["fmr"]["static_phase"][1] > 0 > found["fms"]["static_phase"][1]
+
+
+def test_phases_are_the_same_seen_with_the_shaft_turning_the_other_way(tmp_path):
+    ahead = answer(tmp_path, points=3, speed_to=2000.0, time_points=1)
+    back = answer(tmp_path, points=3, speed_to=-2000.0, time_points=1)
+    for seal in ("fmr", "fms"):
+        for name in ("static", "dynamic", "static_phase", "dynamic_phase"):
+            assert back[seal][name] == pytest.approx(ahead[seal][name], abs=1e-9)
+    one = ahead["time_domain"][-1]
+    other = next(r for r in back["time_domain"] if r["speed"] == -one["speed"] and r["seal"] == one["seal"])
+    assert other["dynamic_phase"] == pytest.approx(one["dynamic_phase"], abs=0.01)
+
+
+def test_a_turning_stator_carries_the_static_forcing_along(tmp_path):
+    """Over one turn of the shaft the two frequencies would leak into each other."""
+    found = answer(
+        tmp_path, "fmsr_both_flexible.toml", ("stator.speed=-300",), points=3, speed_to=2000.0, time_points=1
+    )
+    at = {w: i for i, w in enumerate(found["speed"])}
+    assert not found["formula_holds"] and len(found["time_domain"]) == 4
+    for row in found["time_domain"]:
+        for name in ("static", "dynamic", "total"):
+            assert row[name] == pytest.approx(found[row["seal"]][name][at[row["speed"]]], rel=1e-4)
+        for name in ("static_phase", "dynamic_phase"):
+            assert row[name] == pytest.approx(found[row["seal"]][name][at[row["speed"]]], abs=0.01)
 
 
 def test_a_point_without_a_steady_state_is_a_row_with_its_reason(tmp_path):

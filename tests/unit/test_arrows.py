@@ -9,11 +9,15 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Room -> rooms it may import.  A folder is one room unless a file of it is named.
 DOORS = {"units", "unit_names"}
-PHYSICS = {"gap", "films", "legs", "imposed", "dynamics", "motion", "ring", "scene", "equilibrium", "closed_form"}
+PHYSICS = {"gap", "films", "legs", "imposed", "dynamics", "motion", "ring", "scene", "equilibrium", "closed_form",
+           "contact", "secondary_seal"}  # fmt: skip
 ALLOWED = {
     "units": {"unit_names"},
     "unit_names": set(),
     "gap": set(),
+    "asperities": set(),
+    "contact": DOORS | {"asperities", "gap"},
+    "secondary_seal": DOORS,
     "dense": set(),
     "archive": set(),
     "audit": set(),
@@ -23,20 +27,25 @@ ALLOWED = {
     "methods": set(),
     "solve": {"dense", "audit", "methods"},
     "motion": DOORS,
-    "ring": DOORS,
+    "ring": DOORS | {"secondary_seal"},
     "films": DOORS | {"gap", "closed_form"},
     "legs": DOORS,
     "imposed": {"legs"},
-    "dynamics": {"gap", "imposed"},
+    "dynamics": {"gap", "imposed", "secondary_seal"},
     "watch": {"gap", "dense", "dynamics"},
+    "design_rules": {"layout", "legs"},
+    "ludwig": PHYSICS | {"methods", "solve"},
+    "lyapunov": PHYSICS | DOORS | {"methods", "orbit", "problem", "recorder", "solve"},
+    "touches": {"gap", "dense", "watch"},
+    "sticking": {"dense", "dynamics", "imposed", "layout"},
     "modes": {"gap"},
-    "scene": DOORS | {"films", "motion", "ring"},
+    "scene": DOORS | {"contact", "films", "motion", "ring"},
     "equilibrium": DOORS | {"legs", "scene"},
     "layout": DOORS | {"dynamics", "imposed", "legs"},
-    "signals": {"dynamics", "gap", "layout", "legs"},
-    "problem": PHYSICS | DOORS | {"layout", "modes", "signals", "watch"},
+    "signals": {"contact", "dynamics", "gap", "layout", "legs"},
+    "problem": PHYSICS | DOORS | {"layout", "modes", "signals", "sticking", "touches", "watch"},
     "scenario": PHYSICS | DOORS | {"scenario"},
-    "summary": PHYSICS | DOORS | {"modes", "scenario", "watch"},
+    "summary": PHYSICS | DOORS | {"layout", "modes", "scenario", "watch"},
     "simulate": {"methods"}
     | PHYSICS
     | DOORS

@@ -284,3 +284,78 @@ def test_importing_the_charts_room_does_not_import_matplotlib():
     code = "import sys, json, sealdyn.charts; print(json.dumps('matplotlib' in sys.modules))"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert json.loads(said.stdout) is False
+
+
+# --- studies -----------------------------------------------------------------------------------------
+
+
+class Tools:
+    """Evaluates in this process."""
+
+    def map(self, function, points, what="points"):
+        return [function(point) for point in points]
+
+    def say(self, fraction):
+        pass
+
+
+STUDIES = {
+    "campbell": [
+        ("fms_reference", [], {}),
+        ("fmr_reference", [], {}),
+        ("fmr_reference", ["rotor.polar_inertia=2.6667e-4"], {"lines": (0.5, 1.0, 2.0), "unit": "rad/s"}),
+        ("fmsr_both_flexible", [], {}),
+    ],
+    "transmissibility": [
+        ("fmr_reference", [], {"points": 61, "time_points": 0}),
+        ("fms_reference", ["film.model=linear"], {"points": 31, "time_points": 1, "speed_to": 1000.0}),
+        ("fmsr_both_flexible", ["stator.speed=-300"], {"points": 61, "time_points": 0, "unit": "rpm"}),
+        ("fmr_reference", [], {"points": 61, "time_points": 0, "speed_to": 1e5}),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    "study, name, overrides, settings", [(study, *case) for study, cases in STUDIES.items() for case in cases], ids=str
+)
+def test_study_charts_are_legible(tmp_path, figures, study, name, overrides, settings):
+    from pathlib import Path
+
+    from sealdyn import read_scenario
+    from sealdyn.archive import write_study
+
+    module = importlib.import_module(f"sealdyn.studies.{study}")
+    chart = importlib.import_module(f"sealdyn.charts.study_{study}")
+    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / f"{name}.toml", overrides)
+    answer = module.run(scenario, module.Settings(**settings), Tools())
+    meta = {"name": name, "question": scenario.question}
+    path = write_study(tmp_path / "s.h5", scenario.text, {}, meta, answer, module.units)
+    seen = figures(chart)
+    assert chart.draw(path, tmp_path / "s.png").stat().st_size <= 300_000
+    overlaps, outside = text_trouble(seen[0])
+    assert not overlaps and not outside
+    assert not (crossed(seen[0].axes[0]) if study == "campbell" else [])
+    if study == "transmissibility":
+        heights = [ax.get_position().y0 for ax in seen[0].axes[:5]]
+        # Amplitudes above, the phases of the first two below them.
+        assert heights[0] == heights[2] == heights[4] > heights[1] == heights[3]
+        assert seen[0].axes[1].get_ylabel() == "phase behind the forcing, deg"
+
+
+def crossed(ax):
+    """Names in a panel that a line not their own, or a mark, runs through."""
+    ax.figure.canvas.draw()
+    found = []
+    for text in ax.texts:
+        box = text.get_window_extent()
+        for line in ax.lines:
+            points = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
+            along = np.linspace(0, 1, 4000)
+            at = np.linspace(0, 1, len(points))
+            dense = np.column_stack([np.interp(along, at, points[:, k]) for k in (0, 1)])
+            inside = (box.x0 < dense[:, 0]) & (dense[:, 0] < box.x1) & (box.y0 < dense[:, 1]) & (dense[:, 1] < box.y1)
+            # Its own line runs through the middle of the name.
+            middle = np.hypot(dense[:, 0] - (box.x0 + box.x1) / 2, dense[:, 1] - (box.y0 + box.y1) / 2).min()
+            if inside.any() and middle > 2:
+                found.append(text.get_text())
+    return found

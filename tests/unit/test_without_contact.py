@@ -1,0 +1,35 @@
+"""Studies of the film alone leave contact and secondary seals out, and say so."""
+
+from pathlib import Path
+
+import pytest
+
+from sealdyn.investigate import investigate
+from sealdyn.scenario import ScenarioError, parse_scenario
+from sealdyn.scenario_study import without_contact
+
+TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
+SEAL = '[stator.secondary_seal]\nradius = "45 mm"\nline_friction = "20 N/m"\n'
+
+
+def test_tables_are_left_out_and_the_rest_stays():
+    whole = parse_scenario(TEXT + CONTACT + SEAL, "x", ["contact.roughness=0.2 um", "shaft.speed=1100 rad/s"])
+    film, names = without_contact(whole)
+    assert names == ["contact", "stator.secondary_seal"]
+    assert film.scene == parse_scenario(TEXT, "x", ["shaft.speed=1100 rad/s"]).scene
+    assert without_contact(film) == (film, [])
+
+
+def test_keys_outside_a_table_are_refused_by_name():
+    whole = parse_scenario('contact.roughness = "0.1 um"\ncontact.compressive_strength = 3e8\n' + TEXT, "x")
+    with pytest.raises(ScenarioError, match="contact"):
+        without_contact(whole)
+
+
+def test_the_verdict_says_what_was_left_out(tmp_path):
+    scenario = parse_scenario(TEXT + CONTACT, "x")
+    answer = investigate("equilibrium", scenario, tmp_path / "a.h5")
+    assert "[contact] left out" in answer["verdict"][-1]
+    alone = investigate("equilibrium", parse_scenario(TEXT, "x"), tmp_path / "b.h5")
+    assert answer["roots"] == alone["roots"]
