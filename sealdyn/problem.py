@@ -187,7 +187,8 @@ class Problem:
             dynamics.residual,
             self.film.wrench,
         )
-        work, block, press = np.zeros(self.size), self.contact, contact.press
+        work, block = np.zeros(self.size), self.contact
+        press, both = contact.press, dynamics.touching_rates
 
         def rhs(tau, y, yp):
             kinematics(tau, y, yp, p, w, s)
@@ -202,8 +203,7 @@ class Problem:
         def touching_rhs(tau, y, yp):
             kinematics(tau, y, yp, p, w, s)
             wrench(f, s)
-            press(block, f, s)
-            rates(tau, y, p, w, s, yp)
+            both(tau, y, p, w, s, yp, block, f)
 
         def touching_residual(tau, y, yp, res):
             kinematics(tau, y, yp, p, w, s)
@@ -294,14 +294,15 @@ class Problem:
         windows = np.array(self.windows) - self.legs[index].time
         tolerance = 0.02 * self.accuracy * np.array([self.clearance, self.clearance / self.face[1]])
         scratch = (self.p, self.f, np.zeros(self.size), np.zeros(self.size), self.w, self.s)
+        reach = np.empty(count)
         fallen = watch.watch(
-            t, q, q_rate, count, begin, end, *scratch, windows, index, self.records, tolerance, self.leg_pace
+            t, q, q_rate, count, begin, end, *scratch, windows, index, self.records, tolerance, self.leg_pace, reach
         )
         if self.contact is not None:
             rows = np.empty((64 * (end - begin) + 64, TOUCH_ROW))
             upto = end if fallen < 0 else int(np.searchsorted(t, fallen))
             found = touches(
-                t, q, q_rate, impulse, count, begin, upto, *scratch, self.legs[index].time, self.leg_pace,
+                t, q, q_rate, impulse, count, begin, upto, reach, *scratch, self.legs[index].time, self.leg_pace,
                 self.gap_error(), self.touching, rows,
             )  # fmt: skip
             self.contacts.extend(rows[:found])

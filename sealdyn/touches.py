@@ -89,10 +89,13 @@ def _close(state, lifted, impulse, level, error, rows, count):
 
 
 @njit(cache=True)
-def touches(t, q_all, q_rate_all, impulse, count, begin, end, p, f, y, yp, w, s, start, pace, error, state, rows):
+def touches(
+    t, q_all, q_rate_all, impulse, count, begin, end, reach, p, f, y, yp, w, s, start, pace, error, state, rows
+):
     """Contacts in steps [begin, end] of a leg that starts at `start` (s), into `rows`; returns how many ended.
 
-    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s);
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
+    `reach` (count,) what no film of a step is thinner than (m);
     `error` of the gap (m); `pace` the fastest imposed motion (rad/s); `state` is carried from call to call.
     """
     n, level = q_all.shape[1], f[TOUCH]
@@ -104,13 +107,10 @@ def touches(t, q_all, q_rate_all, impulse, count, begin, end, p, f, y, yp, w, s,
     for k in range(begin, end):
         low, high = t[k], t[k + 1]
         scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
-        _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
-        least, most = np.inf, -np.inf
-        for i in range(scan + 1):
-            least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
-        if state[OPEN] == 0.0 and least - (most - least) > level + error:
+        if state[OPEN] == 0.0 and reach[k] > level + error:
             state[SINKING] = 0.0
             continue
+        _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
         size = fit(t, q_all, q_rate_all, k, count, table, nodes)
         step = (high - low) / scan
         points = 0

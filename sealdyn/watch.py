@@ -128,18 +128,18 @@ def _note(record, kind, out, at, theta, radius, leg):
 
 
 @njit(cache=True)
-def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace):
+def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach):
     """Update the records over steps [begin, end]; returns the leg time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
     `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
-    fastest imposed motion (rad/s).
+    fastest imposed motion (rad/s).  `reach` (count,) is filled: no film in the step is thinner than that (m).
     """
     n = q_all.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
     for k in range(begin, end):
-        size = 0
+        size, reach[k] = 0, -np.inf
         for window in range(WINDOWS):
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
@@ -147,6 +147,12 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
             scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
             _scan(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
             record = records[window]
+            if window == 0:
+                least, most = np.inf, -np.inf
+                for i in range(scan + 1):
+                    least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
+                # Between the points it may sink by no more than it varies over the step.
+                reach[k] = least - (most - least)
             for kind in range(3):
                 for best in range(scan + 1):
                     # Every dip of the scan, however many a long step holds.
@@ -157,9 +163,9 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                     far_left, far_right = min(left, scan - 2), max(right, 2)
                     dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
                     held, slack = _held(record, kind, tolerance)
-                    reach = seen[best, kind] - dip
-                    sinks = kind == THICKNESS and reach < f[COLLAPSE]
-                    if not sinks and reach >= held - slack:
+                    lowest = seen[best, kind] - dip
+                    sinks = kind == THICKNESS and lowest < f[COLLAPSE]
+                    if not sinks and lowest >= held - slack:
                         continue
                     if size == 0:
                         size = fit(t, q_all, q_rate_all, k, count, table, nodes)

@@ -31,7 +31,7 @@ ALLOWED = {
     "films": DOORS | {"gap", "closed_form"},
     "legs": DOORS,
     "imposed": {"legs"},
-    "dynamics": {"gap", "imposed", "secondary_seal"},
+    "dynamics": {"contact", "gap", "imposed", "secondary_seal"},
     "watch": {"gap", "dense", "dynamics"},
     "design_rules": {"layout", "legs"},
     "ludwig": PHYSICS | {"methods", "solve"},
