@@ -120,7 +120,7 @@ class ArchiveSink:
         self.tally, self.progress, self.stop = tally, progress, stop
         self.audit = None
         self.waiting = None
-        self.logged = 0
+        self.logged, self.pending = 0, []
 
     def due(self, index: int) -> np.ndarray:
         """Leg times of the samples in leg `index`, counted from the nearest sample so that they stay exact."""
@@ -148,14 +148,12 @@ class ArchiveSink:
         self.log([{**event, "time": self.problem.legs[index].time + tau}])
 
     def log(self, events):
-        """Events into the archive as they come; beyond the most that are kept they are only counted."""
+        """Keep events until the next flush; beyond the most that an archive keeps they are only counted."""
         kept = events[: max(MOST_EVENTS - self.logged, 0)]
         self.logged += len(kept)
-        if kept:
-            self.writer.events(kept)
+        self.pending += kept
 
     def state(self, index, tau, y):
-        self.problem.tell_contacts(self.log)
         self.flush(index, tau, y)
         if self.progress:
             leg = self.problem.legs[index]
@@ -164,9 +162,12 @@ class ArchiveSink:
             raise KeyboardInterrupt
 
     def flush(self, index, tau, y):
+        """Rows, what happened, and the state to go on from: all three belong together."""
         if self.waiting is None:
             return
         problem = self.problem
+        problem.tell_contacts(self.log)
+        self.write_events()
         state = {
             "leg": index,
             "tau": tau,
@@ -179,6 +180,11 @@ class ArchiveSink:
         }
         self.writer.append(self.waiting, state)
         self.waiting = None
+
+    def write_events(self):
+        if self.pending:
+            self.writer.events(self.pending)
+        self.pending = []
 
 
 class TallySink(ArchiveSink):
@@ -252,13 +258,17 @@ def simulate(
     sink.audit = audit
     restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
     outcome = solve(problem, method, scenario.run.accuracy, sink, audit=audit, resume=restart)
-    problem.tell_contacts(sink.log, last=outcome.status == "ok" or outcome.status == "collapsed")
     sink.flush(outcome.leg, outcome.tau, outcome.y)
+    if outcome.status != "interrupted":
+        # What an interrupted run has not written yet it will meet again.
+        problem.tell_contacts(sink.log, last=True)
+        sink.write_events()
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == "interrupted" else out
     summary["archive"] = str(path)
-    writer.events(_events(problem, outcome))
+    if outcome.status != "interrupted":
+        writer.events(_events(problem, outcome))
     path = writer.finish(outcome.status, outcome.message, json.loads(json.dumps(summary)))
     summary["archive"] = str(path)
     return Result(outcome.status, outcome.message, summary, path)
