@@ -203,10 +203,18 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
         inner(t, y, yp)
         return yp
 
-    kind = DOP853 if method == "dop853" else Radau
+    def differences(t, y):
+        # SciPy's own steps of the tolerance times 1e-8 drown beside a clearance.
+        matrix = np.empty((problem.size, problem.size))
+        counts.jacobians += 1
+        counts.rhs += problem.n_mechanical
+        problem.jacobian(t, np.array(y), None, matrix)
+        return matrix
+
+    kind, options = (DOP853, {}) if method == "dop853" else (Radau, {"jac": differences})
     # DOP853's norm is an average: the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
     solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=absolute,
-                  max_step=problem.longest_step())  # fmt: skip
+                  max_step=problem.longest_step(), **options)  # fmt: skip
     while solver.status == "running":
         # A trial stage may fly off and overflow; the error norm then refuses the step.
         with np.errstate(all="ignore"):

@@ -76,7 +76,7 @@ class Problem:
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
-        self._shifts = {}
+        self._shifts, self.warnings = {}, []
         self.layout = layout = Layout(scene, self.legs, self.closing, self.film_name == "linear")
         self.names, self.n, self.rate_places = layout.names, layout.n, layout.rate_places
         self.n_mechanical, self.size, self.reasons = layout.n_mechanical, layout.size, layout.reasons
@@ -92,7 +92,6 @@ class Problem:
         self.begin(0)
         self.sticking = Sticking(self) if any(self._coulomb(k) for k in layout.seals) else None
         self.y0 = np.zeros(self.size)
-        self.warnings = []
         self.records = watch.fresh_records()
         self.last = (0.0, self.y0)
         self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
@@ -357,11 +356,21 @@ class Problem:
         """The method this scene wants, and why."""
         if self.massless:
             return "ida", "a massless ring has no rates: IDA, on the residual form"
-        values, _ = self.linear_scene().eigen()
-        ratio = float(np.max(-values.real)) * self.fast_time / (2 * math.pi)
+        ratio = self._fastest_decay() * self.fast_time / (2 * math.pi)
         if ratio > STIFF:
             return "bdf", f"fastest decay {ratio:.0f} times the fastest forcing: stiff, CVODE BDF"
         return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
+
+    def _fastest_decay(self) -> float:
+        """Fastest decay (1/s) of the scene linearised where the run starts (a squeezed film is stiffer by the cube)
+        and at the equilibrium of each leg's loads."""
+        self.begin(0)
+        dynamics.kinematics(0.0, self.y0, np.zeros(self.size), self.p, self.w, self.s)
+        shifts = {(max(self.s[DZ], self.f[FLOOR] - self.clearance),): 0}
+        for k, leg in enumerate(self.legs):
+            varying = (self.scene.shaft.speed, self.scene.film.viscosity)
+            shifts[self.axial_shift(k), *(constant_and_slope(q, leg)[0] for q in varying)] = k
+        return max(float(np.max(-self.linear_scene(k, shift=at[0]).eigen()[0].real)) for at, k in shifts.items())
 
     def check_start(self):
         """Raises ImpossibleScene if the film is closed at the start."""
@@ -408,7 +417,7 @@ class Problem:
 
     def axial_shift(self, leg_index: int) -> float:
         """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force =
-        closing force + support springs.  0 if no such place is found between 2 % and 50 times the clearance."""
+        closing force + support springs.  0, and a warning, if none is found from 0.1 % to 50 times the clearance."""
         if leg_index not in self._shifts:
             self._shifts[leg_index] = self._find_shift(leg_index)
         return self._shifts[leg_index]
@@ -429,17 +438,22 @@ class Problem:
 
         if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
             return 0.0
-        grid = self.clearance * np.concatenate([-np.linspace(0.98, 0.0, 50), np.geomspace(1e-3, 50, 80)])
+        grid = self.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
         values = [excess(x) for x in grid]
         # The stable root nearest to the design clearance: the excess falls through zero.
         roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
         if not roots:
+            said = (
+                f"no equilibrium gap found for the loads from t = {leg.time:.4g} s: linear numbers are at the clearance"
+            )
+            if said not in self.warnings:
+                self.warnings.append(said)
             return 0.0
         k = min(roots, key=lambda k: abs(grid[k]))
         return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18))
 
-    def linear_scene(self, leg_index: int = 0, speed: float | None = None) -> LinearScene:
-        """The linearised scene at a leg's start, or at another shaft speed (rad/s)."""
+    def linear_scene(self, leg_index: int = 0, speed: float | None = None, shift: float | None = None) -> LinearScene:
+        """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
         leg = self.legs[leg_index]
         w_r = constant_and_slope(self.scene.shaft.speed, leg)[0] if speed is None else speed
         w_s = constant_and_slope(self.scene.stator.speed, leg)[0]
@@ -450,7 +464,7 @@ class Problem:
             self.clearance,
             leg,
             mean_spin=0.5 * (w_r + w_s),
-            shift=self.axial_shift(leg_index),
+            shift=self.axial_shift(leg_index) if shift is None else shift,
         )
         rings = []
         for k, ring in enumerate((self.scene.stator, self.scene.rotor)):

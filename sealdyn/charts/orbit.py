@@ -98,5 +98,5 @@ def contact_circle(ax, run: Run, reach: float) -> float:
     if not 0 < radius < 3 * reach:
         return 0.0
     angles = np.linspace(0, 2 * np.pi, 361)
-    ax.plot(radius * np.cos(angles), radius * np.sin(angles), "--", color=CONTACT, lw=1.0, label="contact")
+    ax.plot(radius * np.cos(angles), radius * np.sin(angles), "--", color=CONTACT, lw=1.0, label="touch at clearance C")
     return radius

@@ -30,7 +30,11 @@ def draw(archive_path, out_path, turns: float = 4.0):
             film_panel(ax, run, first)
         for ax, first in ((axes(MIDDLE, 1, whole), 0), (axes(RIGHT, 1, last), run.last(turns))):
             tilt_panel(ax, run, first)
-        leakage_panel(axes(MIDDLE, 2, whole), run)
+        low = axes(MIDDLE, 2, whole)
+        if run.touches:
+            contact_panel(low, run)
+        else:
+            leakage_panel(low, run)
         for ax in figure.axes[-2:]:
             # Panels above share their x axis with the lowest of the column.
             ax.set_xlabel(run.progress_label)
@@ -55,12 +59,12 @@ def film_panel(ax, run: Run, first: int) -> None:
     else:
         top = 1.15 * max(top, 1e6 * (run.clearance or 0))
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
-        _name(ax, 0, "contact", CONTACT)
+        _name(ax, 1e6 * run.touch_at, "asperities meet" if run.touch_at else "contact", CONTACT)
     if run.clearance:
         ax.axhline(1e6 * run.clearance, color=GREY, ls="--", lw=0.9)
         if not first:
             _name(ax, 1e6 * run.clearance, "clearance", GREY)
-    ax.axhline(0, color=CONTACT, lw=1.2)
+    ax.axhline(1e6 * run.touch_at, color=CONTACT, lw=1.2)
     if run.status in ("collapsed", "failed", "interrupted"):
         colour = STATUS[run.status]
         ax.plot(x[-1], 1e6 * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
@@ -108,6 +112,17 @@ def leakage_panel(ax, run: Run) -> None:
     ax.set(title=title, ylabel="ml/h")
     ax.margins(y=0.25)
     ax.legend(loc="upper right", ncols=2, borderaxespad=0.0)
+    _span(ax, run, 0)
+
+
+def contact_panel(ax, run: Run) -> None:
+    """Load that the touching asperities carry, beside the closing force it is a share of."""
+    x, force = run.envelope("contact_force")
+    ax.fill_between(x, force, color=CONTACT, alpha=0.25, lw=0)
+    ax.plot(x, force, color=CONTACT, lw=0.9)
+    share = (run.summary.get("contact") or {}).get("share_of_closing")
+    words = f", {100 * share:.3g} % of the closing force on average" if isinstance(share, float) else ""
+    ax.set(title=f"Contact force{words}", ylabel="N", ylim=(0, 1.15 * np.nanmax(force)))
     _span(ax, run, 0)
 
 
@@ -160,6 +175,8 @@ def _numbers(summary: dict):
     yield from _kept("closing force", joined(said("closing.force", 1, "N"), ratio))
     yield from _kept("critical speed", said("stability.critical_speed", 1, "rad/s"))
     yield from _kept("margin to contact", said("contact_margin", 1, "× this forcing", 3))
+    yield from _kept("touches", joined(said("contact.touches", 1, ""), said("contact.depth", 1e6, "µm deep", 3)))
+    yield from _kept("wear rate", said("contact.wear_rate", 3.6e9, "µm/h", 3) if get("contact.wear_rate") else None)
     yield from _kept("energy residual", said("energy_residual", 1, "", 2))
 
 

@@ -109,6 +109,17 @@ class Run:
         slope = (self.film("coning") or 0.0) * (radius - inner)
         return first["h_min"] - first["axial_gap_change"] - slope + radius * first.get("relative_misalignment", 0)
 
+    @property
+    def touch_at(self) -> float:
+        """Film thickness (m) at which the faces touch: where asperities meet, or zero."""
+        level = (self.summary.get("contact") or {}).get("touch_at")
+        return level if isinstance(level, int | float) else 0.0
+
+    @cached_property
+    def touches(self) -> bool:
+        """Whether any sample shows contact."""
+        return self.has("contact_force") and bool(np.nanmax(self.envelope("contact_force")[1]) > 0)
+
     @cached_property
     def contact_tilt(self) -> float | None:
         """Relative misalignment (rad) at which the faces touch at the design clearance."""
