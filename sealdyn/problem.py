@@ -14,6 +14,8 @@ from .films import Coefficients
 from .gap import (
     COLLAPSE,
     CONTACT_FORCE,
+    CONTACT_X,
+    CONTACT_Y,
     DZ,
     FACE_SIZE,
     FLOOR,
@@ -21,6 +23,8 @@ from .gap import (
     GAP_STATE_SIZE,
     INNER_PRESSURE,
     MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     TOUCH,
@@ -34,7 +38,7 @@ from .modes import Harmonic, LinearScene, RingNumbers, common_period, linearise
 from .scene import ImpossibleScene, Scene
 from .signals import signals
 from .sticking import Sticking
-from .touches import IMPULSE, KIND, LIFTED, OPEN, ContactTally, contact_event, fresh_state, touches
+from .touches import IMPULSE, KIND, LIFTED, OPEN, TOUCHED, ContactTally, contact_event, fresh_state, touches
 from .touches import ROW as TOUCH_ROW
 
 # Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
@@ -66,9 +70,7 @@ class Problem:
         self.film_name = self.film.__name__.rsplit(".", 1)[1]
         self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self._opening_force)
         self.table = self._film_table()
-        # A floored film converges slowly around the circle: it gets what the accuracy needs and no more.
-        error = accuracy / 100 if scene.film.cavitation_pressure is None else accuracy
-        self.f = self.film.parameters(self.table, self.clearance, max(error, 1e-13))
+        self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
         self.contact = None
         if scene.contact:
             self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact.levels(scene.contact)
@@ -104,7 +106,9 @@ class Problem:
         if self.film_name != "linear" or table.coefficients != "radial":
             return table
         source = film_module("radial")
-        k, d = linearised_film(source, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance)
+        k, d = linearised_film(
+            source.wrench, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance
+        )
         taken = Coefficients(
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
@@ -133,6 +137,14 @@ class Problem:
         for k in self.layout.seals:
             band = self.band if self._coulomb(k) else self.seal(k).width
             self.layout.ring_block[dynamics.RING * k + dynamics.SEAL_BAND] = band
+
+    def _wrench(self, f, s):
+        """Film and asperities together, as the force and moments of the film."""
+        self.film.wrench(f, s)
+        if self.contact is not None:
+            contact.press(self.contact, f, s)
+            for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
+                s[film] += s[rough]
 
     def closing_force(self) -> float:
         """Closing force (N) at the start."""
@@ -307,13 +319,15 @@ class Problem:
             self.contacts.extend(rows[:found])
         return fallen
 
-    def tell_contacts(self, log, last: bool = False):
-        """Hand the contacts that have ended (at the `last` call also one that goes on) to `log` as events, and add
-        them to the tally of contacts."""
+    def tell_contacts(self, log, end: tuple | None = None):
+        """Hand the contacts that have ended to `log` as events, and add them to the tally of contacts; at the `end`
+        (time, unknowns) of a run also one that goes on, without a lift-off."""
         rows, self.contacts = self.contacts, []
-        if last and self.touching[OPEN]:
+        if end and self.touching[OPEN]:
             row = self.touching[:TOUCH_ROW].copy()
-            row[KIND], row[LIFTED], row[IMPULSE] = 1.0, np.nan, np.nan
+            row[KIND], row[LIFTED] = 1.0, np.nan
+            row[IMPULSE] = end[1][self.layout.impulse] - row[IMPULSE]
+            self.contact_tally.longest = max(self.contact_tally.longest, float(end[0] - row[TOUCHED]))
             rows.append(row)
         if rows:
             self.contact_tally.add(rows)
@@ -413,7 +427,7 @@ class Problem:
     def film_matrices(self, leg_index: int = 0):
         """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of that leg's start."""
         leg = self.legs[leg_index]
-        return linearised_film(self.film, self.f, self.scene, self.clearance, leg, shift=self.axial_shift(leg_index))
+        return linearised_film(self._wrench, self.f, self.scene, self.clearance, leg, shift=self.axial_shift(leg_index))
 
     def axial_shift(self, leg_index: int) -> float:
         """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force =
@@ -433,7 +447,7 @@ class Problem:
 
         def excess(shift):
             s[DZ] = shift
-            self.film.wrench(self.f, s)
+            self._wrench(self.f, s)
             return s[FORCE] - closing - shift / compliance
 
         if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
@@ -458,7 +472,7 @@ class Problem:
         w_r = constant_and_slope(self.scene.shaft.speed, leg)[0] if speed is None else speed
         w_s = constant_and_slope(self.scene.stator.speed, leg)[0]
         stiffness, damping = linearised_film(
-            self.film,
+            self._wrench,
             self.f,
             self.scene,
             self.clearance,
@@ -551,8 +565,8 @@ class Problem:
         return forced, lambda step: expm(matrix * step), fastest
 
 
-def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
-    """Stiffness and damping matrices (3, 3) of a film about the aligned rest state at a leg's start, the gap `shift`
+def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start, the gap `shift`
     (m) wider than the clearance."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
@@ -565,4 +579,4 @@ def linearised_film(film, f, scene, clearance, leg=None, mean_spin=None, shift=0
     s[SPIN_DIFFERENCE] = w_r - w_s
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(film.wrench, f, s, (length, tilt, length * pace, tilt * pace))
+    return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))

@@ -261,7 +261,7 @@ def simulate(
     sink.flush(outcome.leg, outcome.tau, outcome.y)
     if outcome.status != "interrupted":
         # What an interrupted run has not written yet it will meet again.
-        problem.tell_contacts(sink.log, last=True)
+        problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
         sink.write_events()
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     summary["wall_time"] = clock.perf_counter() - begun
@@ -280,7 +280,7 @@ def run_briefly(scenario) -> dict:
     problem, method, why, interval, count = prepare(scenario)
     sink = TallySink(problem, interval, count)
     outcome = solve(problem, method, scenario.run.accuracy, sink)
-    problem.tell_contacts(sink.log, last=True)
+    problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     return {**summary, "wall_time": clock.perf_counter() - begun}
 

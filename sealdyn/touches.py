@@ -43,9 +43,9 @@ class ContactTally:
             self.count += 1
             self.first = float(row[TOUCHED]) if self.first is None else self.first
             self.lowest = float(row[DEPTH_H] if self.lowest is None else min(self.lowest, row[DEPTH_H]))
+            self.impulse += float(row[IMPULSE])
             if np.isfinite(row[LIFTED]):
                 self.longest = max(self.longest, float(row[LIFTED] - row[TOUCHED]))
-                self.impulse += float(row[IMPULSE])
 
 
 def contact_event(row, level: float) -> dict:
@@ -107,6 +107,8 @@ def touches(
     for k in range(begin, end):
         low, high = t[k], t[k + 1]
         scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+        if high <= low:
+            continue
         if state[OPEN] == 0.0 and reach[k] > level + error:
             state[SINKING] = 0.0
             continue

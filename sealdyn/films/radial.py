@@ -19,7 +19,6 @@ or diverging faces (t = 0, t < 0), and the nearest singularity of the integrand 
 """
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -30,7 +29,6 @@ from ..gap import (
     CONING,
     DZ,
     DZ_RATE,
-    FACE_SIZE,
     FLOOR,
     FLOW_INNER,
     FLOW_OUTER,
@@ -53,99 +51,26 @@ from ..gap import (
     TORQUE,
     VISCOSITY,
     above_floor,
-    face_block,
 )
-from ._cavity import floored_line
+from ._floored_circle import floored_circle
+from ._radial_rules import (
+    ANGLE_COUNTS,
+    ANGLES,
+    COSINES,
+    FAST,
+    HAS_CAVITATION,
+    LOG_ERROR,
+    MOST_ANGLES,
+    RADIAL_POINTS,
+    RULE_SIZE,
+    RULES,
+    SINES,
+    parameters,
+    points_for,
+)
 
 RUNG = 2
 UNKNOWNS = 0
-
-# Gauss rules offered; multiples of four fill the vector registers.
-RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
-# Angle counts offered are divisors of the longest table.
-MOST_ANGLES = 3072
-ANGLES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1536, 3072)
-
-# Block layout after the faces.
-CAVITATION, HAS_CAVITATION, LOG_ERROR, CAVITY_ANGLES, RULES = range(FACE_SIZE, FACE_SIZE + 5)
-RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
-ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
-COSINES = ANGLE_COUNTS + len(ANGLES)
-SINES = COSINES + MOST_ANGLES // 2 + 1
-BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
-
-FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
-@lru_cache(maxsize=16)
-def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre points and weights on [-1, 1]."""
-    return np.polynomial.legendre.leggauss(points)
-
-
-def _rule_error(points: int, ratio: float, radius_ratio: float) -> float:
-    """Worst relative error of the radial integrals with `points` Gauss points at one film ratio h_o/h_i."""
-
-    def moments(n):
-        x, w = gauss(n)
-        q = ratio**0.25
-        t = (q - 1) / (q + 1)
-        u = (1 + t * x) / (1 - t * x)
-        y = 0.5 * (1 + x) * (1 - t) / (1 - t * x) * (u + 1 / q) / (q + 1 / q)
-        dy = u * (1 - t * t) / (1 - t * x) ** 2 / (q + 1 / q)
-        r = radius_ratio + (1 - radius_ratio) * y
-        weight = w * dy / u**6
-        return np.array([np.sum(weight * r**k * y**j) for k in (-1, 1, 2) for j in (0, 1, 2, 3)])
-
-    exact = moments(64)
-    return float(np.max(np.abs(moments(points) / exact - 1)))
-
-
-@lru_cache(maxsize=64)
-def _rules(radius_ratio: float, error: float) -> np.ndarray:
-    """The block's Gauss rules: for each, its count, the largest film ratio (or its inverse) it may serve at
-    this error, points and weights.  The limit is found by trying, so no error constant is guessed."""
-    rows = []
-    for points in RADIAL_POINTS:
-        # ln of the film ratio; a rule that cannot even serve flat faces gets a limit below one.
-        low, high = -1.0, 12.0
-        for _ in range(24):
-            middle = 0.5 * (max(low, 0.0) + high) if low >= 0.0 else 0.0
-            worst = max(
-                _rule_error(points, math.exp(middle), radius_ratio),
-                _rule_error(points, math.exp(-middle), radius_ratio),
-            )
-            # Force and moments are differences of these integrals: measured up to 100 times worse.
-            low, high = (middle, high) if worst < max(error / 200, 3e-15) else (low, middle)
-        x, w = gauss(points)
-        row = np.zeros(RULE_SIZE)
-        row[:2] = points, math.exp(low)
-        row[2 : 2 + points] = x
-        row[2 + RADIAL_POINTS[-1] : 2 + RADIAL_POINTS[-1] + points] = w
-        rows.append(row)
-    return np.concatenate(rows)
-
-
-def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
-    """The film's block of the parameter array, shape (BLOCK_SIZE,).
-
-    `film` a Film table, `clearance` design clearance at the inner radius (m), `error` relative error
-    allowed to the quadrature of force and moments; points and angles follow it and the gap.
-    """
-    f = np.zeros(BLOCK_SIZE)
-    f[:FACE_SIZE] = face_block(film, clearance)
-    if film.cavitation_pressure is not None:
-        f[CAVITATION], f[HAS_CAVITATION] = film.cavitation_pressure, 1.0
-    error = min(max(error, 1e-14), 1e-2)
-    f[LOG_ERROR] = math.log(1e4 / error)
-    # A cavity's edge leaves a kink around the circle: the trapezoid converges as N^-2 only (measured: up to 40 / N^2).
-    f[CAVITY_ANGLES] = min(6.0 * error**-0.5, MOST_ANGLES)
-    f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, error)
-    f[ANGLE_COUNTS:COSINES] = ANGLES
-    beta = 2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES
-    f[COSINES:SINES] = np.cos(beta)
-    f[SINES:] = np.sin(beta)
-    return f
 
 
 def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
@@ -155,16 +80,6 @@ def opening_force(film, clearance: float, inner_pressure: float, outer_pressure:
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
     wrench(parameters(film, clearance, 1e-13), s)
     return float(s[FORCE])
-
-
-@njit(cache=True)
-def points_for(f, h_i, h_o):
-    """Index of the Gauss rule that serves the film ratio between h_i and h_o."""
-    ratio = h_o / h_i if h_o > h_i else h_i / h_o
-    for rule in range(len(RADIAL_POINTS) - 1):
-        if ratio <= f[RULES + rule * RULE_SIZE + 1]:
-            return rule
-    return len(RADIAL_POINTS) - 1
 
 
 @njit(cache=True)
@@ -183,7 +98,8 @@ def angles_for(f, h_i, h_o, swing_i, swing_o):
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")
 def _circle(f, s, complete):
-    """Integrate over the face.  `complete` asks for leakage and friction torque too."""
+    """Integrate over the face.  `complete` asks for leakage and friction torque too; returns the torque's part that
+    the pressure has on the slope of the film."""
     r_i, r_o, coning, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[CONING], f[FLOOR]
     mean, planar = f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     width, r_m = r_o - r_i, 0.5 * (r_i + r_o)
@@ -287,105 +203,25 @@ def _circle(f, s, complete):
         # Couette drag, and the pressure pushing on the slope of the film (by parts: no dp/dtheta needed).
         pressure_part = -3.0 * mu * across * d_beta * twist * r_m if mean else 0.5 * m_across
         s[TORQUE] = mu * s[SPIN_DIFFERENCE] * d_beta * drag + tilt * pressure_part
-
-
-@njit(cache=True)
-def _circle_floored(f, s, crowded):
-    """As `_circle`, with the pressure floored at the cavitation pressure after solving (half-Sommerfeld).
-
-    **Source** Ludwig & Allen, NASA TN D-8102 (1976), who drop the sub-ambient half of the film.
-    **Valid** as an estimate only: it does not conserve mass.  Leakage is that of the unfloored film.
-    """
-    r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
-    mean, width, r_m = f[TILT_AT_MEAN] != 0.0, r_o - r_i, 0.5 * (r_i + r_o)
-    tilt = math.hypot(s[GX], s[GY])
-    c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
-    along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
-    across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
-    h_i0 = f[CLEARANCE] + s[DZ]
-    h_o0 = h_i0 + f[CONING] * width
-    swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
-
-    angles = angles_for(f, h_i0, h_o0, swing_i, swing_o)
-    if crowded:
-        wanted = max(angles, f[CAVITY_ANGLES])
-        angles = MOST_ANGLES
-        for i in range(len(ANGLES) - 1, -1, -1):
-            if f[ANGLE_COUNTS + i] >= wanted:
-                angles = int(f[ANGLE_COUNTS + i])
-    stride = MOST_ANGLES // angles
-    rule = RULES + RULE_SIZE * max(
-        points_for(f, above_floor(h_i0 - swing_i, floor), above_floor(h_o0 - swing_o, floor)),
-        points_for(f, above_floor(h_i0 + swing_i, floor), above_floor(h_o0 + swing_o, floor)),
-    )
-    points = int(f[rule])
-    x_k = f[rule + 2 : rule + 2 + points]
-    w_k = f[rule + 2 + RADIAL_POINTS[-1] : rule + 2 + RADIAL_POINTS[-1] + points]
-
-    force = m_along = m_across = slope = cavitated = 0.0
-    for j in range(angles):
-        mirror = j if 2 * j <= angles else angles - j
-        cos_b = f[COSINES + mirror * stride]
-        sin_b = f[SINES + mirror * stride] * (1.0 if 2 * j <= angles else -1.0)
-        h_i = above_floor(h_i0 - swing_i * cos_b, floor)
-        h_o = above_floor(h_o0 - swing_o * cos_b, floor)
-        tilt_rate = -(along * cos_b + across * sin_b)
-        load, moment, wet = floored_line(
-            x_k,
-            w_k,
-            r_i,
-            r_o,
-            h_i,
-            h_o,
-            s[DZ_RATE],
-            tilt_rate,
-            mean,
-            f[PLANAR] != 0.0,
-            s[VISCOSITY],
-            s[INNER_PRESSURE],
-            s[OUTER_PRESSURE],
-            f[CAVITATION],
-        )
-        force += load
-        m_along -= cos_b * moment
-        m_across -= sin_b * moment
-        slope -= sin_b * (r_m * load if mean else moment)
-        cavitated += 1.0 - wet
-
-    d_beta = 2.0 * math.pi / angles
-    s[FORCE] = d_beta * force
-    s[MOMENT_X] = d_beta * (c_a * m_along - s_a * m_across)
-    s[MOMENT_Y] = d_beta * (s_a * m_along + c_a * m_across)
-    s[CAVITATED] = cavitated / angles
-    return 0.5 * tilt * d_beta * slope
-
-
-@njit(cache=True)
-def _floored(f, s):
-    """The floored film, on many angles if and only if there is a cavity; returns the drag of the pressure."""
-    drag = _circle_floored(f, s, False)
-    if s[CAVITATED] > 0.0:
-        drag = _circle_floored(f, s, True)
-    return drag
+        return tilt * pressure_part
+    return 0.0
 
 
 @njit(cache=True)
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
-    if f[HAS_CAVITATION] != 0.0:
-        _floored(f, s)
-    else:
-        _circle(f, s, False)
+    if f[HAS_CAVITATION] != 0.0 and floored_circle(f, s)[0]:
+        return
+    _circle(f, s, False)
 
 
 @njit(cache=True)
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
-    `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""
-    _circle(f, s, True)
+    `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies.  The leakage of a floored
+    film is that of the film not floored."""
+    by_pressure = _circle(f, s, True)
     if f[HAS_CAVITATION] != 0.0:
-        tilt = math.hypot(s[GX], s[GY])
-        m_across = (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X]) / tilt if tilt > 0.0 else 0.0
-        if f[TILT_AT_MEAN] == 0.0:
-            s[TORQUE] -= 0.5 * tilt * m_across
-        s[TORQUE] += _floored(f, s)
+        dry, floored = floored_circle(f, s)
+        if dry:
+            s[TORQUE] += floored - by_pressure

@@ -77,7 +77,7 @@ def test_an_undamped_ring_keeps_its_energy_through_impacts():
     scene, _, _ = SCENES["impacts in a vacuum"]
     found = run(scene, turns=20, accuracy=1e-7)
     rows = []
-    found.problem.tell_contacts(rows.extend, last=True)
+    found.problem.tell_contacts(rows.extend, end=(found.outcome.tau, found.outcome.y))
     assert sum(row["kind"] == "contact" for row in rows) > 5
     start = found.problem.energies(np.zeros(1), found.problem.y0[None, :])[0]
     end = found.problem.energies(np.zeros(1), found.outcome.y[None, :])[0]

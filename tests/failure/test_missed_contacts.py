@@ -20,7 +20,7 @@ TURN = 2 * math.pi / SPEED
 
 def contacts(found):
     events = []
-    found.problem.tell_contacts(events.extend, last=True)
+    found.problem.tell_contacts(events.extend, end=(found.outcome.tau, found.outcome.y))
     return events
 
 

@@ -130,7 +130,7 @@ def test_film_alone_does_not_stop_the_impact(method):
     assert all(word in said for word in ("film collapsed at t = ", "inner radius 32 mm", "theta = ", "Try "))
     assert fallen.found.times[-1] == pytest.approx(fallen.found.record(0)[1], rel=1e-9)
     stopped, events = by("impact", method).found, []
-    stopped.problem.tell_contacts(events.extend, last=True)
+    stopped.problem.tell_contacts(events.extend, end=(stopped.outcome.tau, stopped.outcome.y))
     assert [event["kind"] for event in events] == ["contact"] and np.isfinite(events[0]["lift_off"])
     assert 0 < stopped.record(0)[0] < stopped.problem.face[TOUCH]
 

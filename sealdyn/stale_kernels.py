@@ -1,0 +1,38 @@
+"""Compiled kernels that no longer fit their sources are thrown away.
+
+numba keeps a kernel until the file it stands in changes; it does not see that a constant or a kernel of another file
+has changed, and would go on with the old one.
+"""
+
+import contextlib
+import hashlib
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+STAMP = "kernels.stamp"
+
+
+def sources() -> list[Path]:
+    """Files that hold kernels or the constants they take in."""
+    films = (PACKAGE / "films").glob("*.py")
+    return sorted([*films, *(path for path in PACKAGE.glob("*.py") if b"njit" in path.read_bytes())])
+
+
+def drop_stale_kernels() -> bool:
+    """Delete the kept kernels if any source of kernels differs from when they were made; says whether it did.
+    A folder that cannot be written is left alone."""
+    digest = hashlib.sha256()
+    for path in sources():
+        digest.update(path.name.encode() + path.read_bytes())
+    stamp, found = PACKAGE / "__pycache__" / STAMP, digest.hexdigest()
+    with contextlib.suppress(OSError):
+        if stamp.read_text() == found:
+            return False
+    dropped = False
+    with contextlib.suppress(OSError):
+        for kept in PACKAGE.rglob("*.nb[ic]"):
+            kept.unlink(missing_ok=True)
+            dropped = True
+        stamp.parent.mkdir(exist_ok=True)
+        stamp.write_text(found)
+    return dropped
