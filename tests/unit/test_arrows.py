@@ -15,6 +15,7 @@ ALLOWED = {
     "units": {"unit_names"},
     "unit_names": set(),
     "gap": set(),
+    "stale_kernels": set(),
     "asperities": set(),
     "contact": DOORS | {"asperities", "gap"},
     "secondary_seal": DOORS,
