@@ -6,6 +6,7 @@ has changed, and would go on with the old one.
 
 import contextlib
 import hashlib
+import os
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
@@ -18,21 +19,29 @@ def sources() -> list[Path]:
     return sorted([*films, *(path for path in PACKAGE.glob("*.py") if b"njit" in path.read_bytes())])
 
 
+def kept_kernels() -> list[Path]:
+    """Files of kept kernels, beside their sources or where NUMBA_CACHE_DIR says."""
+    elsewhere = os.environ.get("NUMBA_CACHE_DIR")
+    folders = [PACKAGE] if not elsewhere else [f for n in ("sealdyn_*", "films_*") for f in Path(elsewhere).glob(n)]
+    return [kept for folder in folders for kept in folder.rglob("*.nb[ic]")]
+
+
 def drop_stale_kernels() -> bool:
     """Delete the kept kernels if any source of kernels differs from when they were made; says whether it did.
     A folder that cannot be written is left alone."""
     digest = hashlib.sha256()
     for path in sources():
         digest.update(path.name.encode() + path.read_bytes())
-    stamp, found = PACKAGE / "__pycache__" / STAMP, digest.hexdigest()
+    folder = os.environ.get("NUMBA_CACHE_DIR") or PACKAGE / "__pycache__"
+    stamp, found = Path(folder) / STAMP, digest.hexdigest()
     with contextlib.suppress(OSError):
         if stamp.read_text() == found:
             return False
     dropped = False
     with contextlib.suppress(OSError):
-        for kept in PACKAGE.rglob("*.nb[ic]"):
+        for kept in kept_kernels():
             kept.unlink(missing_ok=True)
             dropped = True
-        stamp.parent.mkdir(exist_ok=True)
+        stamp.parent.mkdir(parents=True, exist_ok=True)
         stamp.write_text(found)
     return dropped

@@ -1,5 +1,6 @@
 """A kernel kept from before a constant of another file changed is not used again."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -10,7 +11,9 @@ TOUCH = "from sealdyn.gap import edge_gaps; print(edge_gaps.__name__)"
 
 
 def python(code, folder):
-    return subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True).stdout
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=True).stdout
 
 
 def test_changed_constant_drops_every_kernel(tmp_path):
