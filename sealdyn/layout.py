@@ -60,8 +60,6 @@ class Layout:
         arrangement = {(True, False): "FMS", (False, True): "FMR", (True, True): "FMSR"}
         floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
         self.reasons = [f"{arrangement[self.floats[STATOR], self.floats[ROTOR]]}: support under {floating}"]
-        if self.scene.film.model == "auto":
-            self.reasons.append("film auto: the radial film, until a cheaper one is certified for the asked accuracy")
         self.with_tilt, self.with_axial = tilted, True
         if not tilted:
             self.reasons.append("aligned faces and no angular forcing: axial unknowns only")

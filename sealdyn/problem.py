@@ -71,6 +71,12 @@ class Problem:
         self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self._opening_force)
         self.table = self._film_table()
         self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
+        if self._borrowed() is not self.film:
+            # The opening force is linear in both pressures.
+            for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
+                self.f[slot] = self._borrowed().opening_force(scene.film, self.clearance, *ends)
+        # What leakage, friction and film force are reported from.
+        self.observed = self.film.flow, self.f
         self.contact = None
         if scene.contact:
             self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact.levels(scene.contact)
@@ -102,10 +108,9 @@ class Problem:
 
     def _film_table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
-        table = self.scene.film
-        if self.film_name != "linear" or table.coefficients != "radial":
+        table, source = self.scene.film, self._borrowed()
+        if source is self.film:
             return table
-        source = film_module("radial")
         k, d = linearised_film(
             source.wrench, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance
         )
@@ -114,9 +119,14 @@ class Problem:
         )
         return replace(table, coefficients=taken)
 
+    def _borrowed(self):
+        """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
+        borrows = self.film_name == "linear" and self.scene.film.coefficients == "radial"
+        return film_module("radial") if borrows else self.film
+
     def _opening_force(self, table, clearance, inner_pressure, outer_pressure):
         """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
-        force = self.film.opening_force(table, clearance, inner_pressure, outer_pressure)
+        force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
         if not self.scene.contact:
             return force
         face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
@@ -532,7 +542,7 @@ class Problem:
 
         return at, answers, linear
 
-    def _kept(self):
+    def kept(self) -> list[int]:
         """Places of this problem's displacements among three per floating ring."""
         parts = [i for i in range(3) if (i == 0 and self.layout.with_axial) or (i > 0 and self.layout.with_tilt)]
         count = sum(self.floats.values())
@@ -542,7 +552,7 @@ class Problem:
         """Unknowns on the linear steady state at time zero."""
         at, _, _ = self.steady_motion()
         q, rate = at(0.0)
-        kept = self._kept()
+        kept = self.kept()
         return self.unknowns(q[kept], rate[kept])
 
     def exact_motion(self):
@@ -552,7 +562,7 @@ class Problem:
         from scipy.linalg import expm
 
         at, _, linear = self.steady_motion()
-        kept, places = self._kept(), [*range(self.n), *self.rate_places]
+        kept, places = self.kept(), [*range(self.n), *self.rate_places]
         rows = [*kept, *[len(linear.mass) + i for i in kept]]
         order = np.argsort(places)
         matrix = linear.state_matrix()[np.ix_(rows, rows)][np.ix_(order, order)]

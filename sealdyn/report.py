@@ -51,6 +51,8 @@ def lines(scenario, summary: dict) -> list[str]:
         bound = 10 * summary["accuracy"]
         warn = "" if summary["energy_residual"] < bound else f"  ABOVE {bound:.0e}: do not trust this run"
         out.append(f"  energy audit  residual {summary['energy_residual']:.1e} of the work exchanged{warn}")
+    if summary.get("certificate"):
+        out.append(f"  accuracy      {summary['certificate']['said']}")
     out += [f"  WARNING       {warning}" for warning in summary["warnings"]]
     files = [summary["archive"]] + ([summary["figure"]] if summary.get("figure") else [])
     out.append(f"  files         {', '.join(files)}")

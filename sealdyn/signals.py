@@ -46,7 +46,8 @@ def signals(problem, taus, q, q_rate) -> dict[str, np.ndarray]:
     SI; leakage counts from high to low pressure."""
     m = len(taus)
     gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, dynamics.SCRATCH)), np.empty((m, 3))
-    flow, f, p, w, s, face = problem.film.flow, problem.f, problem.p, problem.w, problem.s, problem.face
+    flow, f = problem.observed
+    p, w, s, face = problem.p, problem.w, problem.s, problem.face
     ys, yps = np.zeros((m, problem.size)), np.zeros(problem.size)
     massive = problem.rate_places >= 0
     ys[:, : problem.n] = q

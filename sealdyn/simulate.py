@@ -16,10 +16,10 @@ import numpy as np
 from . import __version__, archive
 from .archive import ArchiveWriter, Series, partial_path
 from .audit import Audit
+from .certify import certify, lowest_rung
 from .layout import RING_NAMES
 from .legs import time_of_angle
 from .methods import attainable
-from .problem import Problem
 from .scene import ImpossibleScene
 from .signals import signals
 from .solve import solve
@@ -264,6 +264,7 @@ def simulate(
         problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
         sink.write_events()
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
+    summary["certificate"] = certificate(problem, method, outcome)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == "interrupted" else out
     summary["archive"] = str(path)
@@ -272,6 +273,16 @@ def simulate(
     path = writer.finish(outcome.status, outcome.message, json.loads(json.dumps(summary)))
     summary["archive"] = str(path)
     return Result(outcome.status, outcome.message, summary, path)
+
+
+def certificate(problem, method, outcome) -> dict:
+    """How wrong the run is estimated to be (certify.py), as part of the summary."""
+    if outcome.status != "ok":
+        return {"asked": problem.accuracy, "estimated": None, "solver": None, "model": None,
+                "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
+    found = certify(problem, method)
+    return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
+            "said": found.said}  # fmt: skip
 
 
 def run_briefly(scenario) -> dict:
@@ -289,8 +300,7 @@ def prepare(scenario):
     """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count.
     Raises ImpossibleScene or ArchiveError."""
     duration, interval, count = sampling(scenario)
-    problem = Problem(scenario.scene, duration, scenario.run.accuracy)
-    _start(problem, scenario)
+    problem = lowest_rung(scenario.scene, duration, scenario.run.accuracy, lambda p: _start(p, scenario))
     method, why = problem.solver()
     if scenario.run.solver != "auto":
         method, why = scenario.run.solver, "asked for"

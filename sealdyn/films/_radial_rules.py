@@ -31,22 +31,30 @@ def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
     return np.polynomial.legendre.leggauss(points)
 
 
-def _rule_error(points: int, ratio: float, radius_ratio: float) -> float:
-    """Worst relative error of the radial integrals with `points` Gauss points at one film ratio h_o/h_i."""
+# ln of the film ratios at which the rules are tried.
+TRIED = np.linspace(0.0, 12.0, 241)
+
+
+@lru_cache(maxsize=64)
+def _rule_errors(radius_ratio: float) -> np.ndarray:
+    """Worst relative error of the radial integrals, (rules, film ratios tried), of a film ratio or its inverse and of
+    anything flatter."""
+    q = np.exp(0.25 * np.concatenate([TRIED, -TRIED]))[:, None]
+    t = (q - 1) / (q + 1)
 
     def moments(n):
         x, w = gauss(n)
-        q = ratio**0.25
-        t = (q - 1) / (q + 1)
         u = (1 + t * x) / (1 - t * x)
         y = 0.5 * (1 + x) * (1 - t) / (1 - t * x) * (u + 1 / q) / (q + 1 / q)
         dy = u * (1 - t * t) / (1 - t * x) ** 2 / (q + 1 / q)
         r = radius_ratio + (1 - radius_ratio) * y
         weight = w * dy / u**6
-        return np.array([np.sum(weight * r**k * y**j) for k in (-1, 1, 2) for j in (0, 1, 2, 3)])
+        powers = [r**k * y**j for k in (-1, 1, 2) for j in (0, 1, 2, 3)]
+        return np.stack([np.sum(weight * power, axis=1) for power in powers])
 
     exact = moments(64)
-    return float(np.max(np.abs(moments(points) / exact - 1)))
+    worst = [np.max(np.abs(moments(n) / exact - 1), axis=0).reshape(2, -1).max(axis=0) for n in RADIAL_POINTS]
+    return np.maximum.accumulate(np.array(worst), axis=1)
 
 
 @lru_cache(maxsize=64)
@@ -54,20 +62,13 @@ def _rules(radius_ratio: float, error: float) -> np.ndarray:
     """The block's Gauss rules: for each, its count, the largest film ratio (or its inverse) it may serve at
     this error, points and weights.  The limit is found by trying, so no error constant is guessed."""
     rows = []
-    for points in RADIAL_POINTS:
-        # ln of the film ratio; a rule that cannot even serve flat faces gets a limit below one.
-        low, high = -1.0, 12.0
-        for _ in range(24):
-            middle = 0.5 * (max(low, 0.0) + high) if low >= 0.0 else 0.0
-            worst = max(
-                _rule_error(points, math.exp(middle), radius_ratio),
-                _rule_error(points, math.exp(-middle), radius_ratio),
-            )
-            # Force and moments are differences of these integrals: measured up to 100 times worse.
-            low, high = (middle, high) if worst < max(error / 200, 3e-15) else (low, middle)
+    for points, errors in zip(RADIAL_POINTS, _rule_errors(radius_ratio), strict=True):
+        # Force and moments are differences of these integrals: measured up to 100 times worse.
+        serves = int(np.searchsorted(errors, max(error / 200, 3e-15)))
         x, w = gauss(points)
         row = np.zeros(RULE_SIZE)
-        row[:2] = points, math.exp(low)
+        # A rule that cannot even serve flat faces gets a limit below one.
+        row[:2] = points, math.exp(TRIED[serves - 1]) if serves else math.exp(-1.0)
         row[2 : 2 + points] = x
         row[2 + RADIAL_POINTS[-1] : 2 + RADIAL_POINTS[-1] + points] = w
         rows.append(row)

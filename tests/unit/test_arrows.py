@@ -36,7 +36,11 @@ ALLOWED = {
     "watch": {"gap", "dense", "dynamics"},
     "design_rules": {"layout", "legs"},
     "ludwig": PHYSICS | {"methods", "solve"},
-    "lyapunov": PHYSICS | DOORS | {"methods", "orbit", "problem", "recorder", "solve"},
+    "lyapunov": set(),
+    "attractor": set(),
+    "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
+    "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
+    "invariants": {"attractor", "contact", "continuation", "lyapunov", "scenario", "stroboscope"},
     "touches": {"gap", "dense", "watch"},
     "sticking": {"dense", "dynamics", "imposed", "layout"},
     "modes": {"gap"},
@@ -47,7 +51,8 @@ ALLOWED = {
     "problem": PHYSICS | DOORS | {"layout", "modes", "signals", "sticking", "touches", "watch"},
     "scenario": PHYSICS | DOORS | {"scenario"},
     "summary": PHYSICS | DOORS | {"layout", "modes", "scenario", "watch"},
-    "simulate": {"methods"}
+    "certify": PHYSICS | {"methods", "problem", "recorder", "signals", "solve", "touches", "watch"},
+    "simulate": {"certify", "methods"}
     | PHYSICS
     | DOORS
     | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},
@@ -58,10 +63,11 @@ ALLOWED = {
     "studies": PHYSICS
     | DOORS
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
-    | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"},
+    | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
+    | {"attractor", "continuation", "invariants", "ludwig", "ludwig_released", "lyapunov"},
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
-    "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "watch"},
+    "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},
     "orbit": PHYSICS | DOORS | {"layout", "methods", "modes", "problem", "recorder", "solve", "watch"},
     "cli": None,
     "__init__": None,

@@ -97,15 +97,6 @@ def test_arrangement_follows_from_the_supports(build, words):
     assert said(layout(build()), words)
 
 
-def test_auto_film_says_what_it_is():
-    problem = layout(fmr("auto"))
-    assert problem.film_name == "radial" and said(problem, "film auto")
-    assert not said(layout(fmr()), "film auto")
-
-
-# --- massless ------------------------------------------------------------------------------------------
-
-
 def test_massless_ring_has_no_rates():
     problem = layout(fmr(rotor=Rotor(**ring(**MASSLESS), misalignment=1e-6)))
     assert problem.massless and list(problem.rate_places) == [-1] * 3

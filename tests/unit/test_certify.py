@@ -1,0 +1,137 @@
+"""The choice of the film and the certificate, against the errors themselves."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import (
+    CLEARANCE,
+    INERTIA,
+    R_O,
+    SPEED,
+    TILT_SCALE,
+    fmr,
+    fms,
+    fmsr,
+    free_ring,
+    housing_vibration,
+    prepared,
+    ring,
+    run,
+)
+
+from sealdyn.certify import certify, lowest_rung, model_error, solver_error
+from sealdyn.contact import Contact
+from sealdyn.problem import Problem
+from sealdyn.ring import Stator
+from sealdyn.units import Table
+
+TURN = 2 * math.pi / SPEED
+
+
+def on(scene, model, **changes):
+    return replace(scene, film=replace(scene.film, model=model, **changes))
+
+
+def film_change(found):
+    """Change of the film at the outer radius, in clearances, at every sample: axial and angular, complex."""
+    names, total = found.problem.names, {}
+    for ring_name, sign in (("stator", 1.0), ("rotor", -1.0)):
+        for part in ("z", "tilt_x", "tilt_y"):
+            if f"{ring_name}_{part}" in names:
+                column = found.q[:, names.index(f"{ring_name}_{part}")]
+                total[part] = total.get(part, 0.0) + sign * column
+    z = total.get("z", np.zeros(len(found.times)))
+    return z / CLEARANCE, R_O / CLEARANCE * (total["tilt_x"] + 1j * total["tilt_y"])
+
+
+SCENES = {
+    "fms": fms(own=0.05 * TILT_SCALE, runout=0.1 * TILT_SCALE),
+    "fmr": fmr(own=0.1 * TILT_SCALE, fixed=0.05 * TILT_SCALE),
+    "fmsr": fmsr(own=0.2 * TILT_SCALE, fixed=0.1 * TILT_SCALE),
+    "shaken": housing_vibration(),
+    "larger": fmr(own=0.3 * TILT_SCALE, fixed=0.5 * TILT_SCALE),
+}
+
+
+@pytest.mark.parametrize("start", ["rest", "steady"])
+@pytest.mark.parametrize("name", SCENES)
+def test_model_error_is_the_difference_of_the_films(name, start):
+    """Both films run at 1e-9; what the two motions differ by is what was estimated, within a third."""
+    motions = []
+    for model, changes in (("linear", {"coefficients": "radial"}), ("radial", {})):
+        found = run(on(SCENES[name], model, **changes), turns=12, accuracy=1e-9, start=start)
+        motions.append(film_change(found))
+    z, tilt = (a - b for a, b in zip(*motions, strict=True))
+    actual = np.max(np.abs(z) + np.abs(tilt))
+    problem = Problem(on(SCENES[name], "linear", coefficients="radial"), 12 * TURN, 1e-9)
+    if start == "steady":
+        problem.y0 = problem.steady_start()
+    assert actual > 1e-6
+    assert 0.7 * actual < model_error(problem) < 1.6 * actual
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf", "dop853", "radau"])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
+    """Against a run at 1e-11: the estimate is at least a third of the true error, and below what was asked."""
+    scene = fms()
+    rough, sharp = (run(scene, turns=20, accuracy=a, method=m) for a, m in ((accuracy, method), (1e-11, "dop853")))
+    true = float(np.max(np.abs(rough.scaled() - sharp.scaled())[:, : rough.problem.n]))
+    estimate = solver_error(Problem(scene, 20 * TURN, accuracy), method)
+    assert true / 3 < estimate + 1e-11 and estimate < accuracy
+
+
+def test_an_undamped_scene_adds_its_errors_up():
+    scene = free_ring()
+    short, long = (solver_error(prepared(scene, turns * TURN, 1e-3), "adams") for turns in (20, 2000))
+    true = run(scene, turns=2000, accuracy=1e-3, per_turn=4), run(scene, turns=2000, accuracy=1e-9, per_turn=4)
+    drift = np.max(np.abs(true[0].scaled() - true[1].scaled())[:, : true[0].problem.n])
+    assert 0 < short < 1e-3 and drift / 10 < long < 1e-3
+
+
+def choose(scene, accuracy, start=None):
+    return lowest_rung(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))
+
+
+def test_the_lowest_film_that_keeps_the_accuracy():
+    gentle = SCENES["fms"]
+    error = model_error(Problem(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
+    assert choose(gentle, 2.2 * error).film_name == "linear"
+    assert choose(gentle, 1.8 * error).film_name == "radial"
+    assert any("film auto" in reason for reason in choose(gentle, 1.8 * error).reasons)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        replace(fms(), contact=Contact(roughness=1e-7, compressive_strength=3e8)),
+        on(fms(), "auto", cavitation_pressure=0.0),
+        fms(speed=Table((0.0, 0.01), (1000.0, 1100.0))),
+        fms(stator=Stator(**ring() | {"transverse_inertia": 0.0, "polar_inertia": 0.0, "mass": 0.0})),
+    ],
+    ids=["contact", "cavitation", "run-up", "massless"],
+)
+def test_where_a_linear_film_has_no_place(scene):
+    assert choose(scene, 1e-2).film_name == "radial"
+
+
+def test_an_unstable_scene_is_not_linearised():
+    scene = fmr(c=3.0, speed=1.1 * 8684.0, own=1e-3 * TILT_SCALE, fixed=0.0)
+    assert INERTIA > 0 and choose(scene, 1e-2).film_name == "radial"
+
+
+def test_leakage_of_a_chosen_linear_film_is_the_radial_films():
+    """The motion may be linear; what leaks at a clearance is not for the narrow-seal formula to say."""
+    problem = choose(SCENES["fmsr"], 1e-2)
+    assert problem.film_name == "linear" and problem.observed[0].__module__.endswith("radial")
+
+
+def test_the_sentence_says_what_was_asked_and_what_was_found():
+    problem = choose(SCENES["fms"], 1e-2)
+    found = certify(problem, "adams")
+    assert found.estimated == pytest.approx(found.solver + found.model)
+    assert found.said.startswith("asked 1e-02, estimated ") and "model" in found.said and "NOT met" not in found.said
+    linear = Problem(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
+    assert "NOT met: try a higher film rung" in certify(linear, "adams").said
