@@ -15,9 +15,10 @@ from fractions import Fraction
 import numpy as np
 
 from . import dynamics, watch
+from .faces import film_module
 from .gap import DZ, FORCE, GX, GY
 from .methods import attainable
-from .problem import Problem, film_module
+from .problem import Problem
 from .recorder import Recorder
 from .signals import signals
 from .solve import solve

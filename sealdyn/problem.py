@@ -1,40 +1,23 @@
 """A scene made ready for a solver: unknowns, scales, right-hand side, residual, signals, linear form."""
 
-import importlib
 import math
-import pkgutil
-from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
-from . import contact, dynamics, films, watch
-from .equilibrium import initially, settle
-from .films import Coefficients
+from . import contact, dynamics, linear_side, watch
+from .faces import Faces, linearised_film
 from .gap import (
     COLLAPSE,
-    CONTACT_FORCE,
-    CONTACT_X,
-    CONTACT_Y,
     DZ,
     FACE_SIZE,
     FLOOR,
-    FORCE,
     GAP_STATE_SIZE,
-    INNER_PRESSURE,
-    MEAN_SPIN,
-    MOMENT_X,
-    MOMENT_Y,
-    OUTER_PRESSURE,
-    SPIN_DIFFERENCE,
     TOUCH,
-    VISCOSITY,
-    face_block,
 )
-from .imposed import AXIAL, FIXED_AXIS, OWN, ROW, STATOR, oscillators
+from .imposed import oscillators
 from .layout import Layout
 from .legs import Leg, constant_and_slope, cut
-from .modes import Harmonic, LinearScene, RingNumbers, common_period, linearise
+from .modes import common_period
 from .scene import ImpossibleScene, Scene
 from .signals import signals
 from .sticking import Sticking
@@ -47,16 +30,6 @@ STIFF = 60.0
 PER_PERIOD = 32
 
 
-def film_module(name: str):
-    """The film rung called `name`, found by file name; "auto" is the radial film until a choice is certified."""
-    return importlib.import_module(f"sealdyn.films.{'radial' if name == 'auto' else name}")
-
-
-def film_names() -> list[str]:
-    """Names of the film rungs there are."""
-    return sorted(m.name for m in pkgutil.iter_modules(films.__path__) if not m.name.startswith("_"))
-
-
 class Problem:
     """Equations, scales and signals of one scene over a duration.
 
@@ -66,21 +39,12 @@ class Problem:
 
     def __init__(self, scene: Scene, duration: float, accuracy: float = 1e-6):
         self.scene, self.duration, self.accuracy = scene, duration, accuracy
-        self.film = film_module(scene.film.model)
-        self.film_name = self.film.__name__.rsplit(".", 1)[1]
-        self.clearance, self.closing, self.equilibria, self.closing_said = settle(scene, self._opening_force)
-        self.table = self._film_table()
-        self.f = self.film.parameters(self.table, self.clearance, max(accuracy / 100, 1e-13))
-        if self._borrowed() is not self.film:
-            # The opening force is linear in both pressures.
-            for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
-                self.f[slot] = self._borrowed().opening_force(scene.film, self.clearance, *ends)
-        # What leakage, friction and film force are reported from.
-        self.observed = self.film.flow, self.f
-        self.contact = None
-        if scene.contact:
-            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact.levels(scene.contact)
-            self.contact = contact.parameters(scene.contact, self.f[:FACE_SIZE])
+        self.faces = faces = Faces(scene, max(accuracy / 100, 1e-13))
+        self.film, self.film_name, self.f, self.contact = faces.film, faces.name, faces.f, faces.contact
+        self.clearance, self.closing, self.equilibria, self.closing_said = (
+            faces.clearance, faces.closing, faces.equilibria, faces.said
+        )  # fmt: skip
+        self.observed = faces.observed
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
@@ -106,34 +70,6 @@ class Problem:
 
     # --- making ready -------------------------------------------------------------------------------
 
-    def _film_table(self):
-        """The film's table; a linear film that borrows another film's coefficients gets them here."""
-        table, source = self.scene.film, self._borrowed()
-        if source is self.film:
-            return table
-        k, d = linearised_film(
-            source.wrench, source.parameters(table, self.clearance, 1e-13), self.scene, self.clearance
-        )
-        taken = Coefficients(
-            tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
-        )
-        return replace(table, coefficients=taken)
-
-    def _borrowed(self):
-        """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
-        borrows = self.film_name == "linear" and self.scene.film.coefficients == "radial"
-        return film_module("radial") if borrows else self.film
-
-    def _opening_force(self, table, clearance, inner_pressure, outer_pressure):
-        """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
-        force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
-        if not self.scene.contact:
-            return force
-        face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
-        face[FLOOR], face[TOUCH], face[COLLAPSE] = contact.levels(self.scene.contact)
-        contact.press(contact.parameters(self.scene.contact, face), face, s)
-        return force + s[CONTACT_FORCE]
-
     def seal(self, k: int):
         """Secondary seal of ring k (0 stator, 1 rotor), or None."""
         return (self.scene.stator, self.scene.rotor)[k].secondary_seal
@@ -147,14 +83,6 @@ class Problem:
         for k in self.layout.seals:
             band = self.band if self._coulomb(k) else self.seal(k).width
             self.layout.ring_block[dynamics.RING * k + dynamics.SEAL_BAND] = band
-
-    def _wrench(self, f, s):
-        """Film and asperities together, as the force and moments of the film."""
-        self.film.wrench(f, s)
-        if self.contact is not None:
-            contact.press(self.contact, f, s)
-            for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
-                s[film] += s[rough]
 
     def closing_force(self) -> float:
         """Closing force (N) at the start."""
@@ -436,111 +364,30 @@ class Problem:
 
     def film_matrices(self, leg_index: int = 0):
         """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of that leg's start."""
-        leg = self.legs[leg_index]
-        return linearised_film(self._wrench, self.f, self.scene, self.clearance, leg, shift=self.axial_shift(leg_index))
+        leg, shift = self.legs[leg_index], self.axial_shift(leg_index)
+        return linearised_film(self.faces.wrench, self.f, self.scene, self.clearance, leg, shift=shift)
 
     def axial_shift(self, leg_index: int) -> float:
-        """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force =
-        closing force + support springs.  0, and a warning, if none is found from 0.1 % to 50 times the clearance."""
+        """How far (m) the loads at a leg's start move the aligned gap from its design clearance."""
         if leg_index not in self._shifts:
-            self._shifts[leg_index] = self._find_shift(leg_index)
+            self._shifts[leg_index] = linear_side.axial_shift(self, leg_index)
         return self._shifts[leg_index]
 
-    def _find_shift(self, leg_index: int) -> float:
-        leg, film, s = self.legs[leg_index], self.scene.film, np.zeros(GAP_STATE_SIZE)
-        s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
-            constant_and_slope(q, leg)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
-        )
-        closing = self.closing.over(leg, film)[0]
-        springs = [r.support.axial_stiffness for r in (self.scene.stator, self.scene.rotor) if r.support]
-        compliance = sum(1 / k if k > 0 else math.inf for k in springs)
-
-        def excess(shift):
-            s[DZ] = shift
-            self._wrench(self.f, s)
-            return s[FORCE] - closing - shift / compliance
-
-        if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
-            return 0.0
-        grid = self.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
-        values = [excess(x) for x in grid]
-        # The stable root nearest to the design clearance: the excess falls through zero.
-        roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
-        if not roots:
-            said = (
-                f"no equilibrium gap found for the loads from t = {leg.time:.4g} s: linear numbers are at the clearance"
-            )
-            if said not in self.warnings:
-                self.warnings.append(said)
-            return 0.0
-        k = min(roots, key=lambda k: abs(grid[k]))
-        return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18))
-
-    def linear_scene(self, leg_index: int = 0, speed: float | None = None, shift: float | None = None) -> LinearScene:
+    def linear_scene(self, leg_index: int = 0, speed: float | None = None, shift: float | None = None):
         """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
-        leg = self.legs[leg_index]
-        w_r = constant_and_slope(self.scene.shaft.speed, leg)[0] if speed is None else speed
-        w_s = constant_and_slope(self.scene.stator.speed, leg)[0]
-        stiffness, damping = linearised_film(
-            self._wrench,
-            self.f,
-            self.scene,
-            self.clearance,
-            leg,
-            mean_spin=0.5 * (w_r + w_s),
-            shift=self.axial_shift(leg_index) if shift is None else shift,
-        )
-        rings = []
-        for k, ring in enumerate((self.scene.stator, self.scene.rotor)):
-            support = ring.support
-            tilt_k, tilt_d = support.tilt() if support else (0.0, 0.0)
-            rings.append(
-                RingNumbers(
-                    sign=1.0 if k == STATOR else -1.0,
-                    floats=self.floats[k],
-                    mass=ring.mass,
-                    inertia=ring.transverse_inertia,
-                    polar=ring.polar_inertia,
-                    axial_stiffness=support.axial_stiffness if support else 0.0,
-                    axial_damping=support.axial_damping if support else 0.0,
-                    tilt_stiffness=tilt_k,
-                    tilt_damping=tilt_d,
-                    spin=w_s if k == STATOR else w_r,
-                )
-            )
-        return LinearScene(rings, stiffness, damping)
+        return linear_side.linear_scene(self, leg_index, speed, shift)
 
-    def harmonics(self) -> list[Harmonic]:
-        """The imposed oscillators of the present leg as harmonics in leg time (constant amplitude and speed)."""
-        found = []
-        for ring, kind, amplitude, _, cos, sin, a0, a1, _ in self.rows.reshape(-1, ROW):
-            phasor = amplitude * np.exp(1j * a0)
-            shape = np.zeros(3, dtype=complex)
-            if kind == AXIAL:
-                shape[0] = phasor
-            elif kind != FIXED_AXIS:
-                shape[1], shape[2] = phasor, -1j * phasor
-            else:
-                shape[1], shape[2] = phasor * cos, phasor * sin
-            none = np.zeros(3, dtype=complex)
-            found.append(Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none))
-        return found
+    def harmonics(self) -> list:
+        """The imposed oscillators of the present leg as harmonics in leg time."""
+        return linear_side.harmonics(self)
 
     def steady_motion(self):
-        """Linear steady state: a function of leg time giving (displacements, rates) of all floating rings' three
-        unknowns each, and the list of (harmonic, complex answer)."""
-        linear = self.linear_scene(self.leg_index)
-        answers = [(h, linear.response(h)) for h in self.harmonics()]
+        """Linear steady state (linear_side.py)."""
+        return linear_side.steady_motion(self)
 
-        def at(tau):
-            q, rate = np.zeros(len(linear.mass)), np.zeros(len(linear.mass))
-            for h, answer in answers:
-                turned = answer * np.exp(1j * h.frequency * tau)
-                q += turned.real
-                rate += (1j * h.frequency * turned).real
-            return q, rate
-
-        return at, answers, linear
+    def exact_motion(self):
+        """Exact solution of a linear scene (linear_side.py)."""
+        return linear_side.exact_motion(self)
 
     def kept(self) -> list[int]:
         """Places of this problem's displacements among three per floating ring."""
@@ -554,39 +401,3 @@ class Problem:
         q, rate = at(0.0)
         kept = self.kept()
         return self.unknowns(q[kept], rate[kept])
-
-    def exact_motion(self):
-        """Exact solution of a linear scene with constant parameters, in the order of the mechanical unknowns:
-        the forced motion as a function of leg time, the matrix exponential of the free motion as a function of a
-        time step, and the largest eigenvalue (1/s)."""
-        from scipy.linalg import expm
-
-        at, _, linear = self.steady_motion()
-        kept, places = self.kept(), [*range(self.n), *self.rate_places]
-        rows = [*kept, *[len(linear.mass) + i for i in kept]]
-        order = np.argsort(places)
-        matrix = linear.state_matrix()[np.ix_(rows, rows)][np.ix_(order, order)]
-
-        def forced(tau):
-            q, rate = at(tau)
-            return np.concatenate([q[kept], rate[kept]])[order]
-
-        fastest = float(np.max(np.abs(np.linalg.eigvals(matrix))))
-        return forced, lambda step: expm(matrix * step), fastest
-
-
-def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
-    the gap `shift` (m) wider than the clearance."""
-    s = np.zeros(GAP_STATE_SIZE)
-    s[DZ] = shift
-    clearance = clearance + shift
-    first = (lambda q: constant_and_slope(q, leg)[0]) if leg else initially
-    s[VISCOSITY] = first(scene.film.viscosity)
-    s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
-    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
-    s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
-    s[SPIN_DIFFERENCE] = w_r - w_s
-    length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
-    pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))

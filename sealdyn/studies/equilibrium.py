@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..equilibrium import ClosingForce, equilibria, initially, settle
-from ..problem import film_module
+from ..faces import film_module
 from ..scene import ImpossibleScene
 from ..twin import held
 from ..units import Length

@@ -48,10 +48,12 @@ ALLOWED = {
     "equilibrium": DOORS | {"legs", "scene"},
     "layout": DOORS | {"dynamics", "imposed", "legs"},
     "signals": {"contact", "dynamics", "gap", "layout", "legs"},
-    "problem": PHYSICS | DOORS | {"layout", "modes", "signals", "sticking", "touches", "watch"},
+    "faces": PHYSICS | {"modes"},
+    "linear_side": PHYSICS | {"faces", "modes"},
+    "problem": PHYSICS | DOORS | {"faces", "layout", "linear_side", "modes", "signals", "sticking", "touches", "watch"},
     "scenario": PHYSICS | DOORS | {"scenario"},
     "summary": PHYSICS | DOORS | {"layout", "modes", "scenario", "watch"},
-    "certify": PHYSICS | {"methods", "problem", "recorder", "signals", "solve", "touches", "watch"},
+    "certify": PHYSICS | {"faces", "methods", "problem", "recorder", "signals", "solve", "touches", "watch"},
     "simulate": {"certify", "methods"}
     | PHYSICS
     | DOORS
@@ -64,7 +66,7 @@ ALLOWED = {
     | DOORS
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
     | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
-    | {"attractor", "continuation", "invariants", "ludwig", "ludwig_released", "lyapunov"},
+    | {"attractor", "continuation", "faces", "invariants", "ludwig", "ludwig_released", "lyapunov"},
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
     "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},

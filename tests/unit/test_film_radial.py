@@ -6,8 +6,8 @@ from oracles import floored_wrench, radial_wrench
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr
 
 from sealdyn import gap
+from sealdyn.faces import linearised_film
 from sealdyn.films import radial
-from sealdyn.problem import linearised_film
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5
 AREA = np.pi * (R_O**2 - R_I**2)
