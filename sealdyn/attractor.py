@@ -51,6 +51,10 @@ def spread(section) -> float:
     return float(np.sqrt(min(np.mean(variances) for variances in bands))) if bands else 0.0
 
 
+# Growth a return below which nothing is called chaotic.
+SLIGHT = 0.02
+
+
 def kind(period: int | None, exponent: float, uncertainty: float, still: bool = False, points: int = 1000) -> str:
     """ "period k", "chaotic", "quasi-periodic", "settling" or "undecided".
 
@@ -63,7 +67,8 @@ def kind(period: int | None, exponent: float, uncertainty: float, still: bool = 
         moving = exponent > uncertainty or (period > 1 and still)
         return "settling" if moving else f"period {period}"
     if exponent > uncertainty:
-        return "chaotic"
+        # So slow a growth is that of a motion about to bifurcate, or of too short a look.
+        return "chaotic" if exponent > SLIGHT else "undecided"
     if exponent < -uncertainty or still or points <= LONGEST:
         return "settling"
     return "quasi-periodic" if uncertainty <= TORUS else "undecided"

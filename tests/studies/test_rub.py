@@ -175,6 +175,7 @@ def test_classes_of_the_logistic_map():
     assert attractor.period_of(slow, 1.0) is None
     assert attractor.kind(None, -0.01, 0.02, still=True) == "settling"
     assert attractor.kind(None, 0.4, 0.1) == "chaotic"
+    assert attractor.kind(None, 0.01, 0.005) == "undecided"
     assert attractor.kind(None, 0.0, 0.01) == "quasi-periodic"
     assert attractor.kind(2, -0.1, 0.01) == "period 2"
     assert attractor.kind(2, 0.3, 0.1) == "settling"
