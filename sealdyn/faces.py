@@ -49,7 +49,7 @@ class Faces:
     leakage, friction and film force are reported."""
 
     def __init__(self, scene, error: float):
-        self.scene = scene
+        self.scene, self._asperities = scene, None
         self.film = film_module(scene.film.model)
         self.name = self.film.__name__.rsplit(".", 1)[1]
         self.clearance, self.closing, self.equilibria, self.said = settle(scene, self.opening_force)
@@ -88,7 +88,10 @@ class Faces:
             return force
         face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
         face[FLOOR], face[TOUCH], face[COLLAPSE] = contact.levels(self.scene.contact)
-        contact.press(contact.parameters(self.scene.contact, face), face, s)
+        if self._asperities is None:
+            # Of the faces it takes the radii only, which stay.
+            self._asperities = contact.parameters(self.scene.contact, face)
+        contact.press(self._asperities, face, s)
         return force + s[CONTACT_FORCE]
 
     def wrench(self, f, s):

@@ -36,6 +36,7 @@ ALLOWED = {
     "watch": {"gap", "dense", "dynamics"},
     "design_rules": {"layout", "legs"},
     "ludwig": PHYSICS | {"methods", "solve"},
+    "ludwig_released": PHYSICS | DOORS | {"ludwig", "problem", "recorder", "signals", "solve"},
     "lyapunov": set(),
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
