@@ -16,7 +16,7 @@ import numpy as np
 
 from . import dynamics, watch
 from .faces import film_module
-from .gap import DZ, FORCE, GX, GY
+from .gap import DZ, DZ_RATE, FLOW_INNER, FORCE, GX, GY, GY_RATE
 from .methods import attainable
 from .problem import Problem
 from .recorder import Recorder
@@ -81,9 +81,15 @@ def _shortened(problem: Problem, stretch: float) -> Problem:
 
 
 def model_error(problem: Problem, higher: str = "radial") -> float | None:
-    """Estimated difference of the motion of a linear film's scene from that with the film rung `higher`, in
-    clearances at the outer radius, over the run; None where it cannot be estimated (changing conditions, a massless
-    or unstable scene)."""
+    """The larger of `model_errors`, or None."""
+    found = model_errors(problem, higher)
+    return None if found is None else float(found.max())
+
+
+def model_errors(problem: Problem, higher: str = "radial") -> np.ndarray | None:
+    """Estimated difference of a linear film's scene from that with the film rung `higher` over the run: of the film at
+    the outer radius in clearances, and of the leakage relative to its largest.  None where it cannot be estimated
+    (changing conditions, a massless or unstable scene)."""
     if problem.massless or not problem.constant or not problem.linear:
         return None
     at, _, linear = problem.steady_motion()
@@ -99,68 +105,88 @@ def model_error(problem: Problem, higher: str = "radial") -> float | None:
     count = min(int(min(problem.duration, 6.0 * slowest) / step) + 1, MOST)
     # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
     whole = expm(matrix * step)
-    pushed = np.linalg.solve(matrix, whole - np.eye(2 * n)) @ np.vstack([np.zeros((n, n)), np.linalg.inv(linear.mass)])
+    mass = np.vstack([np.zeros((n, n)), np.linalg.inv(linear.mass)])
+    pushed = np.linalg.solve(matrix, whole - np.eye(2 * n)) @ mass
     film = film_module(higher)
     block = film.parameters(replace(problem.scene.film, model=higher), problem.clearance, problem.accuracy / 10)
 
+    seen = _Seen(problem, linear, film, block)
     q, rate = at(0.0)
     start = np.zeros(2 * n)
-    start[kept], start[n + np.array(kept)] = _motion(problem, problem.y0)
-    free, error, worst = start - np.concatenate([q, rate]), np.zeros(2 * n), 0.0
-    before = None
+    start[kept], start[n + np.array(kept)] = problem.y0[: problem.n], problem.y0[problem.rate_places]
+    free, error, worst, before = start - np.concatenate([q, rate]), np.zeros(2 * n), np.zeros(2), None
     for k in range(count + 1):
-        tau = k * step
-        q, rate = at(tau)
+        q, rate = at(k * step)
         state = np.concatenate([q, rate]) + free
-        defect = _defect(problem, film, block, linear, tau, state[kept], state[n + np.array(kept)])
+        defect = seen.defect(k * step, state[kept], state[n + np.array(kept)])
         if before is not None:
             error = whole @ error + pushed @ (0.5 * (before + defect))
-            worst = max(worst, _seen(problem, linear, error[:n]))
+            worst = np.maximum(worst, seen.error(error[:n], error[n:]))
         before, free = defect, whole @ free
     # Then the steady state, on which what is left of the start no longer acts.
-    return max(worst, _steady_error(problem, linear, film, block, at, kept))
+    return np.maximum(worst, _steady_error(problem, linear, seen, at, kept))
 
 
-def _steady_error(problem, linear, film, block, at, kept) -> float:
+def _steady_error(problem, linear, seen, at, kept) -> np.ndarray:
     """The same over the last forcing period, by harmonics; 0 if the forcing has no common period."""
     period = problem.period()
     if not period:
-        return 0.0
+        return np.zeros(2)
     points, n = STEADY, len(linear.mass)
-    forces = []
-    for tau in np.arange(points) * period / points:
-        q, rate = at(tau)
-        forces.append(_defect(problem, film, block, linear, tau, q[kept], rate[kept]))
-    spectrum = np.fft.rfft(np.array(forces), axis=0) / points
+    times = np.arange(points) * period / points
+    states = [at(tau) for tau in times]
+    forces = [seen.defect(tau, q[kept], rate[kept]) for tau, (q, rate) in zip(times, states, strict=True)]
+    spectrum = np.fft.rfft(np.array(forces), axis=0)
     answers = np.zeros((points // 2 + 1, n), dtype=complex)
+    w = 2 * math.pi / period * np.arange(points // 2 + 1)
     for k in range(points // 2):
-        w = 2 * math.pi * k / period
-        dynamic = linear.stiffness + 1j * w * linear.damping - w * w * linear.mass
+        dynamic = linear.stiffness + 1j * w[k] * linear.damping - w[k] ** 2 * linear.mass
         answers[k] = np.linalg.solve(dynamic, spectrum[k])
-    motion = np.fft.irfft(answers * points, points, axis=0)
-    return max(_seen(problem, linear, x) for x in motion)
+    motion = np.fft.irfft(answers, points, axis=0)
+    rates = np.fft.irfft(1j * w[:, None] * answers, points, axis=0)
+    worst = np.zeros(2)
+    for tau, (q, rate), x, v in zip(times, states, motion, rates, strict=True):
+        seen.defect(tau, q[kept], rate[kept])
+        worst = np.maximum(worst, seen.error(x, v))
+    return worst
 
 
-def _motion(problem, y):
-    """Displacements and rates of the unknowns."""
-    return y[: problem.n], y[problem.rate_places]
+class _Seen:
+    """What the higher film makes of the states of the lower one."""
 
+    def __init__(self, problem, linear, film, block):
+        self.problem, self.linear, self.film, self.block = problem, linear, film, block
+        self.s, self.moved = problem.s.copy(), problem.s.copy()
+        self.leakage = 0.0
 
-def _defect(problem, film, block, linear, tau, q, rate):
-    """Force and moments (3 per floating ring) by which the higher film pushes more than the lower one."""
-    y, w, s = problem.unknowns(q, rate), problem.w, problem.s
-    dynamics.kinematics(tau, y, np.zeros(problem.size), problem.p, w, s)
-    problem.film.wrench(problem.f, s)
-    lower = s[FORCE : FORCE + 3].copy()
-    film.wrench(block, s)
-    more = s[FORCE : FORCE + 3] - lower
-    return np.concatenate([linear.rings[k].sign * more for k in linear.floating])
+    def defect(self, tau, q, rate):
+        """Force and moments (3 per floating ring) by which the higher film pushes more than the lower one."""
+        problem, linear = self.problem, self.linear
+        y, s = problem.unknowns(q, rate), problem.s
+        dynamics.kinematics(tau, y, np.zeros(problem.size), problem.p, problem.w, s)
+        problem.film.wrench(problem.f, s)
+        lower = s[FORCE : FORCE + 3].copy()
+        self.film.flow(self.block, s)
+        self.s[:] = s
+        self.leakage = max(self.leakage, abs(s[FLOW_INNER]))
+        more = s[FORCE : FORCE + 3] - lower
+        return np.concatenate([linear.rings[k].sign * more for k in linear.floating])
 
-
-def _seen(problem, linear, x) -> float:
-    """Change of the film at the outer radius, in clearances, by displacements x (3 per floating ring)."""
-    relative = sum(linear.rings[k].sign * x[3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))
-    return (abs(relative[DZ]) + problem.face[1] * math.hypot(relative[GX], relative[GY])) / problem.clearance
+    def error(self, x, v) -> np.ndarray:
+        """Change of what is looked at by displacements x and rates v (3 per floating ring) at the last state: film at
+        the outer radius in clearances, leakage relative to its largest."""
+        linear, problem = self.linear, self.problem
+        relative, rate = (
+            sum(linear.rings[k].sign * u[3 * a : 3 * a + 3] for a, k in enumerate(linear.floating)) for u in (x, v)
+        )
+        film = (abs(relative[DZ]) + problem.face[1] * math.hypot(relative[GX], relative[GY])) / problem.clearance
+        if not self.leakage:
+            return np.array([film, 0.0])
+        self.moved[:] = self.s
+        self.moved[DZ : GY + 1] += relative
+        self.moved[DZ_RATE : GY_RATE + 1] += rate
+        self.film.flow(self.block, self.moved)
+        return np.array([film, abs(self.moved[FLOW_INNER] - self.s[FLOW_INNER]) / self.leakage])
 
 
 def lowest_rung(scene, duration: float, accuracy: float, start) -> Problem:
