@@ -146,8 +146,9 @@ def judge(made, duration, accuracy, start):
                 if apart(seen, truth) <= accuracy:
                     best = min(best, made_ready + wall_tried)
                     break
-    return {"accuracy": accuracy, "error": apart(found, truth), "estimated": certificate.estimated,
-            "film": problem.film_name, "method": method, "cost": cost, "solving": chosen + wall, "best": best}  # fmt: skip
+    error, estimated = apart(found, truth), certificate.estimated
+    return {"accuracy": accuracy, "error": error, "estimated": estimated, "film": problem.film_name, "method": method,
+            "cost": cost, "solving": chosen + wall, "best": best}  # fmt: skip
 
 
 def main():
