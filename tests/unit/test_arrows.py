@@ -38,6 +38,11 @@ ALLOWED = {
     "ludwig": PHYSICS | {"methods", "solve"},
     "ludwig_released": PHYSICS | DOORS | {"ludwig", "problem", "recorder", "signals", "solve"},
     "lyapunov": set(),
+    "methods_judged": {"methods"},
+    "collocation": {"methods"},
+    "observables": {"audit", "methods", "recorder", "signals", "solve", "watch"},
+    "model_rungs": {"collocation", "faces", "films", "methods", "modes", "observables", "scenario", "simulate"},
+    "who_is_fastest": set(),
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
     "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
@@ -67,7 +72,20 @@ ALLOWED = {
     | DOORS
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
     | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
-    | {"attractor", "continuation", "faces", "invariants", "ludwig", "ludwig_released", "lyapunov"},
+    | {
+        "attractor",
+        "continuation",
+        "faces",
+        "invariants",
+        "collocation",
+        "methods_judged",
+        "model_rungs",
+        "observables",
+        "who_is_fastest",
+        "ludwig",
+        "ludwig_released",
+        "lyapunov",
+    },
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
     "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},
@@ -75,7 +93,7 @@ ALLOWED = {
     "cli": None,
     "__init__": None,
 }
-ONLY_IN = {"sksundae": {"methods"}, "h5py": {"archive"}, "tomllib": {"scenario"}, "pint": {"unit_names"},
+ONLY_IN = {"sksundae": {"methods", "methods_judged"}, "h5py": {"archive"}, "tomllib": {"scenario"}, "pint": {"unit_names"},
            "matplotlib": {"charts"}, "typer": {"cli"}, "rich": {"cli"}}  # fmt: skip
 
 

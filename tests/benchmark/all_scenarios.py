@@ -1,0 +1,102 @@
+"""Work and precision of every shipped scenario, small multiples on one page.
+
+    python tests/benchmark/all_scenarios.py [page.png] [--fresh]
+
+Runs `sealdyn study work-precision` on every scenario, some shortened so that the slowest method ends, six tolerances
+each; archives in outputs/work_precision/ are used again unless --fresh.
+"""
+
+import math
+import sys
+import time
+from pathlib import Path
+
+import sealdyn
+from sealdyn.archive import read_study
+from sealdyn.charts import study_work_precision as chart
+from sealdyn.charts.page import look, save, sheet, shortened
+from sealdyn.investigate import investigate
+
+ROOT = Path(__file__).parents[2]
+KEPT = ROOT / "outputs" / "work_precision"
+# What would take too long in full; the first turns tell the methods apart as well.
+SHORTENED = {
+    "housing_vibration": ["run.turns=4"], "runup_through_critical": [], "rub_chaotic": ["run.turns=15"],
+    "hang_up": ["run.turns=3"], "rub": ["run.turns=50"], "fms_reference": ["run.turns=30"],
+    "fmr_reference": ["run.turns=30"], "fmsr_both_flexible": ["run.turns=30"], "free_precession": ["run.turns=30"],
+}  # fmt: skip
+FLAGS = {"tolerances": 6, "loosest": 1e-2, "tightest": 1e-12, "repeats": 2, "longest": 10.0, "samples": 200,
+         "judging": 60.0, "models": False}  # fmt: skip
+# Contact all the way: fewer tolerances.
+FEWER = {"rub": {"tolerances": 4}, "rub_chaotic": {"tolerances": 4, "longest": 3.0, "judging": 25.0}}
+
+
+def archives(fresh: bool) -> list[Path]:
+    found = []
+    for path in sorted((ROOT / "scenarios").glob("*.toml")):
+        out, begun = KEPT / f"{path.stem}.h5", time.perf_counter()
+        if fresh or not out.exists():
+            scenario = sealdyn.read_scenario(path, SHORTENED.get(path.stem, []))
+            try:
+                answer = investigate("work-precision", scenario, out, flags=FLAGS | FEWER.get(path.stem, {}), workers=1)
+            except ValueError as error:
+                # A scenario of another study, or one being written.
+                print(f"{path.stem}: {error}")
+                continue
+            print(f"{path.stem} ({time.perf_counter() - begun:.0f} s)")
+            for line in answer["verdict"]:
+                print(f"  {line}")
+        found.append(out)
+    return found
+
+
+def draw(paths, out):
+    """One panel per scenario: largest error over time against wall time."""
+    across = 4
+    down = math.ceil((len(paths) + 1) / across)
+    with look():
+        figure = sheet(16.5, 1.2 + 3.35 * down)
+        height = figure.get_figheight()
+        figure.text(0.03, 1 - 0.3 / height, "Who is fastest at which error: every shipped scenario", fontsize=14,
+                    weight="bold", va="center")  # fmt: skip
+        machine = read_study(paths[0])["answer"]["machine"]
+        words = ", ".join(f"{k} {machine[k]}" for k in ("python", "numpy", "scipy", "scikit-sundae", "numba"))
+        figure.text(
+            0.03,
+            1 - 0.56 / height,
+            f"{machine['processor']}, {machine['cores']} cores; {words}; largest error"
+            " of h_min, leakage, relative misalignment, contact impulse over time",
+            fontsize=9,
+            va="center",
+        )
+        grid = figure.add_gridspec(down, across, left=0.045, right=0.985, bottom=0.5 / height, top=1 - 1.05 / height,
+                                   wspace=0.24, hspace=0.5)  # fmt: skip
+        for k, path in enumerate(paths):
+            info = read_study(path)
+            ax = figure.add_subplot(grid[k // across, k % across])
+            answer = info["answer"]
+            title = f"{info['name'].replace('_', ' ')}, {answer['scene']['turns']:.4g} turns"
+            chart.precision(ax, answer, "over_time", "wall", labels=False, title=title)
+            winners = [f"{row['error']:.0e} {chart.SHORT[row['method']]}" for row in answer["fastest"] if row["method"]]
+            note = "fastest: " + ", ".join(winners) if winners else answer["fastest"][0].get("why", "")
+            ax.set_title(f"{title}\n", loc="left")
+            ax.text(0, 1.025, shortened(note, 62), transform=ax.transAxes, fontsize=8)
+            if k % across:
+                ax.set_ylabel("")
+        key = figure.add_subplot(grid[len(paths) // across, len(paths) % across])
+        key.axis("off")
+        for name, (colour, line, marker) in chart.LOOKS.items():
+            key.plot([], [], line, color=colour, marker=marker, ms=5, label=chart.SHORT[name])
+        key.plot([], [], "kx", ms=7, mew=1.6, ls="none", label="did not end well, or too slow")
+        key.legend(loc="center left", ncols=2, fontsize=9)
+        return save(figure, out)
+
+
+def main():
+    given = [word for word in sys.argv[1:] if not word.startswith("--")]
+    out = given[0] if given else ROOT / "outputs" / "gallery" / "work_precision_all.png"
+    print(draw(archives("--fresh" in sys.argv), out))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""Judged methods keep their order, and the judge is what it says: against exact solutions written out here."""
+
+import math
+
+import numpy as np
+import pytest
+from scenes import fmr, free_ring, prepared, ring
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+
+from sealdyn.collocation import GAUSS, RADAU, collocation, rule
+from sealdyn.methods import Counts, SolverFailure
+from sealdyn.methods_judged import JUDGED
+from sealdyn.ring import Rotor
+
+FIXED = ("newmark", "midpoint", "generalised_alpha")
+
+
+def integrated(problem, steps, method, tolerance):
+    """Unknowns at the end, and what it took."""
+    counts, y = Counts(), problem.y0.copy()
+    leg = problem.begin(0)
+    for _, ys, _ in steps(problem, leg, 0.0, y, method, tolerance, counts):
+        y = ys[-1]
+    return y, counts
+
+
+def free_ring_exact(duration):
+    """Free precession of a gyroscopic ring by its matrix exponential: I g'' - i J W g' + K g = 0, g complex."""
+    inertia, polar, stiffness, speed = 8e-4, 1.6e-3, 0.5 * 5e5 * 0.04**2, 1000.0
+    matrix = np.array([[0, 1], [-stiffness / inertia, 1j * polar * speed / inertia]])
+    g, rate = expm(matrix * duration) @ np.array([20e-6, 1j * 5e-3])
+    return np.array([g.real, g.imag]), np.array([rate.real, rate.imag])
+
+
+@pytest.mark.parametrize("method", FIXED)
+def test_fixed_steps_are_of_second_order(method):
+    duration = 0.004
+    exact, _ = free_ring_exact(duration)
+    found = []
+    for tolerance in (1e-3, 2.5e-4, 6.25e-5):
+        problem = prepared(free_ring(), duration, 1e-9)
+        y, _ = integrated(problem, JUDGED[method], method, tolerance)
+        at = problem.names.index("rotor_tilt_x")
+        found.append(np.max(np.abs(y[at : at + 2] - exact)) / 20e-6)
+    orders = np.log2(np.array(found[:-1]) / np.array(found[1:]))
+    assert orders == pytest.approx([2.0, 2.0], abs=0.1), (found, orders)
+    assert found[-1] > 1e-7
+
+
+@pytest.mark.parametrize("method", FIXED)
+def test_fixed_steps_are_of_second_order_on_a_damped_forced_scene(method):
+    """Reference seal with a linear film, from rest, against the package's exact steps."""
+    duration = 2 * math.pi / 1000.0
+    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), JUDGED["expm"], "expm", 1e-9)
+    found = []
+    for tolerance in (1e-3, 2.5e-4, 6.25e-5):
+        problem = prepared(fmr("linear"), duration, 1e-9)
+        y, _ = integrated(problem, JUDGED[method], method, tolerance)
+        found.append(np.max(np.abs(y - exact)[: problem.n_mechanical] / problem.scales[: problem.n_mechanical]))
+    assert np.log2(np.array(found[:-1]) / np.array(found[1:])) == pytest.approx([2.0, 2.0], abs=0.15), found
+
+
+def test_newmark_and_midpoint_keep_the_energy_and_generalised_alpha_does_not():
+    """Free precession for thirty turns: quadratic invariants stay to rounding, numerical damping shows."""
+    duration = 30 * 2 * math.pi / 1000.0
+    drift = {}
+    for method in FIXED:
+        problem = prepared(free_ring(), duration, 1e-9)
+        y, _ = integrated(problem, JUDGED[method], method, 1e-2)
+        energy = [float(problem.energies(np.zeros(1), state[None, :])[0]) for state in (problem.y0, y)]
+        drift[method] = energy[1] / energy[0] - 1
+    assert abs(drift["newmark"]) < 1e-9 and abs(drift["midpoint"]) < 1e-9
+    assert drift["generalised_alpha"] < -1e-3
+
+
+@pytest.mark.parametrize("nodes, stages, order", [("gauss", GAUSS, 2 * GAUSS), ("radau", RADAU, 2 * RADAU - 1)])
+def test_the_judge_has_its_order(nodes, stages, order):
+    """Quadrature of powers by hand; the stage matrix integrates polynomials of the stages' degree."""
+    c, a, b, _ = rule(stages, nodes == "radau")
+    powers = np.arange(order + 1)
+    wrong = [abs(float(b @ c**p) - 1 / (p + 1)) for p in powers]
+    assert max(wrong[:order]) < 1e-15 and wrong[order] > 1e-9
+    for p in range(stages):
+        assert a @ c**p == pytest.approx(c ** (p + 1) / (p + 1), abs=1e-14)
+    assert (c[-1] == 1.0) == (nodes == "radau")
+
+
+@pytest.mark.parametrize("nodes", ["gauss", "radau_nodes"])
+def test_the_judge_is_exact_to_rounding(nodes):
+    duration = 10 * 2 * math.pi / 1000.0
+    exact, rate = free_ring_exact(duration)
+    problem = prepared(free_ring(), duration, 1e-9)
+    y, _ = integrated(problem, collocation, nodes, 1e-11)
+    at = problem.names.index("rotor_tilt_x")
+    assert np.max(np.abs(y[at : at + 2] - exact)) / 20e-6 < 3e-12
+    assert np.max(np.abs(y[problem.rate_places[at : at + 2]] - rate)) / 5e-3 < 3e-11
+
+
+def test_the_judge_agrees_with_scipy_on_the_nonlinear_film():
+    problem = prepared(fmr(), 0.005, 1e-11)
+    y, _ = integrated(problem, collocation, "gauss", 1e-11)
+
+    def rhs(t, state):
+        out = np.empty(problem.size)
+        problem.rhs(t, state, out)
+        return out
+
+    atol = 1e-14 * problem.scales
+    found = solve_ivp(rhs, (0.0, 0.005), problem.y0, "DOP853", rtol=2.3e-14, atol=atol).y[:, -1]
+    m = problem.n_mechanical
+    assert np.max(np.abs(y - found)[:m] / problem.scales[:m]) < 1e-12
+
+
+@pytest.mark.parametrize("method", ["bdf2", "rk45", "lsoda"])
+def test_library_methods_follow_their_tolerance(method):
+    duration = 0.01
+    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), JUDGED["expm"], "expm", 1e-9)
+    found, calls = [], []
+    for tolerance in (1e-3, 1e-6):
+        problem = prepared(fmr("linear"), duration, 1e-9)
+        y, counts = integrated(problem, JUDGED[method], method, tolerance)
+        m = problem.n_mechanical
+        found.append(np.max(np.abs(y - exact)[:m] / problem.scales[:m]))
+        calls.append(counts.rhs)
+    assert found[1] < 0.03 * found[0] and found[1] < 1e-4
+    assert calls[1] > 1.5 * calls[0]
+
+
+def test_a_massless_ring_is_refused_with_the_reason():
+    scene = fmr(rotor=Rotor(**ring(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0, misalignment=25e-6)))
+    problem = prepared(scene, 0.01, 1e-6)
+    for method in ("adams", "newmark", "lsoda", "bdf2"):
+        with pytest.raises(SolverFailure, match="massless"):
+            integrated(problem, JUDGED[method], method, 1e-4)

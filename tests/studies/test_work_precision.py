@@ -1,0 +1,163 @@
+"""Work and precision: the errors it reports are those of an independent integration; crosses carry reasons."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from sealdyn import model_rungs, observables
+from sealdyn.archive import read_study
+from sealdyn.charts import study_work_precision as chart
+from sealdyn.films import Coefficients
+from sealdyn.gap import h_min as thinnest
+from sealdyn.investigate import investigate
+from sealdyn.methods_judged import JUDGED
+from sealdyn.scenario import parse_scenario
+from sealdyn.studies import work_precision as study
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 5}
+
+
+def scenario(name, *overrides):
+    return parse_scenario((SCENARIOS / f"{name}.toml").read_text(), name, list(overrides))
+
+
+def studied(tmp_path, name, *overrides, **flags):
+    return investigate("work-precision", scenario(name, *overrides), tmp_path / "w.h5", flags={**FEW, **flags})
+
+
+@pytest.fixture(scope="module")
+def reference_seal(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("work")
+    answer = studied(folder, "fmr_reference", "run.turns=4", slowest=1e9, methods=["adams", "dop853", "newmark"])
+    return answer, folder / "w.h5"
+
+
+def test_errors_are_those_of_an_independent_integration(reference_seal):
+    """h_min and tilt at the end by SciPy's Radau alone, against one judged run stepped here."""
+    answer, _ = reference_seal
+    problem = study.ready(scenario("fmr_reference", "run.turns=4"))
+    problem.begin(0)
+
+    def rhs(t, y):
+        out = np.empty(problem.size)
+        problem.rhs(t, y, out)
+        return out
+
+    def looked_at(y):
+        g = [0.0, 0.0]
+        turn = 1000.0 * problem.duration
+        # Rotor's tilt against the stator's fixed one, all in inertial axes.
+        at = problem.names.index("rotor_tilt_x")
+        g[0], g[1] = 25e-6 - y[at], -y[at + 1]
+        assert turn == pytest.approx(8 * math.pi)
+        return math.hypot(*g), thinnest(problem.face, -y[problem.names.index("rotor_z")], *g)[0]
+
+    atol = 1e-13 * problem.scales
+    atol[-1] = 1e30
+    exact = solve_ivp(rhs, (0, problem.duration), problem.y0, "Radau", rtol=3e-14, atol=atol).y[:, -1]
+    tolerance = answer["methods"]["adams"]["tolerance"][0]
+    from sealdyn.methods import Counts
+
+    y = problem.y0.copy()
+    for _, ys, _ in JUDGED["adams"](problem, problem.begin(0), 0.0, y, "adams", tolerance, Counts()):
+        y = ys[-1]
+    (tilt, film), (tilt_exact, film_exact) = looked_at(y), looked_at(exact)
+    found = answer["methods"]["adams"]["observables"]["end"]
+    assert found["relative_misalignment"][0] == pytest.approx(abs(tilt - tilt_exact) / (1e-5 / 0.04), rel=1e-4)
+    assert found["h_min"][0] == pytest.approx(abs(film - film_exact) / 1e-5, rel=1e-4)
+
+
+def test_the_study_reports_what_it_must(reference_seal):
+    answer, path = reference_seal
+    assert list(answer["methods"]) == ["adams", "dop853", "newmark"]
+    assert answer["judge_error"]["end"] < 1e-12 and answer["judge_error"]["over_time"] < 1e-11
+    assert answer["judges"]["exact"] != answer["judges"]["second"]
+    for name, row in answer["methods"].items():
+        assert row["rhs"][0] < row["rhs"][-1], name
+        assert row["status"] == ["ok"] * 3, name
+        assert row["error"]["over_time"][0] > 10 * row["error"]["over_time"][-1], name
+        worst = max(found[1] for found in row["observables"]["over_time"].values())
+        assert row["error"]["over_time"][1] == worst
+    # Second order: a hundredth of the squared step, a hundredth of the error.
+    newmark = answer["methods"]["newmark"]["error"]["over_time"]
+    assert newmark[0] / newmark[1] == pytest.approx(100, rel=0.2)
+    assert answer["machine"]["cores"] >= 1 and answer["machine"]["scipy"]
+    assert [row["error"] for row in answer["fastest"]] == [1e-3, 1e-6, 1e-9]
+    assert answer["fastest"][0]["method"] and answer["fastest"][2]["method"] is None
+    stored = read_study(path)["answer"]
+    assert stored["methods"] == json.loads(json.dumps(answer["methods"]))
+    chart.draw(path, path.with_suffix(".png"))
+    assert path.with_suffix(".png").stat().st_size > 20_000
+
+
+def test_models_against_the_radial_film(reference_seal):
+    """Green's coefficients are some per cent off, the radial film's own are second order in the tilt."""
+    answer, _ = reference_seal
+    rows = {row["label"]: row for row in answer["models"]}
+    green, borrowed, radial = (
+        rows[label]["error"]["over_time"]
+        for label in ("linear film, Green's coefficients", "linear film, radial film's coefficients", "radial film")
+    )
+    assert green > 2 * borrowed > 50 * radial
+    # Not at rest yet after four turns: the harmonic balance is as wrong as the transient that is left, or less.
+    balance = [row for label, row in rows.items() if label.startswith("harmonic balance, radial")]
+    assert balance and balance[0]["error"]["steady"] < 1e-2 and balance[0]["wall"] < 0.05
+
+
+def test_harmonic_balance_is_the_linear_film_in_time():
+    problem = study.ready(scenario("fms_reference", 'film.model="linear"', 'run.start="steady"', "run.turns=3"))
+    problem.windows[1] = [problem.duration * 2 / 3, problem.duration]
+    found = observables.observe(problem, JUDGED["expm"], "expm", 1e-9, samples=30)
+    balance = model_rungs.harmonic_balance(problem, 0)
+    assert balance["relative_misalignment"] == pytest.approx(found.steady["relative_misalignment"], rel=1e-5)
+    assert balance["h_min"] == pytest.approx(found.steady["h_min"][0], rel=1e-8)
+
+
+def test_a_given_linear_film_has_no_rung_above_it():
+    ladder = model_rungs.rungs(scenario("free_precession"))
+    assert isinstance(scenario("free_precession").scene.film.coefficients, Coefficients) and len(ladder) == 1
+    assert [label for label, _ in model_rungs.rungs(scenario("fmr_reference"))][-1] != ladder[0][0]
+
+
+def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
+    """A massless ring has no rates; only IDA ends.  Its judge runs on consistent derivatives."""
+    answer = studied(tmp_path, "massless_ring", "run.turns=1", methods=["adams", "ida", "midpoint"], models=False)
+    assert set(answer["methods"]["adams"]["status"]) == {"failed"}
+    assert "massless" in answer["methods"]["midpoint"]["reason"][0]
+    assert answer["methods"]["ida"]["status"] == ["ok"] * 3
+    assert answer["methods"]["ida"]["error"]["end"][-1] < 1e-5
+    assert answer["judge_error"]["over_time"] < 1e-10
+    assert any(line.startswith("crosses (gave up: CVODE Adams") for line in answer["verdict"])
+
+
+def test_a_run_that_takes_too_long_is_stopped(tmp_path):
+    answer = studied(tmp_path, "fmr_reference", "run.turns=4", methods=["dop853"], longest=0.004, models=False)
+    row = answer["methods"]["dop853"]
+    assert row["status"][-1] == "stopped" and "stopped after" in row["reason"][-1]
+    assert row["error"]["end"][-1] is None
+
+
+def test_a_hundred_times_slower_is_a_cross():
+    fast = {"error": {"end": [1e-3, 1e-6]}, "wall": [0.01, 0.02], "status": ["ok", "ok"], "reason": ["", ""]}
+    slow = {"error": {"end": [1e-3, 1e-5]}, "wall": [0.9, 3.0], "status": ["ok", "ok"], "reason": ["", ""]}
+    study.cross_the_slow({"a": fast, "b": slow}, "end", 100.0)
+    assert slow["status"] == ["ok", "slow"] and "150 times" in slow["reason"][1]
+    assert fast["status"] == ["ok", "ok"]
+
+
+def test_time_at_an_error_between_runs():
+    """A line of logarithms; what is both slower and less exact does not count; nothing is extrapolated."""
+    points = [(1e-2, 1.0), (1e-4, 10.0), (1e-3, 50.0), (1e-6, 1000.0)]
+    assert study.time_at(points, 1e-3) == pytest.approx(math.sqrt(10))
+    assert study.time_at(points, 1e-5) == pytest.approx(100.0)
+    assert study.time_at(points, 1e-1) == pytest.approx(1.0)
+    assert study.time_at(points, 1e-7) is None
+
+
+def test_tolerances_are_even_in_the_exponent():
+    assert study.tolerances(study.Settings()) == pytest.approx(10.0 ** -np.arange(2, 12), rel=1e-3)
