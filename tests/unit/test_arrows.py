@@ -43,6 +43,10 @@ ALLOWED = {
     "observables": {"audit", "methods", "recorder", "signals", "solve", "watch"},
     "model_rungs": {"collocation", "faces", "films", "methods", "modes", "observables", "scenario", "simulate"},
     "who_is_fastest": set(),
+    "exhibits": PHYSICS
+    | DOORS
+    | {"methods", "methods_judged", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate", "solve"}
+    | {"validation", "whirl"},
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
     "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
@@ -72,20 +76,8 @@ ALLOWED = {
     | DOORS
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
     | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
-    | {
-        "attractor",
-        "continuation",
-        "faces",
-        "invariants",
-        "collocation",
-        "methods_judged",
-        "model_rungs",
-        "observables",
-        "who_is_fastest",
-        "ludwig",
-        "ludwig_released",
-        "lyapunov",
-    },
+    | {"attractor", "collocation", "continuation", "exhibits", "faces", "invariants", "ludwig", "ludwig_released"}
+    | {"lyapunov", "methods_judged", "model_rungs", "observables", "who_is_fastest"},
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
     "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},
@@ -93,8 +85,8 @@ ALLOWED = {
     "cli": None,
     "__init__": None,
 }
-ONLY_IN = {"sksundae": {"methods", "methods_judged"}, "h5py": {"archive"}, "tomllib": {"scenario"}, "pint": {"unit_names"},
-           "matplotlib": {"charts"}, "typer": {"cli"}, "rich": {"cli"}}  # fmt: skip
+ONLY_IN = {"sksundae": {"methods", "methods_judged", "exhibits"}, "h5py": {"archive"}, "tomllib": {"scenario"},
+           "pint": {"unit_names"}, "matplotlib": {"charts"}, "typer": {"cli"}, "rich": {"cli"}}  # fmt: skip
 
 
 def room(path: Path) -> str:

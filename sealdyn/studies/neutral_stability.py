@@ -1,0 +1,228 @@
+"""Neutral stability: what each method adds to or takes from a motion that must neither grow nor decay, and its price.
+
+At the exact stability threshold (eigenvalues, linear film) the growth a method shows is its own: numerical damping.
+A ring that precesses freely without damping keeps its energy and angular momentum: drift.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..exhibits import neutral_stability as exhibit
+from ..films import Coefficients
+from ..imposed import ROTOR, STATOR
+from ..methods import Counts, SolverFailure, attainable, tolerance_for
+from ..methods_judged import JUDGED
+from ..problem import Problem
+from ..scenario import parse_scenario
+from ..scene import Closing, ImpossibleScene
+from ..whirl import free_problem, growth_rate, undisturbed
+
+METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
+DEFAULT = "adams"
+# What the critical-speed study does at the edges of its bracket, and how far below it the method must stay.
+EDGE, STUDY_TURNS, STUDY_ACCURACY, MARGIN = 2e-5, 200, 1e-7, 100.0
+MOST_CALLS = 600_000
+NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
+units = {"resolved/rate": "1/s", "resolved/uncertainty": "1/s", "resolved/numerical_damping": "1/s"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`turns` of the neutral whirl and of the precession for every method; `accuracies` asked of each; `long`: turns
+    that the default method precesses (0: not at all)."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    turns: int = 60
+    accuracies: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+    long: int = 10_000
+
+
+def run(scenario, settings, tools) -> dict:
+    """Numerical damping and drift of every method, and whether the default one is fine enough."""
+    linear = replace(scenario.scene, film=replace(scenario.scene.film, model="linear"))
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    speed, why = None, ""
+    try:
+        speed = exhibit.threshold(linear)
+        why = "" if speed else "no critical speed: nothing is neutral to be kept"
+    except (ImpossibleScene, ValueError, np.linalg.LinAlgError) as error:
+        why = str(error)
+    if speed and free_problem(linear, speed).massless:
+        speed, why = None, "a ring without inertia: most methods have no rates to integrate"
+    damping, resolved = [], None
+    if speed:
+        points = [{**base, "speed": speed, "turns": settings.turns, "method": m, "accuracy": a}
+                  for m in METHODS for a in settings.accuracies]  # fmt: skip
+        damping = joined(points, tools.map(damped, points, "damping"))
+        (resolved,) = tools.map(resolution, [{**base, "speed": speed}], "resolution")
+    drift, drift_why = [], ""
+    try:
+        free_ring(scenario.scene)
+        points = [{**base, "turns": settings.turns, "method": m, "accuracy": a}
+                  for m in METHODS for a in settings.accuracies]  # fmt: skip
+        if settings.long:
+            points.append({**base, "turns": settings.long, "method": DEFAULT, "accuracy": 1e-6})
+        drift = joined(points, tools.map(drifted, points, "drift"))
+        if all("failed" in row for row in drift):
+            drift, drift_why = [], drift[0]["failed"]
+    except ImpossibleScene as error:
+        drift_why = str(error)
+    answer = {"critical_speed": speed, "reason": why, "damping": damping, "resolved": resolved, "drift": drift,
+              "drift_reason": drift_why, "turns": settings.turns}  # fmt: skip
+    return {**answer, "verdict": sentences(answer)}
+
+
+def joined(points, rows) -> list[dict]:
+    keys = ("method", "accuracy", "turns")
+    return [{**{k: point[k] for k in keys}, **row} for point, row in zip(points, rows, strict=True)]
+
+
+def tolerance(method, accuracy, memory) -> float:
+    """Solver tolerance a method is held at; RK45, never chosen, at that of DOP853."""
+    return tolerance_for("dop853" if method == "rk45" else method, accuracy, memory)
+
+
+def scene_of(point):
+    """The point's scene, and the same with a linear film."""
+    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
+    return scene, replace(scene, film=replace(scene.film, model="linear"))
+
+
+# --- at the threshold ------------------------------------------------------------------------------------
+
+
+def damped(point: dict) -> dict:
+    """Growth per turn that a method gives the neutral whirl, and right-hand sides per turn."""
+    speed, turns, method = point["speed"], point["turns"], point["method"]
+    problem, whirling = exhibit.neutral_problem(scene_of(point)[1], speed, turns)
+    held = tolerance(method, point["accuracy"], problem.memory)
+    try:
+        rate, calls = exhibit.growth(problem, whirling, method, held, MOST_CALLS)
+    except (SolverFailure, TimeoutError) as failure:
+        return {"growth": None, "cost": None, "reason": str(failure), "tolerance": held}
+    return {"growth": rate * 2 * math.pi / speed, "cost": calls / turns, "reason": None, "tolerance": held}
+
+
+def resolution(point: dict) -> dict:
+    """What the critical-speed study resolves at the edge of its bracket, and the default method's own growth at the
+    threshold under the same accuracy and turns (1/s)."""
+    speed, (_, linear) = point["speed"], scene_of(point)
+    found = growth_rate(linear, speed * (1 + EDGE), STUDY_TURNS, DEFAULT, STUDY_ACCURACY)
+    problem, whirling = exhibit.neutral_problem(linear, speed, STUDY_TURNS, found["accuracy"])
+    own, _ = exhibit.growth(problem, whirling, DEFAULT, tolerance(DEFAULT, found["accuracy"], problem.memory))
+    return {"rate": abs(found["rate"]), "uncertainty": found["uncertainty"], "numerical_damping": abs(own),
+            "accuracy": found["accuracy"], "method": DEFAULT, "turns": STUDY_TURNS, "decided": found["decided"],
+            "ratio": abs(found["rate"]) / max(abs(own), 1e-300)}  # fmt: skip
+
+
+# --- free precession -------------------------------------------------------------------------------------
+
+
+def free_ring(scene):
+    """The scene's first floating ring with inertia on undamped springs, the film off; and which ring that is.
+    Raises ImpossibleScene if there is none."""
+    name = next((n for n, ring in (("rotor", scene.rotor), ("stator", scene.stator))
+                 if ring.support and ring.transverse_inertia > 0), None)  # fmt: skip
+    if name is None:
+        raise ImpossibleScene("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
+    speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
+    still = undisturbed(scene, float(speed))
+    ring = getattr(still, name)
+    support = replace(ring.support, axial_damping=0.0, tilt_damping=None if ring.support.radius is not None else 0.0)
+    if support.tilt()[0] <= 0.0 or speed == 0.0:
+        raise ImpossibleScene(f"{name}.support", "no tilt stiffness, or a shaft at rest", "a ring that can precess")
+    other = "stator" if name == "rotor" else "rotor"
+    # The film does nothing, so any clearance will do; a linear motion does not know its size.
+    film = replace(still.film, model="linear", coefficients=NOTHING, cavitation_pressure=None,
+                   clearance=still.film.clearance or 1e-5)  # fmt: skip
+    parts = {name: replace(ring, support=support, secondary_seal=None),
+             other: replace(getattr(still, other), support=None, secondary_seal=None)}  # fmt: skip
+    return replace(still, film=film, closing=Closing(), contact=None, **parts), name
+
+
+def drifted(point: dict) -> dict:
+    """Drift per turn of energy and angular momentum, relative, over the point's turns, and right-hand sides per turn.
+
+    The ring carries a forward and a backward circle of 0.15 and 0.05 of the clearance at the outer radius.
+    """
+    scene, name = free_ring(scene_of(point)[0])
+    turn = 2 * math.pi / abs(scene.shaft.speed)
+    problem = Problem(scene, point["turns"] * turn, point["accuracy"])
+    ring, side = getattr(scene, name), ROTOR if name == "rotor" else STATOR
+    spin = scene.shaft.speed if side == ROTOR else (scene.stator.speed or 0.0)
+    inertia, gyro, stiffness = ring.transverse_inertia, ring.polar_inertia * spin, ring.support.tilt()[0]
+    roots = np.roots([-inertia, gyro, stiffness])
+    x = problem.names.index(f"{name}_tilt_x")
+    rate_x = problem.rate_places[x]
+    forward, backward, size = max(roots.real), min(roots.real), 0.1 * problem.clearance / problem.face[1]
+    problem.y0[x], problem.y0[rate_x + 1] = 2 * size, size * (1.5 * forward + 0.5 * backward)
+
+    def invariants(y):
+        g, v = y[:, x] + 1j * y[:, x + 1], y[:, rate_x] + 1j * y[:, rate_x + 1]
+        energy = 0.5 * inertia * np.abs(v) ** 2 + 0.5 * stiffness * np.abs(g) ** 2
+        return energy, inertia * (np.conj(g) * v).imag - 0.5 * gyro * np.abs(g) ** 2
+
+    (start,), (turning,) = invariants(problem.y0[None, :])
+    scale = abs(turning)
+    counts, method = Counts(), point["method"]
+    held = tolerance(method, point["accuracy"], problem.memory)
+    best = attainable("dop853" if method == "rk45" else method, problem.memory)
+    nothing = {"energy": None, "momentum": None, "cost": None, "tolerance": held, "attainable": best}
+    try:
+        tau, y = 0.0, problem.y0
+        for k in range(len(problem.legs)):
+            for _, ys, _ in JUDGED[method](problem, problem.begin(k), tau, y, method, held, counts):
+                y = ys[-1]
+                if counts.rhs > MOST_CALLS and point["turns"] < 1000:
+                    return {**nothing, "reason": f"more than {MOST_CALLS} right-hand sides"}
+    except SolverFailure as failure:
+        return {**nothing, "reason": str(failure)}
+    (end,), (last,) = invariants(y[None, :])
+    turns = point["turns"]
+    return {**nothing, "energy": float(end / start - 1) / turns, "momentum": float(last - turning) / scale / turns,
+            "cost": counts.rhs / turns, "reason": None}  # fmt: skip
+
+
+# --- in words ---------------------------------------------------------------------------------------------
+
+
+def sentences(answer) -> list[str]:
+    """The verdict."""
+    lines = []
+    if not answer["critical_speed"]:
+        lines.append(f"no numerical damping measured: {answer['reason']}")
+    else:
+        lines += [damping_sentence(answer), resolved_sentence(answer["resolved"])]
+    if answer["drift_reason"]:
+        return [*lines, f"no free precession: {answer['drift_reason']}"]
+    rows = [row for row in answer["drift"] if row.get("energy") is not None]
+    for row in rows:
+        if row["turns"] != answer["turns"]:
+            lines.append(
+                f"free precession by {row['method']} over {row['turns']} turns at accuracy {row['accuracy']:.0e}: "
+                f"energy drifts by {row['energy']:+.1e}, angular momentum by {row['momentum']:+.1e} a turn"
+            )
+    at = [row for row in rows if row["accuracy"] == 1e-6 and row["turns"] == answer["turns"]]
+    told = ", ".join(f"{row['method']} {row['energy']:+.1e}" for row in at)
+    return [*lines, f"energy drift a turn at accuracy 1e-6: {told}"] if told else lines
+
+
+def damping_sentence(answer) -> str:
+    rows = [row for row in answer["damping"] if row.get("growth") is not None and row["accuracy"] == 1e-6]
+    told = ", ".join(f"{r['method']} {r['growth']:+.1e} ({r['cost']:.0f} right-hand sides)" for r in rows)
+    speed = answer["critical_speed"]
+    return f"at the threshold, {speed:.5g} rad/s, growth per turn that is the method's own at accuracy 1e-6: {told}"
+
+
+def resolved_sentence(found) -> str:
+    if "failed" in found:
+        return f"what the critical-speed study resolves could not be measured: {found['failed']}"
+    verb = "stays" if found["ratio"] >= MARGIN else "does not stay"
+    return (
+        f"the default method's numerical damping {verb} {MARGIN:.0f} times below what the critical-speed study "
+        f"resolves: {found['numerical_damping']:.1e} against {found['rate']:.2g} 1/s at the edge of its bracket, "
+        f"{found['ratio']:.2g} times (accuracy {found['accuracy']:.1e}, {found['turns']} turns)"
+    )

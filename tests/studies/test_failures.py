@@ -1,0 +1,159 @@
+"""Every exhibit fails where it says and survives where it says; the gallery's page and the sampling warning."""
+
+import importlib
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sealdyn
+from sealdyn.archive import read_study
+from sealdyn.charts import study_failures
+from sealdyn.investigate import investigate
+from sealdyn.scenario_errors import ScenarioError
+from sealdyn.studies.failures import exhibit_names
+
+SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
+KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}
+
+# Title: least that the failing method must be off (None: it must give no answer), most that the survivor may be.
+# Measured at the end of each line.
+BOUNDS = {
+    "neutral_stability": {"Neutral stability: BDF": (1e-5, 1e-13),  # 4.9e-4, 5e-16
+                          "Neutral stability: Adams": (1e-6, 1e-13)},  # 1e-4, 5e-16
+    "stiff_squeeze": {"Stiff squeeze film": (1e8, 5e3)},  # 1.8e10, 380
+    "touch_between_steps": {"Touch between steps": (60, 0)},  # 249, none
+    "coulomb_friction": {"Coulomb friction": (1e-4, 1e-6)},  # 4e-3, 1e-8
+    "degenerate_geometry": {"Flat faces": (1e-3, 1e-12),  # 1.6, 2e-15
+                            "Zero tilt passed": (1e-4, 1e-9),  # 6e-3, 3e-11
+                            "Start at zero tilt": (None, 1e-8)},  # 0/0, 6e-12
+    "vanishing_inertia": {"Vanishing inertia": (1500, 600),  # 9800, 130
+                          "No inertia": (1e-2, 1e-5)},  # 0.1, 2e-8
+    "inconsistent_start": {"Start inside the other face": (1.0, 0),  # 2 um, refused
+                           "Loads without an equilibrium": (0.1, 0),  # 0.38, refused
+                           "Rates at the start of a DAE": (1e-4, 1e-12)},
+    "fronts": {"Cavitation front": (1e-6, 1e-9)},  # 4e-5, 1e-13
+    "chaos": {"Chaos": (1.0, 0.5)},  # 2.9, 0.06
+    "long_runs": {"Phase after 1e6 turns": (1e-10, 3e-12),  # 8e-10, 1.7e-12
+                  "Angle added step by step": (1e-5, 3e-12),  # 1.8e-4
+                  "5.4 kHz on a 16 Hz shaft": (1000.0, 1.0)},  # 5184 Hz, 0
+    "several_answers": {"Several clearances": (0.5, 1e-9)},  # 8.5, 1e-12
+    "linear_theory": {"Linear theory at large tilt": (0.05, 1e-6)},  # 0.13, 8e-11
+}  # fmt: skip
+LONG = {"chaos"}
+NOT_YET = {"inconsistent_start": 1, "fronts": 1, "several_answers": 2}
+
+
+def exhibits():
+    return [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in BOUNDS]
+
+
+def test_all_twelve_places_have_an_exhibit():
+    names = exhibit_names()
+    assert set(names) == set(BOUNDS) and sorted(set(names.values())) == list(range(1, 13))
+
+
+@pytest.mark.parametrize("name", exhibits())
+def test_the_failure_is_there_and_the_survivor_holds(name):
+    rows = importlib.import_module(f"sealdyn.exhibits.{name}").show()
+    assert sum("absent" in row for row in rows) == NOT_YET.get(name, 0)
+    shown = {row["title"]: row for row in rows if "absent" not in row}
+    assert set(shown) == set(BOUNDS[name])
+    for title, (least, most) in BOUNDS[name].items():
+        row = shown[title]
+        assert set(row) == KEYS and row["default"] and row["unit"]
+        if least is None:
+            assert row["failing_error"] is None
+        else:
+            assert np.isfinite(row["failing_error"]) and row["failing_error"] > least
+        assert row["survivor_error"] <= most
+    json.dumps(rows, allow_nan=False)
+
+
+def test_the_gallery_is_drawn_with_its_crosses_and_what_is_missing(tmp_path):
+    out = tmp_path / "failures.h5"
+    answer = investigate("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": [3, 5, 8]}, workers=1)
+    assert answer["status"] == "ok" and answer["items"] == [3, 5, 8]
+    assert answer["scenario"]["method"] == "adams"
+    assert any("not there yet" in line for line in answer["verdict"])
+    assert any("no answer" in line for line in answer["verdict"])
+    assert read_study(out)["answer"]["rows"] == answer["rows"]
+    assert study_failures.draw(out, tmp_path / "failures.png").stat().st_size > 10_000
+
+
+def test_an_exhibit_that_breaks_is_a_row_with_its_reason(tmp_path, monkeypatch):
+    from sealdyn.exhibits import touch_between_steps
+
+    def broken():
+        raise ValueError("broken on purpose")
+
+    monkeypatch.setattr(touch_between_steps, "show", broken)
+    out = tmp_path / "failures.h5"
+    answer = investigate("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": 3}, workers=1)
+    assert answer["status"] == "failed" and "broken on purpose" in answer["rows"][0]["failed"]
+    study_failures.draw(out, tmp_path / "failures.png")
+
+
+def test_items_that_do_not_exist_are_refused(tmp_path):
+    with pytest.raises(ScenarioError, match="items"):
+        investigate("failures", sealdyn.read_scenario(SCENARIO), tmp_path / "x.h5", flags={"items": [13]}, workers=1)
+
+
+# --- sampling --------------------------------------------------------------------------------------------
+
+
+def edge_share(order, per_turn, turns=40):
+    """Share at the edge of the band of a unit circle with a hundredth of a response at one order."""
+    from sealdyn.charts.spectrum import at_the_edge, order_spectrum
+
+    at = np.arange(turns * per_turn) / per_turn
+    orders, amplitude, resolution, _ = order_spectrum(at, np.cos(2 * np.pi * at) + 0.1 * np.cos(2 * np.pi * order * at))
+    return at_the_edge(orders, amplitude, resolution)
+
+
+def test_a_response_at_the_edge_of_the_band_is_said_to_be_folded():
+    """A tenth of the amplitude, a hundredth of the power; at order 33 of 64 samples a turn it shows at 31."""
+    from sealdyn.charts.spectrum import FOLDED
+
+    for order in (30, 31, 33, 34):
+        assert edge_share(order, 64) == pytest.approx(0.01 / 1.01, rel=0.05)
+        assert edge_share(order, 64) > FOLDED
+        assert edge_share(order, 256) < 1e-6 < FOLDED
+    assert edge_share(3, 64) < 1e-6
+
+
+def drawn_texts(monkeypatch, order, samples):
+    """What the spectrum of a seal says whose tilt has a part at one order."""
+    from sealdyn.charts import spectrum
+
+    class Made:
+        turning, rows, turns = True, samples, np.arange(samples) / 64
+
+        def has(self, *names):
+            return True
+
+        def last(self, *_):
+            return 0
+
+        def values(self, name, first):
+            return np.full(samples, 1000.0)
+
+        def housing(self, kind):
+            return []
+
+    from sealdyn.charts.page import look, sheet
+
+    with look():
+        ax = sheet(8, 4).add_axes((0.1, 0.1, 0.8, 0.8))
+        turns = Made.turns
+        tilt = 1e-4 * (np.exp(2j * np.pi * turns) + 0.1 * np.exp(2j * np.pi * order * turns))
+        spectrum.show(ax, Made(), lambda first: tilt, "tilt", "urad", "k", None)
+        return [text.get_text() for text in ax.texts]
+
+
+# The second part is a tenth of the first; order 33.75 of 64 samples a turn shows at 30.25.
+@pytest.mark.parametrize("order, warns", [(30, True), (33.75, True), (3, False), (25.0, False)])
+def test_the_spectrum_says_so_in_the_figure(monkeypatch, order, warns):
+    texts = drawn_texts(monkeypatch, order, 64 * 20)
+    assert any("may be folded" in text for text in texts) == warns
