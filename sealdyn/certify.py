@@ -30,7 +30,7 @@ STRETCH, SHARPER, PER_PERIOD = 3.0, 30.0, 32
 SHOWN = 3.0
 OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau": "dop853", "expm": "dop853"}
 # Steps along which the model's defect is followed: per fastest period, and in all; points of a steady period.
-FOLLOWED, MOST, STEADY = 16, 600, 64
+FOLLOWED, MOST, STEADY = 16, 250, 32
 
 
 @dataclass(frozen=True)
