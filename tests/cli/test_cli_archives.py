@@ -94,6 +94,9 @@ def _within(tree, schema, root, where):
     if not isinstance(tree, dict):
         return
     options = schema.get("anyOf") or schema.get("oneOf") or [schema]
+    if any(option.get("additionalProperties") for option in options):
+        # [study.NAME]: each study knows its own settings.
+        return
     tables = [option for option in options if "$ref" in option or "properties" in option]
     assert tables, f"{where}: no table expected"
     if tables != [schema]:
