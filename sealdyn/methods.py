@@ -147,7 +147,8 @@ def _counting(counts):
     return check, allow
 
 
-def _cvode(problem, leg, tau, y, method, tolerance, counts):
+def cvode(problem, leg, tau, y, method, tolerance, counts, **options):
+    """Steps of CVODE, Adams if so called, else BDF; `options` of its own, such as `max_order`."""
     from sksundae.cvode import CVODE
 
     rhs, jacobian = problem.rhs, problem.jacobian
@@ -170,6 +171,7 @@ def _cvode(problem, leg, tau, y, method, tolerance, counts):
         jacfn=counted_jacobian,
         max_step=_longest(problem),
         max_num_steps=1_000_000,
+        **options,
     )
     yield from _in_chunks(solver, problem, leg, tau, y, None, method, counts, allow)
 
@@ -193,8 +195,12 @@ def _ida(problem, leg, tau, y, method, tolerance, counts):
 def _scipy(problem, leg, tau, y, method, tolerance, counts):
     from scipy.integrate import DOP853, Radau
 
-    # SciPy's own floor on rtol is 100 eps; the absolute part carries the accuracy below it.
-    absolute = _tolerances(problem, tolerance)
+    kind = DOP853 if method == "dop853" else Radau
+    yield from scipy_steps(kind, kind is Radau, problem, leg, tau, y, method, tolerance, counts)
+
+
+def scipy_steps(kind, implicit, problem, leg, tau, y, method, tolerance, counts):
+    """Steps of one of SciPy's solvers (the class `kind`); an `implicit` one is given the problem's Jacobian."""
     inner = problem.rhs
 
     def counted(t, y):
@@ -211,9 +217,10 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
         problem.jacobian(t, np.array(y), None, matrix)
         return matrix
 
-    kind, options = (DOP853, {}) if method == "dop853" else (Radau, {"jac": differences})
-    # DOP853's norm is an average: the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
-    solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=absolute,
+    options = {"jac": differences} if implicit else {}
+    # SciPy's own floor on rtol is 100 eps; the absolute part carries the accuracy below it.  Its norm is an average:
+    # the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
+    solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=_tolerances(problem, tolerance),
                   max_step=problem.longest_step(), **options)  # fmt: skip
     while solver.status == "running":
         # A trial stage may fly off and overflow; the error norm then refuses the step.
@@ -250,7 +257,7 @@ def _expm(problem, leg, tau, y, method, tolerance, counts):
         yield np.array([b]), y[None, :].copy(), None
 
 
-METHODS = {"adams": _cvode, "bdf": _cvode, "ida": _ida, "dop853": _scipy, "radau": _scipy, "expm": _expm}
+METHODS = {"adams": cvode, "bdf": cvode, "ida": _ida, "dop853": _scipy, "radau": _scipy, "expm": _expm}
 
 
 def _said(method, message, tau):

@@ -22,32 +22,8 @@ SLOW = 0.3
 
 def _bdf_of_order_two(problem, leg, tau, y, method, tolerance, counts):
     """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
-    from sksundae.cvode import CVODE
-
     _refuse_massless(problem, method)
-    check, allow = methods._counting(counts)
-    rhs, jacobian = problem.rhs, problem.jacobian
-
-    def counted(t, y, yp):
-        check()
-        rhs(t, y, yp)
-
-    def counted_jacobian(t, y, yp, jac):
-        counts.jacobians += 1
-        counts.rhs += problem.n_mechanical
-        jacobian(t, y, yp, jac)
-
-    solver = CVODE(
-        counted,
-        method="BDF",
-        max_order=2,
-        rtol=tolerance,
-        atol=methods._tolerances(problem, tolerance),
-        jacfn=counted_jacobian,
-        max_step=methods._longest(problem),
-        max_num_steps=1_000_000,
-    )
-    yield from methods._in_chunks(solver, problem, leg, tau, y, None, method, counts, allow)
+    yield from methods.cvode(problem, leg, tau, y, method, tolerance, counts, max_order=2)
 
 
 def _scipy(problem, leg, tau, y, method, tolerance, counts):
@@ -55,32 +31,16 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
     from scipy.integrate import LSODA, RK45
 
     _refuse_massless(problem, method)
-    inner = problem.rhs
-
-    def counted(t, y):
-        counts.rhs += 1
-        yp = np.empty_like(y)
-        inner(t, y, yp)
-        return yp
-
-    def differences(t, y):
-        matrix = np.zeros((problem.size, problem.size))
-        counts.jacobians += 1
-        counts.rhs += problem.n_mechanical
-        problem.jacobian(t, np.array(y), None, matrix)
-        return matrix
-
-    kind, options = (RK45, {}) if method == "rk45" else (LSODA, {"jac": differences})
-    solver = kind(counted, tau, y, leg.length, rtol=max(tolerance, 2.3e-14),
-                  atol=methods._tolerances(problem, tolerance), max_step=problem.longest_step(), **options)  # fmt: skip
-    while solver.status == "running":
-        # A trial stage may overflow; the error norm then refuses the step.  LSODA warns before it gives up.
-        with np.errstate(all="ignore"), warnings.catch_warnings():
+    kind = RK45 if method == "rk45" else LSODA
+    steps = methods.scipy_steps(kind, kind is LSODA, problem, leg, tau, y, method, tolerance, counts)
+    while True:
+        # LSODA warns before it gives up.
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            message = solver.step()
-        if solver.status == "failed":
-            raise SolverFailure(methods._said(method, message, solver.t))
-        yield np.array([solver.t]), solver.y[None, :].copy(), None
+            block = next(steps, None)
+        if block is None:
+            return
+        yield block
 
 
 # --- fixed steps ------------------------------------------------------------------------------------

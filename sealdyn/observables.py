@@ -6,21 +6,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .audit import Audit
 from .methods import Counts, SolverFailure
 from .recorder import Recorder
 from .signals import signals
-from .solve import _run_leg
+from .solve import solve
 from .watch import LEAST, MOST, H
 
 OBSERVABLES = ("h_min", "relative_misalignment", "leakage", "contact_impulse")
 WHERE = ("end", "over_time", "steady")
 # A leakage below this share of what the aligned film would pass is none.
 NOTHING = 1e-12
-
-
-class TakesTooLong(SolverFailure):
-    """A run is stopped because it has taken too long."""
 
 
 @dataclass
@@ -55,23 +50,28 @@ class Sampler(Recorder):
 
 
 class _Stopwatch:
-    """Time spent inside a method's own steps; ends a run that has spent too much."""
+    """A method's steps, with the time spent inside them; ends a run that has spent too much."""
 
-    def __init__(self, limit):
-        self.limit, self.spent, self.processor = limit, 0.0, 0.0
+    def __init__(self, steps, limit):
+        self.steps, self.limit = steps, limit
+        self.spent, self.processor, self.stopped = 0.0, 0.0, False
 
-    def timed(self, steps):
+    def __call__(self, *where):
+        steps = self.steps(*where)
         while True:
             begun, busy = clock.perf_counter(), clock.process_time()
             try:
                 block = next(steps, None)
+            except np.linalg.LinAlgError as error:
+                raise SolverFailure(str(error)) from error
             finally:
                 self.processor += clock.process_time() - busy
                 self.spent += clock.perf_counter() - begun
             if block is None:
                 return
             if self.spent > self.limit:
-                raise TakesTooLong(f"stopped after {self.spent:.3g} s")
+                self.stopped = True
+                raise SolverFailure(f"stopped after {self.spent:.3g} s")
             yield block
 
 
@@ -81,40 +81,19 @@ def observe(problem, steps, method: str, tolerance: float, limit: float = math.i
     `limit` (s) of integration; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
     """
-    counts, watch = Counts(), _Stopwatch(limit)
-    sink = Sampler(problem, problem.duration / samples)
-    status, reason, y = "ok", "", problem.y0.copy()
-
-    def method_over(leg, tau, y):
-        return watch.timed(steps(problem, leg, tau, y, method, tolerance, counts))
-
-    try:
-        with np.errstate(all="ignore"):
-            y, reason = _through_legs(problem, method_over, sink, counts)
-        status = "collapsed" if reason else "ok"
-    except TakesTooLong as stopped:
-        status, reason = "stopped", str(stopped)
-    except (SolverFailure, np.linalg.LinAlgError) as failure:
-        status, reason = "failed", str(failure)
-    if status == "ok" and not np.all(np.isfinite(y)):
+    watch, sink = _Stopwatch(steps, limit), Sampler(problem, problem.duration / samples)
+    with np.errstate(all="ignore"):
+        outcome = solve(problem, method, problem.accuracy, sink, steps=watch, tolerance=tolerance)
+    if outcome.status == "interrupted":
+        raise KeyboardInterrupt
+    status, reason = outcome.status, "" if outcome.status == "ok" else outcome.message
+    if watch.stopped:
+        status = "stopped"
+    elif status == "ok" and not np.all(np.isfinite(outcome.y)):
         status, reason = "failed", "overflowed"
-    found = _observed(problem, status, reason, watch.spent, counts, sink, y)
+    found = _observed(problem, status, reason, watch.spent, outcome.counts, sink, outcome.y)
     found.processor = watch.processor
     return found
-
-
-def _through_legs(problem, method_over, sink, counts):
-    """All legs, with every change of the equations; the unknowns at the end and the sentence of a collapse or ""."""
-    audit, y = Audit(problem), problem.y0.copy()
-    for index in range(len(problem.legs)):
-        leg, tau = problem.begin(index), 0.0
-        if problem.sticking and index == 0:
-            problem.sticking.start(tau, y)
-        while tau < leg.length:
-            tau, y, collapse = _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts)
-            if collapse:
-                return y, collapse
-    return y, ""
 
 
 def _observed(problem, status, reason, wall, counts, sink, y) -> Observed:

@@ -38,21 +38,27 @@ class Outcome:
     energy_residual: float = 0.0
 
 
-def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=None) -> Outcome:
+def solve(
+    problem, method: str, accuracy: float, sink, *, audit=None, resume=None, steps=None, tolerance=None
+) -> Outcome:
     """Integrate a problem leg by leg, chunk by chunk, into a sink.
 
     `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an Audit to go on with;
-    `resume` = (leg, tau, y) continues.
+    `resume` = (leg, tau, y) continues.  Another method comes as `steps`, a generator with the contract of methods.py,
+    called `method`, with its own `tolerance`.
     The sink offers `due(leg_index) -> leg times of output`, `take(leg_index, times, q, q_rate)`,
     `state(leg_index, tau, y)`, `event(leg_index, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
     Returns an Outcome; a failed run is a result.
     """
     begun = clock.perf_counter()
-    tolerance = tolerance_for(method, accuracy, problem.memory)
+    steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, problem.memory)
     counts, audit = Counts(), audit or Audit(problem)
     first, tau, y = resume if resume else (0, 0.0, problem.y0.copy())
     status, message, index = "ok", "done", first
-    method_over = partial(_over, problem, method, tolerance, counts)
+
+    def method_over(leg, tau, y):
+        return steps(problem, leg, tau, y, method, tolerance, counts)
+
     try:
         for index in range(first, len(problem.legs)):
             leg = problem.begin(index)
@@ -73,11 +79,6 @@ def solve(problem, method: str, accuracy: float, sink, *, audit=None, resume=Non
     except KeyboardInterrupt:
         status, message, tau, y = "interrupted", "interrupted by the user", *problem.last
     return Outcome(status, message, counts, clock.perf_counter() - begun, index, tau, y, tolerance, audit.residual())
-
-
-def _over(problem, method, tolerance, counts, leg, tau, y):
-    """Blocks of steps of a method over a leg."""
-    return METHODS[method](problem, leg, tau, y, method, tolerance, counts)
 
 
 def _advance(problem, leg, method_over, tau, y, until):

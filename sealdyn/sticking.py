@@ -89,11 +89,21 @@ class Sticking:
     def find(self, t, ys, begin: int, end: int, advance):
         """First change in steps [begin, end]: (step, leg time, unknowns, ring) or None.  `advance(tau, y, until)`
         integrates."""
+        known = {}
+
+        def velocity(k, step):
+            # The end of a step is the start of the next.
+            if (k, step) not in known:
+                known[k, step] = self._velocity(k, t[step], ys[step])[0]
+            return known[k, step]
+
         for step in range(begin, end):
             found = None
             for k in self.rings:
-                look = self._slip if self.stuck[k] else self._capture
-                change = look(k, t, ys, step, advance)
+                if self.stuck[k]:
+                    change = self._slip(k, t, ys, step, advance)
+                else:
+                    change = self._capture(k, t, ys, step, velocity(k, step), velocity(k, step + 1), advance)
                 if change and (found is None or change[0] < found[0]):
                     found = (*change, k)
             if found:
@@ -192,11 +202,9 @@ class Sticking:
                 y[tilt_rate : tilt_rate + 2] = 0.0
         return y
 
-    def _capture(self, k, t, ys, step, advance):
-        """When ring k comes to rest on its seal within a step, and stays."""
+    def _capture(self, k, t, ys, step, a, b, advance):
+        """When ring k, of sliding speeds `a` at a step's start and `b` at its end, comes to rest within, and stays."""
         band = self.problem.band
-        a, _, _ = self._velocity(k, t[step], ys[step])
-        b, _, _ = self._velocity(k, t[step + 1], ys[step + 1])
         change = b - a
         length = float(change @ change)
         nearest = float(np.clip(-(a @ change) / length, 0.0, 1.0)) if length > 0 else 1.0

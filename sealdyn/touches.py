@@ -11,7 +11,7 @@ from numba import njit
 
 from .dense import NODES, fit, value
 from .gap import TOUCH
-from .watch import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, _first_below, _locate, _measures, _scan
+from .watch import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, _crossing, _locate, _measures, _scan
 
 # One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film
 # thickness (m), angle (rad) and radius (m) there; impulse (N s).
@@ -143,7 +143,7 @@ def touches(
             points += 1
         for i in range(points):
             if i > 0 and height[i - 1] >= level > height[i] and state[OPEN] == 0.0:
-                touched = _first_below(
+                touched = _crossing(
                     at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
                 )  # fmt: skip
                 _begin(state, start + touched, impulse[k])
@@ -156,7 +156,7 @@ def touches(
             elif state[OPEN] != 0.0:
                 lifted = at[i]
                 if i > 0:
-                    lifted = _last_below(at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
+                    lifted = _crossing(at[i], at[i - 1], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
                 if found < len(rows):
                     found = _close(state, start + lifted, impulse[k + 1], level, error, rows, found)
             elif i < points - 1 and height[i] <= level + error:
@@ -169,17 +169,3 @@ def touches(
                     found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
         state[SINKING] = height[points - 1] <= height[points - 2]
     return found
-
-
-@njit(cache=True)
-def _last_below(low, high, level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
-    """Last time in [low, high] below the level, by bisection; it is above it at `high`."""
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        value(table, nodes, size, middle, q, q_rate)
-        _measures(middle, q, y, yp, p, f, w, s, out)
-        if out[THICKNESS] < level:
-            low = middle
-        else:
-            high = middle
-    return low

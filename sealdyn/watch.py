@@ -76,17 +76,18 @@ def _locate(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, w, s, o
 
 
 @njit(cache=True)
-def _first_below(low, high, floor, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
-    """First time in [low, high] at which the film is at the floor, by bisection; it is above it at `low`."""
+def _crossing(above, below, level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
+    """Time at which the film crosses a level, by bisection between a time when it is above and one when it is below,
+    whichever is earlier; the film is below there."""
     for _ in range(60):
-        middle = 0.5 * (low + high)
+        middle = 0.5 * (above + below)
         value(table, nodes, size, middle, q, q_rate)
         _measures(middle, q, y, yp, p, f, w, s, out)
-        if out[THICKNESS] < floor:
-            high = middle
+        if out[THICKNESS] < level:
+            below = middle
         else:
-            low = middle
-    return high
+            above = middle
+    return below
 
 
 @njit(cache=True)
@@ -177,9 +178,7 @@ def watch(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, l
                     value(table, nodes, size, at, q, q_rate)
                     theta, radius = _measures(at, q, y, yp, p, f, w, s, out)
                     if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:
-                        fallen = _first_below(
-                            t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
-                        )
+                        fallen = _crossing(t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out)
                         value(table, nodes, size, fallen, q, q_rate)
                         theta, radius = _measures(fallen, q, y, yp, p, f, w, s, out)
                         for other in range(3):

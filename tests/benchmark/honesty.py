@@ -88,8 +88,7 @@ def looked_at(problem, method, accuracy, interval):
     if outcome.status != "ok":
         return None, wall
     parts = []
-    for index, (t, q, rate) in enumerate(sink.parts):
-        del index
+    for t, q, rate in sink.parts:
         problem.begin(min(range(len(problem.legs)), key=lambda k: (problem.legs[k].time > t[0] + 1e-12, -k)))
         seen = signals(problem, t - problem.leg.time, q, rate)
         parts.append(np.stack([seen["h_min"] / problem.clearance,

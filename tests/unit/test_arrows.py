@@ -40,7 +40,7 @@ ALLOWED = {
     "lyapunov": set(),
     "methods_judged": {"methods"},
     "collocation": {"methods"},
-    "observables": {"audit", "methods", "recorder", "signals", "solve", "watch"},
+    "observables": {"methods", "recorder", "signals", "solve", "watch"},
     "model_rungs": {"collocation", "faces", "films", "methods", "modes", "observables", "scenario", "simulate"},
     "who_is_fastest": set(),
     "exhibits": PHYSICS
@@ -85,7 +85,7 @@ ALLOWED = {
     "cli": None,
     "__init__": None,
 }
-ONLY_IN = {"sksundae": {"methods", "methods_judged", "exhibits"}, "h5py": {"archive"}, "tomllib": {"scenario"},
+ONLY_IN = {"sksundae": {"methods", "exhibits"}, "h5py": {"archive"}, "tomllib": {"scenario"},
            "pint": {"unit_names"}, "matplotlib": {"charts"}, "typer": {"cli"}, "rich": {"cli"}}  # fmt: skip
 
 
