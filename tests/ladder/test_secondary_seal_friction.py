@@ -12,6 +12,7 @@ from sealdyn.motion import AngularVibration, AxialVibration, Housing
 from sealdyn.ring import Rotor, Stator
 from sealdyn.scene import Initial, RingStart
 from sealdyn.secondary_seal import SecondarySeal
+from sealdyn.units import Table
 
 STIFFNESS, MASS, RADIUS = SUPPORT.axial_stiffness, 1.0, 0.04
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)
@@ -206,3 +207,25 @@ def test_a_spinning_ring_turns_with_a_synchronous_moment():
                 rotor=Rotor(**ring(), secondary_seal=holding(friction)))  # fmt: skip
     found = run(scene, turns=10)
     assert found["rotor_seal_stuck"].all() and np.max(np.abs(found.q)) < 1e-6 * CLEARANCE / R_O
+
+
+def test_a_stuck_ring_turns_with_its_carrier():
+    """A rotor that sticks at a tilt carries it round: gamma = gamma_0 exp(i W t), W constant or running up."""
+    tilt = 30e-6
+    for speed in (500.0, Table((0.0, 0.05), (500.0, 900.0))):
+        first = speed if isinstance(speed, float) else speed.value[0]
+        scene = fmr(film=SPRING_FILM, own=0.0, fixed=0.0, speed=speed,
+                    initial=Initial(rotor=RingStart(tilt_x=tilt, tilt_y_rate=first * tilt)),
+                    rotor=Rotor(**ring(), secondary_seal=holding(10 * (TILT_K + SPRING) * tilt)))  # fmt: skip
+        found = run(scene, duration=0.05, accuracy=1e-7)
+        angle = first * found.times if isinstance(speed, float) else 500.0 * found.times + 4000.0 * found.times**2
+        assert found["rotor_seal_stuck"].all()
+        assert found.tilt("rotor") == pytest.approx(tilt * np.exp(1j * angle), abs=1e-6 * CLEARANCE / R_O)
+
+
+def test_the_energy_dropped_at_a_capture_is_told():
+    """What is lost when a ring is caught is the kinetic energy it had left: below band squared."""
+    found = oscillator(0.31, 5e-6, 6)
+    (event,) = found.events
+    assert 0 < event["value"] <= 0.5 * MASS * found.problem.band**2
+    assert found.problem.sticking.dropped == event["value"]
