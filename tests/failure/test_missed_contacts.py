@@ -46,6 +46,7 @@ def test_an_imposed_dip_is_seen_every_turn(method, accuracy, degrees):
         decided = event["depth"] > found.problem.gap_error()
         assert event["kind"] == ("contact" if decided else "grazing")
         assert event["lift_off"] - event["time"] == pytest.approx(2 * half / SPEED, rel=1e-3) or not decided
+        assert middle - event["time"] == pytest.approx(half / SPEED, rel=0.05) or not decided
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853", "radau"])
