@@ -1,36 +1,42 @@
-"""How wrong a run is: the solver's error from a second method, the film's from the next rung, both a posteriori.
+"""What tolerance a run needs, and how wrong it is: from a short stretch of it done twice.
 
-**Solver**: a short stretch is integrated again by another method at a thirtieth of the accuracy; what they differ by
-grows over the periods that the scene remembers.
-**Model**: on the states the lower rung visits, the next rung's film pushes differently; that difference, as a force on
-the linearised rings, gives the difference of the motions (the defect of the lower rung, answered linearly).
-**Valid** estimates, not bounds: small errors (their own squares are left out), constant conditions for the model's.
+The stretch is integrated again by the same method thirty times sharper; what the two differ by grows over the
+periods that the scene remembers.  A scene whose stretch tells of the whole run is given the loosest tolerance that
+this allows; any other the cautious one of methods.py.
+**Valid** estimates, not bounds.
 """
 
-import math
 from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 
-from . import dynamics, watch
-from .faces import film_module
-from .gap import DZ, DZ_RATE, FLOW_INNER, FORCE, GX, GY, GY_RATE
-from .methods import attainable
+from . import watch
+from .methods import TIGHTEST, attainable, tolerance_for
+from .model_error import model_error
 from .problem import Problem
 from .recorder import Recorder
-from .signals import signals
 from .solve import solve
 from .touches import fresh_state
 
 # The stretch integrated twice (fastest periods), and by how much sharper the second time.
 STRETCH, SHARPER, PER_PERIOD = 3.0, 30.0, 32
 # What a stretch shows, times this, is what a run has (measured: up to a third of its largest error, tests/unit).
-SHOWN = 3.0
+SHOWN = 4.0
+# First try of a tolerance over the cautious one, and the share of the accuracy its estimated error may take.
+LOOSER, SHARE = 10.0, 0.4
+# Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau": "dop853", "expm": "dop853"}
-# Steps along which the model's defect is followed: per fastest period, and in all; points of a steady period.
-FOLLOWED, MOST, STEADY = 16, 250, 32
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A tolerance, the solver's estimated error with it (relative to the scales; None: not known), and why."""
+
+    tolerance: float
+    error: float | None
+    said: str
 
 
 @dataclass(frozen=True)
@@ -50,22 +56,49 @@ class Certificate:
         return sum(known) if known else None
 
 
-def solver_error(problem: Problem, method: str) -> float | None:
+def try_tolerance(problem: Problem, method: str) -> Trial | None:
+    """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
+    the cautious one.  None where a stretch at the start does not tell of the run: contact, friction, changing
+    conditions, a massless ring, an unstable scene, errors that add up over the whole run, `expm`."""
+    told = problem.constant and not (problem.contact is not None or problem.layout.seals or problem.massless)
+    if not told or method == "expm" or problem.memory * problem.fast_time > 0.5 * problem.duration:
+        return None
+    cautious = tolerance_for(method, problem.accuracy, problem.memory)
+    tolerance, allowed = min(LOOSER * cautious, problem.accuracy), SHARE * problem.accuracy
+    error = solver_error(problem, method, tolerance)
+    if error is None:
+        return None
+    if error > allowed:
+        # Errors are proportional to tolerances, as far as they are at all: what is gained is not counted on in full.
+        sharper = max(cautious, tolerance * allowed / error)
+        tolerance, error = sharper, error * (sharper / tolerance) ** 0.9
+    return Trial(tolerance, error, f"tolerance {tolerance:.1e} by a trial over {STRETCH:.0f} fastest periods")
+
+
+def solver_error(problem: Problem, method: str, tolerance: float | None = None) -> float | None:
     """Estimated error of displacements over the run relative to their scales, from a stretch of it done twice.
-    None if the stretch does not end well."""
+    None if the stretch does not end well.  `tolerance` of the run, if not the cautious one."""
+    tolerance = tolerance or tolerance_for(method, problem.accuracy, problem.memory)
     stretch = min(problem.legs[0].length, STRETCH * problem.fast_time)
+    pairs = [(method, tolerance), (method, tolerance / SHARPER)]
+    if method == "expm" or tolerance < SHARPER * TIGHTEST:
+        other = OTHER[method]
+        pairs[1] = other, tolerance_for(other, max(problem.accuracy / SHARPER, 2 * attainable(other, problem.memory)),
+                                        problem.memory)  # fmt: skip
     short, parts = _shortened(problem, stretch), []
-    for name, accuracy in ((method, problem.accuracy), (OTHER[method], problem.accuracy / SHARPER)):
+    for name, sharp in pairs:
         if short.sticking:
             short = _shortened(problem, stretch)
         sink = Recorder(short, stretch / max(8, round(STRETCH * PER_PERIOD)))
-        if solve(short, name, max(accuracy, 2.0 * attainable(name, problem.memory)), sink).status != "ok":
+        if solve(short, name, problem.accuracy, sink, tolerance=sharp).status != "ok":
             return None
         parts.append(sink.arrays()[1])
     count = min(len(part) for part in parts)
     difference = np.abs(parts[0][:count] - parts[1][:count]) / problem.scales[: problem.n]
     remembered = min(problem.memory, problem.duration / problem.fast_time)
-    return SHOWN * float(difference.max()) * max(1.0, remembered * problem.fast_time / stretch)
+    shown = SHOWN * float(difference.max()) * max(1.0, remembered * problem.fast_time / stretch)
+    # Steps grow after the stretch: no solver errs much less than its tolerance (measured: 0.05 to 2 of it, damped).
+    return shown if method == "expm" else max(shown, tolerance)
 
 
 def _shortened(problem: Problem, stretch: float) -> Problem:
@@ -80,163 +113,12 @@ def _shortened(problem: Problem, stretch: float) -> Problem:
     return short
 
 
-def model_error(problem: Problem, higher: str = "radial") -> float | None:
-    """The larger of `model_errors`, or None."""
-    found = model_errors(problem, higher)
-    return None if found is None else float(found.max())
-
-
-def model_errors(problem: Problem, higher: str = "radial") -> np.ndarray | None:
-    """Estimated difference of a linear film's scene from that with the film rung `higher` over the run: of the film at
-    the outer radius in clearances, and of the leakage relative to its largest.  None where it cannot be estimated
-    (changing conditions, a massless or unstable scene)."""
-    if problem.massless or not problem.constant or not problem.linear:
-        return None
-    at, _, linear = problem.steady_motion()
-    matrix = linear.state_matrix()
-    values = np.linalg.eigvals(matrix)
-    if np.max(values.real) > 0:
-        return None
-    from scipy.linalg import expm
-
-    n, kept = len(linear.mass), problem.kept()
-    slowest = -1.0 / max(float(np.max(values.real)), -1e300) if np.max(values.real) < 0 else math.inf
-    step = problem.fast_time / FOLLOWED
-    count = min(int(min(problem.duration, 6.0 * slowest) / step) + 1, MOST)
-    # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
-    whole = expm(matrix * step)
-    mass = np.vstack([np.zeros((n, n)), np.linalg.inv(linear.mass)])
-    pushed = np.linalg.solve(matrix, whole - np.eye(2 * n)) @ mass
-    film = film_module(higher)
-    block = film.parameters(replace(problem.scene.film, model=higher), problem.clearance, problem.accuracy / 10)
-
-    seen = _Seen(problem, linear, film, block)
-    q, rate = at(0.0)
-    start = np.zeros(2 * n)
-    start[kept], start[n + np.array(kept)] = problem.y0[: problem.n], problem.y0[problem.rate_places]
-    free, error, worst, before = start - np.concatenate([q, rate]), np.zeros(2 * n), np.zeros(2), None
-    for k in range(count + 1):
-        q, rate = at(k * step)
-        state = np.concatenate([q, rate]) + free
-        defect = seen.defect(k * step, state[kept], state[n + np.array(kept)])
-        if before is not None:
-            error = whole @ error + pushed @ (0.5 * (before + defect))
-            worst = np.maximum(worst, seen.error(error[:n], error[n:]))
-        before, free = defect, whole @ free
-    # Then the steady state, on which what is left of the start no longer acts.
-    return np.maximum(worst, _steady_error(problem, linear, seen, at, kept))
-
-
-def _steady_error(problem, linear, seen, at, kept) -> np.ndarray:
-    """The same over the last forcing period, by harmonics; 0 if the forcing has no common period."""
-    period = problem.period()
-    if not period:
-        return np.zeros(2)
-    points, n = STEADY, len(linear.mass)
-    times = np.arange(points) * period / points
-    states = [at(tau) for tau in times]
-    forces = [seen.defect(tau, q[kept], rate[kept]) for tau, (q, rate) in zip(times, states, strict=True)]
-    spectrum = np.fft.rfft(np.array(forces), axis=0)
-    answers = np.zeros((points // 2 + 1, n), dtype=complex)
-    w = 2 * math.pi / period * np.arange(points // 2 + 1)
-    for k in range(points // 2):
-        dynamic = linear.stiffness + 1j * w[k] * linear.damping - w[k] ** 2 * linear.mass
-        answers[k] = np.linalg.solve(dynamic, spectrum[k])
-    motion = np.fft.irfft(answers, points, axis=0)
-    rates = np.fft.irfft(1j * w[:, None] * answers, points, axis=0)
-    worst = np.zeros(2)
-    for tau, (q, rate), x, v in zip(times, states, motion, rates, strict=True):
-        seen.defect(tau, q[kept], rate[kept])
-        worst = np.maximum(worst, seen.error(x, v))
-    return worst
-
-
-class _Seen:
-    """What the higher film makes of the states of the lower one."""
-
-    def __init__(self, problem, linear, film, block):
-        self.problem, self.linear, self.film, self.block = problem, linear, film, block
-        self.s, self.moved = problem.s.copy(), problem.s.copy()
-        self.leakage = 0.0
-
-    def defect(self, tau, q, rate):
-        """Force and moments (3 per floating ring) by which the higher film pushes more than the lower one."""
-        problem, linear = self.problem, self.linear
-        y, s = problem.unknowns(q, rate), problem.s
-        dynamics.kinematics(tau, y, np.zeros(problem.size), problem.p, problem.w, s)
-        problem.film.wrench(problem.f, s)
-        lower = s[FORCE : FORCE + 3].copy()
-        self.film.flow(self.block, s)
-        self.s[:] = s
-        self.leakage = max(self.leakage, abs(s[FLOW_INNER]))
-        more = s[FORCE : FORCE + 3] - lower
-        return np.concatenate([linear.rings[k].sign * more for k in linear.floating])
-
-    def error(self, x, v) -> np.ndarray:
-        """Change of what is looked at by displacements x and rates v (3 per floating ring) at the last state: film at
-        the outer radius in clearances, leakage relative to its largest."""
-        linear, problem = self.linear, self.problem
-        relative, rate = (
-            sum(linear.rings[k].sign * u[3 * a : 3 * a + 3] for a, k in enumerate(linear.floating)) for u in (x, v)
-        )
-        film = (abs(relative[DZ]) + problem.face[1] * math.hypot(relative[GX], relative[GY])) / problem.clearance
-        if not self.leakage:
-            return np.array([film, 0.0])
-        self.moved[:] = self.s
-        self.moved[DZ : GY + 1] += relative
-        self.moved[DZ_RATE : GY_RATE + 1] += rate
-        self.film.flow(self.block, self.moved)
-        return np.array([film, abs(self.moved[FLOW_INNER] - self.s[FLOW_INNER]) / self.leakage])
-
-
-def lowest_rung(scene, duration: float, accuracy: float, start) -> Problem:
-    """The scene as a problem on the lowest film rung that keeps the accuracy; `start(problem)` sets its unknowns.
-
-    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
-    below half the accuracy, else the radial film.  Raises ImpossibleScene.
-    """
-    film = scene.film
-    if film.model != "auto":
-        problem = Problem(scene, duration, accuracy)
-        start(problem)
-        return problem
-    radial = Problem(replace(scene, film=replace(film, model="radial")), duration, accuracy)
-    start(radial)
-    why = _why_not_linear(scene, radial)
-    if why is None:
-        linear = Problem(replace(scene, film=replace(film, model="linear", coefficients="radial")), duration, accuracy)
-        start(linear)
-        error = model_error(linear)
-        if error is not None and error < 0.5 * accuracy:
-            linear.observed = radial.observed
-            said = f"film auto: the linear film, with the radial film's coefficients, is within {error:.1e} of it"
-            linear.reasons.append(said)
-            return linear
-        why = "the linear film's error cannot be estimated" if error is None else f"the linear film errs by {error:.1e}"
-    radial.reasons.append(f"film auto: the radial film; {why}")
-    return radial
-
-
-def _why_not_linear(scene, radial: Problem) -> str | None:
-    """What rules the linear film out before anything is tried, or None."""
-    if scene.contact or radial.layout.seals:
-        return "contact or friction is no place for a linear film"
-    if scene.film.cavitation_pressure is not None:
-        return "the pressure has a floor"
-    if not radial.constant or radial.massless:
-        return "conditions change, or a ring has no mass"
-    low = float(signals(radial, np.zeros(1), radial.y0[None, : radial.n], np.zeros((1, radial.n)))["h_min"][0])
-    # A tilt ratio t leaves errors of t^2: no estimate is needed to see that far.
-    ratio = 1.0 - low / radial.clearance
-    if ratio * ratio > 100.0 * radial.accuracy:
-        return f"the film starts {abs(ratio):.2g} off the clearance, and a linear film errs by about the square"
-    return None
-
-
-def certify(problem: Problem, method: str) -> Certificate:
-    """Certificate of a finished run of this problem by this method."""
-    by_solver = solver_error(problem, method)
-    by_model = model_error(problem) if problem.film_name == "linear" else None
+def certify(problem: Problem, method: str, trial: Trial | None = None, by_model: float | None = None) -> Certificate:
+    """Certificate of a finished run of this problem by this method, with the errors known from choosing its tolerance
+    (`trial`) and its film (`by_model`)."""
+    by_solver = trial.error if trial else solver_error(problem, method)
+    if by_model is None and problem.film_name == "linear":
+        by_model = model_error(problem)
     parts = [f"solver {by_solver:.1e}" if by_solver is not None else "solver not estimated"]
     if by_model is not None:
         parts.append(f"model {by_model:.1e} against the radial film")

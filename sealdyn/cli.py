@@ -11,6 +11,10 @@ from typing import Annotated
 
 import typer
 
+# Matrices here have a dozen rows: threads of a BLAS, and of every worker's BLAS, only get in each other's way.
+for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")
+
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
 EXIT = {
     "ok": DONE,

@@ -15,7 +15,7 @@ from .methods import SolverFailure
 # Stages; the error estimate is filtered with this multiple of the step, so that what is stiff does not count.
 GAUSS, RADAU, FILTER = 6, 5, 0.2
 # Steps per fastest period at least: the motion between them is interpolated.
-PER_PERIOD, MOST = 24, 4000
+PER_PERIOD, MOST = 48, 4000
 ITERATIONS, SLOW, ROUNDING = 14, 0.3, 2e-16
 SHORTEST = 1e-12
 

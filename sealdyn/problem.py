@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from . import contact, dynamics, linear_side, watch
-from .faces import Faces, linearised_film
+from .faces import Faces
 from .gap import (
     COLLAPSE,
     DZ,
@@ -20,7 +20,7 @@ from .legs import Leg, constant_and_slope, cut
 from .modes import common_period
 from .scene import ImpossibleScene, Scene
 from .signals import signals
-from .sticking import Sticking
+from .sticking import FADES, Sticking
 from .touches import IMPULSE, KIND, LIFTED, OPEN, TOUCHED, ContactTally, contact_event, fresh_state, touches
 from .touches import ROW as TOUCH_ROW
 
@@ -48,7 +48,7 @@ class Problem:
         self.face = self.f[:FACE_SIZE].copy()
         self.legs = self._legs()
         self.w, self.s = np.zeros(dynamics.SCRATCH), np.zeros(GAP_STATE_SIZE)
-        self._shifts, self.warnings = {}, []
+        self._shifts, self._linear_scenes, self.warnings = {}, {}, []
         self.layout = layout = Layout(scene, self.legs, self.closing, self.film_name == "linear")
         self.names, self.n, self.rate_places = layout.names, layout.n, layout.rate_places
         self.n_mechanical, self.size, self.reasons = layout.n_mechanical, layout.size, layout.reasons
@@ -78,10 +78,11 @@ class Problem:
         return self.seal(k).law == "coulomb"
 
     def _set_bands(self):
-        """Sliding speeds (m/s) at which friction fades: the user's width, or the accuracy times the scale of rates."""
-        self.band = self.accuracy * self.clearance * self.pace
+        """Sliding speeds (m/s) below which friction fades: the user's width, or the accuracy times the scale of rates;
+        `band`, a little above, below which a ring is captured."""
+        self.band = self.accuracy * self.clearance * self.pace / FADES
         for k in self.layout.seals:
-            band = self.band if self._coulomb(k) else self.seal(k).width
+            band = FADES * self.band if self._coulomb(k) else self.seal(k).width
             self.layout.ring_block[dynamics.RING * k + dynamics.SEAL_BAND] = band
 
     def closing_force(self) -> float:
@@ -364,8 +365,8 @@ class Problem:
 
     def film_matrices(self, leg_index: int = 0):
         """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of that leg's start."""
-        leg, shift = self.legs[leg_index], self.axial_shift(leg_index)
-        return linearised_film(self.faces.wrench, self.f, self.scene, self.clearance, leg, shift=shift)
+        linear = self.linear_scene(leg_index)
+        return linear.film_k, linear.film_d
 
     def axial_shift(self, leg_index: int) -> float:
         """How far (m) the loads at a leg's start move the aligned gap from its design clearance."""
@@ -375,7 +376,11 @@ class Problem:
 
     def linear_scene(self, leg_index: int = 0, speed: float | None = None, shift: float | None = None):
         """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
-        return linear_side.linear_scene(self, leg_index, speed, shift)
+        if speed is not None or shift is not None:
+            return linear_side.linear_scene(self, leg_index, speed, shift)
+        if leg_index not in self._linear_scenes:
+            self._linear_scenes[leg_index] = linear_side.linear_scene(self, leg_index)
+        return self._linear_scenes[leg_index]
 
     def harmonics(self) -> list:
         """The imposed oscillators of the present leg as harmonics in leg time."""

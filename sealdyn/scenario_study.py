@@ -1,8 +1,12 @@
 """What a study asks of a scenario: its settings, the values of a key it goes through, and the same scenario with
 other values."""
 
+import contextlib
 import dataclasses
+import json
 import re
+import typing
+from types import UnionType
 from typing import Any
 
 import numpy as np
@@ -18,10 +22,11 @@ AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
 
 def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, Any]):
     """Settings of study `name` (underscored): defaults, overridden by `[study.NAME]`, overridden by flags.
-    Raises ScenarioError for unknown keys or values, like any other table."""
-    given = {**scenario.study.get(name, {}), **flags}
+    A flag "a, b, c" of a setting that is a list is read as a list.  Raises ScenarioError for unknown keys or values,
+    like any other table."""
     known = [f.name for f in dataclasses.fields(kind)]
-    raw = {key.replace("-", "_"): value for key, value in given.items()}
+    raw = {key.replace("-", "_"): value for key, value in scenario.study.get(name, {}).items()}
+    raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
     for key in raw:
         if key not in known:
             import difflib
@@ -39,6 +44,36 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
         found = getattr(context, "found", repr(first.get("input")))
         expected = getattr(context, "expected", first["msg"])
         raise ScenarioError(scenario.name, f"study.{name}.{key}", found, expected) from None
+
+
+def _listed(flags: dict[str, Any], kind: type) -> dict[str, Any]:
+    """The flags, words and numbers given for lists split at commas; a setting that also takes words is left alone."""
+    takes, out = typing.get_type_hints(kind), {}
+    for key, value in flags.items():
+        kinds = set(_alternatives(takes.get(key.replace("-", "_"))))
+        if kinds & {tuple, list} and str not in kinds and isinstance(value, str | int | float):
+            value = [_plain(entry.strip()) for entry in value.split(",")] if isinstance(value, str) else [value]
+        out[key] = value
+    return out
+
+
+def _alternatives(annotation):
+    """The kinds a setting may be of, lists without their contents."""
+    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin in (typing.Union, UnionType):
+        for kind in inner:
+            yield from _alternatives(kind)
+    elif origin is typing.Annotated:
+        yield from _alternatives(inner[0])
+    else:
+        yield origin or annotation
+
+
+def _plain(words: str):
+    """A number where it is one, as a flag's single value would be."""
+    with contextlib.suppress(ValueError):
+        return json.loads(words)
+    return words
 
 
 def varied(scenario: Scenario, values: dict[str, Any]) -> Scenario:

@@ -16,7 +16,8 @@ import numpy as np
 from . import __version__, archive
 from .archive import ArchiveWriter, Series, partial_path
 from .audit import Audit
-from .certify import certify, lowest_rung
+from .certify import Trial, certify, try_tolerance
+from .film_choice import lowest_rung
 from .layout import RING_NAMES
 from .legs import time_of_angle
 from .methods import attainable
@@ -243,7 +244,7 @@ def simulate(
     """
     begun = clock.perf_counter()
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
-    problem, method, why, interval, count = prepare(scenario)
+    problem, method, why, interval, count, by_model = prepare(scenario)
     writer = ArchiveWriter(
         out,
         scenario_text=scenario.text,
@@ -257,14 +258,15 @@ def simulate(
     audit = Audit(problem)
     sink.audit = audit
     restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
-    outcome = solve(problem, method, scenario.run.accuracy, sink, audit=audit, resume=restart)
+    trial = try_tolerance(problem, method)
+    outcome = solve(problem, method, problem.accuracy, sink, audit=audit, resume=restart, tolerance=_tried(trial))
     sink.flush(outcome.leg, outcome.tau, outcome.y)
     if outcome.status != "interrupted":
         # What an interrupted run has not written yet it will meet again.
         problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
         sink.write_events()
-    summary = summarise(scenario, problem, outcome, sink.tally, method, why)
-    summary["certificate"] = certificate(problem, method, outcome)
+    summary = summarise(scenario, problem, outcome, sink.tally, method, f"{why}; {trial.said}" if trial else why)
+    summary["certificate"] = certificate(problem, method, outcome, trial, by_model)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == "interrupted" else out
     summary["archive"] = str(path)
@@ -275,12 +277,16 @@ def simulate(
     return Result(outcome.status, outcome.message, summary, path)
 
 
-def certificate(problem, method, outcome) -> dict:
+def _tried(trial: Trial | None) -> float | None:
+    return trial.tolerance if trial else None
+
+
+def certificate(problem, method, outcome, trial, by_model) -> dict:
     """How wrong the run is estimated to be (certify.py), as part of the summary."""
     if outcome.status != "ok":
         return {"asked": problem.accuracy, "estimated": None, "solver": None, "model": None,
                 "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
-    found = certify(problem, method)
+    found = certify(problem, method, trial, by_model)
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "said": found.said}  # fmt: skip
 
@@ -288,25 +294,27 @@ def certificate(problem, method, outcome) -> dict:
 def run_briefly(scenario) -> dict:
     """A run without an archive: the summary of interface.md.  Raises ImpossibleScene or ArchiveError."""
     begun = clock.perf_counter()
-    problem, method, why, interval, count = prepare(scenario)
+    problem, method, why, interval, count, _ = prepare(scenario)
     sink = TallySink(problem, interval, count)
-    outcome = solve(problem, method, scenario.run.accuracy, sink)
+    outcome = solve(problem, method, problem.accuracy, sink, tolerance=_tried(try_tolerance(problem, method)))
     problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
     summary = summarise(scenario, problem, outcome, sink.tally, method, why)
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 
 def prepare(scenario):
-    """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count.
+    """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count, and a
+    linear film's estimated error.
     Raises ImpossibleScene or ArchiveError."""
     duration, interval, count = sampling(scenario)
-    problem = lowest_rung(scenario.scene, duration, scenario.run.accuracy, lambda p: _start(p, scenario))
+    accuracy = scenario.run.accuracy
+    problem, by_model = lowest_rung(scenario.scene, duration, accuracy, lambda p: _start(p, scenario))
     method, why = problem.solver()
     if scenario.run.solver != "auto":
         method, why = scenario.run.solver, "asked for"
     _check_method(problem, method)
     best = attainable(method, problem.memory)
-    if best > scenario.run.accuracy:
+    if best > accuracy:
         problem.warnings.append(
             f"accuracy: errors add up over {problem.memory:.3g} periods; {method} keeps {best:.1e} at best"
         )
@@ -317,7 +325,7 @@ def prepare(scenario):
             f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
             f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
         )
-    return problem, method, why, interval, count
+    return problem, method, why, interval, count, by_model
 
 
 def _start(problem, scenario):

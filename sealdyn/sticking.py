@@ -1,7 +1,8 @@
 """When a ring on its secondary seal sticks and when it slips: found between steps, to the time.
 
-A sliding ring is captured when its sliding speed has fallen below the band (accuracy times the scale of the rates) and
-what it would have to hold lies inside the limit surface; a stuck ring slips when that load reaches the surface.
+A sliding ring is captured when its sliding speed has fallen below the band (1.25 times the accuracy times the scale of
+the rates) and what it would have to hold lies inside the limit surface; a stuck ring slips when that load reaches the
+surface.
 """
 
 import numpy as np
@@ -40,6 +41,9 @@ INSIDE = 1e-9
 WITHDRAWN = 1e-3
 # Each approach to standstill goes so much of the way that a constant deceleration would leave.
 NEARER, SHORTEST = 0.9, 0.2
+# Friction fades only below this share of the band, and the last approach ends above it: where a ring is captured its
+# deceleration is the sliding one, with which the motion of the last step is interpolated.
+FADES, ABOVE = 0.8, 0.9
 # Looks into each step of a stuck ring.
 LOOKS = 2
 
@@ -230,7 +234,7 @@ class Sticking:
                 v, rate, _ = self._velocity(k, tau, y)
                 speed = float(np.linalg.norm(v))
                 slowing = -float(v @ rate) / speed
-            until = tau + part * speed / slowing
+            until = tau + min(part * speed, speed - ABOVE * band) / slowing
             if until > latest or until <= tau:
                 return None
             before = (tau, y)

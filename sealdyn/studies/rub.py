@@ -17,6 +17,7 @@ from ..scenario import parse_scenario
 from ..scenario_errors import ScenarioError
 from ..scenario_study import axis
 from ..unit_names import dimension_and_factor
+from ..units import Speed
 from ..whirl import free_problem
 from ..whirl.rubbing import settles
 
@@ -48,7 +49,7 @@ class Settings:
     judge_turns: int = 600
     accuracy: float = 1e-6
     whirl: bool = False
-    whirl_speeds: tuple[float, ...] = ()
+    whirl_speeds: tuple[Speed, ...] = ()
 
 
 def run(scenario, settings, tools) -> dict:

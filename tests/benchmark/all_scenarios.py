@@ -3,9 +3,11 @@
     python tests/benchmark/all_scenarios.py [page.png] [--fresh]
 
 Runs `sealdyn study work-precision` on every scenario, some shortened so that the slowest method ends, six tolerances
-each; archives in outputs/work_precision/ are used again unless --fresh.
+each; archives in outputs/work_precision/ are used again unless --fresh.  Who won goes into a JSON file beside the page,
+from which readme_claims.py takes the README's words.
 """
 
+import json
 import math
 import sys
 import time
@@ -92,10 +94,26 @@ def draw(paths, out):
         return save(figure, out)
 
 
+def winners(paths) -> dict:
+    """Who is fastest at which error on every scenario, as the studies' archives have it."""
+    scenes, machine = [], {}
+    for path in paths:
+        info = read_study(path)
+        answer = info["answer"]
+        machine = machine or {key: value for key, value in answer["machine"].items() if key != "busy"}
+        scenes.append({"name": info["name"], "overrides": info["overrides"], "turns": answer["scene"]["turns"],
+                       "where": answer["where"], "busy": answer["machine"].get("busy"),
+                       "judge_error": (answer["judge_error"] or {}).get(answer["where"]),
+                       "fastest": answer["fastest"]})  # fmt: skip
+    return {"command": "python tests/benchmark/all_scenarios.py", "machine": machine, "scenes": scenes}
+
+
 def main():
     given = [word for word in sys.argv[1:] if not word.startswith("--")]
     out = given[0] if given else ROOT / "outputs" / "gallery" / "work_precision_all.png"
-    print(draw(archives("--fresh" in sys.argv), out))
+    paths = archives("--fresh" in sys.argv)
+    print(draw(paths, out))
+    Path(out).with_suffix(".json").write_text(json.dumps(winners(paths), indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 
 
 def seconds(scenario):
-    problem, method, _, _, _ = prepare(scenario)
+    problem, method, *_ = prepare(scenario)
     begun = time.perf_counter()
     outcome = solve(problem, method, scenario.run.accuracy, Recorder(problem))
     return time.perf_counter() - begun, outcome, problem

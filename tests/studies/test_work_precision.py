@@ -135,6 +135,19 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
     assert any(line.startswith("crosses (gave up: CVODE Adams") for line in answer["verdict"])
 
 
+# Measured: 2e-11; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
+def test_judges_agree_where_a_ring_sticks():
+    """hang_up: stuck and slipping once a turn; leakage follows the axial speed up to each capture."""
+    asked = scenario("hang_up", "run.turns=3")
+    point = {"text": asked.text, "name": asked.name, "overrides": list(asked.overrides), "samples": 200, "limit": 60.0}
+    exact, band, judges = study.reference(json.dumps(point))
+    assert exact.status == "ok" and judges["second"] and exact.impulse > 0
+    assert max(band.values()) < 3e-7
+    # A judged method, whose steps are its own, agrees as well.
+    found = observables.observe(study.ready(asked), JUDGED["dop853"], "dop853", 1e-12, samples=200)
+    assert max(observables.worst(observables.errors(found, exact)).values()) < 3e-7
+
+
 def test_a_run_that_takes_too_long_is_stopped(tmp_path):
     answer = studied(tmp_path, "fmr_reference", "run.turns=4", methods=["dop853"], longest=0.004, models=False)
     row = answer["methods"]["dop853"]

@@ -63,8 +63,10 @@ ALLOWED = {
     "problem": PHYSICS | DOORS | {"faces", "layout", "linear_side", "modes", "signals", "sticking", "touches", "watch"},
     "scenario": PHYSICS | DOORS | {"scenario"},
     "summary": PHYSICS | DOORS | {"layout", "modes", "scenario", "watch"},
-    "certify": PHYSICS | {"faces", "methods", "problem", "recorder", "signals", "solve", "touches", "watch"},
-    "simulate": {"certify", "methods"}
+    "model_error": PHYSICS | {"faces"},
+    "film_choice": {"model_error", "problem", "signals"},
+    "certify": {"methods", "model_error", "problem", "recorder", "solve", "touches", "watch"},
+    "simulate": {"certify", "film_choice", "methods"}
     | PHYSICS
     | DOORS
     | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},

@@ -21,10 +21,15 @@ from scenes import (
     run,
 )
 
-from sealdyn.certify import certify, lowest_rung, model_error, model_errors, solver_error
+from sealdyn.certify import certify, solver_error, try_tolerance
 from sealdyn.contact import Contact
+from sealdyn.film_choice import lowest_rung
+from sealdyn.methods import tolerance_for
+from sealdyn.model_error import model_error, model_errors
 from sealdyn.problem import Problem
+from sealdyn.recorder import Recorder
 from sealdyn.ring import Stator
+from sealdyn.solve import solve
 from sealdyn.units import Table
 
 TURN = 2 * math.pi / SPEED
@@ -94,8 +99,52 @@ def test_an_undamped_scene_adds_its_errors_up():
     assert 0 < short < 1e-3 and drift / 10 < long < 1e-3
 
 
+@pytest.mark.parametrize("method", ["adams", "bdf", "dop853"])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("name", ["fms", "shaken", "larger"])
+def test_a_tolerance_on_trial_keeps_the_accuracy(name, method, accuracy):
+    """Looser than the cautious one, and the run at it is still as exact as was asked, and as estimated within three."""
+    problem = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy)
+    trial = try_tolerance(problem, method)
+    cautious = tolerance_for(method, accuracy, problem.memory)
+    assert cautious <= trial.tolerance <= 10.0 * cautious * (1 + 1e-12)
+    found = []
+    for steps, tolerance in ((method, trial.tolerance), ("dop853", 1e-13)):
+        sink = Recorder(problem, TURN / 32)
+        assert solve(problem, steps, accuracy, sink, tolerance=tolerance).status == "ok"
+        found.append(sink.arrays()[1] / problem.scales[: problem.n])
+    true = float(np.max(np.abs(found[0] - found[1])))
+    assert true < accuracy and true / 3 < trial.error < accuracy
+
+
+def test_a_trial_that_errs_too_much_is_not_taken(monkeypatch):
+    """The tolerance goes down with the estimated error, and never below the cautious one."""
+    problem = prepared(fms(), 30 * TURN, 1e-5)
+    cautious = tolerance_for("adams", 1e-5, problem.memory)
+    monkeypatch.setattr("sealdyn.certify.solver_error", lambda *_: 2e-5)
+    assert try_tolerance(problem, "adams").tolerance == pytest.approx(10 * cautious * 0.4e-5 / 2e-5)
+    monkeypatch.setattr("sealdyn.certify.solver_error", lambda *_: 2e-3)
+    assert try_tolerance(problem, "adams").tolerance == cautious
+    monkeypatch.setattr("sealdyn.certify.solver_error", lambda *_: None)
+    assert try_tolerance(problem, "adams") is None
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        replace(fms(), contact=Contact(roughness=1e-7, compressive_strength=3e8)),
+        fms(speed=Table((0.0, 0.01), (1000.0, 1100.0))),
+        fmr(c=3.0, speed=1.1 * 8684.0, own=1e-3 * TILT_SCALE, fixed=0.0),
+        free_ring(),
+    ],
+    ids=["contact", "run-up", "unstable", "undamped"],
+)
+def test_where_a_stretch_does_not_tell_of_the_run(scene):
+    assert try_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams") is None
+
+
 def choose(scene, accuracy, start=None):
-    return lowest_rung(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))
+    return lowest_rung(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))[0]
 
 
 def test_the_lowest_film_that_keeps_the_accuracy():

@@ -1,0 +1,62 @@
+"""Settings of a study: lists given as one flag, and errors of one line."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from sealdyn.scenario import read_scenario
+from sealdyn.scenario_errors import ScenarioError
+from sealdyn.scenario_study import study_settings
+from sealdyn.studies import contact_onset, failures, rub, sealing_number, steady_state, sweep, work_precision
+
+SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml")
+
+
+def settings(module, **flags):
+    return study_settings(SCENARIO, module.__name__.rpartition(".")[2], module.Settings, flags)
+
+
+@pytest.mark.parametrize(
+    "module, key, words, found",
+    [
+        (rub, "whirl_speeds", "5700 rad/s, 60000 rpm", (5700.0, 2000 * math.pi)),
+        (rub, "whirl-speeds", "5700", (5700.0,)),
+        (rub, "whirl_speeds", 5700, (5700.0,)),
+        (rub, "whirl_speeds", ["5700 rad/s", 6000], (5700.0, 6000.0)),
+        (work_precision, "methods", "adams,dop853", ("adams", "dop853")),
+        (work_precision, "methods", "adams", ("adams",)),
+        (contact_onset, "values", "0.1 mrad, 2e-4", ("0.1 mrad", 2e-4)),
+        (steady_state, "approach", "0.9, 0.95", (0.9, 0.95)),
+        (failures, "items", "3, 5", (3, 5)),
+        (failures, "items", 3, (3,)),
+        (sealing_number, "starts", "closed form, open", ("closed form", "open")),
+        (sealing_number, "force_ratios", "1.5, 2", (1.5, 2.0)),
+    ],
+)
+def test_a_list_may_be_one_flag(module, key, words, found):
+    read = getattr(settings(module, **{key: words}), key.replace("-", "_"))
+    assert read == pytest.approx(found) if all(isinstance(v, float) for v in found) else read == found
+
+
+def test_words_with_commas_of_their_own_stay_whole():
+    read = settings(sweep, vary="rotor.runout=1 urad,2 urad", outputs="film,leakage")
+    assert read.vary == "rotor.runout=1 urad,2 urad" and read.outputs == "film,leakage"
+    assert settings(rub, values="1 mrad:2 mrad:3").values == "1 mrad:2 mrad:3"
+
+
+@pytest.mark.parametrize(
+    "module, key, words, told",
+    [
+        (rub, "whirl_speeds", "5700 rad/s, 6000 kg", ["study.rub] whirl_speeds", "6000 kg", "speed of rotation"]),
+        (rub, "whirl_speeds", "5700 rad/s,, 6000", ["study.rub] whirl_speeds", "speed of rotation"]),
+        (failures, "items", "3, many", ["study.failures] items", "many", "integer"]),
+        (steady_state, "approach", "0.9, near", ["study.steady_state] approach", "near", "number"]),
+        (rub, "whirl_speds", "1, 2", ["study.rub] whirl_speds", "nearest whirl_speeds"]),
+    ],
+)
+def test_a_bad_entry_is_one_line(module, key, words, told):
+    with pytest.raises(ScenarioError) as refused:
+        settings(module, **{key: words})
+    said = str(refused.value)
+    assert "\n" not in said and all(part in said for part in told), said
