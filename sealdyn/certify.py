@@ -26,6 +26,8 @@ STRETCH, SHARPER, PER_PERIOD = 3.0, 30.0, 32
 SHOWN = 4.0
 # First try of a tolerance over the cautious one, and the share of the accuracy its estimated error may take.
 LOOSER, SHARE = 10.0, 0.4
+# The energy of a motion a times smaller than its scale is known a times less well: both are less below 1/3 of a scale.
+LARGE, WORTH = 3.0, 1.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau": "dop853", "expm": "dop853"}
 
@@ -59,12 +61,15 @@ class Certificate:
 def try_tolerance(problem: Problem, method: str) -> Trial | None:
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
     the cautious one.  None where a stretch at the start does not tell of the run: contact, friction, changing
-    conditions, a massless ring, an unstable scene, errors that add up over the whole run, `expm`."""
+    conditions, a massless ring, an unstable scene, errors that add up over the whole run, `expm`; and where the motion is
+    so small that its energy needs the cautious one."""
     told = problem.constant and not (problem.contact is not None or problem.layout.seals or problem.massless)
     if not told or method == "expm" or problem.memory * problem.fast_time > 0.5 * problem.duration:
         return None
-    cautious = tolerance_for(method, problem.accuracy, problem.memory)
-    tolerance, allowed = min(LOOSER * cautious, problem.accuracy), SHARE * problem.accuracy
+    cautious, large = tolerance_for(method, problem.accuracy, problem.memory), min(1.0, LARGE * _motion(problem))
+    tolerance, allowed = min(LOOSER * large * cautious, problem.accuracy), SHARE * large * problem.accuracy
+    if tolerance < WORTH * cautious:
+        return None
     error = solver_error(problem, method, tolerance)
     if error is None:
         return None
@@ -73,6 +78,13 @@ def try_tolerance(problem: Problem, method: str) -> Trial | None:
         sharper = max(cautious, tolerance * allowed / error)
         tolerance, error = sharper, error * (sharper / tolerance) ** 0.9
     return Trial(tolerance, error, f"tolerance {tolerance:.1e} by a trial over {STRETCH:.0f} fastest periods")
+
+
+def _motion(problem: Problem) -> float:
+    """Largest displacement to be expected, of its scale: the start and the linear steady state."""
+    _, answers, _ = problem.steady_motion()
+    steady = sum(np.abs(answer[problem.kept()]) for _, answer in answers)
+    return float(np.max((np.abs(problem.y0[: problem.n]) + steady) / problem.scales[: problem.n]))
 
 
 def solver_error(problem: Problem, method: str, tolerance: float | None = None) -> float | None:

@@ -265,7 +265,7 @@ def simulate(
         # What an interrupted run has not written yet it will meet again.
         problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
         sink.write_events()
-    summary = summarise(scenario, problem, outcome, sink.tally, method, f"{why}; {trial.said}" if trial else why)
+    summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
     summary["certificate"] = certificate(problem, method, outcome, trial, by_model)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == "interrupted" else out
@@ -279,6 +279,10 @@ def simulate(
 
 def _tried(trial: Trial | None) -> float | None:
     return trial.tolerance if trial else None
+
+
+def _reasons(why: str, trial: Trial | None) -> str:
+    return f"{why}; {trial.said}" if trial else why
 
 
 def certificate(problem, method, outcome, trial, by_model) -> dict:
@@ -295,10 +299,10 @@ def run_briefly(scenario) -> dict:
     """A run without an archive: the summary of interface.md.  Raises ImpossibleScene or ArchiveError."""
     begun = clock.perf_counter()
     problem, method, why, interval, count, _ = prepare(scenario)
-    sink = TallySink(problem, interval, count)
-    outcome = solve(problem, method, problem.accuracy, sink, tolerance=_tried(try_tolerance(problem, method)))
+    sink, trial = TallySink(problem, interval, count), try_tolerance(problem, method)
+    outcome = solve(problem, method, problem.accuracy, sink, tolerance=_tried(trial))
     problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
-    summary = summarise(scenario, problem, outcome, sink.tally, method, why)
+    summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 

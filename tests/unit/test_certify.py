@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,6 +30,8 @@ from sealdyn.model_error import model_error, model_errors
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Stator
+from sealdyn.scenario import read_scenario
+from sealdyn.simulate import run_briefly
 from sealdyn.solve import solve
 from sealdyn.units import Table
 
@@ -119,7 +122,7 @@ def test_a_tolerance_on_trial_keeps_the_accuracy(name, method, accuracy):
 
 def test_a_trial_that_errs_too_much_is_not_taken(monkeypatch):
     """The tolerance goes down with the estimated error, and never below the cautious one."""
-    problem = prepared(fms(), 30 * TURN, 1e-5)
+    problem = prepared(SCENES["larger"], 30 * TURN, 1e-5)
     cautious = tolerance_for("adams", 1e-5, problem.memory)
     monkeypatch.setattr("sealdyn.certify.solver_error", lambda *_: 2e-5)
     assert try_tolerance(problem, "adams").tolerance == pytest.approx(10 * cautious * 0.4e-5 / 2e-5)
@@ -129,6 +132,16 @@ def test_a_trial_that_errs_too_much_is_not_taken(monkeypatch):
     assert try_tolerance(problem, "adams") is None
 
 
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
+@pytest.mark.parametrize("name", ["fms_reference", "fmr_reference", "fmsr_both_flexible"])
+def test_energy_is_audited_as_sharply_at_a_tolerance_on_trial(name, accuracy):
+    """A tenth of a scale of motion, errors a twentieth of the accuracy: what is exchanged is known no better."""
+    path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
+    summary = run_briefly(read_scenario(path, [f"run.accuracy={accuracy}"]))
+    assert summary["energy_residual"] < 10 * accuracy
+    assert any("by a trial" in reason for reason in summary["model"]["reasons"])
+
+
 @pytest.mark.parametrize(
     "scene",
     [
@@ -136,8 +149,9 @@ def test_a_trial_that_errs_too_much_is_not_taken(monkeypatch):
         fms(speed=Table((0.0, 0.01), (1000.0, 1100.0))),
         fmr(c=3.0, speed=1.1 * 8684.0, own=1e-3 * TILT_SCALE, fixed=0.0),
         free_ring(),
+        fms(own=1e-3 * TILT_SCALE, runout=0.01 * TILT_SCALE),
     ],
-    ids=["contact", "run-up", "unstable", "undamped"],
+    ids=["contact", "run-up", "unstable", "undamped", "hardly moving"],
 )
 def test_where_a_stretch_does_not_tell_of_the_run(scene):
     assert try_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams") is None
