@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba import njit
 from scipy.linalg import expm
 
 from . import dynamics
@@ -62,22 +63,35 @@ def _followed(problem, linear, seen, answers, matrix, step, count, worst, enough
     free = np.zeros(2 * n)
     free[kept], free[n + np.array(kept)] = problem.y0[: problem.n], problem.y0[places]
     free -= _forced(answers, np.zeros(1), n)[0]
-    error, before = np.zeros(2 * n), None
+    error, before = np.zeros(2 * n), np.zeros(n)
     for first in range(0, count + 1, AT_ONCE):
         times = step * np.arange(first, min(first + AT_ONCE, count + 1))
-        states = _forced(answers, times, n)
-        for state in states:
-            state += free
-            free = whole @ free
-        defects, errors = seen.defects(times, states), np.empty_like(states)
-        for k, defect in enumerate(defects):
-            if before is not None:
-                error = whole @ error + pushed @ (before + defect)
-            errors[k], before = error, defect
+        unforced = _march(whole, free, np.zeros((len(times), 2 * n)))
+        free = unforced[-1]
+        defects = seen.defects(times, _forced(answers, times, n) + unforced[:-1])
+        # Nothing pushes before the first step.
+        earlier = np.vstack([before if first else -defects[0], defects[:-1]])
+        errors = _march(whole, error, (earlier + defects) @ pushed.T)[1:]
+        error, before = errors[-1], defects[-1]
         worst = np.maximum(worst, seen.errors(errors))
         if worst.max() > enough:
             break
     return worst
+
+
+@njit(cache=True)
+def _march(matrix, start, pushes):
+    """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
+    count, n = pushes.shape
+    states = np.empty((count + 1, n))
+    states[0] = start
+    for k in range(count):
+        for i in range(n):
+            total = pushes[k, i]
+            for j in range(n):
+                total += matrix[i, j] * states[k, j]
+            states[k + 1, i] = total
+    return states
 
 
 def _forced(answers, times, n) -> np.ndarray:

@@ -376,11 +376,12 @@ class Problem:
 
     def linear_scene(self, leg_index: int = 0, speed: float | None = None, shift: float | None = None):
         """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
-        if speed is not None or shift is not None:
+        if speed is not None:
             return linear_side.linear_scene(self, leg_index, speed, shift)
-        if leg_index not in self._linear_scenes:
-            self._linear_scenes[leg_index] = linear_side.linear_scene(self, leg_index)
-        return self._linear_scenes[leg_index]
+        key = leg_index, self.axial_shift(leg_index) if shift is None else shift
+        if key not in self._linear_scenes:
+            self._linear_scenes[key] = linear_side.linear_scene(self, leg_index, shift=key[1])
+        return self._linear_scenes[key]
 
     def harmonics(self) -> list:
         """The imposed oscillators of the present leg as harmonics in leg time."""
