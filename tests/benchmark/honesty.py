@@ -7,7 +7,7 @@ Random scenes (seeded): arrangement, seal, speed, forcing, start, run and asked 
 radial film by DOP853 at 1e-12.  Honest: what a user looks at (thinnest film over the clearance, relative misalignment
 over clearance / outer radius, leakage over its largest value, at every sample) is wrong by less than what was asked.
 Cost: wall time of choosing, running and certifying, over that of the cheapest film, method and tolerance that would
-have done, known only in hindsight.
+have done, known only in hindsight; the least of three times each.
 """
 
 import json
@@ -31,7 +31,7 @@ from sealdyn.scene import Scene
 from sealdyn.signals import signals
 from sealdyn.solve import solve
 
-SEED, SAMPLES = 20_26, 32
+SEED, SAMPLES, TIMES = 20_26, 32, 3
 METHODS = ("adams", "bdf", "dop853")
 # Accuracies tried in hindsight, in units of the asked one, from the cheapest; the first that does is taken.
 KNOBS = (1000.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.3)
@@ -109,6 +109,30 @@ def apart(found, truth):
     return float(np.max(np.abs(found[:count] - truth[:count]) / scale))
 
 
+def automatic(made, duration, accuracy, start, interval):
+    """Wall times (s) of choosing, running and certifying; problem, method, what was found, certificate."""
+    begun = time.perf_counter()
+    problem, by_model = lowest_rung(made, duration, accuracy, begin(start))
+    method, _ = problem.solver()
+    trial = try_tolerance(problem, method)
+    chosen = time.perf_counter() - begun
+    found, wall = looked_at(problem, method, accuracy, interval, trial and trial.tolerance)
+    begun = time.perf_counter()
+    certificate = certify(problem, method, trial, by_model)
+    return chosen, wall, time.perf_counter() - begun, problem, method, found, certificate
+
+
+def hindsight(film_scene, name, accuracy, problem_of, observed, interval):
+    """What a run by this film, method and accuracy finds, and its wall time with making it ready (s)."""
+    begun = time.perf_counter()
+    tried = problem_of(film_scene, accuracy)
+    if tried.film_name == "linear":
+        tried.observed = observed
+    ready = time.perf_counter() - begun
+    seen, wall = looked_at(tried, name, accuracy, interval)
+    return seen, ready + wall
+
+
 def judge(made, duration, accuracy, start):
     """What the automatic choice did, and the cheapest that would have done; None if the scene is no scene."""
     interval = duration / (SAMPLES * max(1, round(duration * made.shaft.speed / (2 * math.pi))))
@@ -126,32 +150,26 @@ def judge(made, duration, accuracy, start):
     truth, _ = looked_at(exact, "dop853", 6e-11, interval)
     if truth is None or truth[:, 0].min() < 0.05:
         return None
+    tries = [automatic(made, duration, accuracy, start, interval) for _ in range(TIMES)]
+    chosen, wall, certified = (min(one[k] for one in tries) for k in range(3))
+    problem, method, found, certificate = tries[0][3:]
     best = math.inf
-    begun = time.perf_counter()
-    problem, by_model = lowest_rung(made, duration, accuracy, begin(start))
-    method, _ = problem.solver()
-    trial = try_tolerance(problem, method)
-    chosen = time.perf_counter() - begun
-    found, wall = looked_at(problem, method, accuracy, interval, trial and trial.tolerance)
-    begun = time.perf_counter()
-    certificate = certify(problem, method, trial, by_model)
-    cost = chosen + wall + time.perf_counter() - begun
     linear = replace(made, film=replace(made.film, model="linear", coefficients="radial"))
     for film_scene in (linear, radial):
         for name in METHODS:
             for knob in KNOBS:
-                begun = time.perf_counter()
-                tried = problem_of(film_scene, min(accuracy * knob, 0.05))
-                if film_scene is linear:
-                    tried.observed = exact.observed
-                made_ready = time.perf_counter() - begun
-                seen, wall_tried = looked_at(tried, name, min(accuracy * knob, 0.05), interval)
+                asked = min(accuracy * knob, 0.05)
+                seen, cost = hindsight(film_scene, name, asked, problem_of, exact.observed, interval)
                 if apart(seen, truth) <= accuracy:
-                    best = min(best, made_ready + wall_tried)
+                    again = [
+                        hindsight(film_scene, name, asked, problem_of, exact.observed, interval)[1]
+                        for _ in range(TIMES - 1)
+                    ]
+                    best = min(best, cost, *again)
                     break
     error, estimated = apart(found, truth), certificate.estimated
     return {"accuracy": accuracy, "error": error, "estimated": estimated, "film": problem.film_name, "method": method,
-            "cost": cost, "solving": chosen + wall, "running": wall, "best": best}  # fmt: skip
+            "cost": chosen + wall + certified, "solving": chosen + wall, "running": wall, "best": best}  # fmt: skip
 
 
 def main():
