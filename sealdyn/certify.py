@@ -61,8 +61,8 @@ class Certificate:
 def try_tolerance(problem: Problem, method: str) -> Trial | None:
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
     the cautious one.  None where a stretch at the start does not tell of the run: contact, friction, changing
-    conditions, a massless ring, an unstable scene, errors that add up over the whole run, `expm`; and where the motion is
-    so small that its energy needs the cautious one."""
+    conditions, a massless ring, an unstable scene, errors that add up over the whole run, `expm`; and where the
+    motion is so small that its energy needs the cautious one."""
     told = problem.constant and not (problem.contact is not None or problem.layout.seals or problem.massless)
     if not told or method == "expm" or problem.memory * problem.fast_time > 0.5 * problem.duration:
         return None

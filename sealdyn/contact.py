@@ -5,10 +5,8 @@ law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
 **Valid** rigid coned faces, rough at a scale far below their width; dry, and without memory.
 
 Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and
-moments are minus its derivatives, and turning costs nothing but friction.  A law is a polynomial over the touching
-part of a radius: Gauss points are exact there.  Around the circle the touching arc is split where an edge of the
-face enters or leaves the asperities; between the integrand is analytic, and Gauss points converge exponentially
-however narrow the arc.
+moments are minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli
+between its radii, which annulus.py integrates.
 """
 
 import math
@@ -18,16 +16,23 @@ from typing import Literal
 import numpy as np
 from numba import njit
 
-from .asperities import (
-    BEYOND,
-    HALF_HEIGHT,
-    REACH,
-    SERIES_SIZE,
-    christensen_series,
-    gaussian_series,
-    scaled,
-    stored,
+from .annulus import (
+    AREA,
+    AROUND,
+    ENERGY,
+    FACE_AREA,
+    LOAD,
+    NODES,
+    RADIAL,
+    SHEAR_OF_AREA,
+    SHEAR_OF_LOAD,
+    SPAN,
+    TOP,
+    WEAR_PER_LOAD,
+    annulus,
+    pressed,
 )
+from .asperities import HALF_HEIGHT, REACH, christensen_series, gaussian_series, scaled, stored
 from .gap import (
     CONTACT_AREA,
     CONTACT_ENERGY,
@@ -41,10 +46,14 @@ from .gap import (
     GY,
     INNER_RADIUS,
     OUTER_RADIUS,
+    PROFILE,
+    PROFILE_RADII,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
     WEAR,
     edge_gaps,
+    node_gap,
+    smallest_gap,
 )
 from .units import AsperityDensity, Length, Stress, WearCoefficient
 
@@ -75,12 +84,6 @@ LAW_KEYS = {
 }
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
-
-# Block layout: then the series, then nodes and weights on [0, 1] of the radius and of a panel of the circle.
-TOP, SPAN, SHEAR_OF_LOAD, SHEAR_OF_AREA, WEAR_PER_LOAD, FACE_AREA, RADIAL, AROUND, LOAD = range(9)
-AREA = LOAD + SERIES_SIZE
-ENERGY = AREA + SERIES_SIZE
-NODES = ENERGY + SERIES_SIZE
 
 
 def faults(contact: Contact) -> list[tuple[str, str, str]]:
@@ -134,8 +137,8 @@ def parameters(contact: Contact, face: np.ndarray, points: int | None = None) ->
         number = contact.asperity_density * contact.asperity_radius * contact.roughness
         stiff = 4.0 / 3.0 * number * contact.modulus * math.sqrt(contact.roughness / contact.asperity_radius)
         load, area = scaled(gaussian_series(1.5), stiff), scaled(gaussian_series(1.0), math.pi * number)
-    # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r.
-    radial = (4 + int(load[0]) + 2) // 2 + 1
+    # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
+    radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
     _, top, bottom = levels(contact)
     k[TOP], k[SPAN] = top, top - bottom
@@ -155,102 +158,9 @@ def parameters(contact: Contact, face: np.ndarray, points: int | None = None) ->
 
 
 @njit(cache=True)
-def _at(k, series, u, head):
-    """A law at u: head (u^4 or u^5) times its series in v = 2u - 1, or what continues it beyond u = 1."""
-    if u > 1.0:
-        e, tail = u - 1.0, series + BEYOND
-        return k[tail] + e * (k[tail + 1] + e * (k[tail + 2] + e * k[tail + 3]))
-    if u <= 0.0:
-        return 0.0
-    v, value = 2.0 * u - 1.0, 0.0
-    for n in range(series + 1 + int(k[series]), series, -1):
-        value = value * v + k[n]
-    return head * value
-
-
-@njit(cache=True)
-def _part(k, r_a, r_b, u_a, u_b, complete):
-    """Integrals over a smooth part of a radius: of p r, p r^2; and, if `complete`, of area r, area r^2, energy r."""
-    points = int(k[RADIAL])
-    load = arm = area = area_arm = energy = 0.0
-    for n in range(points):
-        y = k[NODES + n]
-        u, r = u_a + y * (u_b - u_a), r_a + y * (r_b - r_a)
-        w = k[NODES + points + n] * (r_b - r_a) * r
-        head = u * u * u * u
-        p = w * _at(k, LOAD, u, head)
-        load += p
-        arm += p * r
-        if complete:
-            a = w * _at(k, AREA, u, head)
-            area += a
-            area_arm += a * r
-            energy += w * _at(k, ENERGY, u, head * u)
-    return load, arm, area, area_arm, energy
-
-
-@njit(cache=True, error_model="numpy")
-def _radius(k, r_i, r_o, u_i, u_o, complete):
-    """As `_part`, over all of a radius that touches; u is linear between u_i and u_o."""
-    # From the less to the more pressed end; going inwards the integrals change sign.
-    turn = 1.0 if u_i <= u_o else -1.0
-    r_a, u_a, r_b, u_b = (r_i, u_i, r_o, u_o) if u_i <= u_o else (r_o, u_o, r_i, u_i)
-    if u_b <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, 0.0
-    if u_a < 0.0:
-        r_a, u_a = r_a - u_a * (r_b - r_a) / (u_b - u_a), 0.0
-    if u_a >= 1.0 or u_b <= 1.0:
-        a, b, c, d, e = _part(k, r_a, r_b, u_a, u_b, complete)
-        return turn * a, turn * b, turn * c, turn * d, turn * e
-    r_1 = r_a + (1.0 - u_a) * (r_b - r_a) / (u_b - u_a)
-    a, b, c, d, e = _part(k, r_a, r_1, u_a, 1.0, complete)
-    a1, b1, c1, d1, e1 = _part(k, r_1, r_b, 1.0, u_b, complete)
-    return turn * (a + a1), turn * (b + b1), turn * (c + c1), turn * (d + d1), turn * (e + e1)
-
-
-@njit(cache=True)
-def _crossing(low, swing, level):
-    """Angle from the thinnest place where low + swing (1 - cos beta) passes `level`; 0 or pi if it never does."""
-    if level <= low:
-        return 0.0
-    if level >= low + 2.0 * swing:
-        return math.pi
-    return 2.0 * math.asin(math.sqrt((level - low) / (2.0 * swing)))
-
-
-@njit(cache=True, error_model="numpy")
-def _circle(k, f, tilt, low_i, low_o, complete):
-    """As `_part`, over the whole face; with the moment of the load about the axis of the tilt in third place."""
-    r_i, r_o, mean = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0
-    top, per_span, r_m = k[TOP], 1.0 / k[SPAN], 0.5 * (r_i + r_o)
-    swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
-
-    # Where an edge of the face meets the first asperities, and where its last are flattened.
-    b_1, b_2 = _crossing(low_i, swing_i, top), _crossing(low_o, swing_o, top)
-    b_3, b_4 = _crossing(low_i, swing_i, top - k[SPAN]), _crossing(low_o, swing_o, top - k[SPAN])
-    end, points, nodes = max(b_1, b_2), int(k[AROUND]), NODES + 2 * int(k[RADIAL])
-
-    load = arm = along = area = area_arm = energy = start = 0.0
-    while start < end:
-        stop = end
-        for b in (b_1, b_2, b_3, b_4):
-            if start < b < stop:
-                stop = b
-        for n in range(points):
-            # 1 - cos beta = 2 sin^2(beta / 2): no cancellation in a narrow arc.
-            rise = 2.0 * math.sin(0.5 * (start + k[nodes + n] * (stop - start))) ** 2
-            u_i, u_o = (top - low_i - swing_i * rise) * per_span, (top - low_o - swing_o * rise) * per_span
-            a, b, c, d, e = _radius(k, r_i, r_o, u_i, u_o, complete)
-            w = 2.0 * (stop - start) * k[nodes + points + n]
-            load += w * a
-            arm += w * b
-            # Where the tilt's arm is the mean radius so is the moment's: else there were no potential.
-            along -= w * (1.0 - rise) * (r_m * a if mean else b)
-            area += w * c
-            area_arm += w * d
-            energy += w * e
-        start = stop
-    return load, arm, along, area, area_arm, energy
+def _mean_arm(f):
+    """The mean radius where the tilt is taken there, else 0."""
+    return 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else 0.0
 
 
 @njit(cache=True)
@@ -260,10 +170,31 @@ def _face(k, f, s, complete):
     if complete:
         s[CONTACT_TORQUE] = s[CONTACT_AREA] = s[CONTACT_PRESSURE] = s[CONTACT_ENERGY] = s[WEAR] = 0.0
     tilt = math.hypot(s[GX], s[GY])
-    low_i, low_o = edge_gaps(f, s[DZ], tilt)
-    if min(low_i, low_o) >= k[TOP]:
-        return
-    load, arm, along, area, area_arm, energy = _circle(k, f, tilt, low_i, low_o, complete)
+    if f[PROFILE] == 0.0:
+        low_i, low_o = edge_gaps(f, s[DZ], tilt)
+        low = min(low_i, low_o)
+        if low >= k[TOP]:
+            return
+        r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
+        load, arm, along, area, area_arm, energy, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
+    else:
+        low, _ = smallest_gap(f, s[DZ], tilt)
+        if low >= k[TOP]:
+            return
+        load = arm = along = area = area_arm = energy = 0.0
+        low_o = node_gap(f, 0, s[DZ], tilt)
+        for node in range(int(f[PROFILE]) - 1):
+            low_i, low_o = low_o, node_gap(f, node + 1, s[DZ], tilt)
+            if min(low_i, low_o) >= k[TOP]:
+                continue
+            r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]
+            a, b, c, d, e, g, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
+            load += a
+            arm += b
+            along += c
+            area += d
+            area_arm += e
+            energy += g
     s[CONTACT_FORCE] = load
     # The pressure is even about the thinnest place: its moment is along the tilt.
     if tilt > 0.0:
@@ -271,8 +202,8 @@ def _face(k, f, s, complete):
     if complete:
         shear, spin = k[SHEAR_OF_LOAD] * arm + k[SHEAR_OF_AREA] * area_arm, s[SPIN_DIFFERENCE]
         s[CONTACT_TORQUE] = math.copysign(shear, spin) if spin != 0.0 else 0.0
-        u = (k[TOP] - min(low_i, low_o)) / k[SPAN]
-        s[CONTACT_PRESSURE] = _at(k, LOAD, u, u**4)
+        u = (k[TOP] - low) / k[SPAN]
+        s[CONTACT_PRESSURE] = pressed(k, LOAD, u, u**4)
         s[CONTACT_AREA], s[CONTACT_ENERGY] = area / k[FACE_AREA], energy
         s[WEAR] = k[WEAR_PER_LOAD] * abs(spin) * arm / k[FACE_AREA]
 
@@ -293,3 +224,35 @@ def rub(k, f, s):
     `int p_c dh/dtheta dtheta = -[W] = 0`.
     """
     _face(k, f, s, True)
+
+
+@njit(cache=True)
+def worn(k, f, s, out):
+    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j
+    the hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
+
+    The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over
+    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.  `k`, `f`, `s` as in `press`.
+    """
+    out[:] = 0.0
+    tilt = math.hypot(s[GX], s[GY])
+    for node in range(int(f[PROFILE]) - 1):
+        low_i, low_o = node_gap(f, node, s[DZ], tilt), node_gap(f, node + 1, s[DZ], tilt)
+        if min(low_i, low_o) >= k[TOP]:
+            continue
+        r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]
+        _, arm, _, _, _, _, outwards = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, True)
+        share = outwards / (r_o - r_i)
+        out[node] += arm - share
+        out[node + 1] += share
+
+
+def hat_areas(face) -> np.ndarray:
+    """Areas `int phi_j dA` (m^2) of the hat functions of a profile's radii, shape (radii,); with a depth that is linear
+    between them the volume worn off is the sum of depth times area.  `face` the leading slots of a film's block."""
+    count = int(face[PROFILE])
+    r = face[PROFILE_RADII : PROFILE_RADII + count]
+    areas, width = np.zeros(count), np.diff(r)
+    areas[:-1] += math.pi / 3.0 * width * (2.0 * r[:-1] + r[1:])
+    areas[1:] += math.pi / 3.0 * width * (r[:-1] + 2.0 * r[1:])
+    return areas

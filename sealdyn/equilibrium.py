@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from .films import aligned_gaps
 from .legs import Leg, constant_and_slope
 from .scene import ImpossibleScene, Scene
 from .units import Table
@@ -99,11 +100,20 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
+def rise(film) -> float:
+    """Difference (m) between the thickest and the thinnest place of the aligned film."""
+    gaps = [h for _, h in aligned_gaps(film, 0.0)]
+    return max(gaps) - min(gaps)
+
+
+def closed_below(film) -> float:
+    """Clearance (m) below which the aligned film is closed somewhere, as a diverging one is at its outer edge."""
+    return max(0.0, -min(h for _, h in aligned_gaps(film, 0.0)))
+
+
 def equilibria(film, opening_force, closing: float, inner: float, outer: float) -> list[Equilibrium]:
     """Every clearance where the aligned film's opening force equals `closing` (N), increasing."""
-    reference = max(abs(film.coning) * (film.outer_radius - film.inner_radius), 1e-6)
-    # A diverging film is closed at the outer edge below this clearance.
-    least = max(0.0, -film.coning * (film.outer_radius - film.inner_radius)) * (1 + 1e-9)
+    reference, least = max(rise(film), 1e-6), closed_below(film) * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(film, c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
@@ -132,7 +142,7 @@ def _stiffness(opening_force, film, clearance, inner, outer) -> float:
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
-    reference = max(abs(film.coning) * (film.outer_radius - film.inner_radius), 1e-6)
+    reference = max(rise(film), 1e-6)
     tight, wide = (opening_force(film, c, inner, outer) for c in (reference / 100, reference * 100))
     expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"

@@ -31,16 +31,24 @@ from .gap import (
 )
 from .legs import constant_and_slope
 from .modes import linearise
+from .scene import ImpossibleScene
 
 
-def film_module(name: str):
-    """The film rung called `name`, found by file name; "auto" is the radial film until a choice is certified."""
-    return importlib.import_module(f"sealdyn.films.{'radial' if name == 'auto' else name}")
+def film_module(name: str, profile=None):
+    """The film rung called `name`, found by file name; "auto" is the radial film until a choice is certified, of faces
+    with a profile the profiled film."""
+    if name == "auto":
+        name = "radial" if profile is None else "profiled"
+    return importlib.import_module(f"sealdyn.films.{name}")
 
 
-def film_names() -> list[str]:
-    """Names of the film rungs there are."""
-    return sorted(m.name for m in pkgutil.iter_modules(films.__path__) if not m.name.startswith("_"))
+def film_names(film=None) -> list[str]:
+    """Names of the film rungs that can take a film's faces: of a profile the profiled film alone, which between plain
+    cones (`film` without a profile, or None) is the radial film once more and is left out."""
+    if film is not None and film.profile is not None:
+        return ["profiled"]
+    found = (m.name for m in pkgutil.iter_modules(films.__path__) if not m.name.startswith("_"))
+    return sorted(name for name in found if name != "profiled")
 
 
 class Faces:
@@ -50,7 +58,9 @@ class Faces:
 
     def __init__(self, scene, error: float):
         self.scene, self._asperities = scene, None
-        self.film = film_module(scene.film.model)
+        for key, found, expected in films.faults(scene.film):
+            raise ImpossibleScene(f"film.{key}", found, expected)
+        self.film = film_module(scene.film.model, scene.film.profile)
         self.name = self.film.__name__.rsplit(".", 1)[1]
         self.clearance, self.closing, self.equilibria, self.said = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
@@ -89,7 +99,7 @@ class Faces:
         face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
         face[FLOOR], face[TOUCH], face[COLLAPSE] = contact.levels(self.scene.contact)
         if self._asperities is None:
-            # Of the faces it takes the radii only, which stay.
+            # Of the faces it takes the radii, and whether there is a profile, which stay.
             self._asperities = contact.parameters(self.scene.contact, face)
         contact.press(self._asperities, face, s)
         return force + s[CONTACT_FORCE]

@@ -14,12 +14,14 @@ def lowest_rung(scene, duration: float, accuracy: float, start) -> tuple[Problem
     linear film; `start(problem)` sets its unknowns.
 
     Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
-    below half the accuracy, else the radial film.  Raises ImpossibleScene.
+    below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises ImpossibleScene.
     """
     film = scene.film
-    if film.model != "auto":
+    if film.model != "auto" or film.profile is not None:
         problem = Problem(scene, duration, accuracy)
         start(problem)
+        if film.model == "auto":
+            problem.reasons.append("film auto: the profiled film; the faces have a profile, others know cones only")
         return problem, model_error(problem) if problem.film_name == "linear" else None
     radial = Problem(replace(scene, film=replace(film, model="radial")), duration, accuracy)
     start(radial)

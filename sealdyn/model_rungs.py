@@ -8,7 +8,7 @@ import numpy as np
 from . import modes
 from .collocation import collocation
 from .faces import film_module, film_names
-from .films import Coefficients
+from .films import Coefficients, aligned_gaps
 from .methods import METHODS, tolerance_for
 from .observables import errors, observe, worst
 from .scenario_study import varied
@@ -26,7 +26,7 @@ def rungs(scenario) -> list[tuple[str, dict]]:
         # The film is these numbers: there is nothing above them.
         return [("linear film, coefficients as given", {"film.model": "linear"})]
     found = []
-    for name in sorted(film_names(), key=lambda n: film_module(n).RUNG):
+    for name in sorted(film_names(scenario.scene.film), key=lambda n: film_module(n).RUNG):
         if name == "linear":
             found += [
                 (f"linear film, {words} coefficients", {"film.model": name, "film.coefficients": source})
@@ -153,12 +153,11 @@ def harmonic_balance(problem, leg_index: int) -> dict:
     motion = np.zeros((3, len(t)))
     for frequency, amplitude in relative:
         motion += (amplitude[:, None] * np.exp(1j * frequency * t)).real
-    inner, outer, clearance, coning = problem.face[:4]
     tilt = np.hypot(motion[1], motion[2])
-    gap = clearance + problem.axial_shift(leg_index) + motion[0]
-    thinnest = np.minimum(gap - inner * tilt, gap + coning * (outer - inner) - outer * tilt)
+    shift = problem.axial_shift(leg_index) + motion[0]
+    thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(problem.scene.film, problem.clearance))
     return {
-        "h_min": float(thinnest.min()),
+        "h_min": float(thinnest),
         "relative_misalignment": [float(tilt.min()), float(tilt.max())],
     }
 

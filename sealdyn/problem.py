@@ -297,10 +297,12 @@ class Problem:
         what, limit = (
             ("film collapsed", "floor") if self.contact is None else ("asperities crushed flat", "all flat at")
         )
-        side = "inner" if record[watch.H_RADIUS] == self.face[0] else "outer"
+        at = "at the {} radius".format("inner" if record[watch.H_RADIUS] == self.face[0] else "outer")
+        if record[watch.H_RADIUS] not in self.face[:2]:
+            at = "at the radius"
         return (
             f"{what} at t = {self.legs[index].time + tau:.6g} s: thickness {record[watch.H] * 1e6:.3g} um "
-            f"({limit} {self.face[COLLAPSE] * 1e6:.3g} um) at the {side} radius {record[watch.H_RADIUS] * 1e3:.4g} mm, "
+            f"({limit} {self.face[COLLAPSE] * 1e6:.3g} um) {at} {record[watch.H_RADIUS] * 1e3:.4g} mm, "
             f"theta = {math.degrees(record[watch.H_THETA]):.1f} deg.  Try less misalignment or runout, "
             'more coning or clearance, a stiffer or more damped support, run.start = "steady".'
         )

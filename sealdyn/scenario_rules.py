@@ -4,7 +4,7 @@ import cmath
 import difflib
 import math
 
-from . import contact, secondary_seal
+from . import contact, films, secondary_seal
 from .scenario_errors import film_models
 from .scene import ImpossibleScene
 from .units import Table
@@ -13,6 +13,7 @@ from .units import Table
 def refuse_impossible(scene, run) -> None:
     """Raises `ImpossibleScene` with the first rule that the scene breaks."""
     _film(scene.film)
+    _profile(scene)
     _closing(scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         _ring(name, ring)
@@ -50,7 +51,7 @@ def _film(film) -> None:
         )
     if not 0 < film.floor < 0.5:
         raise ImpossibleScene("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
-    if film.clearance is not None:
+    if film.clearance is not None and film.profile is None:
         outer = film.clearance + film.coning * (film.outer_radius - film.inner_radius)
         if outer <= film.floor * film.clearance:
             raise ImpossibleScene(
@@ -59,6 +60,23 @@ def _film(film) -> None:
                 "an open film",
             )
     _cavitation(film)
+
+
+def _profile(scene) -> None:
+    film = scene.film
+    for key, found, expected in films.faults(film):
+        raise ImpossibleScene(f"film.{key}", found, expected)
+    if film.clearance is not None and film.profile is not None:
+        least, radius = min((h, r) for r, h in films.aligned_gaps(film, film.clearance))
+        if not least > _lowest(scene):
+            raise ImpossibleScene("film.profile.depth", f"a film of {least:g} m at r = {radius:g} m", "an open film")
+
+
+def _lowest(scene) -> float:
+    """Film thickness (m) at which a run ends."""
+    if scene.contact is None:
+        return scene.film.floor * scene.film.clearance
+    return contact.levels(scene.contact)[2]
 
 
 def _cavitation(film) -> None:
@@ -159,17 +177,16 @@ def _open_at_start(scene) -> None:
         angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
         stator = (0.0, cmath.rect(angle, direction))
     tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
-    at_inner = gap - tilt * film.inner_radius
-    at_outer = gap + film.coning * (film.outer_radius - film.inner_radius) - tilt * film.outer_radius
-    lowest = film.floor * film.clearance if scene.contact is None else contact.levels(scene.contact)[2]
-    if not min(at_inner, at_outer) > lowest:
+    thinnest, radius = min((h - tilt * r, r) for r, h in films.aligned_gaps(film, gap))
+    lowest = _lowest(scene)
+    if not thinnest > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
         if (scene.rotor.support and scene.stator.support) or _given(scene.initial):
             blame = "initial"
-        where = "inner" if at_inner < at_outer else "outer"
+        where = {film.inner_radius: "the inner radius", film.outer_radius: "the outer radius"}
         raise ImpossibleScene(
             blame,
-            f"a film closed at the start ({min(at_inner, at_outer):g} m at the {where} radius, "
+            f"a film closed at the start ({thinnest:g} m at {where.get(radius, f'r = {radius:g} m')}, "
             f"relative misalignment {tilt:g} rad)",
             f"more than floor x clearance = {lowest:g} m" if scene.contact is None
             else f"more than {lowest:g} m, where all asperities are flat",

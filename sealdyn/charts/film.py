@@ -34,8 +34,8 @@ def draw(archive_path, out_path, turns: float = 6.0):
 def thickness(run: Run, radius, angle, first: int, stop: int):
     """Film thickness (m): rows first to stop along axis 0, then broadcast over `radius` and `angle`.
 
-    h = C + dz + r (g_x sin - g_y cos) + coning (r - r_i); no tilt in the archive: aligned faces.
-    **Valid** for coned faces; waviness is not in it.
+    h = C + dz + r (g_x sin - g_y cos) + shape(r); no tilt in the archive: aligned faces.
+    **Valid** for faces that are the same all around; waviness is not in it.
     """
 
     def rows(name):
@@ -43,8 +43,7 @@ def thickness(run: Run, radius, angle, first: int, stop: int):
         return values.reshape(-1, *([1] * np.broadcast(radius, angle).ndim))
 
     wedge = rows("relative_tilt_x") * np.sin(angle) - rows("relative_tilt_y") * np.cos(angle)
-    coning = (run.film("coning") or 0.0) * (radius - (run.film("inner_radius") or 0.0))
-    return run.clearance + rows("axial_gap_change") + radius * wedge + coning
+    return run.clearance + rows("axial_gap_change") + radius * wedge + run.shape(radius)
 
 
 def map_over_turns(ax, run: Run, turns: float):

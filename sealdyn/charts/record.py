@@ -98,16 +98,21 @@ class Run:
 
     @cached_property
     def clearance(self) -> float | None:
-        """Design clearance (m): given, or from the first row's h_min = C + dz + coning (r - r_i) - r tilt."""
+        """Design clearance (m): given, or from the first row's h_min = C + dz + shape(r) - r tilt."""
         if self.film("clearance"):
             return self.film("clearance")
         if not self.has("h_min", "axial_gap_change"):
             return None
         first = {n: self.values(n, 0, 1)[0] for n in self.info["series"]}
-        inner = self.film("inner_radius") or 0.0
-        radius = first.get("h_min_radius", inner)
-        slope = (self.film("coning") or 0.0) * (radius - inner)
-        return first["h_min"] - first["axial_gap_change"] - slope + radius * first.get("relative_misalignment", 0)
+        radius = first.get("h_min_radius", self.film("inner_radius") or 0.0)
+        wedge = radius * first.get("relative_misalignment", 0)
+        return first["h_min"] - first["axial_gap_change"] - float(self.shape(radius)) + wedge
+
+    def shape(self, radius):
+        """By how much (m) the aligned gap is wider than the clearance at radii: coning, and the faces' profile."""
+        profile = self.resolved.get("film", {}).get("profile")
+        depth = np.interp(radius, profile["radius"], profile["depth"]) if profile else 0.0
+        return (self.film("coning") or 0.0) * (radius - (self.film("inner_radius") or 0.0)) + depth
 
     @property
     def touch_at(self) -> float:
@@ -123,14 +128,12 @@ class Run:
     @cached_property
     def contact_tilt(self) -> float | None:
         """Relative misalignment (rad) at which the faces touch at the design clearance."""
-        inner, outer, coning = (
-            self.film("inner_radius"),
-            self.film("outer_radius"),
-            self.film("coning") or 0.0,
-        )
+        inner, outer = self.film("inner_radius"), self.film("outer_radius")
         if not (self.clearance and inner and outer):
             return None
-        return min(self.clearance / inner, (self.clearance + coning * (outer - inner)) / outer)
+        profile = self.resolved.get("film", {}).get("profile")
+        radii = np.array(profile["radius"] if profile else [inner, outer])
+        return float(np.min((self.clearance + self.shape(radii)) / radii))
 
     @property
     def question(self) -> str:

@@ -32,6 +32,9 @@ from ..units import (
     Varying,
     Viscosity,
 )
+from ._profile import Profile, aligned_gaps, faults
+
+__all__ = ["Coefficients", "Film", "Profile", "aligned_gaps", "faults"]
 
 
 @dataclass(frozen=True)
@@ -68,3 +71,4 @@ class Film:
     cavitation_pressure: Pressure | None = None
     coefficients: Literal["green", "radial"] | Coefficients = "green"
     floor: float = 1e-3
+    profile: Profile | None = None

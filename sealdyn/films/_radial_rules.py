@@ -105,3 +105,24 @@ def points_for(f, h_i, h_o):
         if ratio <= f[RULES + rule * RULE_SIZE + 1]:
             return rule
     return len(RADIAL_POINTS) - 1
+
+
+@njit(cache=True)
+def roominess(h, swing):
+    """Mean film over its swing around the circle: 1 where the faces meet, 0 for a film closed all around."""
+    if h <= swing:
+        return 0.0
+    return h / swing if swing > 0.0 else 1e9
+
+
+@njit(cache=True)
+def angle_count(f, ratio):
+    """Number of angles: the trapezoid's error falls as exp(-N eta), cosh(eta) = ratio of mean film to swing."""
+    if ratio <= 1.0:
+        # Below the floor only trial states remain: smooth is enough.
+        return MOST_ANGLES // 8
+    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9))
+    for i in range(len(ANGLES)):
+        if f[ANGLE_COUNTS + i] >= wanted:
+            return int(f[ANGLE_COUNTS + i])
+    return MOST_ANGLES

@@ -54,19 +54,18 @@ from ..gap import (
 )
 from ._floored_circle import floored_circle
 from ._radial_rules import (
-    ANGLE_COUNTS,
-    ANGLES,
     COSINES,
     FAST,
     HAS_CAVITATION,
-    LOG_ERROR,
     MOST_ANGLES,
     RADIAL_POINTS,
     RULE_SIZE,
     RULES,
     SINES,
+    angle_count,
     parameters,
     points_for,
+    roominess,
 )
 
 RUNG = 2
@@ -84,16 +83,8 @@ def opening_force(film, clearance: float, inner_pressure: float, outer_pressure:
 
 @njit(cache=True)
 def angles_for(f, h_i, h_o, swing_i, swing_o):
-    """Number of angles: the trapezoid's error falls as exp(-N eta), cosh(eta) = mean film / swing."""
-    if h_i <= swing_i or h_o <= swing_o:
-        # Below the floor only trial states remain: smooth is enough.
-        return MOST_ANGLES // 8
-    ratio = min(h_i / swing_i if swing_i > 0 else 1e9, h_o / swing_o if swing_o > 0 else 1e9)
-    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9))
-    for i in range(len(ANGLES)):
-        if f[ANGLE_COUNTS + i] >= wanted:
-            return int(f[ANGLE_COUNTS + i])
-    return MOST_ANGLES
+    """Number of angles for the edge that is nearer to touching."""
+    return angle_count(f, min(roominess(h_i, swing_i), roominess(h_o, swing_o)))
 
 
 @njit(cache=True, fastmath=FAST, error_model="numpy")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from ..films import aligned_gaps
 from ..gap import (
     DZ,
     FORCE,
@@ -21,7 +22,7 @@ from ..gap import (
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     VISCOSITY,
-    edge_gaps,
+    smallest_gap,
 )
 from ..modes import linearise
 from ..problem import Problem
@@ -94,7 +95,7 @@ def matrices(problem: Problem, state: State, speed: float | None = None) -> tupl
     """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
     lose per displacement and per rate of (dz, g_x, g_y).  Raises ValueError where the faces touch."""
     s = gap_state(problem, state, speed)
-    thinnest = min(edge_gaps(problem.face, state.dz, abs(state.tilt)))
+    thinnest = smallest_gap(problem.face, state.dz, abs(state.tilt))[0]
     if thinnest <= problem.face[4]:
         raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
     # Eight differences reach four steps to either side: stay clear of the other face.
@@ -131,7 +132,7 @@ def opened(problem: Problem, tilt: complex, whirl: float) -> float:
         problem.film.wrench(problem.f, s)
         return s[FORCE] - closing - support * dz
 
-    thinnest = min(edge_gaps(problem.face, 0.0, abs(tilt)))
+    thinnest = smallest_gap(problem.face, 0.0, abs(tilt))[0]
     # From faces that all but touch upwards.
     low, reach = 1.01 * problem.face[4] - thinnest, problem.clearance
     high = max(low, 0.0)
@@ -181,7 +182,7 @@ def _tilted(problem, settings, speed) -> dict:
 
 
 def _at(problem, state: State, speed) -> dict:
-    thinnest = min(edge_gaps(problem.face, state.dz, abs(state.tilt)))
+    thinnest = smallest_gap(problem.face, state.dz, abs(state.tilt))[0]
     return {
         "clearance": problem.clearance,
         "axial_opening": state.dz,
@@ -231,8 +232,7 @@ def _against_clearance(scene, problem, settings) -> dict:
 
 def _against_tilt(problem, settings) -> dict:
     """About a standing tilt up to nearly touching, the faces opening as they tilt."""
-    inner, outer = edge_gaps(problem.face, 0.0, 0.0)
-    touch = min(inner / problem.face[0], outer / problem.face[1])
+    touch = min(h / r for r, h in aligned_gaps(problem.scene.film, problem.clearance))
     tilts, rows, opening = np.linspace(0.0, 0.95 * touch, max(2, settings.points)), [], []
     for tilt in tilts:
         try:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..equilibrium import ClosingForce, equilibria, initially, settle
+from ..equilibrium import ClosingForce, closed_below, equilibria, initially, rise, settle
 from ..faces import film_module
 from ..scene import ImpossibleScene
 from ..twin import held
@@ -29,7 +29,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = held(scenario.scene)
-    film, opening = scene.film, film_module(scene.film.model).opening_force
+    film, opening = scene.film, film_module(scene.film.model, scene.film.profile).opening_force
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
@@ -72,9 +72,9 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
 
 def _range(film, roots, settings) -> tuple[float, float]:
     """Clearances to look at, (m): a decade around what was found, open faces only."""
-    drop = film.coning * (film.outer_radius - film.inner_radius)
-    found = [root.clearance for root in roots] or [film.clearance or max(abs(drop), 1e-6)]
-    least = max(0.0, -drop) * (1 + 1e-6)
+    least, drop = closed_below(film), rise(film)
+    found = [root.clearance for root in roots] or [film.clearance or max(drop, 1e-6)]
+    least *= 1 + 1e-6
     low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10
     high = settings.clearance_to if settings.clearance_to is not None else max(found) * 10
     low = max(low, least + 0.01 * max(found))
@@ -86,8 +86,7 @@ def _range(film, roots, settings) -> tuple[float, float]:
 
 def _stiffness(opening, film, clearance, inner, outer) -> float:
     """-dF/dC (N/m), central difference, one step smaller than the distance to closed faces."""
-    least = max(0.0, -film.coning * (film.outer_radius - film.inner_radius))
-    step = 1e-4 * (clearance - least)
+    step = 1e-4 * (clearance - closed_below(film))
     f = [opening(film, clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 

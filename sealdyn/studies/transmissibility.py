@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from .. import closed_form as cf
 from .. import modes
-from ..films import Coefficients
+from ..films import Coefficients, aligned_gaps
 from ..problem import Problem
 from ..recorder import Recorder
 from ..scenario import parse_scenario
@@ -202,7 +202,7 @@ def measured(point: dict) -> dict:
 def _amplitude(seal: Seal, speed: float) -> float:
     """Forcing (rad) that leaves the film open."""
     film = seal.scene.film
-    thinnest = min(film.clearance, film.clearance + film.coning * (film.outer_radius - film.inner_radius))
+    thinnest = min(h for _, h in aligned_gaps(film, film.clearance))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
 
@@ -273,9 +273,9 @@ def _critical_misalignment(seal: Seal, values) -> float | None:
     if values[0] is None:
         return None
     film = seal.scene.film
-    touch = cf.contact_tilt(film.inner_radius, film.outer_radius, film.clearance, film.coning)
+    touch = min(h / r for r, h in aligned_gaps(film, film.clearance))
     own, forcing = (values[1], values[0]) if seal.name == "fmr" else (values[0], values[1])
-    found = cf.critical_forcing(float(touch) * film.outer_radius / film.clearance, own, forcing)
+    found = cf.critical_forcing(touch * film.outer_radius / film.clearance, own, forcing)
     return float(found) if np.isfinite(found) else None
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import brentq, root
 
 from .. import dynamics
-from ..gap import edge_gaps
+from ..gap import smallest_gap
 from ..imposed import ROTOR_SPEED
 from ..motion import Housing, Shaft
 from ..problem import Problem
@@ -104,7 +104,7 @@ class Whirling:
 
     def least_film(self, q) -> float:
         """Smallest film thickness over the face (m)."""
-        return float(min(edge_gaps(self.problem.face, self.opening(q), abs(self.relative(q)))))
+        return float(smallest_gap(self.problem.face, self.opening(q), abs(self.relative(q)))[0])
 
     def _accelerations(self, y, speed):
         self.problem.p[SPEED_AT] = speed
@@ -207,7 +207,7 @@ def contact_tilt_aligned(problem: Problem) -> float:
     """Relative tilt (rad) at which the faces touch without axial opening."""
     face = problem.face
     beyond = 2 * (problem.clearance / face[0] + abs(face[3]))
-    return float(brentq(lambda tilt: min(edge_gaps(face, 0.0, tilt)), 0.0, beyond))
+    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0], 0.0, beyond))
 
 
 def _ahead(found, amplitude):
