@@ -17,7 +17,8 @@ ALLOWED = {
     "gap": set(),
     "stale_kernels": set(),
     "asperities": set(),
-    "contact": DOORS | {"asperities", "gap"},
+    "annulus": {"asperities"},
+    "contact": DOORS | {"annulus", "asperities", "gap"},
     "secondary_seal": DOORS,
     "dense": set(),
     "archive": set(),
@@ -50,12 +51,15 @@ ALLOWED = {
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
     "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
+    "ramps": PHYSICS
+    | DOORS
+    | {"continuation", "modes", "observables", "problem", "scenario", "simulate", "solve", "watch", "whirl"},
     "invariants": {"attractor", "contact", "continuation", "lyapunov", "scenario", "stroboscope"},
     "touches": {"gap", "dense", "watch"},
     "sticking": {"dense", "dynamics", "imposed", "layout"},
     "modes": {"gap"},
     "scene": DOORS | {"contact", "films", "motion", "ring"},
-    "equilibrium": DOORS | {"legs", "scene"},
+    "equilibrium": DOORS | {"films", "legs", "scene"},
     "layout": DOORS | {"dynamics", "imposed", "legs"},
     "signals": {"contact", "dynamics", "gap", "layout", "legs"},
     "faces": PHYSICS | {"modes"},
@@ -79,7 +83,7 @@ ALLOWED = {
     | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
     | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
     | {"attractor", "collocation", "continuation", "exhibits", "faces", "invariants", "ludwig", "ludwig_released"}
-    | {"lyapunov", "methods_judged", "model_rungs", "observables", "who_is_fastest"},
+    | {"ramps", "lyapunov", "methods_judged", "model_rungs", "observables", "who_is_fastest"},
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
     "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},

@@ -1,0 +1,164 @@
+"""A ramp or a step of a pressure, a viscosity, a spring or a misalignment and back: what the film does, against the
+answer it would give if everything went infinitely slowly."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..continuation import lasting, with_part
+from ..gap import DZ, FLOW_INNER, FLOW_OUTER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, VISCOSITY, edge_gaps
+from ..legs import constant_and_slope
+from ..modes import steady_extremes
+from ..observables import Sampler
+from ..problem import Problem
+from ..scenario import parse_scenario
+from ..scenario_study import varied
+from ..simulate import prepare
+from ..solve import solve
+from ..units import Table
+from .trip import Trip, told
+
+# Values between both ends at which the quasi-static answer is found; samples of a stage of a trip.
+VALUES, SAMPLES = 25, 150
+
+
+def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
+    """What the seal settles at, value by value (m,): relative misalignment (rad, largest over a period, linear about
+    the aligned film there), film thickness (m) and leakage of the aligned film there (m^3/s).
+
+    One scene with a staircase of values: the closing force stays the law that the first value has decided.
+    """
+    values = np.linspace(begin, end, VALUES)
+    stairs = Table(tuple(map(float, range(VALUES))), tuple(map(float, values)))
+    words = f"{{ time = {list(stairs.time)!r}, value = {list(stairs.value)!r} }}"
+    scene = varied(scenario, {key: words, "run.duration": float(VALUES)}).scene
+    scene = with_part(lasting(with_part(scene, key, float(begin))), key, stairs)
+    problem = Problem(scene, float(VALUES - 1) + 1e-6)
+    legs = [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-9) for t in stairs.time]
+    rows = [_settled(problem, k) for k in legs]
+    names = ("relative_misalignment", "h_min", "leakage")
+    return {"value": values.tolist(), **{n: [row[i] for row in rows] for i, n in enumerate(names)}}
+
+
+def _settled(problem, k) -> tuple[float, float, float]:
+    """Largest tilt, thinnest film and leakage at the loads of a leg's start."""
+    problem.begin(k)
+    shift, linear = problem.axial_shift(k), problem.linear_scene(k)
+    harmonics = [replace(h) for h in problem.harmonics()]
+    period = _period(harmonics)
+    most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
+    flow, f = problem.observed
+    s, leg, film = problem.s, problem.leg, problem.scene.film
+    s[:] = 0.0
+    s[DZ] = shift
+    pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
+    for slot, q in ((VISCOSITY, film.viscosity), *pressures):
+        s[slot] = constant_and_slope(q, leg)[0]
+    s[SPIN_DIFFERENCE] = constant_and_slope(problem.scene.shaft.speed, leg)[0]
+    flow(f, s)
+    outside = problem.closing.outer_is_high
+    leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
+    return float(most), float(min(edge_gaps(problem.face, shift - closing, most))), float(leakage)
+
+
+def _period(harmonics):
+    turning = {abs(h.frequency) for h in harmonics if h.frequency}
+    return 2 * math.pi / turning.pop() if len(turning) == 1 else None
+
+
+def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float]:
+    """Slowest decay time (s) of the scene linearised where it begins and where it ends, and how long to wait until it
+    settles: eight of it, at least ten turns, at most two hundred."""
+    table = Table((0.0, 1.0, 2.0), (float(begin), float(end), float(end)))
+    scene = with_part(lasting(with_part(scenario.scene, key, float(begin))), key, table)
+    problem = Problem(scene, 2.0)
+    last = next(k for k, leg in enumerate(problem.legs) if leg.time >= 1.0)
+    slowest = max((v.real for k in (0, last) for v in problem.linear_scene(k).eigen()[0]), default=-1e6)
+    speed = abs(constant_and_slope(scene.shaft.speed, problem.legs[0])[0])
+    turn = 2 * math.pi / speed if speed else 1e-3
+    decay = min(-1.0 / slowest, 25 * turn) if slowest < 0 else 25 * turn
+    return decay, float(np.clip(8.0 * decay, 10 * turn, 200 * turn))
+
+
+class Often(Sampler):
+    """A sampler at given times (s)."""
+
+    def __init__(self, problem, times):
+        super().__init__(problem, 1.0)
+        self.times = times
+
+    def due(self, index):
+        leg, last = self.problem.legs[index], index + 1 == len(self.problem.legs)
+        taus = self.times - leg.time
+        end = leg.length * (1 + 1e-12)
+        return np.clip(taus[(taus >= 0) & ((taus < leg.length * (1 - 1e-12)) | (last & (taus <= end)))], 0, leg.length)
+
+
+def instants(trip: Trip) -> np.ndarray:
+    """When to look: along the ramps, and after them ever less often."""
+    later = np.linspace(0.0, 1.0, SAMPLES) ** 2
+    # Just before either change too.
+    # Just before either change too.
+    early = [0.5 * trip.settle, trip.settle * (1 - 1e-9), trip.back * (1 - 1e-9)]
+    ramps = [np.linspace(a, b, SAMPLES) for a, b in ((trip.settle, trip.top), (trip.back, trip.home))]
+    parts = [early, *ramps, trip.top + later * trip.hold, trip.home + later * trip.rest]
+    return np.unique(np.concatenate(parts))
+
+
+def load_trip(point: dict) -> dict:
+    """A ramp (or with `rate` None a step) there and back: extremes, what it settles at, and the series."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
+    trip = Trip(**{n: point[n] for n in names})
+    problem, method, *_ = prepare(trip.on(scenario))
+    sink = Often(problem, instants(trip))
+    outcome = solve(problem, method, problem.accuracy, sink)
+    times, film, tilt, leakage = (np.concatenate([p[i] for p in sink.parts]) for i in range(4))
+    run = told(problem, outcome, [np.zeros(1)] * 5, None, [(problem, problem.records[0])])
+    table = trip.table()
+    return {
+        "rate": trip.rate,
+        "stages": [trip.settle, trip.top, trip.back, trip.home],
+        "status": run.status,
+        "message": run.message,
+        "touched": bool(run.touched),
+        "h_min": run.lowest[0] if math.isfinite(run.lowest[0]) else None,
+        "h_min_time": run.lowest[1],
+        "relative_misalignment": run.largest[0],
+        "settled": {
+            "end": _over(times, film, tilt, leakage, trip.back - 0.1 * trip.hold, trip.back),
+            "begin": _over(times, film, tilt, leakage, trip.duration - 0.1 * trip.rest, trip.duration),
+        },
+        "leakage": float(np.max(leakage)),
+        "leakage_least": float(np.min(leakage)),
+        "time": [float(f"{t:.8g}") for t in times],
+        "value": [float(f"{table.at(t):.6g}") for t in times],
+        "film": [float(f"{v:.5g}") for v in film],
+        "tilt": [float(f"{v:.5g}") for v in tilt],
+        "flow": [float(f"{v:.5g}") for v in leakage],
+    }
+
+
+def _over(times, film, tilt, leakage, begin, end) -> dict | None:
+    """Thinnest film, largest tilt and mean leakage over a stretch of time; None if the run did not get there."""
+    # Not the end itself: there a step has already been taken.
+    kept = (times >= begin) & (times < end * (1 - 5e-10))
+    if not kept.any() or times[-1] < end * (1 - 1e-6):
+        return None
+    return {"h_min": float(film[kept].min()), "relative_misalignment": float(tilt[kept].max()),
+            "leakage": float(leakage[kept].mean())}  # fmt: skip
+
+
+def overshoot(row: dict, slow: dict) -> dict:
+    """How far the trip went beyond the range of the quasi-static answer, as a share of that range."""
+    low, high = min(slow["h_min"]), max(slow["h_min"])
+    tilt = max(slow["relative_misalignment"])
+    flow_low, flow_high = min(slow["leakage"]), max(slow["leakage"])
+    film = (low - row["h_min"]) / (high - low) if row["h_min"] is not None and high - low > 1e-6 * high else None
+    flow = max(row["leakage"] - flow_high, flow_low - row["leakage_least"])
+    return {
+        "h_min": film,
+        "relative_misalignment": row["relative_misalignment"] / tilt - 1 if tilt else None,
+        "leakage": flow / (flow_high - flow_low) if flow_high - flow_low > 1e-9 * abs(flow_high) else None,
+    }
