@@ -1,6 +1,6 @@
 """How honest is the automatic choice, and what does it cost?
 
-    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png]
+    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [turns]
 
 A figure's numbers go beside it (figure.json), for the README (readme_claims.py).
 Random scenes (seeded): arrangement, seal, speed, forcing, start, run and asked accuracy.  The truth of each is the
@@ -37,8 +37,8 @@ METHODS = ("adams", "bdf", "dop853")
 KNOBS = (1000.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.3)
 
 
-def scene(random):
-    """One random scene, its duration (s), accuracy and start."""
+def scene(random, turns=None):
+    """One random scene, its duration (s; 15 to 45 turns, or so many), accuracy and start."""
     kind = random.choice(["fms", "fmr", "fmsr"])
     log = lambda low, high: float(np.exp(random.uniform(math.log(low), math.log(high))))  # noqa: E731
     clearance, outer = log(4e-6, 2e-5), log(0.02, 0.08)
@@ -66,7 +66,8 @@ def scene(random):
         fmsr=dict(stator=Stator(**ring()), rotor=Rotor(**ring())),
     )[kind]
     made = Scene(shaft=Shaft(speed=speed), film=film, housing=housing, **parts)
-    turns = random.integers(15, 46)
+    drawn = random.integers(15, 46)
+    turns = turns or drawn
     start = random.choice(["rest", "steady"])
     return made, turns * 2 * math.pi / speed, log(1e-7, 1e-2), start
 
@@ -174,12 +175,13 @@ def judge(made, duration, accuracy, start):
 
 def main():
     wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    turns = int(sys.argv[3]) if len(sys.argv) > 3 else None
     random, rows, number = np.random.default_rng(SEED), [], 0
     # Kernels are compiled before anything is timed.
     judge(*scene(np.random.default_rng(1)))
     while len(rows) < wanted:
         number += 1
-        row = judge(*scene(random))
+        row = judge(*scene(random, turns))
         if row is None:
             continue
         rows.append({**row, "number": number})
@@ -198,7 +200,7 @@ def main():
     print(f"cost over hindsight: median {np.median(ratios):.2f}, quartiles {np.quantile(ratios, 0.25):.2f} "
           f"{np.quantile(ratios, 0.75):.2f}; without the certificate {np.median(solving):.2f}, "
           f"the run alone {np.median(running):.2f}")  # fmt: skip
-    if len(sys.argv) > 2:
+    if len(sys.argv) > 2 and sys.argv[2] != "-":
         asked = [row["accuracy"] for row in rows]
         draw(rows, Path(sys.argv[2]))
         numbers = {
