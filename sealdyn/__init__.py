@@ -18,7 +18,7 @@ def __getattr__(name):
     if name == "read_scenario":
         from .scenario import read_scenario as found
     elif name == "simulate":
-        from .simulate import simulate as found
+        from .simulation import simulate as found
     elif name == "open_archive":
         from .archive import open_archive as found
     else:

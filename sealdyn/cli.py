@@ -90,7 +90,7 @@ def run(
     from .archive import ArchiveError
     from .report import lines
     from .scene import ImpossibleScene
-    from .simulate import simulate
+    from .simulation import simulate
 
     scenario = _read(file, set)
     if out is None:
@@ -200,7 +200,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .design_rules import followability
     from .report import resolved_lines
     from .scene import ImpossibleScene
-    from .simulate import prepare
+    from .simulation import prepare
     from .summary import model
 
     scenario = _read(file, set)

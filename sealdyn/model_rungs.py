@@ -12,7 +12,7 @@ from .films import Coefficients, aligned_gaps
 from .methods import METHODS, tolerance_for
 from .observables import errors, observe, worst
 from .scenario_study import varied
-from .simulate import prepare
+from .simulation import prepare
 
 JUDGE, TIGHT = 1e-11, 1e-11
 # Points over a period at which the harmonic balance is looked at.

@@ -17,6 +17,7 @@ def refuse_impossible(scene, run) -> None:
     _closing(scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         _ring(name, ring)
+        _jumps(name, ring)
     if scene.contact:
         for key, found, expected in contact.faults(scene.contact):
             raise ImpossibleScene(f"contact.{key}", found, expected)
@@ -131,6 +132,19 @@ def _ring(name: str, ring) -> None:
         raise ImpossibleScene(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
     if support.radius is not None and support.radius <= 0:
         raise ImpossibleScene(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
+
+
+def _jumps(name: str, ring) -> None:
+    """A face cannot be somewhere else at once: the film, or the support's damper, would push without bound."""
+    for key in ("runout", "misalignment"):
+        value = getattr(ring, key, 0.0)
+        if not isinstance(value, Table):
+            continue
+        for t0, t1, v0, v1 in zip(value.time, value.time[1:], value.value, value.value[1:], strict=False):
+            if t0 == t1 and v0 != v1:
+                found = f"a step at {t0:g} s, from {v0:g} to {v1:g} rad"
+                expected = "a ramp: a face that jumps squeezes the film without bound"
+                raise ImpossibleScene(f"{name}.{key}", found, expected)
 
 
 def _secondary_seal(name: str, ring) -> None:

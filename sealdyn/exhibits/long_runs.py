@@ -20,7 +20,7 @@ from ..legs import LONGEST, TURN, cut
 from ..motion import Housing, Shaft
 from ..ring import Rotor, Stator
 from ..scenario import parse_scenario
-from ..simulate import prepare
+from ..simulation import prepare
 from ._show import row
 
 ITEM = 10

@@ -14,7 +14,7 @@ from ..observables import Sampler
 from ..problem import Problem
 from ..scenario import parse_scenario
 from ..scenario_study import varied
-from ..simulate import prepare
+from ..simulation import prepare
 from ..solve import solve
 from ..units import Table
 from .trip import Trip, told

@@ -15,7 +15,7 @@ from ..gap import COLLAPSE, DZ, GX, GY, TOUCH
 from ..legs import constant_and_slope
 from ..problem import Problem
 from ..scenario_study import varied
-from ..simulate import prepare
+from ..simulation import prepare
 from ..solve import solve
 from ..units import Table
 from ..watch import H_LEG, H_TAU, MOST, MOST_LEG, MOST_TAU, H

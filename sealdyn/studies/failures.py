@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from .. import exhibits
 from ..scenario_errors import ScenarioError
 from ..scene import ImpossibleScene
-from ..simulate import prepare
+from ..simulation import prepare
 
 units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row's unit"}
 

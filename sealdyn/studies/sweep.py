@@ -9,7 +9,7 @@ from ..scenario import parse_scenario
 from ..scenario_errors import ScenarioError
 from ..scenario_study import axis, varied
 from ..scene import ImpossibleScene
-from ..simulate import prepare, run_briefly
+from ..simulation import prepare, run_briefly
 
 WITH_CONTACT = True
 OUTPUTS = (

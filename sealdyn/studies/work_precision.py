@@ -18,7 +18,7 @@ from ..methods_judged import JUDGED
 from ..observables import WHERE, errors, observe, worst
 from ..scenario import parse_scenario
 from ..scenario_study import varied
-from ..simulate import prepare
+from ..simulation import prepare
 from ..who_is_fastest import cross_the_slow, curve, fastest, time_at
 
 WITH_CONTACT = True

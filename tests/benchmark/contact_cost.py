@@ -11,7 +11,7 @@ from pathlib import Path
 
 from sealdyn.recorder import Recorder
 from sealdyn.scenario import parse_scenario, read_scenario
-from sealdyn.simulate import prepare
+from sealdyn.simulation import prepare
 from sealdyn.solve import solve
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

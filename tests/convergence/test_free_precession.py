@@ -13,7 +13,7 @@ import pytest
 from scenes import INERTIA, SPEED, SUPPORT, TILT_SCALE, free_ring, run
 
 from sealdyn import read_scenario
-from sealdyn.simulate import prepare
+from sealdyn.simulation import prepare
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "free_precession.toml"
 K_S = SUPPORT.axial_stiffness * SUPPORT.radius**2 / 2

@@ -8,7 +8,7 @@ import pytest
 from sealdyn.archive import column
 from sealdyn.design_rules import followability
 from sealdyn.scenario import read_scenario
-from sealdyn.simulate import prepare, simulate
+from sealdyn.simulation import prepare, simulate
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "hang_up.toml"
 AMPLITUDE, MASS, SPEED, STIFFNESS, FRICTION = 20e-6, 1.0, 1000.0, 2e5, 15.0

@@ -15,7 +15,7 @@ from sealdyn.investigate import investigate
 from sealdyn.scenario import parse_scenario
 from sealdyn.scenario_errors import ScenarioError
 from sealdyn.scenario_study import axis
-from sealdyn.simulate import simulate
+from sealdyn.simulation import simulate
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']

@@ -42,18 +42,31 @@ ALLOWED = {
     "methods_judged": {"methods"},
     "collocation": {"methods"},
     "observables": {"methods", "recorder", "signals", "solve", "watch"},
-    "model_rungs": {"collocation", "faces", "films", "methods", "modes", "observables", "scenario", "simulate"},
+    "model_rungs": {"collocation", "faces", "films", "methods", "modes", "observables", "scenario", "simulation"},
     "who_is_fastest": set(),
     "exhibits": PHYSICS
     | DOORS
-    | {"methods", "methods_judged", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate", "solve"}
+    | {
+        "methods",
+        "methods_judged",
+        "modes",
+        "orbit",
+        "problem",
+        "recorder",
+        "scenario",
+        "signals",
+        "simulation",
+        "solve",
+    }
     | {"validation", "whirl"},
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
     "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
     "ramps": PHYSICS
     | DOORS
-    | {"continuation", "modes", "observables", "problem", "scenario", "simulate", "solve", "watch", "whirl"},
+    | {"continuation", "modes", "observables", "problem", "scenario", "simulation", "solve", "watch", "whirl"},
+    "wear": set(),
+    "worn_runs": PHYSICS | {"continuation", "problem", "recorder", "signals", "solve", "touches", "watch", "wear"},
     "invariants": {"attractor", "contact", "continuation", "lyapunov", "scenario", "stroboscope"},
     "touches": {"gap", "dense", "watch"},
     "sticking": {"dense", "dynamics", "imposed", "layout"},
@@ -70,7 +83,7 @@ ALLOWED = {
     "model_error": PHYSICS | {"faces"},
     "film_choice": {"model_error", "problem", "signals"},
     "certify": {"methods", "model_error", "problem", "recorder", "solve", "touches", "watch"},
-    "simulate": {"certify", "film_choice", "methods"}
+    "simulation": {"certify", "film_choice", "methods"}
     | PHYSICS
     | DOORS
     | {"archive", "audit", "layout", "problem", "scenario", "signals", "solve", "summary"},
@@ -80,10 +93,10 @@ ALLOWED = {
     "investigate": {"archive", "pool", "scenario", "studies"},
     "studies": PHYSICS
     | DOORS
-    | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulate"}
+    | {"audit", "layout", "methods", "modes", "orbit", "problem", "recorder", "scenario", "signals", "simulation"}
     | {"solve", "stability_map", "summary", "twin", "validation", "watch", "whirl"}
     | {"attractor", "collocation", "continuation", "exhibits", "faces", "invariants", "ludwig", "ludwig_released"}
-    | {"ramps", "lyapunov", "methods_judged", "model_rungs", "observables", "who_is_fastest"},
+    | {"ramps", "wear", "worn_runs", "lyapunov", "methods_judged", "model_rungs", "observables", "who_is_fastest"},
     "twin": PHYSICS | DOORS | {"modes", "problem"},
     "stability_map": PHYSICS | DOORS | {"modes", "problem", "scenario", "twin"},
     "whirl": PHYSICS | DOORS | {"methods", "modes", "problem", "recorder", "solve", "stroboscope", "watch"},

@@ -31,7 +31,7 @@ from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Stator
 from sealdyn.scenario import read_scenario
-from sealdyn.simulate import run_briefly
+from sealdyn.simulation import run_briefly
 from sealdyn.solve import solve
 from sealdyn.units import Table
 

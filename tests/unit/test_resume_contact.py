@@ -7,7 +7,7 @@ import pytest
 
 from sealdyn.archive import column, read_info
 from sealdyn.scenario import read_scenario
-from sealdyn.simulate import simulate
+from sealdyn.simulation import simulate
 
 RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
 SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]

@@ -114,6 +114,7 @@ BROKEN = [
     (("model =", 'coefficients = "gren"\nmodel ='), ["[film] coefficients", "nearest 'green'"]),
     (("model =", "coefficients = { tilt_stiffness = 1 }\nmodel ="), ["[film.coefficients] tilt_damping", "nothing"]),
     # impossible
+    (("misalignment =", "misalignment = { time = [0, 1, 1], value = [0, 0, 1e-6] } #"), ["[rotor] misal", "a step"]),
     (('"32 mm"', '"40 mm"'), ["[film] inner_radius", "less than outer_radius"]),
     (('"32 mm"', "0"), ["[film] inner_radius", "> 0"]),
     (('"10 um"', "0"), ["[film] clearance", "> 0"]),

@@ -1,0 +1,401 @@
+"""Wear of real scenes over hours: flat faces by hand, a cone that runs in, two materials, a study that is killed."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenes import fms, ring
+
+import sealdyn
+from sealdyn import contact
+from sealdyn.archive import read_study
+from sealdyn.charts import study_wear
+from sealdyn.contact import Contact
+from sealdyn.films import Film
+from sealdyn.investigate import investigate
+from sealdyn.ring import Rotor, Stator, Support
+from sealdyn.scenario_errors import ScenarioError
+from sealdyn.scene import Closing
+from sealdyn.wear import Control, Hats, NoAverage, Worn, advance, unevenness
+from sealdyn.worn_runs import WornRuns
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+R_I, R_O, SPEED, LOAD, ROUGH, PER = 0.032, 0.040, 300.0, 250.0, 1e-7, 1e-17
+AREA, HOUR = math.pi * (R_O**2 - R_I**2), 3600.0
+RADIUS = np.linspace(R_I, R_O, 17)
+
+
+def pressed(coning=0.0, pressure=0.0, stiffness=0.0, **wears):
+    """Faces under a spring load; without a sealed pressure asperities carry all of it."""
+    film = Film(inner_radius=R_I, outer_radius=R_O, viscosity=1e-9, outer_pressure=pressure, inner_pressure=0.0,
+                coning=coning)  # fmt: skip
+    rough = Contact(roughness=ROUGH, compressive_strength=1e8, **(wears or {"stator_wear_coefficient": PER}))
+    support = Support(axial_stiffness=stiffness, axial_damping=10.0, radius=0.04)
+    return replace(fms(film=film, own=0.0, runout=0.0, speed=SPEED, stator=Stator(**ring(support=support))),
+                   contact=rough, closing=Closing(balance_ratio=0.7, spring_force=LOAD))  # fmt: skip
+
+
+def history(scene, hours, accuracy=1e-2, allowed=1.0, radius=RADIUS):
+    """All profiles with their averages."""
+    runs = WornRuns(scene, radius, within=0.1 * accuracy)
+    control = Control(ROUGH, accuracy, allowed * ROUGH)
+    return runs, list(advance(runs, Hats(radius), Worn(0.0, np.zeros(len(radius))), hours * HOUR, control))
+
+
+# --- flat parallel faces under a constant load -----------------------------------------------------------
+
+
+def test_new_flat_faces_wear_by_k_p_v():
+    """Depth k p v t at every radius as long as the pressure is still that of new faces: for a few milliseconds."""
+    _, found = history(pressed(), 1e-6)
+    rate, exact = Hats(RADIUS).rates(found[0][1].nodal)
+    assert exact
+    assert rate == pytest.approx(PER * LOAD / AREA * SPEED * RADIUS, rel=1e-6, abs=0.0)
+    worn = found[-1][0]
+    assert worn.depth == pytest.approx(PER * LOAD / AREA * SPEED * RADIUS * worn.time, rel=1e-6, abs=0.0)
+
+
+def test_run_in_flat_faces_wear_evenly():
+    """p v uniform: k W F / (2 pi (r_o - r_i)) at every radius; between, the volume is the integral of its rate."""
+    _, found = history(pressed(), 3000.0)
+    worn, average = found[-1]
+    even = PER * SPEED * LOAD / (2 * math.pi * (R_O - R_I))
+    rate, _ = Hats(RADIUS).rates(average.nodal)
+    assert unevenness(Hats(RADIUS).rates(found[0][1].nodal)[0]) > 0.2
+    assert rate == pytest.approx(even, rel=1e-6, abs=0.0)
+    for worn, _ in found[1:]:
+        assert worn.volume == pytest.approx(Hats(RADIUS).volume(worn.depth), rel=1e-10, abs=0.0)
+    # The rate of the volume is k W int p r dA: from F r_2 (r_2 the mean lever of a uniform p) to that of a uniform p r.
+    lever = 2 / 3 * (R_O**3 - R_I**3) / (R_O**2 - R_I**2)
+    assert found[0][1].volume_rate == pytest.approx(PER * SPEED * LOAD * lever, rel=1e-9, abs=0.0)
+    assert average.volume_rate == pytest.approx(even * AREA, rel=1e-6, abs=0.0)
+
+
+def test_the_springs_give_way_as_the_ring_follows():
+    """The load falls by stiffness times travel: d(depth)/dt = c (F - K depth) once run in, c = k W / (2 pi width)."""
+    stiffness = 2e7
+    _, found = history(pressed(stiffness=stiffness), 300.0, accuracy=1e-3)
+    start = next(k for k, (worn, a) in enumerate(found) if unevenness(Hats(RADIUS).rates(a.nodal)[0]) < 2e-3)
+    (first, one), (last, other) = found[start], found[-1]
+    per = PER * SPEED / (2 * math.pi * (R_O - R_I))
+    assert last.time > 1.5 * first.time
+    decay = math.exp(-per * stiffness * (last.time - first.time))
+    # The faces rise a little out of each other as the load goes: some 20 of 9000 nm of travel.
+    assert other.row["contact_force"] / one.row["contact_force"] == pytest.approx(decay, rel=5e-3, abs=0.0)
+    assert decay < 0.7
+    for _, average in found:
+        assert average.row["contact_force"] == pytest.approx(
+            LOAD + stiffness * average.row["travel"], rel=1e-9, abs=0.0
+        )
+
+
+def test_two_floating_rings_share_the_travel():
+    """Two supports in series give as one of half their stiffness."""
+    one = pressed(stiffness=1e8)
+    both = replace(one, rotor=Rotor(**ring(support=one.stator.support)))
+    found = [history(scene, 5.0)[1][-1] for scene in (pressed(stiffness=5e7), both)]
+    assert found[1][0].depth == pytest.approx(found[0][0].depth, rel=1e-6, abs=0.0)
+    carried = LOAD + 5e7 * found[1][1].row["travel"]
+    assert found[1][1].row["contact_force"] == pytest.approx(carried, rel=1e-9, abs=0.0)
+    assert carried < 0.99 * LOAD
+
+
+def test_faces_with_a_profile_wear_on_from_it(tmp_path):
+    """What one study leaves is where the next begins."""
+    whole = investigate("wear", read("run_in"), tmp_path / "a.h5", flags={"duration": "8 h"}, workers=1)
+    half = investigate("wear", read("run_in"), tmp_path / "b.h5", flags={"duration": "4 h"}, workers=1)
+    lengths = [[f"{v!r} m" for v in column] for column in (half["radius"], _both(half))]
+    text = (SCENARIOS / "run_in.toml").read_text()
+    table = f"[film.profile]\nradius = {json.dumps(lengths[0])}\ndepth = {json.dumps(lengths[1])}\n[closing]"
+    worn = tmp_path / "worn.toml"
+    worn.write_text(text.replace("[closing]", table))
+    rest = investigate("wear", sealdyn.read_scenario(worn), tmp_path / "c.h5", flags={"duration": "4 h"}, workers=1)
+    # The spring is as long as new again: nothing beside the load.
+    assert np.array(_both(half)) + np.array(_both(rest)) == pytest.approx(np.array(_both(whole)), abs=2e-2 * ROUGH)
+
+
+def _both(answer) -> list[float]:
+    return (np.array(answer["profile"]["stator"][-1]) + np.array(answer["profile"]["rotor"][-1])).tolist()
+
+
+def test_kernel_s_hats_are_the_slow_scale_s():
+    runs = WornRuns(pressed(), RADIUS)
+    problem = runs.problem(np.zeros(17), 0.0, 1.0)
+    assert contact.hat_areas(problem.face) == pytest.approx(Hats(RADIUS).areas, rel=1e-13, abs=0.0)
+
+
+def test_slope_of_faces_at_rest_is_that_of_their_averages():
+    """Against differences of whole short runs, ring and film going along."""
+    runs = WornRuns(pressed(coning=2e-5, pressure=3e5, stiffness=1e5), RADIUS)
+    depth = 2e-8 * np.cos(300 * RADIUS)
+    start = runs(depth)
+    for k in (0, 7, 16):
+        step = 1e-10 * (np.arange(17) == k)
+        difference = (runs(depth + step, start.motion).nodal - runs(depth - step, start.motion).nodal) / 2e-10
+        assert difference == pytest.approx(start.slope[:, k], abs=2e-3 * np.max(np.abs(start.slope)))
+
+
+# --- a cone runs in -------------------------------------------------------------------------------------
+
+
+def read(name, *overrides):
+    return sealdyn.read_scenario(SCENARIOS / f"{name}.toml", list(overrides))
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Counts short runs."""
+    counted, whole = [], WornRuns.__call__
+    monkeypatch.setattr(WornRuns, "__call__", lambda self, d, m=None: counted.append(1) or whole(self, d, m))
+    return counted
+
+
+@pytest.fixture(scope="module")
+def run_in(tmp_path_factory):
+    out = tmp_path_factory.mktemp("wear") / "run_in.h5"
+    return investigate("wear", read("run_in"), out, workers=1), out
+
+
+def test_a_coned_face_runs_in_to_a_uniform_p_v(run_in):
+    answer, out = run_in
+    assert (answer["status"], answer["end"]["kind"]) == ("ok", "run-in")
+    start, end = np.array(answer["pv"][0]), np.array(answer["pv"][-1])
+    assert start[8:].max() == 0.0 < start[0]
+    assert np.ptp(end) < 1e-2 * end.mean()
+    share = answer["history"]["contact_share"]
+    # int p_c v dA over the face = pv area: the load that asperities carry then, film and contact all of the closing.
+    speed = read("run_in").scene.shaft.speed
+    force = end.mean() / speed * 2 * math.pi * (R_O - R_I)
+    assert answer["history"]["contact_force"][-1] == pytest.approx(force, rel=2e-3, abs=0.0)
+    both = answer["history"]["contact_force"][-1] + answer["history"]["film_force"][-1]
+    assert both == pytest.approx(answer["history"]["closing_force"][-1], rel=1e-2, abs=0.0)
+    assert share[-1] > 3 * share[0]
+    assert answer["history"]["leakage"][-1] < 0.5 * answer["history"]["leakage"][0]
+    assert abs(answer["history"]["coning"][-1]) < 0.02 * answer["history"]["coning"][0]
+    json.dumps(answer, allow_nan=False)
+    assert read_study(out)["answer"]["end"]["kind"] == "run-in"
+
+
+def test_volume_is_conserved(run_in):
+    answer, _ = run_in
+    assert answer["volume"]["residual"] < 1e-10
+    assert answer["volume"]["profiles"] > 0.0
+    worn = sum(answer["history"][f"{face}_volume"][-1] for face in ("stator", "rotor"))
+    assert worn == pytest.approx(answer["volume"]["integral"], rel=1e-10, abs=0.0)
+
+
+def test_two_materials_wear_in_the_ratio_of_their_coefficients(run_in):
+    answer, _ = run_in
+    stator, rotor = (np.array(answer["profile"][face]) for face in ("stator", "rotor"))
+    assert 20 * rotor == pytest.approx(stator, rel=1e-12, abs=0.0)
+    hard = read("run_in", "contact.stator_wear_coefficient=0 1/Pa")
+    other = investigate("wear", hard, Path(run_in[1]).parent / "o.h5", flags={"duration": "1 h"}, workers=1)
+    assert not np.any(other["profile"]["stator"])
+    assert np.max(other["profile"]["rotor"]) > 0.0
+
+
+def test_chart_is_drawn(run_in, tmp_path):
+    assert study_wear.draw(run_in[1], tmp_path / "wear.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize(("accuracy", "allowed"), [(1e-2, 0.2), (1e-3, 0.05)])
+def test_halving_the_step_changes_less_than_the_accuracy(accuracy, allowed):
+    """Profiles, at the same hour on the way, of steps half as long."""
+    scene = pressed(coning=3e-5, pressure=2e5)
+    ends = [history(scene, 10.0, accuracy, step)[1][-1][0].depth for step in (allowed, allowed / 2)]
+    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < accuracy * ROUGH
+    assert np.max(ends[0]) > ROUGH
+
+
+def test_extrapolation_only_when_asked(run_in, tmp_path):
+    answer, _ = run_in
+    assert answer["extrapolated"] is None
+    told = investigate("wear", read("run_in"), tmp_path / "x.h5", flags={"run_in": "extrapolate"}, workers=1)
+    far = told["extrapolated"]
+    hours = (far["time"] - far["from"]) / HOUR
+    assert far["time"] == 100 * HOUR
+    gained = np.array(far["stator"]) - np.array(told["profile"]["stator"][-1])
+    rate = np.array(told["pv"][-1]) * told["coefficients"][0] * HOUR
+    assert gained == pytest.approx(rate * hours, rel=1e-9, abs=0.0)
+    assert any("not computed" in line for line in told["verdict"])
+
+
+def test_asked_to_go_on_it_wears_to_the_end_in_few_steps(run_in, tmp_path):
+    flags = {"duration": "300 h", "run_in": "go on"}
+    answer = investigate("wear", read("run_in"), tmp_path / "o.h5", flags=flags, workers=1)
+    assert (answer["end"]["kind"], answer["end"]["time"]) == ("duration", 300 * HOUR)
+    assert answer["steps"] < run_in[0]["steps"] + 40
+    assert np.ptp(answer["pv"][-1]) < 1e-3 * np.max(answer["pv"][-1])
+
+
+# --- a scene that moves ----------------------------------------------------------------------------------
+
+
+def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
+    """The rubbing reference seal: its thin edge wears; the average is that of a long run of the same scene."""
+    flags = {"duration": "0.2 h", "nodes": 5}
+    scenario = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa")
+    answer = investigate("wear", scenario, tmp_path / "rub.h5", flags=flags, workers=1)
+    assert (answer["status"], answer["end"]["kind"]) == ("ok", "duration")
+    assert answer["not_settled"] == 0
+    assert answer["volume"]["residual"] < 1e-10
+    depth = np.array(answer["profile"]["stator"][-1])
+    assert depth[0] > 1e-8 and depth[3:].max() < 1e-3 * depth[0]
+    run = sealdyn.simulate(scenario, tmp_path / "run.h5")
+    assert answer["history"]["wear_rate"][0] == pytest.approx(_late(run.archive, "wear_rate"), rel=1e-2, abs=0.0)
+
+
+@pytest.mark.slow
+def test_halving_the_step_of_a_scene_that_moves_changes_less_than_the_accuracy():
+    scene = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa").scene
+    radius = np.linspace(R_I, R_O, 9)
+    ends = [history(scene, 0.5, 1e-2, step, radius)[1][-1][0].depth for step in (0.3, 0.15)]
+    assert 0.0 < np.max(np.abs(ends[0] - ends[1])) < 1e-2 * ROUGH
+    assert np.max(ends[0]) > 0.5 * ROUGH
+
+
+def _late(path, name) -> float:
+    """Mean of a series over the last five of eighty turns."""
+    import h5py
+
+    with h5py.File(path) as file:
+        return float(file[name][-5 * len(file[name]) // 80 - 1 : -1].mean())
+
+
+# --- how it ends ----------------------------------------------------------------------------------------
+
+
+def test_a_film_that_carries_everything_does_not_wear(tmp_path):
+    answer = investigate("wear", read("run_in", "closing.balance_ratio=0.6", "closing.spring_force=5 N"),
+                         tmp_path / "o.h5", workers=1)  # fmt: skip
+    assert answer["end"]["kind"] == "lift-off"
+    assert "no contact from the start" in answer["verdict"][0]
+
+
+def test_springs_that_give_way_let_the_film_lift_off(tmp_path):
+    """A stiff support loses its load as the ring follows, until film and hydraulics alone balance."""
+    scenario = read("run_in", "stator.support.axial_stiffness=1e9 N/m", "contact.stator_wear_coefficient=1e-15 1/Pa")
+    answer = investigate("wear", scenario, tmp_path / "o.h5", flags={"duration": "2000 h", "run_in": "go on"},
+                         workers=1)  # fmt: skip
+    assert answer["end"]["kind"] == "lift-off"
+    assert 0 < answer["end"]["time"] < 2000 * HOUR
+    assert answer["history"]["contact_share"][-1] < 1e-3 * answer["history"]["contact_share"][0]
+
+
+def test_crushed_asperities_are_a_result(tmp_path):
+    """Asperities too soft to carry their share of the load."""
+    answer = investigate("wear", read("run_in", "contact.compressive_strength=0.03 MPa"), tmp_path / "o.h5", workers=1)
+    assert (answer["status"], answer["end"]["kind"], answer["steps"]) == ("collapsed", "collapsed", 0)
+    assert "crushed" in answer["verdict"][0]
+    assert study_wear.draw(tmp_path / "o.h5", tmp_path / "o.png").stat().st_size > 5_000
+
+
+def test_a_short_run_that_fails_on_the_way_leaves_what_came_before(run_in, tmp_path, monkeypatch):
+    whole, answer = WornRuns.__call__, run_in[0]
+
+    def broken(self, depth, motion=None):
+        if depth.max() > 2e-7:
+            raise NoAverage("failed", "the solver gave up")
+        return whole(self, depth, motion)
+
+    monkeypatch.setattr(WornRuns, "__call__", broken)
+    found = investigate("wear", read("run_in"), tmp_path / "o.h5", workers=1)
+    assert (found["status"], found["end"]["kind"]) == ("failed", "failed")
+    assert "gave up" in found["verdict"][0]
+    last = 1.05 * np.array(found["profile"]["stator"][-1]).max()
+    assert 1.5e-7 < last < 2e-7
+    # As far as it came it is the other's history, give or take the last steps.
+    common = 0.8 * found["history"]["time"][-1]
+    at = [np.interp(common, a["history"]["time"], a["history"]["leakage"]) for a in (answer, found)]
+    assert at[0] == pytest.approx(at[1], rel=1e-2, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "flags", "words"),
+    [
+        (["contact.stator_wear_coefficient=0 1/Pa", "contact.rotor_wear_coefficient=0 1/Pa"], {}, "wear coefficient"),
+        ([], {"nodes": 80}, "nodes: found 80; expected 2 to 65"),
+        ([], {"duration": "0 h"}, "duration: found 0; expected a value > 0"),
+        ([], {"turns": 0}, "turns: found 0"),
+    ],
+)
+def test_what_cannot_be_asked_is_one_clear_line(overrides, flags, words, tmp_path):
+    with pytest.raises(ScenarioError, match=words):
+        investigate("wear", read("run_in", *overrides), tmp_path / "o.h5", flags=flags, workers=1)
+
+
+def test_no_contact_table_is_one_clear_line(tmp_path):
+    with pytest.raises(ScenarioError, match=r"found nothing; expected a .contact. table"):
+        investigate("wear", read("fms_reference"), tmp_path / "o.h5", workers=1)
+
+
+# --- interrupted and killed -----------------------------------------------------------------------------
+
+SLOWLY = """
+import sys, time
+import sealdyn
+from sealdyn.investigate import investigate
+from sealdyn.worn_runs import WornRuns
+found = WornRuns.__call__
+def slowly(self, depth, motion=None):
+    time.sleep(0.05)
+    return found(self, depth, motion)
+WornRuns.__call__ = slowly
+investigate("wear", sealdyn.read_scenario(sys.argv[1]), sys.argv[2], workers=1)
+"""
+
+
+def steps_of(journal):
+    return [json.loads(line)["key"] for line in journal.read_text().splitlines()[1:]]
+
+
+def test_a_killed_study_goes_on_where_it_was(run_in, tmp_path, calls):
+    """kill -9 in the middle: no finished step is taken again, and the answer is the same to the last digit."""
+    out = tmp_path / "run_in.h5"
+    journal = out.with_suffix(".partial.jsonl")
+    words = [sys.executable, "-c", SLOWLY, str(SCENARIOS / "run_in.toml"), str(out)]
+    child = subprocess.Popen(words, env=os.environ | {"PYTHONPATH": str(Path(sealdyn.__file__).parents[1])})
+    until = time.time() + 120
+    while child.poll() is None and time.time() < until and not (journal.exists() and len(steps_of(journal)) > 6):
+        time.sleep(0.05)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    done = len(steps_of(journal))
+    assert 6 < done < 40 and not out.exists()
+
+    answer = investigate("wear", read("run_in"), out, workers=1)
+    rest = len(calls)
+    expected, _ = run_in
+    assert answer["history"] == expected["history"]
+    assert answer["profile"] == expected["profile"]
+    # Each finished step took four short runs or more: none of them again.
+    investigate("wear", read("run_in"), tmp_path / "whole.h5", workers=1)
+    assert rest <= len(calls) - rest - 4 * (done - 1)
+    assert not journal.exists()
+
+
+def test_an_interruption_keeps_the_steps(run_in, tmp_path, monkeypatch):
+    out = tmp_path / "run_in.h5"
+    calls, whole = [], WornRuns.__call__
+
+    def interrupted(self, depth, motion=None):
+        calls.append(1)
+        if len(calls) == 30:
+            raise KeyboardInterrupt
+        return whole(self, depth, motion)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(WornRuns, "__call__", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            investigate("wear", read("run_in"), out, workers=1)
+    done = steps_of(out.with_suffix(".partial.jsonl"))
+    assert done == [f"step:{k}" for k in range(len(done))] and len(done) > 4
+    assert investigate("wear", read("run_in"), out, workers=1)["profile"] == run_in[0]["profile"]
