@@ -93,11 +93,15 @@ class Faces:
 
     def opening_force(self, table, clearance, inner_pressure, outer_pressure) -> float:
         """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
+        if self.scene.contact:
+            # The floor of rough faces is a thickness, whatever the clearance.
+            floor, touch, collapse = contact.levels(self.scene.contact)
+            table = replace(table, floor=floor / clearance)
         force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
         if not self.scene.contact:
             return force
         face, s = face_block(table, clearance), np.zeros(GAP_STATE_SIZE)
-        face[FLOOR], face[TOUCH], face[COLLAPSE] = contact.levels(self.scene.contact)
+        face[TOUCH], face[COLLAPSE] = touch, collapse
         if self._asperities is None:
             # Of the faces it takes the radii, and whether there is a profile, which stay.
             self._asperities = contact.parameters(self.scene.contact, face)

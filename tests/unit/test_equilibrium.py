@@ -1,6 +1,7 @@
 """Clearance, balance ratio and spring force: two give the third; every root is found, against a film solved here."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,9 @@ from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run
 from scipy.integrate import quad
 
 from sealdyn.equilibrium import equilibria, settle
+from sealdyn.gap import FLOOR
 from sealdyn.problem import Problem
+from sealdyn.scenario import read_scenario
 from sealdyn.scene import Closing, ImpossibleScene
 from sealdyn.units import Table
 
@@ -191,3 +194,16 @@ def test_a_flexible_rotor_finds_the_same_clearance():
     other.rhs(0.0, y, yp)
     place = other.rate_places[other.names.index("rotor_z")]
     assert abs(yp[place]) < 1e-9 * closing_force(0.72, 40.0)
+
+
+@pytest.mark.parametrize("spring", ["60 N", "400 N", "4000 N"])
+def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring):
+    """Also where the film is thinner than 0.6 c and its law is continued: the run's own forces agree."""
+    path = Path(__file__).parents[2] / "scenarios" / "run_in.toml"
+    problem = Problem(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
+    if spring == "4000 N":
+        assert problem.clearance < 0.5 * problem.face[FLOOR]
+    y, yp = np.zeros(problem.size), np.empty(problem.size)
+    problem.rhs(0.0, y, yp)
+    force = 0.1 * yp[problem.rate_places[problem.names.index("stator_z")]]
+    assert abs(force) < 1e-9 * problem.closing_force()
