@@ -1,1 +1,6 @@
 """Puts this folder on the path, so that every test may import `scenes` and `oracles`."""
+
+import pytest
+
+# In SI a picometre is something: `approx` forgives 1e-12 of anything unless it is told not to.
+type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0
