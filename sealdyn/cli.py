@@ -308,7 +308,7 @@ def study(
     workers: Annotated[int | None, typer.Option(help="processes (default: all cores)")] = None,
     as_json: AsJson = False,
 ):
-    """Answer a question about a scenario; any setting of [study.NAME] may be given as --key value."""
+    """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
     import importlib
 
     from .investigate import investigate, study_names

@@ -123,7 +123,7 @@ def axis(words: str, name: str, where: str) -> dict:
     if len(parts) == 1:
         entries = [entry.strip() for entry in written.split(",")]
         matches = [NUMBER.fullmatch(entry) for entry in entries]
-        if not all(matches) or not all(_is_unit(m[2]) for m in matches):
+        if not all(matches) or not _alike(matches):
             return {"key": key, "unit": None, "given": entries, "values": entries}
         values, unit = _in_one_unit(matches)
     else:
@@ -131,6 +131,8 @@ def axis(words: str, name: str, where: str) -> dict:
         count, even_ratio = parts[2:3], parts[3:] == ["log"]
         if not all(ends) or not (count and count[0].strip().isdecimal()) or (parts[3:] and not even_ratio):
             raise ScenarioError(name, where, repr(words), AXIS)
+        if not _alike(ends) and ends[0][2] != ends[1][2]:
+            raise ScenarioError(name, where, repr(words), "ends in units of one kind")
         (low, high), unit = _in_one_unit(ends)
         if even_ratio and not low * high > 0:
             raise ScenarioError(name, where, repr(words), "ends of one sign, not zero, for log")
@@ -148,6 +150,12 @@ def _is_unit(words: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _alike(matches) -> bool:
+    """Whether the units written are units, and of one kind: none is converted into another's."""
+    units = [m[2] for m in matches]
+    return all(map(_is_unit, units)) and len({dimension_and_factor(unit)[0] for unit in units if unit}) < 2
 
 
 def _in_one_unit(matches) -> tuple[list[float], str]:

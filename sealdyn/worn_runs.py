@@ -1,8 +1,9 @@
 """Averaged short runs of the contact scene over worn faces: what the slow scale of wear asks for.
 
-**Valid** constant conditions with a common period (tables stay at their last value, `[initial]` is left out).  The
-ring follows its worn faces: it is moved to where they touch before each run, and its support's spring pushes less by
-stiffness times that travel.  A secondary seal that sticks is let go for that: hang-up over hours is not in it.
+**Valid** constant conditions with a common period (tables stay at their last value, `[initial]` is left out), and
+profiles that are the same all around: what a patch wears off is spread over the circle of both faces.  The ring follows
+its worn faces: it is moved to where they touch before each run, and its support's spring pushes less by stiffness times
+that travel.  A secondary seal that sticks is let go for that: hang-up over hours is not in it.
 """
 
 import math
@@ -45,14 +46,19 @@ class WornRuns:
 
     def __init__(self, scene, radius, accuracy=1e-6, within=1e-3, turns=1, patience=40):
         film = scene.film if scene.film.profile else replace(scene.film, profile=_level(scene.film))
-        self.scene = lasting(replace(scene, film=replace(film, model="auto"), initial=Initial()))
+        begun = replace(scene, film=replace(film, model="auto"), initial=Initial())
+        self.scene = lasting(begun)
         self.radius = np.asarray(radius, dtype=float)
         self.own = np.interp(self.radius, film.profile.radius, film.profile.depth)
         self.within, self.turns, self.patience = within, turns, patience
         rough = scene.contact.roughness
         probe = Problem(self.scene, 1.0, accuracy)
-        self.accuracy = min(accuracy, FINER * within * rough / probe.clearance)
-        self.clearance, self.closing, self.face_area = probe.clearance, probe.closing, probe.closing.area
+        # The closing force stays the law that the tables' first values decide, as it does in a run.
+        start = Problem(begun, 1.0, accuracy)
+        self.accuracy = min(accuracy, FINER * within * rough / start.clearance)
+        self.clearance, self.face_area = start.clearance, start.closing.area
+        given = self.scene.closing.spring_force
+        self.closing = start.closing if given is None else replace(start.closing, spring=given)
         self.still = not len(probe.rows)
         self.period = probe.period()
         if self.period is None:

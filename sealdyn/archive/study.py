@@ -75,7 +75,7 @@ def read_study(path) -> dict:
             info = {}
             for name, value in file.attrs.items():
                 value = value.item() if hasattr(value, "item") else value
-                if isinstance(value, str) and value[:1] in "{[":
+                if isinstance(value, str) and name not in ("name", "question") and value.startswith(("{", "[")):
                     value = json.loads(value)
                 info[name] = value
             info["scenario"] = file["scenario"].asstr()[()]

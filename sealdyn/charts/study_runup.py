@@ -63,7 +63,8 @@ def _order(top, below, answer):
     driven = max(linear["amplitude"], default=0.0) > 0
     if driven:
         top.plot(speed, 1e6 * np.array(linear["amplitude"]), color=BLACK, lw=2.6, alpha=0.35, label="linear, steady")
-        below.plot(speed, _degrees(linear["phase"]), color=BLACK, lw=2.6, alpha=0.35)
+        angle = _degrees(linear["phase"])
+        below.plot(speed, angle, color=BLACK, lw=2.6, alpha=0.35)
     for colour, row in _runs(answer):
         for way, style in (("up", "-"), ("down", (0, (4, 2)))):
             if not row[way]["speed"]:
@@ -71,7 +72,9 @@ def _order(top, below, answer):
             label = f"{row['rate']:.4g} rad/s²" if way == "up" else None
             top.plot(row[way]["speed"], 1e6 * np.array(row[way]["amplitude"]), color=colour, ls=style, label=label)
             if driven:
-                below.plot(row[way]["speed"], _degrees(row[way]["phase"]), color=colour, ls=style)
+                # Of a phase's many turns the one beside linear theory.
+                own, near = _degrees(row[way]["phase"]), np.interp(row[way]["speed"], speed, angle)
+                below.plot(row[way]["speed"], own + 360 * np.rint(np.mean(near - own) / 360), color=colour, ls=style)
     if driven:
         highest = 1e6 * max(linear["amplitude"])
         seen = [1e6 * max(row[w]["amplitude"]) for _, row in _runs(answer) for w in ("up", "down") if row[w]["speed"]]
@@ -234,8 +237,9 @@ def _load_panels(figure, answer):
 def _over_rate(ax, answer, name, title, factor):
     """Extremes of each trip over its rate, the step at the right end, in front of the quasi-static range."""
     runs = [(colour, row) for colour, row in _runs(answer) if row.get(name) is not None]
-    slow = factor * np.array(answer["quasi_static"][name])
-    ax.axhspan(slow.min(), slow.max(), color=GREY, alpha=0.2, lw=0, label="range of the slow answer")
+    slow = factor * np.array([value for value in answer["quasi_static"][name] if value is not None])
+    if len(slow):
+        ax.axhspan(slow.min(), slow.max(), color=GREY, alpha=0.2, lw=0, label="range of the slow answer")
     rates = [row["rate"] for _, row in runs if row["rate"]]
     far = 10 * max(rates, default=1.0)
     for colour, row in runs:

@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..continuation import lasting, with_part
+from ..continuation import with_part
 from ..gap import DZ, FLOW_INNER, FLOW_OUTER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, VISCOSITY, edge_gaps
 from ..legs import constant_and_slope
 from ..modes import steady_extremes
 from ..observables import Sampler
 from ..problem import Problem
 from ..scenario import parse_scenario
-from ..scenario_study import varied
 from ..simulation import prepare
 from ..solve import solve
 from ..units import Table
+from .plan import tables_end
 from .trip import Trip, told
 
 # Values between both ends at which the quasi-static answer is found; samples of a stage of a trip.
@@ -25,26 +25,34 @@ VALUES, SAMPLES = 25, 150
 
 def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
     """What the seal settles at, value by value (m,): relative misalignment (rad, largest over a period, linear about
-    the aligned film there), film thickness (m) and leakage of the aligned film there (m^3/s).
-
-    One scene with a staircase of values: the closing force stays the law that the first value has decided.
+    the aligned film there), film thickness (m) and leakage of the aligned film there (m^3/s); None where no gap
+    balances the loads.
     """
     values = np.linspace(begin, end, VALUES)
-    stairs = Table(tuple(map(float, range(VALUES))), tuple(map(float, values)))
-    words = f"{{ time = {list(stairs.time)!r}, value = {list(stairs.value)!r} }}"
-    scene = varied(scenario, {key: words, "run.duration": float(VALUES)}).scene
-    scene = with_part(lasting(with_part(scene, key, float(begin))), key, stairs)
-    problem = Problem(scene, float(VALUES - 1) + 1e-6)
-    legs = [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-9) for t in stairs.time]
+    problem, legs = _visited(scenario, key, values)
     rows = [_settled(problem, k) for k in legs]
     names = ("relative_misalignment", "h_min", "leakage")
     return {"value": values.tolist(), **{n: [row[i] for row in rows] for i, n in enumerate(names)}}
 
 
-def _settled(problem, k) -> tuple[float, float, float]:
+def _visited(scenario, key, values) -> tuple[Problem, list[int]]:
+    """The scene with its own tables and behind them a staircase of values of the key, and the legs that begin there:
+    the closing force stays the law that the scene's start decides, as it does on a trip."""
+    first = tables_end(with_part(scenario.scene, key, float(values[0])))
+    times = [first + n for n in range(len(values))]
+    points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
+    stairs = Table(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
+    problem = Problem(with_part(scenario.scene, key, stairs), times[-1] + 1e-3)
+    return problem, [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-6) for t in times]
+
+
+def _settled(problem, k) -> tuple[float | None, float | None, float | None]:
     """Largest tilt, thinnest film and leakage at the loads of a leg's start."""
     problem.begin(k)
     shift, linear = problem.axial_shift(k), problem.linear_scene(k)
+    if any(said.startswith(f"no equilibrium gap found for the loads from t = {problem.leg.time:.4g} s")
+           for said in problem.warnings):  # fmt: skip
+        return None, None, None
     harmonics = [replace(h) for h in problem.harmonics()]
     period = _period(harmonics)
     most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
@@ -67,18 +75,16 @@ def _period(harmonics):
     return 2 * math.pi / turning.pop() if len(turning) == 1 else None
 
 
-def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float]:
-    """Slowest decay time (s) of the scene linearised where it begins and where it ends, and how long to wait until it
-    settles: eight of it, at least ten turns, at most two hundred."""
-    table = Table((0.0, 1.0, 2.0), (float(begin), float(end), float(end)))
-    scene = with_part(lasting(with_part(scenario.scene, key, float(begin))), key, table)
-    problem = Problem(scene, 2.0)
-    last = next(k for k, leg in enumerate(problem.legs) if leg.time >= 1.0)
-    slowest = max((v.real for k in (0, last) for v in problem.linear_scene(k).eigen()[0]), default=-1e6)
-    speed = abs(constant_and_slope(scene.shaft.speed, problem.legs[0])[0])
+def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float, float]:
+    """Growth rate (1/s) of the slowest disturbance of the scene linearised where it begins and where it ends; the time
+    (s) it takes to decay, at most 25 turns; and how long to wait until it settles: eight of these, at least ten turns,
+    at most two hundred."""
+    problem, legs = _visited(scenario, key, [begin, end, end])
+    slowest = max((v.real for k in legs[:2] for v in problem.linear_scene(k).eigen()[0]), default=-1e6)
+    speed = abs(constant_and_slope(problem.scene.shaft.speed, problem.legs[legs[0]])[0])
     turn = 2 * math.pi / speed if speed else 1e-3
     decay = min(-1.0 / slowest, 25 * turn) if slowest < 0 else 25 * turn
-    return decay, float(np.clip(8.0 * decay, 10 * turn, 200 * turn))
+    return float(slowest), decay, float(np.clip(8.0 * decay, 10 * turn, 200 * turn))
 
 
 class Often(Sampler):
@@ -99,8 +105,7 @@ def instants(trip: Trip) -> np.ndarray:
     """When to look: along the ramps, and after them ever less often."""
     later = np.linspace(0.0, 1.0, SAMPLES) ** 2
     # Just before either change too.
-    # Just before either change too.
-    early = [0.5 * trip.settle, trip.settle * (1 - 1e-9), trip.back * (1 - 1e-9)]
+    early = [trip.settle * (1 - 1e-9), trip.back * (1 - 1e-9)]
     ramps = [np.linspace(a, b, SAMPLES) for a, b in ((trip.settle, trip.top), (trip.back, trip.home))]
     parts = [early, *ramps, trip.top + later * trip.hold, trip.home + later * trip.rest]
     return np.unique(np.concatenate(parts))
@@ -151,7 +156,9 @@ def _over(times, film, tilt, leakage, begin, end) -> dict | None:
 
 
 def overshoot(row: dict, slow: dict) -> dict:
-    """How far the trip went beyond the range of the quasi-static answer, as a share of that range."""
+    """How far the trip went beyond the range of the quasi-static answer, as a share of that range; None without one."""
+    if None in slow["h_min"]:
+        return dict.fromkeys(("h_min", "relative_misalignment", "leakage"))
     low, high = min(slow["h_min"]), max(slow["h_min"])
     tilt = max(slow["relative_misalignment"])
     flow_low, flow_high = min(slow["leakage"]), max(slow["leakage"])

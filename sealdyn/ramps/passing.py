@@ -32,7 +32,8 @@ def touch_tilt(problem) -> float:
     level = max(face[TOUCH], face[COLLAPSE])
     if smallest_gap(face, 0.0, 0.0)[0] <= level:
         return 0.0
-    beyond = 2 * (problem.clearance / face[0] + abs(face[3]))
+    # Where the aligned faces are nearest, this tilt closes them at any radius.
+    beyond = smallest_gap(face, 0.0, 0.0)[0] / face[0]
     return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0] - level, 0.0, beyond))
 
 

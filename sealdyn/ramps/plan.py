@@ -6,7 +6,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 
 from .. import modes
-from ..continuation import lasting, part
+from ..continuation import lasting, part, with_part
 from ..scenario_errors import ScenarioError
 from ..scenario_study import axis, varied
 from ..unit_names import dimension_and_factor
@@ -67,6 +67,11 @@ def unit_of(scenario, key: str) -> str:
     return "SI"
 
 
+def rate_unit(unit: str) -> str:
+    """SI unit of a rate of a quantity with this unit."""
+    return f"{unit}^2" if unit.endswith("/s") else f"{unit}/s"
+
+
 def value_of(scenario, settings, name: str) -> float | None:
     """`begin` or `end` in SI.  Raises ScenarioError."""
     given = getattr(settings, name)
@@ -76,7 +81,10 @@ def value_of(scenario, settings, name: str) -> float | None:
         read = varied(scenario, {settings.key: given, "run.duration": 1.0})
     except ScenarioError as error:
         raise wrong(scenario, name, error.found, error.expected) from None
-    return float(part(read.scene, settings.key))
+    value = part(read.scene, settings.key)
+    if isinstance(value, Table):
+        raise wrong(scenario, name, "a table", "one value: the ramp is made of `begin`, `end` and `rates`")
+    return float(value)
 
 
 def jumps(scene, key: str) -> bool:
@@ -101,8 +109,15 @@ def rates_of(scenario, settings) -> list[float | None] | None:
         told = axis(f"{settings.key}={numbers}", scenario.name, "study.runup.rates")
         if told["unit"] is None:
             raise wrong(scenario, "rates", repr(words), expected)
-        factor = float(dimension_and_factor(told["unit"])[1]) if told["unit"] else 1.0
-        found = sorted(float(f"{factor * v:.12g}") for v in told["values"])
+        factor, own = 1.0, rate_unit(unit_of(scenario, settings.key))
+        if told["unit"]:
+            try:
+                dimension, factor = dimension_and_factor(told["unit"])
+            except ValueError:
+                dimension = None
+            if dimension != dimension_and_factor(own)[0]:
+                raise wrong(scenario, "rates", f'"{words}"', f"{expected}, in {own} or its like")
+        found = sorted(float(f"{float(factor) * v:.12g}") for v in told["values"])
     if any(not rate > 0 for rate in found):
         raise wrong(scenario, "rates", repr(words), expected + "; `begin` and `end` give the direction")
     return [*found, *([None] if steps else [])]
@@ -144,7 +159,7 @@ def planned(scenario, settings) -> dict:
         least = _turns(begin, end, 1.0) / MOST_TURNS
         raise wrong(scenario, "rates", f"{rates[0]:.4g} rad/s^2: {slow:.3g} turns each way",
                     f"a rate above {least:.3g} rad/s^2, or a shorter way from begin to end")  # fmt: skip
-    settle = max(tables_end(scenario.scene), SETTLE * 2 * math.pi / max(begin, 0.05 * end))
+    settle = max(tables_end(with_part(scenario.scene, SPEED, begin)), SETTLE * 2 * math.pi / max(begin, 0.05 * end))
     overrides = _tilted(scenario, steady, crossing)
     needed = max(FINE * disturbance / scale, FINEST)
     if crossing is not None and scenario.run.accuracy > needed:
@@ -219,8 +234,8 @@ def _own_rates(begin, end, foretold, few) -> list[float]:
 
 
 def tables_end(scene) -> float:
-    """When (s) the scene's own tables, the speed's aside, have ended: then the ramp begins."""
-    tables = [v for owner in (scene.film, scene.rotor, scene.stator, scene.closing)
+    """When (s) the scene's own tables have ended: then the ramp begins."""
+    tables = [v for owner in (scene.shaft, scene.film, scene.rotor, scene.stator, scene.closing)
               for v in vars(owner).values() if isinstance(v, Table)]  # fmt: skip
     return max((table.time[-1] for table in tables), default=0.0)
 

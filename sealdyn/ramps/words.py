@@ -163,11 +163,16 @@ def _touch(answer) -> list[str]:
 def load_sentences(answer) -> list[str]:
     """Verdict of ramps and steps of anything but the speed."""
     slow, key, unit = answer["quasi_static"], answer["key"], answer["unit"]
-    said = [f"{key} from {answer['begin']:.5g} to {answer['end']:.5g} {unit} and back; disturbances of the linear seal "
-            f"fall to 1/e within {answer['decay']:.3g} s"]  # fmt: skip
-    ends = [f"{1e6 * slow['h_min'][k]:.4g} um, {1e6 * slow['relative_misalignment'][k]:.4g} urad, "
+    slowest = answer["slowest"]
+    fade = (f"disturbances of the linear seal fall to 1/e within {-1 / slowest:.3g} s" if slowest < 0
+            else f"the linear seal is unstable there, its disturbances grow by {slowest:.3g} 1/s")  # fmt: skip
+    said = [f"{key} from {answer['begin']:.5g} to {answer['end']:.5g} {unit} and back; {fade}"]
+    ends = ["no gap balances the loads" if slow["h_min"][k] is None else
+            f"{1e6 * slow['h_min'][k]:.4g} um, {1e6 * slow['relative_misalignment'][k]:.4g} urad, "
             f"{slow['leakage'][k] * 3.6e9:.5g} ml/h" for k in (0, -1)]  # fmt: skip
     said.append(f"infinitely slowly (thinnest film, misalignment, leakage): {ends[0]} at begin, {ends[1]} at end")
+    if None in slow["h_min"][1:-1] and None not in (slow["h_min"][0], slow["h_min"][-1]):
+        said.append("between them are values whose loads no gap balances")
     for row in answer["rows"]:
         name = "a step" if row["rate"] is None else f"{row['rate']:.4g} {answer['rate_unit']}"
         said.append(f"{name}: {row['failed'] if 'failed' in row else _loaded(row)}")

@@ -13,7 +13,7 @@ import numpy as np
 from ..continuation import part, with_part
 from ..ramps.loads import load_trip, memory, overshoot, quasi_static
 from ..ramps.passing import passage, short_pass
-from ..ramps.plan import SPEED, checked, jumps, planned, rates_of, tables_end, unit_of, value_of, wrong
+from ..ramps.plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
 from ..ramps.words import load_sentences, sentences
 from ..units import Angle, Table, Time
 
@@ -152,14 +152,17 @@ def load_ramps(scenario, settings, tools) -> dict:
     if end is None or end == begin:
         raise wrong(scenario, "end", "nothing" if end is None else f"{end:g}, as begin", f"another value of {key}")
     unit = unit_of(scenario, key)
-    decay, wait = memory(scenario, key, begin, end)
+    slowest, decay, wait = memory(scenario, key, begin, end)
     rates = rates_of(scenario, settings)
     if rates is None:
         rates = [float(f"{abs(end - begin) / (times * decay):.4g}") for times in RAMPS]
         rates += [] if jumps(scenario.scene, key) else [None]
-    settle = max(wait, tables_end(with_part(scenario.scene, key, begin)))
+    settle = wait + tables_end(with_part(scenario.scene, key, begin))
+    hold = wait if settings.hold is None else settings.hold
+    if None in rates and not hold:
+        raise wrong(scenario, "hold", "0 s with a step", "a time above zero: a step there and back at once is none")
     base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "key": key,
-            "begin": begin, "end": end, "settle": settle, "hold": settings.hold or wait, "rest": wait}  # fmt: skip
+            "begin": begin, "end": end, "settle": settle, "hold": hold, "rest": wait}  # fmt: skip
     slow = quasi_static(scenario, key, begin, end)
     rows = tools.map(load_trip, [{**base, "rate": rate} for rate in rates], "ramps")
     rows = [{"rate": rate, **row} for rate, row in zip(rates, rows, strict=True)]
@@ -170,8 +173,9 @@ def load_ramps(scenario, settings, tools) -> dict:
         "begin": begin,
         "end": end,
         "unit": unit,
-        "rate_unit": f"{unit}^2" if unit.endswith("/s") else f"{unit}/s",
+        "rate_unit": rate_unit(unit),
         "decay": decay,
+        "slowest": slowest,
         "quasi_static": slow,
         "rows": rows,
     }

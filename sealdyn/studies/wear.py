@@ -17,8 +17,9 @@ from ..worn_runs import WornRuns
 
 WITH_CONTACT = True
 # Radii a profile may have; share of the closing force below which there is no contact, and below which it has faded if
-# nothing more than the accuracy is left to wear; a contact over fewer radii than FEW is coarse.
-MOST, TOUCH, FADED, FEW = 65, 1e-6, 1e-3, 4
+# nothing more than the accuracy is left to wear; a contact over fewer radii than FEW is coarse; one on faces tilted by
+# more than UNEVEN roughnesses at the outer radius is not even around the circle.
+MOST, TOUCH, FADED, FEW, UNEVEN = 65, 1e-6, 1e-3, 4, 0.1
 HISTORY = {
     "time": "s", "leakage": "m^3/s", "friction_power": "W", "contact_share": "1", "contact_force": "N",
     "closing_force": "N", "film_force": "N", "contact_area_fraction": "1", "contact_pressure": "Pa", "h_min": "m",
@@ -81,6 +82,8 @@ def _coefficients(scenario) -> dict[str, float]:
         )  # fmt: skip
     if scene.film.model == "linear":
         raise ScenarioError(scenario.name, "film.model", '"linear"', 'a film that sees the worn faces: "auto"')
+    if scene.film.cavitation_pressure is not None:
+        raise ScenarioError(scenario.name, "film.cavitation_pressure", "a value", "nothing: worn faces have no floor")
     return wears
 
 
@@ -114,7 +117,8 @@ def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
     rows, known = [], tools.journal.rows
     while f"step:{len(rows)}" in known:
         rows.append(known[f"step:{len(rows)}"])
-    worn = _resumed(rows[-1]) if rows else Worn(0.0, np.zeros(len(hats.radius)))
+    last = rows[-1] if rows else {"time": 0.0, "depth": 0.0 * hats.radius, "volume": 0.0, "span": 0.0, "motion": None}
+    worn = Worn(last["time"], np.array(last["depth"]), last["volume"], last["span"], last["motion"])
     going_on = bool(rows)
     try:
         for worn, average in advance(runs, hats, worn, settings.duration, control):  # noqa: B020
@@ -140,10 +144,6 @@ def _row(worn, average, hats) -> dict:
         "time": worn.time, "depth": worn.depth.tolist(), "volume": worn.volume, "span": worn.span,
         "motion": worn.motion, "rate": rate.tolist(), "coarse": 0 < touching < FEW, "seen": average.row,
     }  # fmt: skip
-
-
-def _resumed(row) -> Worn:
-    return Worn(row["time"], np.array(row["depth"]), row["volume"], row["span"], row["motion"])
 
 
 def _ended(rows, settings, control) -> dict | None:
@@ -188,10 +188,10 @@ def _answer(runs, hats, wears, rows) -> dict:
         for row, g in zip(rows, gap, strict=True)
     ]
     history["coning"] = [_slope(hats, g) for g in gap]
-    history["unevenness"] = [_finite(unevenness(row["rate"])) for row in rows]
+    history["unevenness"] = [float(u) if np.isfinite(u) else None for u in (unevenness(row["rate"]) for row in rows)]
     for face in wears:
         history[f"{face}_volume"] = [hats.volume(d) for d in worn[face]]
-    last = rows[-1] if rows else None
+    last, tilt = rows[-1] if rows else None, max((row["seen"]["relative_misalignment"] for row in rows), default=0.0)
     volume = hats.volume(depth[-1]) if rows else 0.0
     return {
         "radius": hats.radius.tolist(),
@@ -207,6 +207,7 @@ def _answer(runs, hats, wears, rows) -> dict:
         "steps": max(len(rows) - 1, 0),
         "not_settled": sum(not row["seen"]["settled"] for row in rows),
         "coarse": sum(row["coarse"] for row in rows),
+        "tilt_over_roughness": tilt * float(hats.radius[-1]) / runs.scene.contact.roughness,
         "still": runs.still,
         "unstable": runs.unstable,
         "period": runs.period,
@@ -218,10 +219,6 @@ def _slope(hats, gap) -> float:
     """Coning (rad) of the straight line nearest to a gap (n,) over the face."""
     lines = np.stack([np.ones(len(gap)), hats.radius - hats.radius[0]])
     return float(np.linalg.solve(lines @ hats.mass @ lines.T, lines @ hats.mass @ gap)[1])
-
-
-def _finite(value) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _extrapolated(answer, row, hats, wears, duration) -> dict:
@@ -273,6 +270,9 @@ def sentences(answer, settings) -> list[str]:
             f"at {answer['coarse']} of {answer['steps'] + 1} profiles fewer than {FEW} radii, {spacing:.3g} mm apart, "
             "touch: raise study.wear.nodes for a finer profile"
         )
+    if answer["tilt_over_roughness"] > UNEVEN and max(history["contact_force"]) > 0.0:
+        lines.append(f"the faces tilt by up to {answer['tilt_over_roughness']:.2g} roughnesses and touch unevenly: "
+                     "wear is spread over the circle, a face on which the patch stands wears deeper")  # fmt: skip
     if answer["unstable"]:
         lines.append("the aligned seal is unstable at this speed: its wear holds for the motion seen here only")
     return lines

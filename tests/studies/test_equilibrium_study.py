@@ -8,6 +8,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
+from sealdyn.archive import read_study
+from sealdyn.charts import study_equilibrium
+from sealdyn.investigate import investigate
 from sealdyn.scenario import parse_scenario
 from sealdyn.studies import equilibrium
 from sealdyn.studies.equilibrium import Settings
@@ -75,3 +78,12 @@ def test_curve_is_the_opening_force():
     found = answer(read_scenario(REFERENCE), points=7)["curve"]
     for clearance, force in zip(found["clearance"], found["opening_force"], strict=True):
         assert force == pytest.approx(opening(clearance, 3.125e-3), rel=1e-7)
+
+
+def test_a_scenario_without_a_question_has_a_figure_too(tmp_path):
+    text = "".join(line for line in REFERENCE.read_text().splitlines(True) if not line.startswith("#"))
+    found = investigate("equilibrium", parse_scenario(text, "[bare]"), tmp_path / "bare.h5", workers=1)
+    study = read_study(found["archive"])
+    assert (study["question"], study["name"]) == ("", "[bare]")
+    assert study_equilibrium.draw(found["archive"], tmp_path / "bare.png")
+    assert (tmp_path / "bare.png").stat().st_size > 1000

@@ -9,7 +9,10 @@ import pytest
 
 from sealdyn.archive import read_study
 from sealdyn.charts.study_runup import draw
+from sealdyn.gap import COLLAPSE
 from sealdyn.investigate import investigate
+from sealdyn.problem import Problem
+from sealdyn.ramps.passing import touch_tilt
 from sealdyn.scenario import read_scenario
 from sealdyn.scenario_errors import ScenarioError
 from sealdyn.studies import runup
@@ -204,6 +207,53 @@ def test_a_light_support_overshoots_as_an_oscillator(tmp_path):
     assert ramp["overshoot"]["h_min"] < 0.3 * expected
 
 
+def test_the_scenes_own_tables_have_their_say(tmp_path):
+    """pressure_step again, its step to 1.3 bar behind it: the closing force is still what its start decided."""
+    flags = {"key": "film.inner_pressure", "rates": "20 bar/s"}
+    answer = study(tmp_path, read("pressure_step"), end="0.02 bar", **flags)
+    slow, (row,) = answer["quasi_static"], answer["rows"]
+    assert slow["h_min"][0] == pytest.approx(0.87e-6, abs=0.005e-6)
+    for name, k in (("begin", 0), ("end", -1)):
+        assert row["settled"][name]["leakage"] == pytest.approx(slow["leakage"][k], rel=0.02)
+    # It was settled before it began: at most what was left of that is beyond the slow answer.
+    assert row["overshoot"]["leakage"] < 0.05
+    # Its spring alone is more than 0.3 bar can carry.
+    answer = study(tmp_path, read("pressure_step"), end="1 bar", **flags)
+    assert answer["quasi_static"]["h_min"][-1] is None and answer["quasi_static"]["leakage"][0] > 0
+    assert set(answer["rows"][0]["overshoot"].values()) == {None}
+    assert any("no gap balances the loads at end" in said for said in answer["verdict"])
+    assert draw(tmp_path / "r.h5", tmp_path / "r.png").stat().st_size > 20_000
+
+
+def test_an_own_ramp_of_the_speed_is_waited_for(tmp_path):
+    """The shaft of the scenario has done its run-up before the pressure changes."""
+    speed = "shaft.speed={ time = ['0 s', '0.3 s'], value = ['500 rad/s', '1000 rad/s'] }"
+    answer = study(tmp_path, read("fms_reference", speed), key="film.outer_pressure", end="4.5 bar", rates="step")
+    assert answer["rows"][0]["stages"][0] > 0.3
+
+
+def test_no_hold_is_none(tmp_path):
+    flags = {"key": "film.outer_pressure", "end": "4.9 bar", "rates": "10 bar/s", "hold": 0}
+    (row,) = study(tmp_path, read("fms_reference"), **flags)["rows"]
+    assert row["stages"][1] == row["stages"][2] and row["settled"]["end"] is None
+    assert draw(tmp_path / "r.h5", tmp_path / "r.png").stat().st_size > 20_000
+
+
+def test_an_unstable_seal_is_not_said_to_calm_down(tmp_path):
+    answer = study(tmp_path, read("fms_reference", "shaft.speed=6500 rad/s"), key="film.outer_pressure",
+                   end="5.1 bar", rates="step", hold="1 ms")  # fmt: skip
+    assert answer["slowest"] > 0
+    assert "unstable" in answer["verdict"][0] and "fall" not in answer["verdict"][0]
+
+
+def test_the_tilt_that_touches_whatever_the_profile():
+    """Faces 30 um apart everywhere, by a profile of 25 um on a clearance of 5: h = floor at the outer radius."""
+    film = "film.profile={ radius = ['32 mm', '40 mm'], depth = ['25 um', '25 um'] }"
+    scene = read("fms_reference", film, "film.clearance=5 um", "film.coning=0 rad", "film.model=auto").scene
+    problem = Problem(scene, 1.0)
+    assert touch_tilt(problem) == pytest.approx((30e-6 - problem.face[COLLAPSE]) / 40e-3, rel=1e-9)
+
+
 # --- errors -----------------------------------------------------------------------------------------------
 
 
@@ -227,6 +277,13 @@ def test_a_light_support_overshoots_as_an_oscillator(tmp_path):
         ({"window": 1}, ["window", "at least 2"]),
         ({"hold": -1}, ["hold", "nothing negative"]),
         ({"rate": 1000}, ["unknown key", "nearest rates"]),
+        ({"rates": "5 m"}, ["rates", "5 m", "rad/s^2"]),
+        ({"rates": "1 foo:2 foo:3"}, ["rates", "1 foo"]),
+        ({"rates": "10 foo:20 rpm/s:3"}, ["rates", "units of one kind"]),
+        ({"key": "film.outer_pressure", "end": "4 bar", "rates": "5 rpm"}, ["rates", "5 rpm", "Pa/s"]),
+        ({"key": "film.outer_pressure", "end": "4 bar", "rates": "3 m, 1 bar/s"}, ["rates", "3 m"]),
+        ({"key": "film.outer_pressure", "end": "4 bar", "rates": "step", "hold": 0}, ["hold", "a step"]),
+        ({"end": "{ time = [0, 1], value = [800, 900] }"}, ["end", "a table", "one value"]),
     ],
 )
 def test_errors_in_one_line(tmp_path, flags, told):

@@ -24,6 +24,7 @@ from sealdyn.investigate import investigate
 from sealdyn.ring import Rotor, Stator, Support
 from sealdyn.scenario_errors import ScenarioError
 from sealdyn.scene import Closing
+from sealdyn.units import Table
 from sealdyn.wear import Control, Hats, NoAverage, Worn, advance, unevenness
 from sealdyn.worn_runs import WornRuns
 
@@ -48,6 +49,21 @@ def history(scene, hours, accuracy=1e-2, allowed=1.0, radius=RADIUS):
     runs = WornRuns(scene, radius, within=0.1 * accuracy)
     control = Control(ROUGH, accuracy, allowed * ROUGH)
     return runs, list(advance(runs, Hats(radius), Worn(0.0, np.zeros(len(radius))), hours * HOUR, control))
+
+
+def test_the_closing_force_is_what_the_start_has_decided():
+    """A clearance held at 4 bar with a spring of 60 N: at 2 bar the spring still is 60 N and the faces come nearer."""
+    fallen = Table((0.0, 0.005), (4e5, 2e5))
+    scene = replace(pressed(), closing=Closing(spring_force=60.0))
+    scene = replace(
+        scene, film=replace(scene.film, viscosity=5e-4, clearance=1.5e-6, coning=1e-4, outer_pressure=fallen)
+    )
+    runs = WornRuns(scene, RADIUS)
+    at_first = WornRuns(replace(scene, film=replace(scene.film, outer_pressure=4e5)), RADIUS).closing
+    assert runs.closing.balance_ratio == at_first.balance_ratio
+    seen = runs(np.zeros(len(RADIUS))).row
+    assert seen["closing_force"] == pytest.approx(at_first.balance_ratio * 2e5 * AREA + 60.0, rel=1e-9)
+    assert seen["h_min"] < 1.2e-6
 
 
 # --- flat parallel faces under a constant load -----------------------------------------------------------
@@ -325,11 +341,22 @@ def test_a_short_run_that_fails_on_the_way_leaves_what_came_before(run_in, tmp_p
         ([], {"nodes": 80}, "nodes: found 80; expected 2 to 65"),
         ([], {"duration": "0 h"}, "duration: found 0; expected a value > 0"),
         ([], {"turns": 0}, "turns: found 0"),
+        (["film.cavitation_pressure=0.1 bar"], {}, "cavitation_pressure: found a value; expected nothing: worn faces"),
     ],
 )
 def test_what_cannot_be_asked_is_one_clear_line(overrides, flags, words, tmp_path):
     with pytest.raises(ScenarioError, match=words):
         investigate("wear", read("run_in", *overrides), tmp_path / "o.h5", flags=flags, workers=1)
+
+
+def test_a_contact_on_one_side_is_said(tmp_path):
+    """Faces tilted by hundreds of roughnesses rub at a patch: the profile spreads its wear over the circle."""
+    scenario = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa", "run.accuracy=1e-4")
+    flags = {"duration": "10 s", "nodes": 3, "patience": 2}
+    answer = investigate("wear", scenario, tmp_path / "o.h5", flags=flags, workers=1)
+    tilt = answer["tilt_over_roughness"]
+    assert tilt == pytest.approx(max(answer["history"]["relative_misalignment"]) * 0.04 / 1e-7, rel=1e-12)
+    assert tilt > 100 and any("touch unevenly" in said for said in answer["verdict"])
 
 
 def test_no_contact_table_is_one_clear_line(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from sealdyn.scenario import read_scenario
 from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scenario_study import study_settings
+from sealdyn.scenario_study import axis, study_settings
 from sealdyn.studies import contact_onset, failures, rub, sealing_number, steady_state, sweep, work_precision
 
 SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml")
@@ -60,3 +60,12 @@ def test_a_bad_entry_is_one_line(module, key, words, told):
         settings(module, **{key: words})
     said = str(refused.value)
     assert "\n" not in said and all(part in said for part in told), said
+
+
+@pytest.mark.parametrize("words", ["3 m, 1 bar", "1 bar, 3 rpm", "1 foo, 2 bar"])
+def test_units_of_another_kind_are_not_converted(words):
+    """What is no value of the key is left as it is written, for the scenario to refuse."""
+    entries = [entry.strip() for entry in words.split(",")]
+    assert axis(f"film.outer_pressure={words}", "s", "w")["given"] == entries
+    with pytest.raises(ScenarioError, match="units of one kind"):
+        axis(f"film.outer_pressure={words.replace(', ', ':')}:3", "s", "w")
