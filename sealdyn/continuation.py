@@ -6,10 +6,12 @@ from dataclasses import replace
 import numpy as np
 
 from . import attractor
+from .faces import Faces
 from .lyapunov import two_trajectories
 from .problem import Problem
 from .recorder import Recorder
 from .scenario import parse_scenario
+from .scene import Closing
 from .solve import solve
 from .stroboscope import SAMPLES, Stroboscope
 from .units import Table
@@ -36,7 +38,11 @@ def with_part(thing, key: str, value):
 
 
 def lasting(scene):
-    """The scene with every table at its last value: what it drives to."""
+    """The scene with every table at its last value: what it drives to, closed by the law that its start decides."""
+    film = scene.film
+    if film.clearance is not None and any(isinstance(p, Table) for p in (film.inner_pressure, film.outer_pressure)):
+        law = Faces(scene, 1e-6).closing
+        scene = replace(scene, closing=Closing(law.balance_ratio, law.spring))
     for table in ("shaft", "film", "rotor", "stator", "closing"):
         owner = getattr(scene, table)
         ends = {n: float(v.value[-1]) for n, v in vars(owner).items() if isinstance(v, Table)}

@@ -58,7 +58,8 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     """Design clearance, closing force, all equilibria found and a sentence, from what the scene gives.
 
     `opening_force(film, clearance, p_i, p_o)` is the film's.  Two of clearance, balance ratio and spring
-    force decide the third; the clearance alone means: whatever holds it, counted as hydraulic closing.
+    force decide the third; the clearance alone means: whatever holds it, counted as hydraulic closing; all three
+    (no scenario has them): the closing force is as given, whether or not it balances at the clearance.
     Raises ImpossibleScene if there is no stable equilibrium.
     """
     film, closing = scene.film, scene.closing
@@ -81,6 +82,8 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
                 )
             balance = ((force - initially(spring)) / area - low) / (high - low)
             said = "balance ratio follows from clearance and spring force"
+        elif spring is not None:
+            said = "closing force as given: the clearance is where displacements are counted from"
         else:
             spring = force - ClosingForce(area, balance, 0.0, outer_is_high).at(inner, outer, 0.0)
             said = "spring force follows from clearance and balance ratio"

@@ -61,7 +61,8 @@ ALLOWED = {
     | {"validation", "whirl"},
     "attractor": set(),
     "stroboscope": {"methods", "problem", "recorder", "scene", "signals", "solve"},
-    "continuation": DOORS | {"attractor", "lyapunov", "problem", "recorder", "scenario", "solve", "stroboscope"},
+    "continuation": DOORS
+    | {"attractor", "faces", "lyapunov", "problem", "recorder", "scenario", "scene", "solve", "stroboscope"},
     "ramps": PHYSICS
     | DOORS
     | {"continuation", "modes", "observables", "problem", "scenario", "simulation", "solve", "watch", "whirl"},

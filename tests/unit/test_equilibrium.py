@@ -8,6 +8,7 @@ import pytest
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run
 from scipy.integrate import quad
 
+from sealdyn.continuation import lasting
 from sealdyn.equilibrium import equilibria, settle
 from sealdyn.gap import FLOOR
 from sealdyn.problem import Problem
@@ -207,3 +208,13 @@ def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring
     problem.rhs(0.0, y, yp)
     force = 0.1 * yp[problem.rate_places[problem.names.index("stator_z")]]
     assert abs(force) < 1e-9 * problem.closing_force()
+
+
+def test_what_a_scene_drives_to_is_closed_as_its_run_is():
+    """A pressure that falls takes its share of the closing force with it; it does not decide the balance anew."""
+    falling = scene(Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=Table((0.0, 1.0), (P_O, P_O / 3)))
+    whole, end = Problem(falling, 2.0), Problem(lasting(falling), 2.0)
+    last = whole.closing.over(whole.legs[-1], falling.film)[0]
+    assert end.closing_force() == pytest.approx(last, rel=1e-12)
+    assert end.axial_shift(0) == pytest.approx(whole.axial_shift(len(whole.legs) - 1), rel=1e-9)
+    assert abs(end.axial_shift(0)) > 1e-9
