@@ -30,7 +30,7 @@ LATER = 3.0
 LOOSER, SHARE = 10.0, 0.4
 # The energy of a motion a times smaller than its scale is known a times less well (measured: with more than 1.6 the
 # audit of the FMS reference, a tenth of a scale, passes ten times the accuracy); what gain is worth a trial.
-LARGE, WORTH = 1.6, 1.5
+LARGE, WORTH = 1.6, 2.0
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau": "dop853", "expm": "dop853"}
 

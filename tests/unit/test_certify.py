@@ -117,7 +117,7 @@ def test_an_undamped_scene_adds_its_errors_up():
 
 @pytest.mark.parametrize("method", ["adams", "bdf", "dop853"])
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
-@pytest.mark.parametrize("name,start", [("fms", "rest"), ("shaken", "rest"), ("larger", "rest"), ("larger", "steady")])
+@pytest.mark.parametrize("name,start", [("fmsr", "rest"), ("shaken", "rest"), ("larger", "rest"), ("larger", "steady")])
 def test_a_tolerance_on_trial_keeps_the_accuracy(name, start, method, accuracy):
     """Looser than the cautious one, and the run at it is still as exact as was asked, and as estimated within three."""
     problem = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy, start)
@@ -162,12 +162,11 @@ def test_a_trial_that_errs_too_much_is_not_taken(monkeypatch):
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
 @pytest.mark.parametrize("name", ["fms_reference", "fmr_reference", "fmsr_both_flexible"])
-def test_energy_is_audited_as_sharply_at_a_tolerance_on_trial(name, accuracy):
+def test_energy_is_audited_as_sharply_with_or_without_a_trial(name, accuracy):
     """A tenth of a scale of motion, errors a twentieth of the accuracy: what is exchanged is known no better."""
     path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
     summary = run_briefly(read_scenario(path, [f"run.accuracy={accuracy}"]))
     assert summary["energy_residual"] < 10 * accuracy
-    assert any("by a trial" in reason for reason in summary["model"]["reasons"])
 
 
 @pytest.mark.parametrize(
