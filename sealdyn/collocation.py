@@ -22,8 +22,8 @@ SHORTEST = 1e-12
 
 @lru_cache
 def rule(stages: int, radau: bool):
-    """Nodes (s,), matrix (s, s) and weights (s,) of the collocation on [0, 1], and the error weights (s + 1,) of the
-    quadrature through the start and all nodes but the first."""
+    """Nodes (s,), matrix (s, s) and weights (s,) of the collocation on [0, 1], the error weights (s + 1,) of the
+    quadrature through the start and all nodes but the first, the weights (2, s) that carry the nodes on to 0 and 1."""
     if radau:
         # (P_s - P_{s-1}) on [-1, 1]: its roots include the right end.
         shifted = np.polynomial.legendre.Legendre([0.0] * (stages - 1) + [-1.0, 1.0])
@@ -44,7 +44,7 @@ def rule(stages: int, radau: bool):
     b = integrals(c, 1.0)
     other = integrals(np.concatenate([[0.0], c[1:]]), 1.0)
     error = np.concatenate([[other[0], 0.0], other[1:]]) - np.concatenate([[0.0], b])
-    return c, matrix, b, error
+    return c, matrix, b, error, _carried(c, np.array([0.0, 1.0]))
 
 
 def collocation(problem, leg, tau, y, method, tolerance, counts):
@@ -54,7 +54,7 @@ def collocation(problem, leg, tau, y, method, tolerance, counts):
     orders smaller.  A massless ring is integrated through its consistent derivatives.
     """
     radau = method != "gauss"
-    c, a, b, error = rule(RADAU if radau else GAUSS, radau)
+    c, a, b, error, ends = rule(RADAU if radau else GAUSS, radau)
     rhs, n = _rates(problem, counts), problem.n_mechanical
     scale, largest = problem.scales[:n], min(problem.fast_time / PER_PERIOD, problem.longest_step())
     if not len(problem.rows):
@@ -78,15 +78,20 @@ def collocation(problem, leg, tau, y, method, tolerance, counts):
             # A fresh matrix first, then shorter steps.
             h, jac, stages = (h, None, None) if stages is not None else (0.3 * h, None, None)
             continue
-        estimate = np.linalg.solve(np.eye(n) - FILTER * h * jac, h * (error[0] * f + error[1:] @ k)[:n])
-        size = float(np.max(np.abs(estimate) / scale)) / tolerance
+        there = y + h * (b @ k)
+        f_there = rhs(tau + h, there)
+        # Between the ends and their nodes nobody has looked: a kink there shows in the derivatives at the ends.
+        before, after = np.stack([f, f_there]) - ends @ k
+        embedded = error[0] * f + error[1:] @ k
+        estimates = h * np.stack([embedded, 0.5 * c[0] * before, 0.5 * (1.0 - c[-1]) * after])[:, :n].T
+        estimates = np.linalg.solve(np.eye(n) - FILTER * h * jac, estimates)
+        size = float(np.max(np.abs(estimates) / scale[:, None])) / tolerance
         factor = min(max(0.8 * max(size, 1e-12) ** (-1.0 / order), 0.2), 3.0)
         if size > 1.0:
             h, stages = factor * h, None
             continue
         tau = leg.length if h == leg.length - tau else tau + h
-        y = y + h * (b @ k)
-        f = rhs(tau, y)
+        y, f = there, f_there
         yield np.array([tau]), y[None, :].copy(), f[None, :].copy()
         following = min(largest, factor * h)
         # The same step again keeps the matrix.
@@ -154,6 +159,9 @@ def _stages(rhs, tau, h, y, k, c, a, inverse, n, scale):
 
 def _extrapolated(c, k, ratio):
     """The last step's derivatives carried on to the nodes of the next, `ratio` times as long."""
-    at = 1.0 + ratio * c
-    weights = np.array([[math.prod((x - e) / (d - e) for e in c if e != d) for d in c] for x in at])
-    return weights @ k
+    return _carried(c, 1.0 + ratio * c) @ k
+
+
+def _carried(c, at):
+    """Weights (m, s) of values at the nodes for their polynomial at other places."""
+    return np.array([[math.prod((x - e) / (d - e) for e in c if e != d) for d in c] for x in at])

@@ -3,8 +3,9 @@
 scikit-sundae gives no dense output and charges a call for every output point.  Each step however yields
 displacement and rate, so n neighbouring steps give 2n conditions: a polynomial of degree 2n - 1 through
 six steps is exact to far below the step's own error, at a fraction of the cost.
-**Valid** between steps of like size; neighbours much shorter or longer than the interval are left out
-(their differences would amplify rounding), down to the two ends of the interval: a cubic.
+**Valid** between steps of like size; neighbours much shorter or longer than the interval are left out, and so is
+what only grows with the degree: the steps' own errors, magnified where short steps stand beside a longer one (after
+each start of a solver: up to 26 times).  At worst the two ends of the interval remain: a cubic.
 """
 
 import numpy as np
@@ -12,6 +13,8 @@ from numba import njit
 
 NODES = 6
 SHORTEST, LONGEST = 0.3, 4.0
+# Six steps of a motion add terms that fall by more than this from each step to the next.
+FALLS = 0.25
 
 
 @njit(cache=True)
@@ -63,7 +66,31 @@ def fit(t, q, q_rate, k, count, table, nodes):
                     table[i, m] = (table[i, m] - table[i, m - 1]) / width
                 else:
                     table[i, m] = _rate(t, q_rate, nodes[m], i, first, last)
+    _drop_noise(0.5 * (t[k] + t[k + 1]), table, nodes, size)
     return size
+
+
+@njit(cache=True)
+def _drop_noise(middle, table, nodes, size):
+    """Zero what each further step adds in the middle of the interval, from where it is more than the step before did:
+    the motion's terms shrink, those of the steps' errors grow.  Terms that were small by chance are followed by ones
+    that fall again, and fast."""
+    pairs, steps = np.zeros(NODES), size // 2
+    for i in range(table.shape[0]):
+        product = 1.0
+        for j in range(steps):
+            pairs[j] = 0.0
+            for m in range(2 * j, 2 * j + 2):
+                pairs[j] = max(pairs[j], abs(table[i, m] * product))
+                product *= middle - nodes[m]
+        for j in range(2, steps):
+            if pairs[j] > pairs[j - 1]:
+                falls = j + 1 < steps
+                for later in range(j + 1, steps):
+                    falls = falls and pairs[later] < FALLS * pairs[later - 1]
+                if not falls:
+                    table[i, 2 * j : size] = 0.0
+                    break
 
 
 @njit(cache=True)
