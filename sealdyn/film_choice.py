@@ -2,11 +2,8 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from .model_error import model_error
 from .problem import Problem
-from .signals import signals
 
 
 def lowest_rung(scene, duration: float, accuracy: float, start) -> tuple[Problem, float | None]:
@@ -52,9 +49,8 @@ def _why_not_linear(scene, radial: Problem) -> str | None:
         return "the pressure has a floor"
     if not radial.constant or radial.massless:
         return "conditions change, or a ring has no mass"
-    low = float(signals(radial, np.zeros(1), radial.y0[None, : radial.n], np.zeros((1, radial.n)))["h_min"][0])
     # A tilt ratio t leaves errors of t^2: no estimate is needed to see that far.
-    ratio = 1.0 - low / radial.clearance
+    ratio = 1.0 - radial.start_film() / radial.clearance
     if ratio * ratio > 100.0 * radial.accuracy:
         return f"the film starts {abs(ratio):.2g} off the clearance, and a linear film errs by about the square"
     return None

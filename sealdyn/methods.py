@@ -5,7 +5,6 @@ None)` of accepted steps, in leg time, the first after the start, the last at th
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -231,30 +230,69 @@ def scipy_steps(kind, implicit, problem, leg, tau, y, method, tolerance, counts)
         yield np.array([solver.t]), solver.y[None, :].copy(), None
 
 
+# What lies between exact steps is interpolated (dense.py); that error is at most this share of the tolerance.  For
+# exp(x) through six steps of x radians it is BY x^12 at most, or WORST; at a leg's ends, where all neighbours are on
+# one side, 2000 times as much: there the steps are half as long.
+BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
+# Steps at once: while their length may still change, and after; at the ends; points of the quadrature in each.
+CHANGING, LASTING, AT_ENDS, POINTS = 8, 256, 4, 5
+
+
 def _expm(problem, leg, tau, y, method, tolerance, counts):
-    """Exact steps of a linear scene; the works by Gauss quadrature on the exact motion."""
-    forced, propagator, fastest = problem.exact_motion()
-    points, weights = np.polynomial.legendre.leggauss(10)
-    # Short enough for the dense output: a quarter of the fastest time of the free motion.
-    step = min(problem.fast_time / 12.0, 0.25 / fastest)
-    count = max(1, int(np.ceil((leg.length - tau) / step)))
-    times, step = np.linspace(tau, leg.length, count + 1, retstep=True)
-    inner = [propagator(0.5 * step * (1 + x)) for x in points]
-    whole = propagator(step)
-    y = y.copy()
-    yp = np.empty_like(y)
-    n = problem.n_mechanical
-    free = y[:n] - forced(tau)
-    for a, b in pairwise(times):
-        for x, weight, part in zip(points, weights, inner, strict=True):
-            at = 0.5 * (a + b) + 0.5 * (b - a) * x
-            inside = np.concatenate([forced(at) + part @ free, y[n:]])
-            problem.rhs(at, inside, yp)
-            counts.rhs += 1
-            y[n:] += 0.5 * (b - a) * weight * yp[n:]
-        free = whole @ free
-        y[:n] = forced(b) + free
-        yield np.array([b]), y[None, :].copy(), None
+    """Exact steps of a linear scene, as long as what moves in it allows; the works by Gauss quadrature on them."""
+    motion, n, fresh = problem.exact_motion(), problem.n_mechanical, True
+    points, weights = np.polynomial.legendre.leggauss(POINTS)
+    while tau < leg.length:
+        free = y[:n] - motion.forced([tau])[0]
+        step, count = _exact_step(*motion.parts(free, problem.scales[:n]), tolerance)
+        widths = _widths(leg.length - tau, step, AT_ENDS if fresh else count, fresh)
+        times, fresh = tau + np.cumsum(widths), False
+        if leg.length - times[-1] < 0.5 * widths[-1]:
+            times[-1] = leg.length
+        inside = (times[:, None] - 0.5 * widths[:, None] * (1.0 - points)).ravel()
+        at, count = np.concatenate([times, inside]), len(times)
+        states = np.zeros((len(at), problem.size))
+        states[:, :n] = motion.forced(at) + motion.free(free, at - tau)
+        powers = problem.derivatives(inside, states[count:])[:, n:].reshape(count, POINTS, -1)
+        counts.rhs += len(inside)
+        states[:count, n:] = y[n:] + np.cumsum(0.5 * widths[:, None] * (weights @ powers), axis=0)
+        tau, y = float(times[-1]), states[count - 1].copy()
+        yield times, states[:count], None
+
+
+def _exact_step(exponents, sizes, tolerance) -> tuple[float, int]:
+    """Longest step (s) whose interpolation keeps the tolerance, and how many of them: few where a part dies away or
+    grows and the step will change.  `exponents` (1/s) of what moves and its `sizes` beside the scales."""
+    budget, rates = BETWEEN * tolerance / max(len(sizes), 1), np.abs(exponents)
+
+    def longest(sizes):
+        seen = (sizes * WORST > budget) & (rates > 0)
+        if not np.any(seen):
+            return np.inf
+        radians = np.minimum((budget / (BY * sizes[seen])) ** (1.0 / CONDITIONS), MOST_RADIANS)
+        return float(np.min(radians / rates[seen]))
+
+    def after(time):
+        return sizes * np.exp(np.minimum(exponents.real * time, 50.0))
+
+    step = longest(sizes)
+    if not np.isfinite(step):
+        return step, CHANGING
+    if 0.8 * step < longest(after(LASTING * step)) < 1.3 * step:
+        return step, LASTING
+    return min(step, longest(np.maximum(sizes, after(CHANGING * step)))), CHANGING
+
+
+def _widths(left, step, count, fresh) -> np.ndarray:
+    """Widths of the next `count` steps, or of all that are `left` (s), the last few of them and fresh ones half as
+    long."""
+    if fresh:
+        return np.full(count, min(0.5 * step, left / (2 * count)))
+    if left > (count + AT_ENDS) * step:
+        return np.full(count, step)
+    whole = int(np.ceil(max(left / step - 0.5 * AT_ENDS, 0.0)))
+    widths = np.concatenate([np.ones(whole), np.full(AT_ENDS, 0.5)])
+    return widths * left / widths.sum()
 
 
 METHODS = {"adams": cvode, "bdf": cvode, "ida": _ida, "dop853": _scipy, "radau": _scipy, "expm": _expm}

@@ -11,12 +11,12 @@ import numpy as np
 from numba import njit
 from scipy.linalg import expm
 
-from . import dynamics
+from .batch import Value, at_each, states_along
 from .faces import film_module
 from .gap import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
-FOLLOWED, AT_ONCE, MOST, STEADY = 16, 50, 250, 32
+FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 
 
 def model_error(problem, higher: str = "radial", enough: float = math.inf) -> float | None:
@@ -133,16 +133,15 @@ class _Seen:
     def defects(self, times, states) -> np.ndarray:
         """Forces and moments (m, n) by which the higher film pushes more than the lower one; `states` (m, 2 n)."""
         problem, linear, n = self.problem, self.linear, len(self.linear.mass)
-        kept, s, still = problem.kept(), problem.s, np.zeros(problem.size)
+        kept, s = problem.kept(), problem.s
         ys = np.zeros((len(times), problem.size))
         ys[:, : problem.n], ys[:, problem.rate_places] = states[:, kept], states[:, n + np.array(kept)]
-        more, self.gaps = np.empty((len(times), 3)), np.empty((len(times), GAP_STATE_SIZE))
-        for k, (tau, y) in enumerate(zip(times, ys, strict=True)):
-            dynamics.kinematics(tau, y, still, problem.p, problem.w, s)
-            problem.film.wrench(problem.f, s)
-            more[k] = s[FORCE : FORCE + 3]
-            self.film.flow(self.block, s)
-            self.gaps[k] = s
+        self.gaps = np.empty((len(times), GAP_STATE_SIZE))
+        unused = np.empty((len(times), len(problem.w))), np.empty((len(times), 3))
+        blocks = np.empty(0), False, problem.p, problem.w, s, np.ascontiguousarray(times), ys, np.zeros_like(ys)
+        states_along(Value(problem.film.wrench), problem.f, *blocks, problem.face, self.gaps, *unused)
+        more = self.gaps[:, FORCE : FORCE + 3].copy()
+        at_each(Value(self.film.flow), self.block, self.gaps)
         more = self.gaps[:, FORCE : FORCE + 3] - more
         self.leakage = max(self.leakage, float(np.max(np.abs(self.gaps[:, FLOW_INNER]))))
         return np.concatenate([linear.rings[k].sign * more for k in linear.floating], axis=1)
@@ -161,7 +160,6 @@ class _Seen:
         gaps = self.gaps.copy()
         gaps[:, DZ : GY + 1] += x
         gaps[:, DZ_RATE : GY_RATE + 1] += v
-        for gap in gaps:
-            self.film.flow(self.block, gap)
+        at_each(Value(self.film.flow), self.block, gaps)
         leakage = np.abs(gaps[:, FLOW_INNER] - self.gaps[:, FLOW_INNER]) / self.leakage
         return np.array([film.max(), leakage.max()])

@@ -67,7 +67,7 @@ class LinearScene:
 
     def __init__(self, rings: list[RingNumbers], film_stiffness: np.ndarray, film_damping: np.ndarray):
         self.rings, self.film_k, self.film_d = rings, film_stiffness, film_damping
-        self.floating = [k for k, ring in enumerate(rings) if ring.floats]
+        self.floating, self._eigen = [k for k, ring in enumerate(rings) if ring.floats], None
         n = 3 * len(self.floating)
         self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
         for a, k in enumerate(self.floating):
@@ -83,14 +83,18 @@ class LinearScene:
                 self.stiffness[at, to] += ring.sign * rings[j].sign * film_stiffness
 
     def eigen(self) -> tuple[np.ndarray, np.ndarray]:
-        """Finite eigenvalues (m,) and displacement shapes (n, m); massless unknowns are allowed."""
+        """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed."""
+        if self._eigen is None:
+            self._eigen = self._found_eigen()
+        return self._eigen
+
+    def _found_eigen(self):
         n = len(self.mass)
+        if np.all(np.diag(self.mass) != 0.0):
+            values, vectors = np.linalg.eig(self.state_matrix())
+            return values, vectors[:n]
         left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
         right = np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), self.mass]])
-        light = np.diag(self.mass) == 0.0
-        if not light.any():
-            values, vectors = np.linalg.eig(np.linalg.solve(right, left))
-            return values, vectors[:n]
         values, vectors = eig(left, right)
         finite = np.isfinite(values) & (np.abs(values) < 1e12)
         return values[finite], vectors[:n, finite]
@@ -117,9 +121,11 @@ class LinearScene:
 
     def state_matrix(self) -> np.ndarray:
         """First-order matrix (2n, 2n) on (displacements, rates).  Raises if a mass is zero."""
-        n = len(self.mass)
-        inverse = np.linalg.inv(self.mass)
-        return np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ self.stiffness, -inverse @ self.damping]])
+        n, inverse = len(self.mass), np.linalg.inv(self.mass)
+        matrix = np.zeros((2 * n, 2 * n))
+        matrix[:n, n:] = np.eye(n)
+        matrix[n:, :n], matrix[n:, n:] = -inverse @ self.stiffness, -inverse @ self.damping
+        return matrix
 
     def response(self, harmonic: Harmonic) -> np.ndarray:
         """Complex displacement amplitudes (n,) answering one imposed harmonic."""

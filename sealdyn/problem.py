@@ -12,14 +12,16 @@ from .gap import (
     FACE_SIZE,
     FLOOR,
     GAP_STATE_SIZE,
+    GX,
+    GY,
     TOUCH,
+    h_min,
 )
 from .imposed import oscillators
 from .layout import Layout
 from .legs import Leg, constant_and_slope, cut
 from .modes import common_period
 from .scene import ImpossibleScene, Scene
-from .signals import signals
 from .sticking import FADES, Sticking
 from .touches import IMPULSE, KIND, LIFTED, OPEN, TOUCHED, ContactTally, contact_event, fresh_state, touches
 from .touches import ROW as TOUCH_ROW
@@ -207,12 +209,13 @@ class Problem:
             rate[:, i] = ys[:, place] if place >= 0 else yps[:, i]
         return np.ascontiguousarray(ys[:, : self.n]), rate
 
-    def accelerations(self, taus, ys) -> np.ndarray:
-        """Second derivatives (m, n) of the displacements at stored steps; every ring has mass."""
-        out, yp = np.empty((len(taus), self.n)), np.empty(self.size)
-        for i, (tau, y) in enumerate(zip(taus, ys, strict=True)):
-            self.rhs(tau, y, yp)
-            out[i] = yp[self.rate_places]
+    def derivatives(self, taus, ys) -> np.ndarray:
+        """The right-hand side (m, size) at leg times and unknowns `ys` (m, size); every ring has mass."""
+        # A kernel of fixed signature is made ready by its import.
+        from .batch import Value, rates_along
+
+        out, block = np.zeros((len(taus), self.size)), np.empty(0) if self.contact is None else self.contact
+        rates_along(Value(self.film.wrench), self.f, block, self.p, self.w, self.s, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:
@@ -311,6 +314,8 @@ class Problem:
         """The method this scene wants, and why."""
         if self.massless:
             return "ida", "a massless ring has no rates: IDA, on the residual form"
+        if self.linear and self.constant:
+            return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
         ratio = self._fastest_decay() * self.fast_time / (2 * math.pi)
         if ratio > STIFF:
             return "bdf", f"fastest decay {ratio:.0f} times the fastest forcing: stiff, CVODE BDF"
@@ -327,14 +332,20 @@ class Problem:
             shifts[self.axial_shift(k), *(constant_and_slope(q, leg)[0] for q in varying)] = k
         return max(float(np.max(-self.linear_scene(k, shift=at[0]).eigen()[0].real)) for at, k in shifts.items())
 
+    def start_film(self) -> float:
+        """Thinnest film (m) at the start."""
+        if self.leg_index:
+            self.begin(0)
+        dynamics.kinematics(0.0, self.y0, np.zeros(self.size), self.p, self.w, self.s)
+        return float(h_min(self.face, self.s[DZ], self.s[GX], self.s[GY])[0])
+
     def check_start(self):
         """Raises ImpossibleScene if the film is closed at the start."""
-        at = self.y0[: self.n][None, :]
-        low = signals(self, np.zeros(1), at, np.zeros_like(at))
-        if low["h_min"][0] <= self.face[COLLAPSE]:
+        low = self.start_film()
+        if low <= self.face[COLLAPSE]:
             raise ImpossibleScene(
                 "film.clearance",
-                f"a film closed at the start (thinnest {low['h_min'][0] * 1e6:.4g} um)",
+                f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
                 f"more than the floor, {self.face[COLLAPSE] * 1e6:.3g} um: less tilt, more clearance, "
                 'or run.start = "steady"',
             )
@@ -395,7 +406,7 @@ class Problem:
 
     def exact_motion(self):
         """Exact solution of a linear scene (linear_side.py)."""
-        return linear_side.exact_motion(self)
+        return linear_side.ExactMotion(self)
 
     def kept(self) -> list[int]:
         """Places of this problem's displacements among three per floating ring."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import contact, dynamics
+from . import dynamics
 from .gap import (
     CAVITATED,
     CONTACT_AREA,
@@ -23,7 +23,6 @@ from .gap import (
     SPIN_DIFFERENCE,
     TORQUE,
     WEAR,
-    h_min,
 )
 from .layout import RING_NAMES
 from .legs import constant_and_slope, reduced
@@ -44,26 +43,19 @@ PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
 def signals(problem, taus, q, q_rate) -> dict[str, np.ndarray]:
     """Named series (m,) at leg times of the problem's present leg; `q`, `q_rate` (m, n) displacements and rates.
     SI; leakage counts from high to low pressure."""
-    m = len(taus)
+    # Kernels of fixed signature are made ready by their import.
+    from .batch import Value, states_along
+
+    m, taus = len(taus), np.ascontiguousarray(taus, dtype=float)
     gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, dynamics.SCRATCH)), np.empty((m, 3))
-    flow, f = problem.observed
-    p, w, s, face = problem.p, problem.w, problem.s, problem.face
-    ys, yps = np.zeros((m, problem.size)), np.zeros(problem.size)
+    ys, yps = np.zeros((m, problem.size)), np.zeros((m, problem.size))
     massive = problem.rate_places >= 0
-    ys[:, : problem.n] = q
+    ys[:, : problem.n], yps[:, : problem.n] = q, q_rate
     ys[:, problem.rate_places[massive]] = q_rate[:, massive]
-    out = np.empty(problem.size)
-    for i in range(m):
-        yps[: problem.n] = q_rate[i]
-        dynamics.kinematics(taus[i], ys[i], yps, p, w, s)
-        flow(f, s)
-        if problem.contact is not None:
-            contact.rub(problem.contact, f, s)
-        if problem.layout.seals:
-            dynamics.rates(taus[i], ys[i], p, w, s, out)
-        gap[i], scratch[i] = s, w
-        low[i] = h_min(face, s[DZ], s[GX], s[GY])
-    return _columns(problem, np.asarray(taus), gap, scratch, low)
+    (flow, f), contact = problem.observed, np.empty(0) if problem.contact is None else problem.contact
+    blocks = contact, bool(problem.layout.seals), problem.p, problem.w, problem.s
+    states_along(Value(flow), f, *blocks, taus, ys, yps, problem.face, gap, scratch, low)
+    return _columns(problem, taus, gap, scratch, low)
 
 
 def _columns(problem, taus, gap, scratch, low):

@@ -16,7 +16,7 @@ import numpy as np
 from . import __version__, archive
 from .archive import ArchiveWriter, Series, partial_path
 from .audit import Audit
-from .certify import Trial, certify, try_tolerance
+from .certify import Trial, certify, follow, try_tolerance
 from .film_choice import lowest_rung
 from .layout import RING_NAMES
 from .legs import time_of_angle
@@ -119,7 +119,7 @@ class ArchiveSink:
     def __init__(self, problem, writer, dt, count, tally, progress, stop):
         self.problem, self.writer, self.dt, self.count = problem, writer, dt, count
         self.tally, self.progress, self.stop = tally, progress, stop
-        self.audit = None
+        self.audit = self.errors = None
         self.waiting = None
         self.logged, self.pending = 0, []
 
@@ -176,6 +176,7 @@ class ArchiveSink:
             "records": problem.records.ravel(),
             "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
             "audit": self.audit.kept(),
+            "errors": self.errors and self.errors.kept(),
             "modes": problem.kept_modes() | {"logged": self.logged},
             "names": problem.names,
         }
@@ -256,17 +257,19 @@ def simulate(
     )
     sink = ArchiveSink(problem, writer, interval, count, Tally(), progress, stop)
     audit = Audit(problem)
-    sink.audit = audit
+    sink.audit, sink.errors = audit, follow(problem, method)
     restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
     trial = try_tolerance(problem, method)
-    outcome = solve(problem, method, problem.accuracy, sink, audit=audit, resume=restart, tolerance=_tried(trial))
+    outcome = solve(
+        problem, method, problem.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_tried(trial)
+    )
     sink.flush(outcome.leg, outcome.tau, outcome.y)
     if outcome.status != "interrupted":
         # What an interrupted run has not written yet it will meet again.
         problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
         sink.write_events()
     summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
-    summary["certificate"] = certificate(problem, method, outcome, trial, by_model)
+    summary["certificate"] = certificate(problem, method, outcome, sink.errors, by_model)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == "interrupted" else out
     summary["archive"] = str(path)
@@ -277,20 +280,21 @@ def simulate(
     return Result(outcome.status, outcome.message, summary, path)
 
 
-def _tried(trial: Trial | None) -> float | None:
-    return trial.tolerance if trial else None
+def _tried(trial: Trial | None) -> dict:
+    """What a trial asks of `solve`."""
+    return {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
 
 
 def _reasons(why: str, trial: Trial | None) -> str:
     return f"{why}; {trial.said}" if trial else why
 
 
-def certificate(problem, method, outcome, trial, by_model) -> dict:
+def certificate(problem, method, outcome, errors, by_model) -> dict:
     """How wrong the run is estimated to be (certify.py), as part of the summary."""
     if outcome.status != "ok":
         return {"asked": problem.accuracy, "estimated": None, "solver": None, "model": None,
                 "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
-    found = certify(problem, method, trial, by_model)
+    found = certify(problem, method, errors, by_model)
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "said": found.said}  # fmt: skip
 
@@ -300,7 +304,7 @@ def run_briefly(scenario) -> dict:
     begun = clock.perf_counter()
     problem, method, why, interval, count, _ = prepare(scenario)
     sink, trial = TallySink(problem, interval, count), try_tolerance(problem, method)
-    outcome = solve(problem, method, problem.accuracy, sink, tolerance=_tried(trial))
+    outcome = solve(problem, method, problem.accuracy, sink, errors=follow(problem, method), **_tried(trial))
     problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
     summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
     return {**summary, "wall_time": clock.perf_counter() - begun}
@@ -386,6 +390,8 @@ def _resumed(problem, writer, sink, audit):
     tally = state["tally"]
     sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
     audit.restore(state["audit"])
+    if sink.errors and state.get("errors"):
+        sink.errors.restore(state["errors"])
     problem.restore_modes(state["modes"])
     sink.logged = int(state["modes"]["logged"])
     return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)

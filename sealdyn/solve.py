@@ -2,7 +2,7 @@
 
 A problem offers `n` displacements first in its unknowns, `legs` (each with `length`), `begin(k)`,
 `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `start_rates`, `jacobian`, `scales`, `motion`, `energies`,
-`accelerations`, `watch`, `y0`, `memory`, `works` (where they stand), `impulses`, `longest_step`,
+`derivatives`, `watch`, `y0`, `memory`, `works` (where they stand), `impulses`, `longest_step`,
 and `sticking`: None, or what finds and makes changes of the equations between steps.
 A sink takes what has been integrated.  Nothing here knows of seals or files.
 """
@@ -21,6 +21,8 @@ from .methods import BLOCK, FEW, METHODS, Counts, SolverFailure, tolerance_for
 # Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
 OVERLAP = 4
 CRUMB = 1e-14
+# By how much a tolerance is sharpened when errors grow too large.
+SHARPER = 10.0
 
 
 @dataclass
@@ -39,13 +41,13 @@ class Outcome:
 
 
 def solve(
-    problem, method: str, accuracy: float, sink, *, audit=None, resume=None, steps=None, tolerance=None
+    problem, method: str, accuracy: float, sink, *, audit=None, errors=None, resume=None, steps=None, tolerance=None
 ) -> Outcome:
     """Integrate a problem leg by leg, chunk by chunk, into a sink.
 
-    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an Audit to go on with;
-    `resume` = (leg, tau, y) continues.  Another method comes as `steps`, a generator with the contract of methods.py,
-    called `method`, with its own `tolerance`.
+    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an Audit to go on with; `errors` a
+    StepErrors that is shown every step, or None; `resume` = (leg, tau, y) continues.  Another method comes as `steps`,
+    a generator with the contract of methods.py, called `method`, with its own `tolerance`.
     The sink offers `due(leg_index) -> leg times of output`, `take(leg_index, times, q, q_rate)`,
     `state(leg_index, tau, y)`, `event(leg_index, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
     Returns an Outcome; a failed run is a result.
@@ -59,6 +61,13 @@ def solve(
     def method_over(leg, tau, y):
         return steps(problem, leg, tau, y, method, tolerance, counts)
 
+    def sharper():
+        """Whether there is a sharper tolerance to go on with, which then is the run's."""
+        nonlocal tolerance
+        found = tolerance > errors.least
+        tolerance = max(tolerance / SHARPER, errors.least)
+        return found
+
     try:
         for index in range(first, len(problem.legs)):
             leg = problem.begin(index)
@@ -66,7 +75,9 @@ def solve(
                 problem.sticking.start(tau, y)
             while True:
                 counts.restarts += 1
-                tau, y, collapse = _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts)
+                tau, y, collapse = _run_leg(
+                    problem, index, leg, tau, y, method_over, sink, audit, errors, sharper, counts
+                )
                 if collapse or tau >= leg.length:
                     break
             if collapse:
@@ -116,9 +127,9 @@ def _joined(waiting):
     return t, y, yp
 
 
-def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts):
-    """Integrate one leg, or up to a change of its equations; returns the last leg time, unknowns, and the sentence
-    of a collapse (or "")."""
+def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, errors, sharper, counts):
+    """Integrate one leg, or up to a change of its equations or of the tolerance; returns the last leg time, unknowns,
+    and the sentence of a collapse (or "")."""
     sticking = problem.sticking
     steps, change = method_over(leg, tau, y), None
     t, ys = np.array([tau]), y[None, :].copy()
@@ -145,11 +156,22 @@ def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts):
         upto = count - 1 if last_block else count - 1 - OVERLAP
         if upto > watched:
             q, q_rate = problem.motion(ys, yps)
+            # A massless ring has none.
+            slopes = None if problem.massless else problem.derivatives(t, ys)
+            accelerations = None if slopes is None else np.ascontiguousarray(slopes[:, problem.rate_places])
+            if errors is not None:
+                before = errors.kept()
+                errors.take(t, ys, accelerations, watched, upto)
+                if errors.worst > errors.allowed and sharper():
+                    errors.restore(before)
+                    return *problem.last, ""
             fallen = problem.watch(index, t, q, q_rate, problem.impulses(ys), count, watched, upto)
-            audit.take(t, ys, watched, upto if fallen < 0 else int(np.searchsorted(t, fallen)) - 1)
-            done = _hand_over(problem, index, t, ys, q, q_rate, watched, upto, due, done, fallen, sink)
+            checked = upto if fallen < 0 else int(np.searchsorted(t, fallen)) - 1
+            audit.take(t, ys, watched, checked, slopes[:, problem.works] if errors is not None else None)
+            motion = t, q, q_rate, accelerations
+            done = _hand_over(index, motion, watched, upto, due, done, fallen, sink)
             if fallen >= 0:
-                here, rate = _at(problem, t, ys, q, q_rate, watched, upto, np.array([fallen]))
+                here, rate = _at(motion, watched, upto, np.array([fallen]))
                 end = ys[int(np.searchsorted(t, fallen))].copy()
                 end[: problem.n_mechanical] = problem.unknowns(here[0], rate[0])[: problem.n_mechanical]
                 return fallen, end, problem.collapse_sentence(index, fallen)
@@ -166,31 +188,32 @@ def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, counts):
     return float(t[-1]), ys[-1].copy(), ""
 
 
-def _at(problem, t, ys, q, q_rate, begin, end, times):
-    """Displacements and rates at `times` inside steps [begin, end].
+def _at(motion, begin, end, times):
+    """Displacements and rates at `times` inside steps [begin, end] of a `motion`: times, displacements, rates and
+    accelerations at steps.
 
     Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
     magnify their error by one over the step.
     """
-    first, last = max(0, begin - OVERLAP), min(len(t), end + OVERLAP + 1)
-    t, q, q_rate, count = t[first:last], q[first:last], q_rate[first:last], last - first
+    first, last = max(0, begin - OVERLAP), min(len(motion[0]), end + OVERLAP + 1)
+    t, q, q_rate, acceleration = (None if part is None else part[first:last] for part in motion)
+    count = last - first
     out, slope = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
     sample(t, q, q_rate, count, begin - first, end - first, times, out, slope)
-    if problem.massless:
+    if acceleration is None:
         return out, slope
-    acceleration = problem.accelerations(t, ys[first:last])
     rate = np.empty_like(out)
     sample(t, q_rate, acceleration, count, begin - first, end - first, times, rate, slope)
     return out, rate
 
 
-def _hand_over(problem, index, t, ys, q, q_rate, begin, end, due, done, fallen, sink) -> int:
+def _hand_over(index, motion, begin, end, due, done, fallen, sink) -> int:
     """Output due in steps [begin, end], or up to a collapse and at it; returns how many are done."""
-    until = fallen if fallen >= 0 else t[end]
+    until = fallen if fallen >= 0 else motion[0][end]
     last = int(np.searchsorted(due, until, side="right"))
     times = due[done:last]
     if fallen >= 0 and not (len(times) and times[-1] == fallen):
         times = np.append(times, fallen)
     if len(times):
-        sink.take(index, times, *_at(problem, t, ys, q, q_rate, begin, end, times))
+        sink.take(index, times, *_at(motion, begin, end, times))
     return last

@@ -29,19 +29,25 @@ WORDS = {"end": "at the end", "over_time": "at any time", "steady": "in the stea
 
 
 def work_precision(study: dict) -> str:
-    """Who is fastest at which error on one scene, what leaves the chart, and how much model it needs."""
+    """Who is fastest at which error on one scene, how much model it needs, what leaves the chart: three sentences."""
     answer = study["answer"]
     machine, command = answer["machine"], f"sealdyn study work-precision scenarios/{study['name']}.toml"
     where = WORDS[answer["where"]]
     told = [fastest(row, f" {where}" * (k == 0)) for k, row in enumerate(answer["fastest"])]
-    said = [
-        f"`{command}` charts both, on {machine['processor']} with {machine['cores']} cores{strained([machine])}.",
-        f"At an error of {'; at '.join(told)}.",
-        crosses(answer["methods"], study["settings"]["slowest"]),
-        *models(answer["models"]),
-        judged(answer),
-    ]
-    return "  ".join(line for line in said if line)
+    return sentences(
+        [
+            f"`{command}` charts both, on {machine['processor']} with {machine['cores']} cores{strained([machine])}: "
+            f"at an error of {'; at '.join(told)}"
+        ],
+        models(answer["models"]),
+        [crosses(answer["methods"], study["settings"]["slowest"]), judged(answer)],
+    )
+
+
+def sentences(*parts: list[str]) -> str:
+    """One sentence of each list of clauses; empty ones are left out."""
+    told = ["; ".join(clause for clause in clauses if clause) for clauses in parts]
+    return "  ".join(f"{capital(line)}." for line in told if line)
 
 
 def fastest(row: dict, where: str) -> str:
@@ -71,8 +77,8 @@ def crosses(methods: dict, slowest: float) -> str:
                    for status, reason in zip(row["status"], row["reason"], strict=True))]  # fmt: skip
     if not gone:
         return ""
-    return (f"{capital(listed(gone))} {'leave' if len(gone) > 1 else 'leaves'} the chart as crosses: more than "
-            f"{number(slowest)} times slower than the fastest at the error they would reach.")  # fmt: skip
+    return (f"{listed(gone)} {'leave' if len(gone) > 1 else 'leaves'} the chart as crosses, more than "
+            f"{number(slowest)} times slower than the fastest at the error they would reach")  # fmt: skip
 
 
 def models(rungs: list[dict]) -> list[str]:
@@ -85,10 +91,10 @@ def models(rungs: list[dict]) -> list[str]:
             name = row["label"].replace("balance, ", "balance with ")
             said.append(f"{power(asked)} {name} (error {number(error, 2)}, {number(row['wall'] * 1e3, 2)} ms)")
             before = row
-    said = [f"In the steady state this scene needs for {listed(said, ', for ')}."] if said else []
+    said = [f"in the steady state this scene needs for {listed(said, ', for ')}"] if said else []
     linear = [error for row, error in found if row["label"].startswith("linear")]
     if linear and len(linear) < len(found):
-        said.append(f"The best linear film is wrong by {number(min(linear), 2)} whatever the solver.")
+        said.append(f"the best linear film is wrong by {number(min(linear), 2)} whatever the solver")
     return said
 
 
@@ -98,37 +104,46 @@ def judged(answer: dict) -> str:
     if band is None:
         return ""
     judges = answer["judges"]
-    return f"The judge is {judges['exact']}; {judges['second']} differs from it by {number(band, 2)}."
+    return f"the judge is {judges['exact']}, from which {judges['second']} differs by {number(band, 2)}"
 
 
 def all_scenarios(page: dict) -> str:
-    """Who wins how often over the shipped scenarios, the largest factors, and who names no winner."""
+    """Who wins how often over the shipped scenarios, the largest factors, who names no winner: three sentences."""
     scenes, machine = page["scenes"], page["machine"]
-    said = [
-        f"Every shipped scenario on one page, {len(scenes)} of them (`{page['command']}`), on {machine['processor']} "
-        f"with {machine['cores']} cores{strained(scenes)}."
-    ]
     rows = [(scene["name"], row) for scene in scenes for row in scene["fastest"]]
     won = [(name, row) for name, row in rows if row["method"]]
+    wins = []
     for error in dict.fromkeys(row["error"] for _, row in rows):
-        wins = Counter(row["method"] for _, row in won if row["error"] == error)
-        ranks = sorted(wins.items(), key=lambda pair: (-pair[1], pair[0]))
-        said.append(f"At {power(error)} the fastest is {listed([f'{SHORT[m]} on {n}' for m, n in ranks])}."
-                    if ranks else f"At {power(error)} nobody wins.")  # fmt: skip
+        found = Counter(row["method"] for _, row in won if row["error"] == error)
+        ranks = sorted(found.items(), key=lambda pair: (-pair[1], pair[0]))
+        wins.append(f"at {power(error)} the fastest is {listed([f'{SHORT[m]} on {n}' for m, n in ranks])}"
+                    if ranks else f"at {power(error)} nobody wins")  # fmt: skip
     close = [row for _, row in won if row["factor_next"] and row["factor_next"] < CLOSE]
-    said.append(f"In {len(close)} of these {len(won)} cases the next is within {number(CLOSE)} times: a tie.")
+    tie = f"in {len(close)} of these {len(won)} cases the next is within {number(CLOSE)} times, a tie"
+    return sentences(
+        [
+            f"every shipped scenario on one page, {len(scenes)} of them (`{page['command']}`), on "
+            f"{machine['processor']} with {machine['cores']} cores{strained(scenes)}: {wins[0]}",
+            *wins[1:],
+        ],
+        [tie, lead(won)],
+        alone(won) + unnamed(rows),
+    )
+
+
+def lead(won) -> str:
+    """The largest lead over DOP853."""
     ahead = sorted(
         ((row["factor_dop853"], name, row) for name, row in won if row["factor_dop853"]), key=lambda x: -x[0]
     )
-    if ahead:
-        factor, name, row = ahead[0]
-        least = min(found for found, other, _ in ahead if other == name)
-        said.append(
-            f"The largest lead over DOP853 is that of {SHORT[row['method']]} on `{name}`: {number(factor, 2)} times at "
-            f"{power(row['error'])}, {number(least, 2)} times at least."
-        )
-    said += alone(won) + unnamed(rows)
-    return "  ".join(said)
+    if not ahead:
+        return ""
+    factor, name, row = ahead[0]
+    least = min(found for found, other, _ in ahead if other == name)
+    return (
+        f"the largest lead over DOP853 is that of {SHORT[row['method']]} on `{name}`, {number(factor, 2)} times at "
+        f"{power(row['error'])}, {number(least, 2)} times at least"
+    )
 
 
 def alone(won) -> list[str]:
@@ -137,7 +152,7 @@ def alone(won) -> list[str]:
     for name in dict.fromkeys(name for name, _ in won):
         found = {row["method"] if row["next"] is None and not row["not_asked"] else None for n, row in won if n == name}
         if len(found) == 1 and None not in found:
-            out.append(f"`{name}` ends with {SHORT[found.pop()]} alone.")
+            out.append(f"`{name}` ends with {SHORT[found.pop()]} alone")
     return out
 
 
@@ -148,9 +163,9 @@ def unnamed(rows) -> list[str]:
         if row["method"] is None:
             why = "the judges differ by too much" if "differ" in row["why"] else row["why"]
             reasons.setdefault(why, {}).setdefault(row["error"], []).append(f"`{name}`")
-    told = [f"{why} ({'; '.join(f'at {power(error)} {listed(names)}' for error, names in found.items())})"
+    told = [f"{why} ({', '.join(f'at {power(error)} {listed(names)}' for error, names in found.items())})"
             for why, found in reasons.items()]  # fmt: skip
-    return [f"No winner is named where {listed(told, ' or ')}."] if told else []
+    return [f"no winner is named where {listed(told, ' or ')}"] if told else []
 
 
 def honesty(found: dict) -> str:

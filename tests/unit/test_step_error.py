@@ -1,0 +1,100 @@
+"""Errors of a run from its own steps, against the exact motion of a linear scene and against sharper runs."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from scenes import SPEED, TILT_SCALE, fmr, fms, fmsr, free_ring, prepared
+
+from sealdyn.dense import integrals
+from sealdyn.methods import tolerance_for
+from sealdyn.recorder import Recorder
+from sealdyn.solve import solve
+from sealdyn.step_error import StepErrors
+
+TURN = 2 * math.pi / SPEED
+
+
+def followed(problem, method, tolerance, exact):
+    """True largest error at samples and the estimate, both relative to the scales."""
+    errors, found = StepErrors(problem), []
+    for name, options in ((method, {"tolerance": tolerance, "errors": errors}), exact):
+        sink = Recorder(problem, TURN / 64)
+        assert solve(problem, name, problem.accuracy, sink, **options).status == "ok"
+        found.append(sink.arrays()[1] / problem.scales[: problem.n])
+    return float(np.max(np.abs(found[0] - found[1]))), errors.worst
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf"])
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("make", [fms, fmr, fmsr], ids=["fms", "fmr", "fmsr"])
+def test_the_estimate_is_the_error(make, accuracy, method):
+    """A linear film by a multistep method, thirty times looser than the cautious tolerance, against exact steps."""
+    problem = prepared(make("linear"), 30 * TURN, accuracy)
+    tolerance = 30 * tolerance_for(method, accuracy, problem.memory)
+    true, estimate = followed(problem, method, tolerance, ("expm", {"tolerance": 1e-11}))
+    assert true > 1e-10 and true / 1.5 < estimate < 1.5 * true
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
+def test_errors_that_add_up_are_added_up(accuracy):
+    """An undamped ring over 300 turns: what a few turns show, a hundred times over."""
+    worst = []
+    for turns in (10, 300):
+        problem = prepared(free_ring(), turns * TURN, accuracy)
+        tolerance = tolerance_for("adams", accuracy, prepared(free_ring(), 300 * TURN, accuracy).memory)
+        true, estimate = followed(problem, "adams", tolerance, ("expm", {"tolerance": 1e-11}))
+        assert true / 1.5 < estimate < 1.5 * true
+        worst.append(estimate)
+    assert worst[1] > 10 * worst[0]
+
+
+def test_a_large_tilt_is_near_enough_to_its_linearisation():
+    """Two thirds of the film gone once a turn."""
+    problem = prepared(fmr(own=0.3 * TILT_SCALE, fixed=0.6 * TILT_SCALE), 30 * TURN, 1e-5)
+    tolerance = 10 * tolerance_for("adams", 1e-5, problem.memory)
+    true, estimate = followed(problem, "adams", tolerance, ("dop853", {"tolerance": 1e-13}))
+    assert true / 3 < estimate < 3 * true
+
+
+def test_what_is_kept_goes_on():
+    """Half a run, kept as an archive keeps it, and the other half: as if there had been no pause."""
+    problem = prepared(fmr("linear"), 60 * TURN, 1e-4)
+    whole, first = StepErrors(problem), StepErrors(problem)
+    steps = []
+
+    class Seen(StepErrors):
+        def take(self, t, ys, accelerations, begin, end):
+            steps.append((t, ys, accelerations, begin, end))
+
+    solve(problem, "adams", 1e-4, Recorder(problem, TURN), errors=Seen(problem), tolerance=1e-5)
+    for block in steps:
+        whole.take(*block)
+    assert len(steps) > 1
+    first.take(*steps[0])
+    later = StepErrors(problem)
+    later.restore(json.loads(json.dumps(first.kept())))
+    for block in steps[1:]:
+        later.take(*block)
+    assert later.worst == pytest.approx(whole.worst, rel=1e-12) and np.allclose(later.modal, whole.modal, rtol=1e-12)
+
+
+@pytest.mark.parametrize("degree", range(6))
+def test_integrals_are_exact_to_degree_five(degree):
+    draw = np.random.default_rng(degree)
+    t = np.cumsum(draw.uniform(0.5, 1.5, 20))
+    poly = np.polynomial.Polynomial(draw.normal(size=degree + 1), domain=[t[0], t[-1]])
+    found = integrals(t, np.ascontiguousarray(poly(t)[:, None]), 0, len(t) - 1)[:, 0]
+    assert found == pytest.approx(np.diff(poly.integ()(t)), rel=1e-11, abs=1e-11)
+    assert integrals(t, np.ascontiguousarray(poly(t)[:, None]), 4, 9)[:, 0] == pytest.approx(found[4:9], rel=1e-14)
+
+
+def test_integrals_keep_their_order():
+    """Six steps around: order six of the integral over a fixed stretch, by regression."""
+    sizes, errors = np.array([0.1, 0.14, 0.2, 0.28]), []
+    for step in sizes:
+        t = np.arange(-20, 21) * step
+        found = integrals(t, np.sin(t)[:, None], 10, 30)[:, 0]
+        errors.append(np.max(np.abs(found + np.diff(np.cos(t[10:31])))))
+    assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(7, abs=0.2)
