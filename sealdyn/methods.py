@@ -234,8 +234,9 @@ def scipy_steps(kind, implicit, problem, leg, tau, y, method, tolerance, counts)
 # exp(x) through six steps of x radians it is BY x^12 at most, or WORST; at a leg's ends, where all neighbours are on
 # one side, 2000 times as much: there the steps are half as long.
 BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
-# Steps at once: while their length may still change, and after; at the ends; points of the quadrature in each.
-CHANGING, LASTING, AT_ENDS, POINTS = 8, 256, 4, 5
+# Steps at once: while their length changes fast, and as long as it would not change by much; at the ends; points of the
+# quadrature in each.
+CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5
 
 
 def _expm(problem, leg, tau, y, method, tolerance, counts):
@@ -278,8 +279,9 @@ def _exact_step(exponents, sizes, tolerance) -> tuple[float, int]:
     step = longest(sizes)
     if not np.isfinite(step):
         return step, CHANGING
-    if 0.8 * step < longest(after(LASTING * step)) < 1.3 * step:
-        return step, LASTING
+    for count in LASTING:
+        if 0.8 * step < longest(after(count * step)) < 1.3 * step:
+            return step, count
     return min(step, longest(np.maximum(sizes, after(CHANGING * step)))), CHANGING
 
 

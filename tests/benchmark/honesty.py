@@ -215,7 +215,6 @@ def main():
             "linear": films["linear"],
             "asked": [min(asked), max(asked)],
             "median_cost": float(np.median(ratios)),
-            "median_cost_without_certificate": float(np.median(solving)),
             "median_cost_running": float(np.median(running)),
         }
         Path(sys.argv[2]).with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n")
