@@ -26,8 +26,8 @@ from .touches import fresh_state
 
 # The stretch (fastest periods); done twice, by how much sharper the second time.
 STRETCH, SHARPER, PER_PERIOD = 3.0, 30.0, 32
-# What a stretch shows, times this, is what a run has: of a stretch done twice (measured: up to an eighth of the largest
-# error, tests/unit), and of one that is followed (of 60 random seals one had more).
+# What a stretch shows, times this, is what a run has: of a stretch done twice (at least a third of the error,
+# tests/unit), and of one that is followed (what passes ALLOWED nevertheless is sharpened).
 SHOWN, TOLD = 6.0, 8.0
 # Steps grow after the stretch: what a run may err by at least, in tolerances (measured: 0.05 to 3.3 where damped).
 LATER = 3.0

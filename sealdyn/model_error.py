@@ -11,7 +11,6 @@ import numpy as np
 from numba import njit
 from scipy.linalg import expm
 
-from .batch import Value, at_each, states_along
 from .faces import film_module
 from .gap import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 
@@ -132,6 +131,9 @@ class _Seen:
 
     def defects(self, times, states) -> np.ndarray:
         """Forces and moments (m, n) by which the higher film pushes more than the lower one; `states` (m, 2 n)."""
+        # Kernels of fixed signature are made ready by their import.
+        from .batch import Value, at_each, states_along
+
         problem, linear, n = self.problem, self.linear, len(self.linear.mass)
         kept, s = problem.kept(), problem.s
         ys = np.zeros((len(times), problem.size))
@@ -149,6 +151,9 @@ class _Seen:
     def errors(self, moved) -> np.ndarray:
         """Largest change of what is looked at, by displacements and rates `moved` (m, 2 n) at the states last seen:
         film at the outer radius in clearances, leakage relative to its largest."""
+        # Kernels of fixed signature are made ready by their import.
+        from .batch import Value, at_each
+
         linear, problem, n = self.linear, self.problem, len(self.linear.mass)
         x, v = (
             sum(linear.rings[k].sign * part[:, 3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))

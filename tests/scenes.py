@@ -8,6 +8,7 @@ import numpy as np
 from sealdyn.films import Coefficients, Film
 from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft
 from sealdyn.problem import Problem
+from sealdyn.recorder import Recorder
 from sealdyn.ring import Rotor, Stator, Support
 from sealdyn.scene import Initial, RingStart, Scene
 from sealdyn.signals import signals
@@ -186,3 +187,14 @@ def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="re
     sink = Sink(problem, duration / max(1, round(duration / turn * per_turn)))
     outcome = solve(problem, method, accuracy, sink)
     return Run(problem, outcome, sink)
+
+
+def apart(problem, one, other, interval):
+    """Largest difference of displacements, relative to their scales, at samples every `interval` (s) of two runs, each
+    a method and options of `solve`; both must end well."""
+    found = []
+    for method, options in (one, other):
+        sink = Recorder(problem, interval)
+        assert solve(problem, method, problem.accuracy, sink, **options).status == "ok"
+        found.append(sink.arrays()[1] / problem.scales[: problem.n])
+    return float(np.max(np.abs(found[0] - found[1])))

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from scenes import SPEED, TILT_SCALE, fmr, fms, fmsr, free_ring, prepared
+from scenes import SPEED, TILT_SCALE, apart, fmr, fms, fmsr, free_ring, prepared
 
 from sealdyn.dense import integrals
 from sealdyn.methods import tolerance_for
@@ -18,12 +18,9 @@ TURN = 2 * math.pi / SPEED
 
 def followed(problem, method, tolerance, exact):
     """True largest error at samples and the estimate, both relative to the scales."""
-    errors, found = StepErrors(problem), []
-    for name, options in ((method, {"tolerance": tolerance, "errors": errors}), exact):
-        sink = Recorder(problem, TURN / 64)
-        assert solve(problem, name, problem.accuracy, sink, **options).status == "ok"
-        found.append(sink.arrays()[1] / problem.scales[: problem.n])
-    return float(np.max(np.abs(found[0] - found[1]))), errors.worst
+    errors = StepErrors(problem)
+    run = method, {"tolerance": tolerance, "errors": errors}
+    return apart(problem, run, exact, TURN / 64), errors.worst
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf"])
