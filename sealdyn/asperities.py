@@ -12,8 +12,8 @@ from functools import lru_cache
 
 import numpy as np
 
-# Half height of Christensen's surface, and the reach of a Gaussian one, in rms roughnesses.
-HALF_HEIGHT, REACH = 3.0, 5.0
+from .contact_table import HALF_HEIGHT, REACH
+
 # A series in a block: degree of Q, its coefficients (room for DEGREE), and four of the continuation.
 DEGREE = 16
 BEYOND = DEGREE + 2

@@ -8,13 +8,13 @@ import numpy as np
 from . import attractor
 from .faces import Faces
 from .lyapunov import two_trajectories
+from .piecewise_linear import PiecewiseLinear
 from .problem import Problem
 from .recorder import Recorder
 from .scenario import parse_scenario
 from .scene import Closing
 from .solve import solve
 from .stroboscope import SAMPLES, Stroboscope
-from .units import Table
 
 # What is led to its new value in time; anything else changes between two turns.
 LED = ("rotor.runout", "rotor.misalignment", "stator.misalignment", "shaft.speed")
@@ -40,12 +40,14 @@ def with_part(thing, key: str, value):
 def lasting(scene):
     """The scene with every table at its last value: what it drives to, closed by the law that its start decides."""
     film = scene.film
-    if film.clearance is not None and any(isinstance(p, Table) for p in (film.inner_pressure, film.outer_pressure)):
+    if film.clearance is not None and any(
+        isinstance(p, PiecewiseLinear) for p in (film.inner_pressure, film.outer_pressure)
+    ):
         law = Faces(scene, 1e-6).closing
         scene = replace(scene, closing=Closing(law.balance_ratio, law.spring))
     for table in ("shaft", "film", "rotor", "stator", "closing"):
         owner = getattr(scene, table)
-        ends = {n: float(v.value[-1]) for n, v in vars(owner).items() if isinstance(v, Table)}
+        ends = {n: float(v.value[-1]) for n, v in vars(owner).items() if isinstance(v, PiecewiseLinear)}
         scene = replace(scene, **{table: replace(owner, **ends)})
     return scene
 
@@ -68,7 +70,7 @@ def led(scene, key, last, x, point):
         # Whole turns, so that the phases meet.
         span *= 2 * scene.shaft.speed / (scene.shaft.speed + last)
     for k, start in starts.items():
-        moving = with_part(moving, k, Table((0.0, span), (start, part(scene, k))))
+        moving = with_part(moving, k, PiecewiseLinear((0.0, span), (start, part(scene, k))))
     problem = Problem(moving, span, point["accuracy"])
     if x is not None:
         problem.y0[: stroboscope.size] = x

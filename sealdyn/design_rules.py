@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from .layout import RING_NAMES
 from .legs import constant_and_slope
+from .ring import RING_NAMES
 
 # Looks at one turn of the runout, and turns looked at when an order is no integer.
 POINTS, TURNS = 2000, 20

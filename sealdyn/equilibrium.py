@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from .films import aligned_gaps
+from .film_table import aligned_gaps
 from .legs import Leg, constant_and_slope
+from .piecewise_linear import PiecewiseLinear
 from .scene import ImpossibleScene, Scene
-from .units import Table
 
 POINTS = 600
 WIDEST = 1e3  # the search runs from the reference clearance over and under this factor
@@ -31,7 +31,7 @@ class ClosingForce:
 
     area: float
     balance_ratio: float
-    spring: float | Table
+    spring: float | PiecewiseLinear
     outer_is_high: bool
 
     def at(self, inner: float, outer: float, spring: float) -> float:
@@ -51,7 +51,7 @@ class ClosingForce:
 
 def initially(quantity) -> float:
     """Value of a number or table at time zero."""
-    return quantity.at(0.0) if isinstance(quantity, Table) else float(quantity)
+    return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
 
 
 def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equilibrium], str]:

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from . import contact, films
+from .contact_table import levels
 from .equilibrium import initially, settle
-from .films import Coefficients
+from .film_table import Coefficients, faults
 from .gap import (
     COLLAPSE,
     CONTACT_FORCE,
@@ -58,7 +59,7 @@ class Faces:
 
     def __init__(self, scene, error: float):
         self.scene, self._asperities = scene, None
-        for key, found, expected in films.faults(scene.film):
+        for key, found, expected in faults(scene.film):
             raise ImpossibleScene(f"film.{key}", found, expected)
         self.film = film_module(scene.film.model, scene.film.profile)
         self.name = self.film.__name__.rsplit(".", 1)[1]
@@ -71,7 +72,7 @@ class Faces:
         self.observed = self.film.flow, self.f
         self.contact = None
         if scene.contact:
-            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact.levels(scene.contact)
+            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = levels(scene.contact)
             self.contact = contact.parameters(scene.contact, self.f[:FACE_SIZE])
 
     def _borrowed(self):
@@ -95,7 +96,7 @@ class Faces:
         """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
         if self.scene.contact:
             # The floor of rough faces is a thickness, whatever the clearance.
-            floor, touch, collapse = contact.levels(self.scene.contact)
+            floor, touch, collapse = levels(self.scene.contact)
             table = replace(table, floor=floor / clearance)
         force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
         if not self.scene.contact:

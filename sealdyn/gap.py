@@ -16,6 +16,8 @@ import math
 import numpy as np
 from numba import njit
 
+from .film_table import MOST_NODES
+
 # Slots of the gap-state array `s`, which the scene fills and the film kernels read and complete.
 DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)
 MEAN_SPIN, SPIN_DIFFERENCE, VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE = range(6, 11)
@@ -28,7 +30,6 @@ GAP_STATE_SIZE = 26
 # Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
 INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE = range(9)
 # The profile: how many radii (0: none), and room for the radii and the depths.
-MOST_NODES = 65
 PROFILE, PROFILE_RADII = 9, 10
 PROFILE_DEPTHS = PROFILE_RADII + MOST_NODES
 FACE_SIZE = PROFILE_DEPTHS + MOST_NODES

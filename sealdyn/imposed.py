@@ -12,13 +12,13 @@ import numpy as np
 from numba import njit
 
 from .legs import Leg, constant_and_slope, reduced
+from .ring import ROTOR, STATOR
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
 OSCILLATOR_COUNT = 12
 OSCILLATORS = 13
 ROW = 9
 
-STATOR, ROTOR = 0, 1
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
 # a fixed axis; the ring's own misalignment in its carrier, which its springs feel.
 AXIAL, TURNING, FIXED_AXIS, OWN = range(4)

@@ -8,7 +8,8 @@ import time as clock
 
 import numpy as np
 
-from . import attractor, contact
+from . import attractor
+from .contact_table import levels
 from .continuation import Lost, lasting, neighbours, with_part
 from .lyapunov import tangent_product
 from .scenario import parse_scenario
@@ -90,4 +91,4 @@ def parting(scene, x, point) -> dict:
 
 def touch_level(scene) -> float:
     """Film thickness (m) at which the asperities meet."""
-    return contact.levels(scene.contact)[1]
+    return levels(scene.contact)[1]

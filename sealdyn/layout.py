@@ -5,13 +5,13 @@ import math
 import numpy as np
 
 from . import dynamics
-from .imposed import AXIAL, ROTOR, STATOR, oscillators
+from .imposed import AXIAL, oscillators
 from .legs import constant_and_slope
-from .units import Table
+from .piecewise_linear import PiecewiseLinear
+from .ring import RING_NAMES, ROTOR, STATOR
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
 WORKS, MORE = 6, 3
-RING_NAMES = ("stator", "rotor")
 
 
 class Layout:
@@ -41,11 +41,11 @@ class Layout:
         shifted = any(v for s in moved for v in (s.z, s.z_rate))
         film = scene.film
         loads = (film.inner_pressure, film.outer_pressure, closing.spring)
-        loaded = any(isinstance(q, Table) for q in loads)
+        loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
         others = (scene.shaft.speed, scene.stator.speed, film.viscosity, scene.rotor.runout)
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
-        self.constant = not any(isinstance(q, Table) for q in (*loads, *others, *tilts))
+        self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
         self._choose(tilted or bool(np.any(rows[:, 1] != AXIAL)), shifted or bool(np.any(rows[:, 1] == AXIAL)), loaded)
         self.massless = any(
             self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))

@@ -11,7 +11,7 @@ from decimal import Decimal, getcontext
 from fractions import Fraction
 from itertools import pairwise
 
-from .units import Table
+from .piecewise_linear import PiecewiseLinear
 
 LONGEST = 2000  # turns; then the clock is set anew
 
@@ -43,7 +43,7 @@ class Leg:
 
 def constant_and_slope(quantity, leg: Leg) -> tuple[float, float]:
     """Value and slope over one leg of a number or a `Table` (which has no kink inside the leg)."""
-    if not isinstance(quantity, Table):
+    if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
     t0, t1 = leg.time, leg.time + leg.length
     # Ask just inside, so that a step at either end counts on the right side.
@@ -69,7 +69,7 @@ def cut(duration: float, rotor_speed, stator_speed, quantities) -> list[Leg]:
     """Legs from 0 to `duration` (s).  `quantities` are all imposed numbers and tables, speeds included."""
     breaks = {0.0, duration}
     for quantity in quantities:
-        if isinstance(quantity, Table):
+        if isinstance(quantity, PiecewiseLinear):
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
     legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
     points = sorted(breaks)
@@ -93,7 +93,7 @@ def _fastest(speed, leg: Leg) -> float:
 def time_of_angle(speed, angle: float) -> float:
     """Time (s) at which the shaft has turned through `angle` (rad), speed a number or table.
     Raises ValueError if it never does."""
-    if not isinstance(speed, Table):
+    if not isinstance(speed, PiecewiseLinear):
         if speed == 0.0:
             raise ValueError("the shaft does not turn")
         return angle / abs(speed)
@@ -113,7 +113,7 @@ def time_of_angle(speed, angle: float) -> float:
     raise AssertionError
 
 
-def _with_reversals(speed: Table) -> list[float]:
+def _with_reversals(speed: PiecewiseLinear) -> list[float]:
     """Break points of a speed table, and the times in between at which the shaft reverses."""
     times = set(speed.breaks())
     for (t0, w0), (t1, w1) in pairwise(zip(speed.time, speed.value, strict=True)):

@@ -8,9 +8,10 @@ from scipy.optimize import brentq
 
 from .faces import linearised_film
 from .gap import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
-from .imposed import AXIAL, FIXED_AXIS, OWN, ROW, STATOR
+from .imposed import AXIAL, FIXED_AXIS, OWN, ROW
 from .legs import constant_and_slope
 from .modes import Harmonic, LinearScene, RingNumbers
+from .ring import STATOR
 
 
 def axial_shift(problem, leg_index: int) -> float:

@@ -14,20 +14,9 @@ import numpy as np
 from scipy.optimize import root
 
 from .closed_form import ludwig_allen as closed
-from .films import Film, radial
-from .gap import (
-    CAVITATED,
-    DZ,
-    DZ_RATE,
-    FORCE,
-    GAP_STATE_SIZE,
-    GX,
-    GX_RATE,
-    MEAN_SPIN,
-    MOMENT_X,
-    MOMENT_Y,
-    VISCOSITY,
-)
+from .film_table import Film
+from .films import radial
+from .gap import CAVITATED, DZ, DZ_RATE, FORCE, GAP_STATE_SIZE, GX, GX_RATE, MEAN_SPIN, MOMENT_X, MOMENT_Y, VISCOSITY
 from .methods import METHODS, Counts, SolverFailure, tolerance_for
 
 # Film error: below what the integrator is asked, so that it meets a smooth function.

@@ -14,14 +14,14 @@ from scipy.optimize import brentq
 from . import ludwig
 from .closed_form import ludwig_allen as closed
 from .closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
-from .contact import Contact
+from .contact_table import Contact
 from .equilibrium import initially
 from .motion import Shaft
 from .problem import Problem
 from .recorder import Recorder
 from .ring import Rotor, Stator, Support
 from .scene import Closing, ImpossibleScene, Initial, RingStart, Scene
-from .secondary_seal import SecondarySeal
+from .secondary_seal_table import SecondarySeal
 from .signals import signals
 from .solve import solve
 

@@ -8,7 +8,7 @@ import numpy as np
 from . import modes
 from .collocation import collocation
 from .faces import film_module, film_names
-from .films import Coefficients, aligned_gaps
+from .film_table import Coefficients, aligned_gaps
 from .methods import METHODS, tolerance_for
 from .observables import errors, observe, worst
 from .scenario_study import varied

@@ -6,17 +6,7 @@ import numpy as np
 
 from . import contact, dynamics, linear_side, watch
 from .faces import Faces
-from .gap import (
-    COLLAPSE,
-    DZ,
-    FACE_SIZE,
-    FLOOR,
-    GAP_STATE_SIZE,
-    GX,
-    GY,
-    TOUCH,
-    h_min,
-)
+from .gap import COLLAPSE, DZ, FACE_SIZE, FLOOR, GAP_STATE_SIZE, GX, GY, TOUCH, h_min
 from .imposed import oscillators
 from .layout import Layout
 from .legs import Leg, constant_and_slope, cut

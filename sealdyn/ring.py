@@ -2,19 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from .secondary_seal import SecondarySeal
-from .units import (
-    Angle,
-    Damping,
-    Inertia,
-    Length,
-    Mass,
-    Speed,
-    Stiffness,
-    TiltDamping,
-    TiltStiffness,
-    Varying,
-)
+from .secondary_seal_table import SecondarySeal
+from .units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
+
+STATOR, ROTOR = 0, 1
+RING_NAMES = ("stator", "rotor")
 
 FORBID_UNKNOWN = {"extra": "forbid"}
 

@@ -12,11 +12,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
+from .piecewise_linear import PiecewiseLinear
 from .scenario_errors import ScenarioError, explain, film_models, tables, without_indices
 from .scenario_overrides import override_key
 from .scenario_rules import refuse_impossible, unused
 from .scene import ImpossibleScene, Scene
-from .units import Length, QuantityError, Table, Time, shown
+from .units import Length, QuantityError, Time, shown
 
 __all__ = [
     "Run",
@@ -242,7 +243,7 @@ def _check_run_and_study(raw: dict, name: str) -> None:
 
 def _turns(speed) -> bool:
     """Whether the shaft ever turns."""
-    return any(speed.value) if isinstance(speed, Table) else bool(speed)
+    return any(speed.value) if isinstance(speed, PiecewiseLinear) else bool(speed)
 
 
 def _question(text: str) -> str:
@@ -256,7 +257,7 @@ def _question(text: str) -> str:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Table):
+    if isinstance(value, PiecewiseLinear):
         return {"time": list(value.time), "value": list(value.value)}
     if isinstance(value, dict):
         return {str(k): _plain(v) for k, v in value.items()}

@@ -4,10 +4,10 @@ import cmath
 import difflib
 import math
 
-from . import contact, films, secondary_seal
+from . import contact_table, film_table, secondary_seal_table
+from .piecewise_linear import PiecewiseLinear
 from .scenario_errors import film_models
 from .scene import ImpossibleScene
-from .units import Table
 
 
 def refuse_impossible(scene, run) -> None:
@@ -19,7 +19,7 @@ def refuse_impossible(scene, run) -> None:
         _ring(name, ring)
         _jumps(name, ring)
     if scene.contact:
-        for key, found, expected in contact.faults(scene.contact):
+        for key, found, expected in contact_table.faults(scene.contact):
             raise ImpossibleScene(f"contact.{key}", found, expected)
     if not (scene.stator.support or scene.rotor.support):
         raise ImpossibleScene(
@@ -65,10 +65,10 @@ def _film(film) -> None:
 
 def _profile(scene) -> None:
     film = scene.film
-    for key, found, expected in films.faults(film):
+    for key, found, expected in film_table.faults(film):
         raise ImpossibleScene(f"film.{key}", found, expected)
     if film.clearance is not None and film.profile is not None:
-        least, radius = min((h, r) for r, h in films.aligned_gaps(film, film.clearance))
+        least, radius = min((h, r) for r, h in film_table.aligned_gaps(film, film.clearance))
         if not least > _lowest(scene):
             raise ImpossibleScene("film.profile.depth", f"a film of {least:g} m at r = {radius:g} m", "an open film")
 
@@ -77,7 +77,7 @@ def _lowest(scene) -> float:
     """Film thickness (m) at which a run ends."""
     if scene.contact is None:
         return scene.film.floor * scene.film.clearance
-    return contact.levels(scene.contact)[2]
+    return contact_table.levels(scene.contact)[2]
 
 
 def _cavitation(film) -> None:
@@ -138,7 +138,7 @@ def _jumps(name: str, ring) -> None:
     """A face cannot be somewhere else at once: the film, or the support's damper, would push without bound."""
     for key in ("runout", "misalignment"):
         value = getattr(ring, key, 0.0)
-        if not isinstance(value, Table):
+        if not isinstance(value, PiecewiseLinear):
             continue
         for t0, t1, v0, v1 in zip(value.time, value.time[1:], value.value, value.value[1:], strict=False):
             if t0 == t1 and v0 != v1:
@@ -149,7 +149,7 @@ def _jumps(name: str, ring) -> None:
 
 def _secondary_seal(name: str, ring) -> None:
     key = f"{name}.secondary_seal"
-    for part, found, expected in secondary_seal.faults(ring.secondary_seal):
+    for part, found, expected in secondary_seal_table.faults(ring.secondary_seal):
         raise ImpossibleScene(f"{key}.{part}", found, expected)
     if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
         raise ImpossibleScene(
@@ -191,7 +191,7 @@ def _open_at_start(scene) -> None:
         angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
         stator = (0.0, cmath.rect(angle, direction))
     tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
-    thinnest, radius = min((h - tilt * r, r) for r, h in films.aligned_gaps(film, gap))
+    thinnest, radius = min((h - tilt * r, r) for r, h in film_table.aligned_gaps(film, gap))
     lowest = _lowest(scene)
     if not thinnest > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
@@ -216,18 +216,18 @@ def _given(initial) -> bool:
 
 
 def initially(value) -> float:
-    return value.at(0.0) if isinstance(value, Table) else value
+    return value.at(0.0) if isinstance(value, PiecewiseLinear) else value
 
 
 def points(value) -> tuple[float, ...]:
-    return value.value if isinstance(value, Table) else (value,)
+    return value.value if isinstance(value, PiecewiseLinear) else (value,)
 
 
 def turns_of(speed) -> float:
     """Turns the shaft makes in all (either way): endless unless its speed ends at zero."""
     if points(speed)[-1] != 0:
         return math.inf
-    if not isinstance(speed, Table):
+    if not isinstance(speed, PiecewiseLinear):
         return 0.0
     angle = max(0.0, speed.time[0]) * abs(speed.value[0])
     for t0, t1 in zip(speed.time, speed.time[1:], strict=False):

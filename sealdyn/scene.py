@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from .contact import Contact
-from .films import Film
+from .contact_table import Contact
+from .film_table import Film
 from .motion import Housing, Shaft
 from .ring import Rotor, Stator
 from .units import Angle, Force, Length, Speed, Varying, Velocity

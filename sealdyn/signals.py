@@ -24,8 +24,8 @@ from .gap import (
     TORQUE,
     WEAR,
 )
-from .layout import RING_NAMES
 from .legs import constant_and_slope, reduced
+from .ring import RING_NAMES
 
 # What contact adds.
 CONTACT_SIGNALS = {

@@ -18,14 +18,14 @@ from .archive import ArchiveWriter, Series, partial_path
 from .audit import Audit
 from .certify import Trial, certify, follow, try_tolerance
 from .film_choice import lowest_rung
-from .layout import RING_NAMES
 from .legs import time_of_angle
 from .methods import attainable
+from .piecewise_linear import PiecewiseLinear
+from .ring import RING_NAMES
 from .scene import ImpossibleScene
 from .signals import signals
 from .solve import solve
 from .summary import summarise
-from .units import Table
 
 SERIES = {
     "shaft_angle": Series("rad", "shaft angle, modulo one turn"),
@@ -217,7 +217,7 @@ def sampling(scenario) -> tuple[float, float, int]:
             raise ImpossibleScene("run.turns", str(error), "run.duration instead") from None
     if run.samples is not None:
         return duration, duration / run.samples, run.samples
-    fastest = max(abs(v) for v in speed.value) if isinstance(speed, Table) else abs(speed)
+    fastest = max(abs(v) for v in speed.value) if isinstance(speed, PiecewiseLinear) else abs(speed)
     if fastest == 0.0:
         return duration, duration / 1000, 1000
     count = max(1, round(duration * fastest / (2 * math.pi) * run.samples_per_turn))

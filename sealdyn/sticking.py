@@ -33,7 +33,7 @@ from .imposed import (
     TILT_Y_RATE,
     Z_RATE,
 )
-from .layout import RING_NAMES
+from .ring import RING_NAMES
 
 # A ring is captured only when what it must hold is this far inside the limit surface.
 INSIDE = 1e-9

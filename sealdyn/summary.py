@@ -6,9 +6,8 @@ import numpy as np
 
 from . import closed_form, modes
 from .gap import TOUCH
-from .imposed import ROTOR, STATOR
-from .layout import RING_NAMES
 from .legs import constant_and_slope
+from .ring import RING_NAMES, ROTOR, STATOR
 from .scenario import unused_keys
 from .watch import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 

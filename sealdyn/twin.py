@@ -11,12 +11,11 @@ import numpy as np
 from . import closed_form as cf
 from . import modes
 from .equilibrium import initially
-from .imposed import ROTOR, STATOR
 from .motion import Housing, Shaft
+from .piecewise_linear import PiecewiseLinear
 from .problem import Problem
-from .ring import Rotor, Stator
+from .ring import ROTOR, STATOR, Rotor, Stator
 from .scene import Closing, ImpossibleScene, Initial, Scene
-from .units import Table
 
 SEALS = ("fmr", "fms")
 FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fms_dynamic)}
@@ -77,7 +76,7 @@ def held(scene: Scene, speed: float | None = None, clearance: float | None = Non
     closing = scene.closing
     if clearance is not None:
         film, closing = replace(film, clearance=clearance), Closing()
-    elif isinstance(closing.spring_force, Table):
+    elif isinstance(closing.spring_force, PiecewiseLinear):
         closing = replace(closing, spring_force=initially(closing.spring_force))
     rotor, stator = scene.rotor, scene.stator
     rotor = replace(rotor, misalignment=initially(rotor.misalignment), runout=initially(rotor.runout))

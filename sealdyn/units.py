@@ -7,12 +7,12 @@ are revolutions per time, so a speed in Hz and a frequency in rad/s both come ou
 import difflib
 import math
 import re
-from bisect import bisect_right
 from dataclasses import dataclass
 from decimal import Decimal, DecimalException
 from functools import cache
 from typing import Annotated, Any
 
+from .piecewise_linear import PiecewiseLinear
 from .unit_names import dimension_and_factor, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
@@ -137,40 +137,14 @@ def shown(value: Any, most: int = 60) -> str:
 
 
 @dataclass(frozen=True)
-class Table:
-    """A quantity given at times (s): linear between, held before the first and after the last.
-
-    The same time twice is a step; from that time on the second value holds.
-    """
-
-    time: tuple[float, ...]
-    value: tuple[float, ...]
-
-    def at(self, t: float) -> float:
-        """Value at time t (s)."""
-        k = bisect_right(self.time, t)
-        if k == 0:
-            return self.value[0]
-        if k == len(self.time):
-            return self.value[-1]
-        t0, t1 = self.time[k - 1], self.time[k]
-        v0, v1 = self.value[k - 1], self.value[k]
-        return v0 + (v1 - v0) * ((t - t0) / (t1 - t0))
-
-    def breaks(self) -> tuple[float, ...]:
-        """Times (s) of the kinks and steps, increasing."""
-        return tuple(sorted(set(self.time)))
-
-
-@dataclass(frozen=True)
 class VaryingQuantity:
-    """A quantity that may also be a `Table`."""
+    """A quantity that may also be `PiecewiseLinear`."""
 
     quantity: Quantity
 
-    def read(self, value: Any) -> "float | Table":
-        """Float in SI, or `Table` of a `{ time = [...], value = [...] }`.  Raises `QuantityError`."""
-        if isinstance(value, Table):
+    def read(self, value: Any) -> "float | PiecewiseLinear":
+        """Float in SI, or `PiecewiseLinear` of a `{ time = [...], value = [...] }`.  Raises `QuantityError`."""
+        if isinstance(value, PiecewiseLinear):
             value = {"time": list(value.time), "value": list(value.value)}
         return self._table(value) if isinstance(value, dict) else self._constant(value)
 
@@ -182,7 +156,7 @@ class VaryingQuantity:
                 raise QuantityError(error.found, "a number, or a table { time = [...], value = [...] }") from None
             raise
 
-    def _table(self, value: dict) -> Table:
+    def _table(self, value: dict) -> PiecewiseLinear:
         form = "a table { time = [...], value = [...] }"
         for key in value:
             if key not in ("time", "value"):
@@ -195,7 +169,7 @@ class VaryingQuantity:
         return self._checked(_entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value"))
 
     @staticmethod
-    def _checked(time: tuple[float, ...], value: tuple[float, ...]) -> Table:
+    def _checked(time: tuple[float, ...], value: tuple[float, ...]) -> PiecewiseLinear:
         if len(time) != len(value):
             raise QuantityError(f"{len(time)} times and {len(value)} values", "as many times as values")
         if len(time) < 2:
@@ -205,7 +179,7 @@ class VaryingQuantity:
                 raise QuantityError(f"time {time[k]:g} s after {time[k - 1]:g} s", "times that do not decrease")
             if k > 1 and time[k] == time[k - 2]:
                 raise QuantityError(f"time {time[k]:g} s three times", "a time at most twice (a step)")
-        return Table(time, value)
+        return PiecewiseLinear(time, value)
 
     def __get_pydantic_core_schema__(self, source, handler):
         from pydantic_core import core_schema
@@ -242,7 +216,7 @@ class Varying:
     """`Varying[X]`: an X that may be a table of times."""
 
     def __class_getitem__(cls, kind):
-        return Annotated[float | Table, VaryingQuantity(kind.__metadata__[0])]
+        return Annotated[float | PiecewiseLinear, VaryingQuantity(kind.__metadata__[0])]
 
 
 SECONDS = Quantity("time", "s", '"0.5 s"')

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import closed_form as cf
 from . import modes
-from .films import Film
+from .film_table import Film
 from .motion import Shaft
 from .problem import Problem
 from .recorder import Recorder

@@ -14,8 +14,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from . import contact, dynamics
+from .contact_table import levels
 from .continuation import Lost, lasting, led
-from .films import Profile
+from .film_table import Profile
 from .gap import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, h_min
 from .problem import Problem
 from .recorder import Recorder
@@ -149,7 +150,7 @@ class WornRuns:
             far = near + side
             if excess(far) * here <= 0.0:
                 return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
-            if lowest + far < contact.levels(self.scene.contact)[2]:
+            if lowest + far < levels(self.scene.contact)[2]:
                 raise NoAverage("collapsed", "asperities crushed flat: the faces cannot carry the closing force")
             if far > 100 * max(self.clearance, problem.face[1] * 1e-3):
                 raise NoAverage("failed", "the ring is blown open: no gap at which film and springs balance")

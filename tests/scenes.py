@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from sealdyn.films import Coefficients, Film
+from sealdyn.film_table import Coefficients, Film
 from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Rotor, Stator, Support
 from sealdyn.scene import Initial, RingStart, Scene
 from sealdyn.signals import signals
 from sealdyn.solve import solve
-from sealdyn.units import Table
 
 CLEARANCE, R_I, R_O, SPEED = 1e-5, 0.032, 0.040, 1000.0
 INERTIA, MISALIGNMENT = 8e-4, 25e-6
@@ -90,7 +90,7 @@ def housing_vibration(model="radial"):
 
 def runup(model="radial"):
     """A stator carried from 1000 to 3000 rad/s in 20 ms, with kinks."""
-    return fms(model, speed=Table((0.0, 0.005, 0.025, 0.03), (1000.0, 1000.0, 3000.0, 3000.0)))
+    return fms(model, speed=PiecewiseLinear((0.0, 0.005, 0.025, 0.03), (1000.0, 1000.0, 3000.0, 3000.0)))
 
 
 def free_ring(c=0.5, tilt=20e-6, tilt_rate=5e-3, speed=SPEED):
@@ -178,7 +178,7 @@ def prepared(scene, duration, accuracy, start="rest", problem_class=Problem):
 def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="rest", duration=None,
         problem_class=Problem):  # fmt: skip
     """Integrate a scene; the last two turns are the windows 1 and 2."""
-    speed = scene.shaft.speed if not isinstance(scene.shaft.speed, Table) else max(scene.shaft.speed.value)
+    speed = scene.shaft.speed if not isinstance(scene.shaft.speed, PiecewiseLinear) else max(scene.shaft.speed.value)
     turn = 2 * math.pi / abs(speed)
     duration = duration if duration is not None else turns * turn
     problem = prepared(scene, duration, accuracy, start, problem_class)

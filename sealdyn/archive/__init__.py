@@ -1,15 +1,6 @@
 """HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies."""
 
-from .run import (
-    ArchiveError,
-    ArchiveWriter,
-    Series,
-    column,
-    last_state,
-    open_archive,
-    partial_path,
-    read_info,
-)
+from .run import ArchiveError, ArchiveWriter, Series, column, last_state, open_archive, partial_path, read_info
 from .study import read_study, write_study
 
 __all__ = [

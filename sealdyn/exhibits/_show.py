@@ -1,6 +1,6 @@
 """What exhibits share: rows, and runs of small scenes in memory."""
 
-from ..films import Coefficients
+from ..film_table import Coefficients
 from ..problem import Problem
 from ..recorder import Recorder
 from ..solve import solve

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact import Contact
+from ..contact_table import Contact
+from ..piecewise_linear import PiecewiseLinear
 from ..signals import signals
-from ..units import Table
 from ..validation import green_scene
 from ._show import integrated, row, started
 
@@ -24,8 +24,8 @@ def rubbing():
     return replace(
         scene,
         film=film,
-        stator=replace(scene.stator, support=support, misalignment=Table((0.0, RAMP), (0.0, 3e-3))),
-        rotor=replace(scene.rotor, runout=Table((0.0, RAMP), (0.0, 0.55e-3))),
+        stator=replace(scene.stator, support=support, misalignment=PiecewiseLinear((0.0, RAMP), (0.0, 3e-3))),
+        rotor=replace(scene.rotor, runout=PiecewiseLinear((0.0, RAMP), (0.0, 0.55e-3))),
         contact=Contact(roughness=1e-6, compressive_strength=1e9, friction_coefficient=0.1),
     )
 

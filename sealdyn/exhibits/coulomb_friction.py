@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from ..ring import Rotor
-from ..secondary_seal import SecondarySeal
+from ..secondary_seal_table import SecondarySeal
 from ..validation import green_scene
 from ._show import NOTHING, integrated, row, started
 

@@ -5,20 +5,10 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from ..imposed import (
-    OSCILLATOR_COUNT,
-    OSCILLATORS,
-    PER_RING,
-    ROTOR,
-    ROW,
-    TILT_X,
-    TILT_Y,
-    impose,
-    oscillators,
-)
+from ..imposed import OSCILLATOR_COUNT, OSCILLATORS, PER_RING, ROW, TILT_X, TILT_Y, impose, oscillators
 from ..legs import LONGEST, TURN, cut
 from ..motion import Housing, Shaft
-from ..ring import Rotor, Stator
+from ..ring import ROTOR, Rotor, Stator
 from ..scenario import parse_scenario
 from ..simulation import prepare
 from ._show import row

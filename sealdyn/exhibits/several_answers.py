@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from scipy.optimize import newton
 
-from ..contact import Contact
+from ..contact_table import Contact
 from ..problem import Problem
 from ..scene import Closing
 from ..validation import green_scene

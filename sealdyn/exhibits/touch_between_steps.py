@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from sksundae.cvode import CVODE
 
-from ..contact import Contact, levels
+from ..contact_table import Contact, levels
 from ..ring import AxialRunout, Rotor
 from ..validation import green_scene
 from ._show import NOTHING, integrated, row, started

@@ -11,11 +11,11 @@ from ..gap import DZ, FLOW_INNER, FLOW_OUTER, INNER_PRESSURE, OUTER_PRESSURE, SP
 from ..legs import constant_and_slope
 from ..modes import steady_extremes
 from ..observables import Sampler
+from ..piecewise_linear import PiecewiseLinear
 from ..problem import Problem
 from ..scenario import parse_scenario
 from ..simulation import prepare
 from ..solve import solve
-from ..units import Table
 from .plan import tables_end
 from .trip import Trip, told
 
@@ -41,7 +41,7 @@ def _visited(scenario, key, values) -> tuple[Problem, list[int]]:
     first = tables_end(with_part(scenario.scene, key, float(values[0])))
     times = [first + n for n in range(len(values))]
     points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
-    stairs = Table(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
+    stairs = PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
     problem = Problem(with_part(scenario.scene, key, stairs), times[-1] + 1e-3)
     return problem, [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-6) for t in times]
 

@@ -7,10 +7,10 @@ import numpy as np
 
 from .. import modes
 from ..continuation import lasting, part, with_part
+from ..piecewise_linear import PiecewiseLinear
 from ..scenario_errors import ScenarioError
 from ..scenario_study import axis, varied
 from ..unit_names import dimension_and_factor
-from ..units import Table
 from ..whirl import free_problem
 from .passing import Steady, followed_mode, touch_tilt
 
@@ -40,9 +40,9 @@ def checked(scenario, settings):
         now = None
     if now is None and key == "closing.spring_force":
         raise wrong(scenario, "key", f"{key}, which the scenario does not give", "a quantity that it does give")
-    if isinstance(now, bool) or not isinstance(now, int | float | Table):
+    if isinstance(now, bool) or not isinstance(now, int | float | PiecewiseLinear):
         raise wrong(scenario, "key", repr(key), 'a quantity of the scene that may change, e.g. "film.outer_pressure"')
-    value = now.value[0] if isinstance(now, Table) else float(now)
+    value = now.value[0] if isinstance(now, PiecewiseLinear) else float(now)
     try:
         varied(scenario, {key: f"{{ time = [0, 1], value = [{value!r}, {value!r}] }}", "run.duration": 1.0})
     except ScenarioError as error:
@@ -82,7 +82,7 @@ def value_of(scenario, settings, name: str) -> float | None:
     except ScenarioError as error:
         raise wrong(scenario, name, error.found, error.expected) from None
     value = part(read.scene, settings.key)
-    if isinstance(value, Table):
+    if isinstance(value, PiecewiseLinear):
         raise wrong(scenario, name, "a table", "one value: the ramp is made of `begin`, `end` and `rates`")
     return float(value)
 
@@ -175,7 +175,7 @@ def planned(scenario, settings) -> dict:
 
 def _own_speed(scene) -> float:
     speed = scene.shaft.speed
-    return max(map(abs, speed.value)) if isinstance(speed, Table) else abs(speed) or 1000.0
+    return max(map(abs, speed.value)) if isinstance(speed, PiecewiseLinear) else abs(speed) or 1000.0
 
 
 def _range(scenario, settings, own, resonances, threshold, free):
@@ -198,7 +198,7 @@ def _range(scenario, settings, own, resonances, threshold, free):
 def _by_itself(speed, own, resonances, threshold, free) -> tuple[float, float]:
     """Speeds to begin and end at when nobody says: those of the scenario's own table, or half the first resonance to
     past the threshold (past the resonances if it is far away), the scenario's own speed on the way."""
-    if isinstance(speed, Table):
+    if isinstance(speed, PiecewiseLinear):
         return max(min(speed.value), 0.01 * own), own
     whirl = [m.value.imag for m in free.linear_scene().modes() if m.value.imag > 0]
     first = resonances[0] if resonances else min([threshold] if threshold else whirl or [own])
@@ -236,7 +236,7 @@ def _own_rates(begin, end, foretold, few) -> list[float]:
 def tables_end(scene) -> float:
     """When (s) the scene's own tables have ended: then the ramp begins."""
     tables = [v for owner in (scene.shaft, scene.film, scene.rotor, scene.stator, scene.closing)
-              for v in vars(owner).values() if isinstance(v, Table)]  # fmt: skip
+              for v in vars(owner).values() if isinstance(v, PiecewiseLinear)]  # fmt: skip
     return max((table.time[-1] for table in tables), default=0.0)
 
 

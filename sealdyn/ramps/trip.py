@@ -13,11 +13,11 @@ import numpy as np
 from .. import dynamics
 from ..gap import COLLAPSE, DZ, GX, GY, TOUCH
 from ..legs import constant_and_slope
+from ..piecewise_linear import PiecewiseLinear
 from ..problem import Problem
 from ..scenario_study import varied
 from ..simulation import prepare
 from ..solve import solve
-from ..units import Table
 from ..watch import H_LEG, H_TAU, MOST, MOST_LEG, MOST_TAU, H
 from ..whirl.along import kick
 
@@ -67,7 +67,7 @@ class Trip:
         part = self.span * (self.crossing - self.begin) / (self.end - self.begin)
         return self.settle + part, self.home - part
 
-    def table(self) -> Table:
+    def table(self) -> PiecewiseLinear:
         """The quantity over time."""
         points = [(0.0, self.begin), (self.settle, self.begin), (self.top, self.end), (self.back, self.end),
                   (self.home, self.begin), (self.duration, self.begin)]  # fmt: skip
@@ -75,7 +75,7 @@ class Trip:
             points += [(t, self.crossing) for t in self.crossed()]
             points.sort(key=lambda point: point[0])
         points = [p for k, p in enumerate(points) if k == 0 or p != points[k - 1]]
-        return Table(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
+        return PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
 
     def on(self, scenario, **overrides):
         """The scenario on this trip, begun from its linear steady state.  Raises ScenarioError."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from ..films import aligned_gaps
+from ..film_table import aligned_gaps
 from ..gap import (
     DZ,
     FORCE,

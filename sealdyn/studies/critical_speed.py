@@ -13,16 +13,9 @@ from scipy.optimize import brentq
 
 from .. import closed_form, modes
 from ..equilibrium import initially
-from ..imposed import ROTOR, STATOR
+from ..ring import ROTOR, STATOR
 from ..scenario import parse_scenario
-from ..whirl import (
-    bounded_or_not,
-    branch,
-    contact_tilt_aligned,
-    free_problem,
-    growth_rate,
-    tipping_disturbance,
-)
+from ..whirl import bounded_or_not, branch, contact_tilt_aligned, free_problem, growth_rate, tipping_disturbance
 
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",

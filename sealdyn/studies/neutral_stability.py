@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..exhibits import neutral_stability as exhibit
-from ..films import Coefficients
-from ..imposed import ROTOR, STATOR
+from ..film_table import Coefficients
 from ..methods import Counts, SolverFailure, attainable, tolerance_for
 from ..methods_judged import JUDGED
 from ..problem import Problem
+from ..ring import ROTOR, STATOR
 from ..scenario import parse_scenario
 from ..scene import Closing, ImpossibleScene
 from ..whirl import free_problem, growth_rate, undisturbed

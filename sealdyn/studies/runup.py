@@ -11,11 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..continuation import part, with_part
+from ..piecewise_linear import PiecewiseLinear
 from ..ramps.loads import load_trip, memory, overshoot, quasi_static
 from ..ramps.passing import passage, short_pass
 from ..ramps.plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
 from ..ramps.words import load_sentences, sentences
-from ..units import Angle, Table, Time
+from ..units import Angle, Time
 
 WITH_CONTACT = True
 # Rates of the curve, over the rate at which linear theory just touches; how closely the touching rate is located.
@@ -146,8 +147,8 @@ def load_ramps(scenario, settings, tools) -> dict:
     key, now = settings.key, part(scenario.scene, settings.key)
     begin, end = value_of(scenario, settings, "begin"), value_of(scenario, settings, "end")
     if begin is None:
-        begin = float(now.value[0]) if isinstance(now, Table) else float(now)
-    if end is None and isinstance(now, Table):
+        begin = float(now.value[0]) if isinstance(now, PiecewiseLinear) else float(now)
+    if end is None and isinstance(now, PiecewiseLinear):
         end = max(now.value, key=lambda v: abs(v - begin))
     if end is None or end == begin:
         raise wrong(scenario, "end", "nothing" if end is None else f"{end:g}, as begin", f"another value of {key}")

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from .. import closed_form as cf
 from .. import modes
-from ..films import Coefficients, aligned_gaps
+from ..film_table import Coefficients, aligned_gaps
 from ..problem import Problem
 from ..recorder import Recorder
 from ..scenario import parse_scenario

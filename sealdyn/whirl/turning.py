@@ -17,9 +17,9 @@ from .. import dynamics
 from ..gap import smallest_gap
 from ..imposed import ROTOR_SPEED
 from ..motion import Housing, Shaft
+from ..piecewise_linear import PiecewiseLinear
 from ..problem import Problem
 from ..scene import Initial, RingStart
-from ..units import Table
 
 SPEED_AT = dynamics.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.
@@ -47,7 +47,7 @@ def undisturbed(scene, speed: float):
     (rad/s), with a tilt to start from so that its tilts are unknowns."""
 
     def first(table):
-        now = {n: v.at(0.0) for n, v in vars(table).items() if isinstance(v, Table)}
+        now = {n: v.at(0.0) for n, v in vars(table).items() if isinstance(v, PiecewiseLinear)}
         return replace(table, **now)
 
     still = dict(misalignment=0.0)

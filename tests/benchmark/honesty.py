@@ -22,7 +22,7 @@ import numpy as np
 from sealdyn.certify import certify, follow, try_tolerance
 from sealdyn.charts import palette
 from sealdyn.film_choice import lowest_rung
-from sealdyn.films import Film
+from sealdyn.film_table import Film
 from sealdyn.motion import AngularVibration, Housing, Shaft
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder

@@ -15,12 +15,12 @@ import numpy as np
 
 import sealdyn
 from sealdyn.charts import palette
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Rotor
 from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal import SecondarySeal
+from sealdyn.secondary_seal_table import SecondarySeal
 from sealdyn.solve import solve
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"

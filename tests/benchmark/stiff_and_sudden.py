@@ -23,7 +23,7 @@ sys.path.insert(0, str(ROOT / "tests"))
 from scenes import Problem, prepared, run  # noqa: E402
 
 import sealdyn  # noqa: E402
-from sealdyn.contact import levels  # noqa: E402
+from sealdyn.contact_table import levels  # noqa: E402
 from sealdyn.methods import SolverFailure  # noqa: E402
 
 SCENES = ("pressure_step", "squeeze", "impact")

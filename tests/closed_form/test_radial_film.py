@@ -5,12 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from sealdyn.closed_form import (
-    GREEN_1989_SEAL,
-    aligned_leakage,
-    aligned_opening_force,
-    radial_film_coefficients,
-)
+from sealdyn.closed_form import GREEN_1989_SEAL, aligned_leakage, aligned_opening_force, radial_film_coefficients
 
 FACE = ("inner_radius", "outer_radius", "clearance", "coning")
 REFERENCE = {name: GREEN_1989_SEAL[name] for name in (*FACE, "viscosity", "pressure_drop")}

@@ -8,12 +8,12 @@ import pytest
 from scenes import NOTHING, SUPPORT, film, fmr, fms, fmsr, ring, run
 
 from sealdyn import contact, dynamics
-from sealdyn.contact import Contact
+from sealdyn.contact_table import Contact
 from sealdyn.gap import CONTACT_ENERGY
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.ring import Stator
 from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal import SecondarySeal
-from sealdyn.units import Table
+from sealdyn.secondary_seal_table import SecondarySeal
 
 HARD = Contact(roughness=1e-7, compressive_strength=3e8)
 GAUSSIAN = Contact(
@@ -21,7 +21,7 @@ GAUSSIAN = Contact(
 )
 SEAL = SecondarySeal(radius=0.045, line_friction=40.0)
 TURN = 2 * math.pi / 1000.0
-RAMP = Table((0.0, 15 * TURN), (1e-5, 5.6e-3))
+RAMP = PiecewiseLinear((0.0, 15 * TURN), (1e-5, 5.6e-3))
 EMPTY = film("linear", coefficients=NOTHING)
 # A ring thrown at the other face, whirling: no film, no damping, so that every joule is seen.
 THROWN = Initial(stator=RingStart(z_rate=-0.008, tilt_x=30e-6, tilt_y_rate=0.1))
@@ -91,7 +91,7 @@ def test_touching_moves_both_rings_of_a_pair():
     scene = replace(fmsr(own=2.5e-3, fixed=2.5e-3), contact=HARD)
     scene = replace(
         scene,
-        rotor=replace(scene.rotor, misalignment=Table(RAMP.time, (1e-5, 1.2e-2))),
+        rotor=replace(scene.rotor, misalignment=PiecewiseLinear(RAMP.time, (1e-5, 1.2e-2))),
         stator=replace(scene.stator, misalignment=1e-4),
     )
     found = run(scene, turns=20, accuracy=1e-5, start="steady")

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 from sealdyn import contact, gap
-from sealdyn.films import Film
+from sealdyn.contact_table import Contact
+from sealdyn.film_table import Film
 
 R_I, R_O, C0, CONING, ROUGHNESS = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6
 C = 3 * ROUGHNESS
-LAW = contact.Contact(ROUGHNESS, compressive_strength=300e6)
-GAUSSIAN = contact.Contact(
-    ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9
-)
+LAW = Contact(ROUGHNESS, compressive_strength=300e6)
+GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9)
 
 
 def answers(law, points, coning, dz, tilt, r_i=R_I):

@@ -15,7 +15,7 @@ from sealdyn.methods import Counts, SolverFailure
 from sealdyn.methods_judged import JUDGED
 from sealdyn.ring import Rotor, Stator
 from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal import SecondarySeal
+from sealdyn.secondary_seal_table import SecondarySeal
 from sealdyn.solve import solve
 
 FIXED = ("newmark", "midpoint", "generalised_alpha")

@@ -8,22 +8,10 @@ import numpy as np
 import pytest
 from scenes import fmr, ring
 
-from sealdyn.imposed import (
-    OSCILLATOR_COUNT,
-    OSCILLATORS,
-    PER_RING,
-    ROTOR,
-    ROW,
-    STATOR,
-    TILT_X,
-    TILT_Y,
-    Z,
-    impose,
-    oscillators,
-)
+from sealdyn.imposed import OSCILLATOR_COUNT, OSCILLATORS, PER_RING, ROW, TILT_X, TILT_Y, Z, impose, oscillators
 from sealdyn.legs import cut
 from sealdyn.motion import AxialVibration, Housing, Shaft, Whirl
-from sealdyn.ring import AxialRunout, Rotor, Stator
+from sealdyn.ring import ROTOR, STATOR, AxialRunout, Rotor, Stator
 
 RATIO, TONE, ORDER = 0.4837, 5400.0, 7
 

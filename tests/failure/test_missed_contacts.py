@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, NOTHING, SPEED, SUPPORT, film, fms, ring, run
 
-from sealdyn.contact import Contact, levels
+from sealdyn.contact_table import Contact, levels
 from sealdyn.ring import AxialRunout, Rotor, Stator
 from sealdyn.scene import Initial, RingStart
 

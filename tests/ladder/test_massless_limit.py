@@ -8,7 +8,7 @@ from scenes import INERTIA, TILT_SCALE, film, fmr, fms, ring, run
 from scipy.integrate import solve_ivp
 
 from sealdyn.closed_form import film_coefficients
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.ring import Rotor, Stator, Support
 
 TURNS, PER_TURN = 2, 32

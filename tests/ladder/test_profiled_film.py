@@ -10,9 +10,9 @@ import pytest
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr, fms, run
 
 from sealdyn import contact, gap, open_archive
-from sealdyn.contact import Contact
-from sealdyn.films import Profile
-from sealdyn.units import Table
+from sealdyn.contact_table import Contact
+from sealdyn.film_table import Profile
+from sealdyn.piecewise_linear import PiecewiseLinear
 
 SCENARIO = """
 [shaft]
@@ -82,7 +82,7 @@ def test_a_linear_profile_runs_as_its_coning(n):
 
 def rubbing(accuracy):
     worn = film("auto", coning=0.0, profile=Profile(RADIUS, DEPTH))
-    ramp = Table((0.0, 6 * 2 * math.pi / SPEED), (25e-6, 8e-3))
+    ramp = PiecewiseLinear((0.0, 6 * 2 * math.pi / SPEED), (25e-6, 8e-3))
     return run(fms(film=worn, contact=ROUGH, own=4e-4, runout=ramp), turns=8, accuracy=accuracy, start="steady")
 
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, INERTIA, NOTHING, R_O, SUPPORT, film, fmr, fms, ring, run
 
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.motion import AngularVibration, AxialVibration, Housing
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.ring import Rotor, Stator
 from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal import SecondarySeal
-from sealdyn.units import Table
+from sealdyn.secondary_seal_table import SecondarySeal
 
 STIFFNESS, MASS, RADIUS = SUPPORT.axial_stiffness, 1.0, 0.04
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)
@@ -212,7 +212,7 @@ def test_a_spinning_ring_turns_with_a_synchronous_moment():
 def test_a_stuck_ring_turns_with_its_carrier():
     """A rotor that sticks at a tilt carries it round: gamma = gamma_0 exp(i W t), W constant or running up."""
     tilt = 30e-6
-    for speed in (500.0, Table((0.0, 0.05), (500.0, 900.0))):
+    for speed in (500.0, PiecewiseLinear((0.0, 0.05), (500.0, 900.0))):
         first = speed if isinstance(speed, float) else speed.value[0]
         scene = fmr(film=SPRING_FILM, own=0.0, fixed=0.0, speed=speed,
                     initial=Initial(rotor=RingStart(tilt_x=tilt, tilt_y_rate=first * tilt)),

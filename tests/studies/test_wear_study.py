@@ -18,13 +18,13 @@ import sealdyn
 from sealdyn import contact
 from sealdyn.archive import read_study
 from sealdyn.charts import study_wear
-from sealdyn.contact import Contact
-from sealdyn.films import Film
+from sealdyn.contact_table import Contact
+from sealdyn.film_table import Film
 from sealdyn.investigate import investigate
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.ring import Rotor, Stator, Support
 from sealdyn.scenario_errors import ScenarioError
 from sealdyn.scene import Closing
-from sealdyn.units import Table
 from sealdyn.wear import Control, Hats, NoAverage, Worn, advance, unevenness
 from sealdyn.worn_runs import WornRuns
 
@@ -53,7 +53,7 @@ def history(scene, hours, accuracy=1e-2, allowed=1.0, radius=RADIUS):
 
 def test_the_closing_force_is_what_the_start_has_decided():
     """A clearance held at 4 bar with a spring of 60 N: at 2 bar the spring still is 60 N and the faces come nearer."""
-    fallen = Table((0.0, 0.005), (4e5, 2e5))
+    fallen = PiecewiseLinear((0.0, 0.005), (4e5, 2e5))
     scene = replace(pressed(), closing=Closing(spring_force=60.0))
     scene = replace(
         scene, film=replace(scene.film, viscosity=5e-4, clearance=1.5e-6, coning=1e-4, outer_pressure=fallen)

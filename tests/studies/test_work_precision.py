@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from sealdyn import model_rungs, observables
 from sealdyn.archive import read_study
 from sealdyn.charts import study_work_precision as chart
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.gap import h_min as thinnest
 from sealdyn.investigate import investigate
 from sealdyn.methods_judged import JUDGED

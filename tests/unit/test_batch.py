@@ -7,9 +7,9 @@ import pytest
 from scenes import fmr, fms, fmsr, housing_vibration, prepared
 
 from sealdyn import dynamics
-from sealdyn.contact import Contact
+from sealdyn.contact_table import Contact
 from sealdyn.gap import h_min
-from sealdyn.secondary_seal import SecondarySeal
+from sealdyn.secondary_seal_table import SecondarySeal
 from sealdyn.signals import signals
 
 

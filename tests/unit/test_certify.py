@@ -24,18 +24,18 @@ from scenes import (
 )
 
 from sealdyn.certify import LOOSER, certify, follow, solver_error, try_tolerance
-from sealdyn.contact import Contact
+from sealdyn.contact_table import Contact
 from sealdyn.film_choice import lowest_rung
 from sealdyn.methods import Counts, tolerance_for
 from sealdyn.model_error import model_error, model_errors
 from sealdyn.motion import AngularVibration, Housing
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Stator
 from sealdyn.scenario import read_scenario
 from sealdyn.simulation import run_briefly
 from sealdyn.solve import solve
-from sealdyn.units import Table
 
 TURN = 2 * math.pi / SPEED
 
@@ -220,7 +220,7 @@ def test_a_tolerance_on_trial_keeps_the_energy(name, accuracy):
     "scene",
     [
         replace(fms(), contact=Contact(roughness=1e-7, compressive_strength=3e8)),
-        fms(speed=Table((0.0, 0.01), (1000.0, 1100.0))),
+        fms(speed=PiecewiseLinear((0.0, 0.01), (1000.0, 1100.0))),
         fmr(c=3.0, speed=1.1 * 8684.0, own=1e-3 * TILT_SCALE, fixed=0.0),
         free_ring(),
     ],
@@ -247,7 +247,7 @@ def test_the_lowest_film_that_keeps_the_accuracy():
     [
         replace(fms(), contact=Contact(roughness=1e-7, compressive_strength=3e8)),
         on(fms(), "auto", cavitation_pressure=0.0),
-        fms(speed=Table((0.0, 0.01), (1000.0, 1100.0))),
+        fms(speed=PiecewiseLinear((0.0, 0.01), (1000.0, 1100.0))),
         fms(stator=Stator(**ring() | {"transverse_inertia": 0.0, "polar_inertia": 0.0, "mass": 0.0})),
     ],
     ids=["contact", "cavitation", "run-up", "massless"],

@@ -8,17 +8,16 @@ from hypothesis import strategies as st
 from scipy.special import pbdv
 
 from sealdyn import asperities, contact, gap
-from sealdyn.films import Film
+from sealdyn.contact_table import Contact, faults, levels
+from sealdyn.film_table import Film
 
 R_I, R_O, C0, CONING, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS
-CHRISTENSEN = contact.Contact(
+CHRISTENSEN = Contact(
     ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16
 )
 NUMBER, TIP, MODULUS = 1e11, 5e-6, 30e9
-GAUSSIAN = contact.Contact(
-    ROUGHNESS, law="greenwood-williamson", asperity_density=NUMBER, asperity_radius=TIP, modulus=MODULUS
-)
+GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=NUMBER, asperity_radius=TIP, modulus=MODULUS)
 LAWS = pytest.mark.parametrize("law", [CHRISTENSEN, GAUSSIAN], ids=["christensen", "gaussian"])
 SLOTS = {n: getattr(gap, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")}
 SLOTS["wear"] = gap.WEAR
@@ -160,7 +159,7 @@ def test_turning_the_tilt_turns_the_moment(law, angle, depth, log_tilt):
 )
 def test_first_touch_is_smooth(law, coning, tilt, order):
     """Zero above touch, then depth to the 4th power (flat) or 5.5th (a corner): three derivatives vanish."""
-    touch = contact.levels(law)[1]
+    touch = levels(law)[1]
     f = face(coning)
     low = min(C0 - R_I * tilt, C0 + coning * (R_O - R_I) - R_O * tilt)
     above = rub(law, f, touch - low + 1e-18, tilt, 0.0)
@@ -198,7 +197,7 @@ def test_friction_takes_the_sign_of_the_spin_and_either_law():
     forth, back, still = (rub(CHRISTENSEN, face(), *state, spin=w) for w in (SPEED, -SPEED, 0.0))
     assert forth["torque"] == -back["torque"] > 0 and still["torque"] == still["wear"] == 0
     assert forth["wear"] == back["wear"] > 0
-    sheared = contact.Contact(ROUGHNESS, compressive_strength=STRENGTH, shear_strength=0.3 * STRENGTH)
+    sheared = Contact(ROUGHNESS, compressive_strength=STRENGTH, shear_strength=0.3 * STRENGTH)
     assert rub(sheared, face(), *state)["torque"] == pytest.approx(3 * forth["torque"], rel=1e-13)
 
 
@@ -226,7 +225,7 @@ def test_film_floor_is_the_mean_flow_of_touching_faces():
     """E(H^3)^(1/3) at h = 0: 0.30 c, 0.31 c for Gaussian heights; the film law's own at h = 0 is floor/2."""
     gauss = float(mpmath.quad(lambda s: s**3 * mpmath.npdf(s), [0, 20])) ** (1 / 3) / 3
     for law, mean in ((CHRISTENSEN, float(asperities.mean_film_cubed(0.0)) ** (1 / 3)), (GAUSSIAN, gauss)):
-        floor, touch, collapse = contact.levels(law)
+        floor, touch, collapse = levels(law)
         assert gap.above_floor(0.0, floor) == pytest.approx(mean * C, rel=0.04)
         assert collapse == -C < 0 < floor < touch
 
@@ -272,11 +271,11 @@ FAULTS = {
 @pytest.mark.parametrize("case", FAULTS)
 def test_faults_name_the_key(case):
     given, key = FAULTS[case]
-    found = contact.faults(contact.Contact(**{"roughness": ROUGHNESS, **given}))
+    found = faults(Contact(**{"roughness": ROUGHNESS, **given}))
     assert [fault[0] for fault in found] == [key]
     assert all(isinstance(part, str) and part for part in found[0])
 
 
 @LAWS
 def test_nothing_wrong_with_a_whole_table(law):
-    assert contact.faults(law) == []
+    assert faults(law) == []

@@ -7,12 +7,12 @@ import pytest
 from scenes import CLEARANCE, R_O, SPEED, SUPPORT, film, ring
 
 from sealdyn.dynamics import PLAIN, WORKS
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.ring import AxialRunout, Rotor, Stator
 from sealdyn.scene import Scene
-from sealdyn.units import Table
 
 K_F, D_F, K_FZ, D_FZ = 5300.0, 3.7, 6.1e6, 5200.0
 FILM = film("linear", coefficients=Coefficients(K_F, D_F, K_FZ, D_FZ))
@@ -35,7 +35,7 @@ SCENES = {
     "counter-rotating rigid stator": dict(stator=Stator(**OWN_S, speed=-400.0), rotor=FLEXIBLE_R),
     "run-up FMSR": dict(
         stator=FLEXIBLE_S, rotor=FLEXIBLE_R,
-        shaft=replace(SHAFT, speed=Table((0.0, 0.1), (500.0, 1500.0))),
+        shaft=replace(SHAFT, speed=PiecewiseLinear((0.0, 0.1), (500.0, 1500.0))),
     ),
 }  # fmt: skip
 TAU = 0.0371
@@ -56,7 +56,7 @@ class Oracle:
     def __init__(self, scene, t, states):
         self.scene, self.t, self.states = scene, t, states
         speed = scene.shaft.speed
-        if isinstance(speed, Table):
+        if isinstance(speed, PiecewiseLinear):
             self.w_r, self.turned = 500.0 + 1e4 * t, 500.0 * t + 5e3 * t**2
         else:
             self.w_r, self.turned = speed, speed * t

@@ -11,10 +11,10 @@ from scipy.integrate import quad
 from sealdyn.continuation import lasting
 from sealdyn.equilibrium import equilibria, settle
 from sealdyn.gap import FLOOR
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.scenario import read_scenario
 from sealdyn.scene import Closing, ImpossibleScene
-from sealdyn.units import Table
 
 AREA = math.pi * (R_O**2 - R_I**2)
 P_O, P_I = 6e5, 1e5
@@ -87,7 +87,7 @@ def test_equal_pressures_are_held_by_the_spring():
 
 def test_a_pressure_step_moves_the_closing_force():
     """Hydraulic closing follows the sealed pressure, the spring does not."""
-    step = Table((0.0, 0.01, 0.01, 0.02), (P_O, P_O, 4e5, 4e5))
+    step = PiecewiseLinear((0.0, 0.01, 0.01, 0.02), (P_O, P_O, 4e5, 4e5))
     problem = Problem(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
     late = problem.closing.over(problem.legs[-1], problem.scene.film)
     assert late[0] == pytest.approx(closing_force(0.72, 40.0, P_I, 4e5), rel=1e-12)
@@ -96,7 +96,7 @@ def test_a_pressure_step_moves_the_closing_force():
 
 def test_the_ring_settles_at_the_new_clearance_after_a_pressure_step():
     """In time, from the old equilibrium to the new one, the support's spring having moved its end with the ring."""
-    step = Table((0.0, 0.001, 0.001, 0.02), (P_O, P_O, 5.5e5, 5.5e5))
+    step = PiecewiseLinear((0.0, 0.001, 0.001, 0.02), (P_O, P_O, 5.5e5, 5.5e5))
     stepped = scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step)
     found = run(stepped, duration=0.02)
     z, clearance = found.q[-1, 0], found.problem.clearance
@@ -212,7 +212,9 @@ def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring
 
 def test_what_a_scene_drives_to_is_closed_as_its_run_is():
     """A pressure that falls takes its share of the closing force with it; it does not decide the balance anew."""
-    falling = scene(Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=Table((0.0, 1.0), (P_O, P_O / 3)))
+    falling = scene(
+        Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=PiecewiseLinear((0.0, 1.0), (P_O, P_O / 3))
+    )
     whole, end = Problem(falling, 2.0), Problem(lasting(falling), 2.0)
     last = whole.closing.over(whole.legs[-1], falling.film)[0]
     assert end.closing_force() == pytest.approx(last, rel=1e-12)

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 
 from sealdyn import gap
 from sealdyn.faces import film_module, film_names
-from sealdyn.films import Profile, profiled, radial
+from sealdyn.film_table import Profile
+from sealdyn.films import profiled, radial
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5
 AREA = np.pi * (R_O**2 - R_I**2)

@@ -10,7 +10,8 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from sealdyn import gap
-from sealdyn.films import Film, _floored_circle, radial
+from sealdyn.film_table import Film
+from sealdyn.films import _floored_circle, radial
 
 R_I, R_O, C, MU = 0.0495, 0.0505, 2e-6, 5e-3
 R_M, WIDTH = 0.5 * (R_I + R_O), R_O - R_I

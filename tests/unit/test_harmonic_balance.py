@@ -8,7 +8,7 @@ import pytest
 from scenes import INERTIA, NOTHING, SPEED, SUPPORT, film, ring
 from scipy.integrate import solve_ivp
 
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.modes import Harmonic, common_period, steady_extremes
 from sealdyn.motion import AngularVibration, Housing, Shaft, Whirl
 from sealdyn.problem import Problem

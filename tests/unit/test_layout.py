@@ -7,10 +7,10 @@ import pytest
 from scenes import CLEARANCE, NOTHING, R_O, SPEED, SUPPORT, film, fmr, fms, fmsr, ring
 
 from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.ring import AxialRunout, Rotor, Support
 from sealdyn.scene import Closing, Initial, RingStart
-from sealdyn.units import Table
 
 TURN = 2 * math.pi / SPEED
 ALIGNED = dict(own=0.0, fixed=0.0)
@@ -50,7 +50,7 @@ def driven():
     return {
         "own misalignment": fmr("linear", fixed=0.0),
         "stator misalignment": fmr("linear", own=0.0),
-        "growing misalignment": fmr("linear", own=0.0, fixed=Table((0.0, 1.0), (0.0, 1e-6))),
+        "growing misalignment": fmr("linear", own=0.0, fixed=PiecewiseLinear((0.0, 1.0), (0.0, 1e-6))),
         "whirl": fmr("linear", **ALIGNED, shaft=Shaft(speed=SPEED, whirl=[Whirl(ratio=0.4, angle=1e-6)])),
         "angular vibration": fmr("linear", **ALIGNED, housing=angular),
         "start": fmr("linear", **ALIGNED, initial=Initial(rotor=RingStart(tilt_x=1e-6))),
@@ -69,8 +69,8 @@ def test_linear_film_with_both_drives_keeps_both():
     drives = [
         dict(housing=Housing(axial=[AxialVibration(frequency=100.0, displacement=1e-6)])),
         dict(initial=Initial(rotor=RingStart(z=1e-6))),
-        dict(film=film("linear", outer_pressure=Table((0.0, 1.0), (5e5, 6e5)))),
-        dict(film=film("linear", clearance=None), closing=Closing(0.75, Table((0.0, 1.0), (0.0, 1.0)))),
+        dict(film=film("linear", outer_pressure=PiecewiseLinear((0.0, 1.0), (5e5, 6e5)))),
+        dict(film=film("linear", clearance=None), closing=Closing(0.75, PiecewiseLinear((0.0, 1.0), (0.0, 1.0)))),
     ]
     for more in drives:
         problem = layout(fmr("linear", **more))

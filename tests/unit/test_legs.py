@@ -15,7 +15,6 @@ from sealdyn.imposed import (
     OSCILLATORS,
     PER_RING,
     ROW,
-    STATOR,
     TILT_X,
     TILT_X_RATE,
     TILT_Y,
@@ -26,8 +25,8 @@ from sealdyn.imposed import (
 )
 from sealdyn.legs import constant_and_slope, cut, reduced, time_of_angle
 from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.ring import AxialRunout, Rotor, Stator
-from sealdyn.units import Table
+from sealdyn.piecewise_linear import PiecewiseLinear
+from sealdyn.ring import STATOR, AxialRunout, Rotor, Stator
 
 SPEED = 1047.1975511965977  # 10 000 rpm, not a whole number of rad/s
 MILLION = 2 * math.pi * 1e6 / SPEED
@@ -94,7 +93,7 @@ def test_imposed_motion_after_a_million_turns():
 
 def test_phase_of_a_ramp():
     """The angle is the integral of a speed table, whatever legs it is cut into."""
-    speed = Table((0.0, 10.0, 2010.0, 2020.0), (0.0, 1000.0, 1500.0, -200.0))
+    speed = PiecewiseLinear((0.0, 10.0, 2010.0, 2020.0), (0.0, 1000.0, 1500.0, -200.0))
     legs = cut(2020.0, speed, 0.0, [speed])
     assert len(legs) > 100
     ends = {0.0: 0, 10.0: 5000, 2010.0: 5000 + 2000 * 1250, 2020.0: 5000 + 2000 * 1250 + 6500}
@@ -111,10 +110,10 @@ def test_phase_of_a_ramp():
 
 def test_rates_are_the_slopes_of_the_imposed_motion():
     """Ramped speed, ramped runout, fixed-axis and turning motions: rates against differences of the displacements."""
-    ramp = Table((0.0, 1.0), (100.0, 900.0))
+    ramp = PiecewiseLinear((0.0, 1.0), (100.0, 900.0))
     scene = fmr(
         shaft=Shaft(speed=ramp, whirl=[Whirl(ratio=-0.5, angle=0.5)]),
-        rotor=Rotor(runout=Table((0.0, 1.0), (0.2, 1.2)), runout_phase=0.4),
+        rotor=Rotor(runout=PiecewiseLinear((0.0, 1.0), (0.2, 1.2)), runout_phase=0.4),
         stator=Stator(**ring()),
         housing=Housing(angular=[AngularVibration(frequency=31.0, displacement=0.7, direction=0.6, phase=0.2)]),
     )
@@ -135,11 +134,11 @@ def test_rates_are_the_slopes_of_the_imposed_motion():
 # --- legs -----------------------------------------------------------------------------------------------
 
 
-STEPPED = Table((0.0, 1.0, 1.0, 2.0, 3.5), (5.0, 7.0, -2.0, -2.0, 4.0))
+STEPPED = PiecewiseLinear((0.0, 1.0, 1.0, 2.0, 3.5), (5.0, 7.0, -2.0, -2.0, 4.0))
 
 
 def test_legs_tile_time_and_stop_at_every_kink():
-    other = Table((0.5, 2.2), (1.0, 2.0))
+    other = PiecewiseLinear((0.5, 2.2), (1.0, 2.0))
     legs = cut(4.0, 100.0, 0.0, [100.0, STEPPED, other])
     assert [leg.time for leg in legs] == [0.0, 0.5, 1.0, 2.0, 2.2, 3.5]
     for a, b in pairwise(legs):
@@ -156,7 +155,7 @@ def test_value_and_slope_on_each_side_of_a_step():
     assert np.allclose(found, expected, rtol=0, atol=1e-13)
     assert constant_and_slope(3.25, legs[0]) == (3.25, 0.0)
     # Held before the first time of a table.
-    late = Table((1.0, 2.0), (3.0, 4.0))
+    late = PiecewiseLinear((1.0, 2.0), (3.0, 4.0))
     assert np.allclose([constant_and_slope(late, leg) for leg in cut(2.0, 0.0, 0.0, [late])], [(3, 0), (3, 1)])
 
 
@@ -175,11 +174,11 @@ def turned_by(table, t):
 
 
 TABLES = {
-    "run-up from rest": Table((0.0, 2.0), (0.0, 800.0)),
-    "reversal": Table((0.0, 1.0, 3.0, 4.0), (300.0, 300.0, -500.0, -500.0)),
-    "steps": Table((0.0, 1.0, 1.0, 2.0), (100.0, 100.0, 400.0, 50.0)),
-    "a stop between": Table((0.0, 1.0, 2.0, 3.0), (200.0, 0.0, 0.0, 600.0)),
-    "late table": Table((2.0, 3.0), (100.0, 700.0)),
+    "run-up from rest": PiecewiseLinear((0.0, 2.0), (0.0, 800.0)),
+    "reversal": PiecewiseLinear((0.0, 1.0, 3.0, 4.0), (300.0, 300.0, -500.0, -500.0)),
+    "steps": PiecewiseLinear((0.0, 1.0, 1.0, 2.0), (100.0, 100.0, 400.0, 50.0)),
+    "a stop between": PiecewiseLinear((0.0, 1.0, 2.0, 3.0), (200.0, 0.0, 0.0, 600.0)),
+    "late table": PiecewiseLinear((2.0, 3.0), (100.0, 700.0)),
 }
 
 
@@ -194,7 +193,7 @@ def test_time_of_an_angle_at_constant_speed():
     assert time_of_angle(-500.0, 100.0) == pytest.approx(0.2, rel=1e-15)
 
 
-@pytest.mark.parametrize("speed", [0.0, Table((0.0, 1.0), (100.0, 0.0))])
+@pytest.mark.parametrize("speed", [0.0, PiecewiseLinear((0.0, 1.0), (100.0, 0.0))])
 def test_an_angle_that_is_never_turned(speed):
     with pytest.raises(ValueError, match="turn"):
         time_of_angle(speed, 51.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scenes import INERTIA, NOTHING, SPEED, SUPPORT, film, ring
 
-from sealdyn.films import Coefficients
+from sealdyn.film_table import Coefficients
 from sealdyn.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
 from sealdyn.motion import Shaft
 from sealdyn.problem import Problem

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scenes import fms
 
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.problem import Problem
 from sealdyn.ramps.orders import FOLDED, at_the_edge, centres, peak, resolution, tracked, waterfall
 from sealdyn.ramps.trip import Evenly, Trip
-from sealdyn.units import Table
 
 PER_TURN = 32
 
@@ -104,7 +104,7 @@ def test_samples_stand_at_even_angles():
     """Times between two samples, speed integrated over them exactly: 1/32 of a turn each, over kinks and reversals of
     the ramp, none twice and none left out."""
     times, values = (0.0, 0.01, 0.11, 0.15, 0.25), (0.0, 300.0, 4000.0, 4000.0, 500.0)
-    problem = Problem(fms("linear", speed=Table(times, values)), 0.25)
+    problem = Problem(fms("linear", speed=PiecewiseLinear(times, values)), 0.25)
     sink = Evenly(problem, PER_TURN)
     found, first = [], []
     for k, leg in enumerate(problem.legs):

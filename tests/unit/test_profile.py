@@ -9,16 +9,13 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from sealdyn import contact, gap
-from sealdyn.films import Film, Profile
+from sealdyn.contact_table import Contact
+from sealdyn.film_table import Film, Profile
 
 R_I, R_O, C0, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS
-LAW = contact.Contact(
-    ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16
-)
-GAUSSIAN = contact.Contact(
-    ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9
-)
+LAW = Contact(ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16)
+GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9)
 SLOTS = {n: getattr(gap, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")}
 SLOTS["wear"] = gap.WEAR
 # Thinnest in the middle, at an edge, and with a groove.

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scenes import film, fmr
 
-from sealdyn.contact import Contact
+from sealdyn.contact_table import Contact
 from sealdyn.film_choice import lowest_rung
-from sealdyn.films import Profile
+from sealdyn.film_table import Profile
 from sealdyn.problem import Problem
 from sealdyn.report import resolved_lines
 from sealdyn.scenario import ScenarioError, json_schema, parse_scenario

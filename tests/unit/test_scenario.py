@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from sealdyn.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario import ScenarioError, json_schema, parse_scenario, read_scenario, unused_keys
-from sealdyn.units import Table
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR = (SCENARIOS / "fmr_reference.toml").read_text()
@@ -195,7 +195,7 @@ def test_overrides():
     assert (scenario.run.turns, scenario.scene.stator.mass) == (3, 2.0)
     assert scenario.overrides[1] == "film.clearance=20 um" and scenario.text == FMS
     table = parse(FMS, "shaft.speed={time=[0,1],value=[1,'60 rpm']}").scene.shaft.speed
-    assert table == Table((0.0, 1.0), (1.0, pytest.approx(2 * math.pi)))
+    assert table == PiecewiseLinear((0.0, 1.0), (1.0, pytest.approx(2 * math.pi)))
     shaken = read_scenario(SCENARIOS / "housing_vibration.toml", ["housing.axial.1.frequency=70 Hz"]).scene.housing
     assert [v.frequency for v in shaken.axial] == [400.0, 70.0]
 

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sealdyn.secondary_seal import SecondarySeal, excess, faults, sliding
+from sealdyn.secondary_seal import excess, sliding
+from sealdyn.secondary_seal_table import SecondarySeal, faults
 
 LINE, RADIUS = 37.0, 0.045
 speeds = st.floats(-1.0, 1.0).filter(lambda x: abs(x) > 1e-6)

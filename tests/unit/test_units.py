@@ -7,7 +7,8 @@ import sys
 import pytest
 
 from sealdyn import units
-from sealdyn.units import QuantityError, Table
+from sealdyn.piecewise_linear import PiecewiseLinear
+from sealdyn.units import QuantityError
 
 
 def read(kind, value):
@@ -134,12 +135,12 @@ def varying(value, kind=units.Speed):
 
 def test_table_with_units_entry_by_entry():
     table = varying({"time": ["0 s", "500 ms", 2], "value": ["60 rpm", 10, "1 Hz"]})
-    assert table == Table((0.0, 0.5, 2.0), (pytest.approx(2 * math.pi), 10.0, pytest.approx(2 * math.pi)))
+    assert table == PiecewiseLinear((0.0, 0.5, 2.0), (pytest.approx(2 * math.pi), 10.0, pytest.approx(2 * math.pi)))
     assert varying("1 Hz") == pytest.approx(2 * math.pi)
 
 
 def test_table_is_linear_between_and_held_outside():
-    table = Table((1.0, 2.0, 2.0, 4.0), (10.0, 20.0, 50.0, 30.0))
+    table = PiecewiseLinear((1.0, 2.0, 2.0, 4.0), (10.0, 20.0, 50.0, 30.0))
     assert [table.at(t) for t in (-1, 1, 1.5, 2, 3, 4, 9)] == [10, 10, 15, 50, 40, 30, 30]
     assert table.at(2 - 1e-12) == pytest.approx(20.0)
     assert table.breaks() == (1.0, 2.0, 4.0)

@@ -7,19 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from sealdyn.wear import (
-    ALPHA,
-    IMPLICIT,
-    LOWER,
-    WEIGHTS,
-    Average,
-    Control,
-    Hats,
-    NoAverage,
-    Worn,
-    advance,
-    unevenness,
-)
+from sealdyn.wear import ALPHA, IMPLICIT, LOWER, WEIGHTS, Average, Control, Hats, NoAverage, Worn, advance, unevenness
 
 R_I, R_O, SPEED, LOAD, PER = 0.032, 0.040, 1000.0, 500.0, 2.5e-18
 HOUR, ROUGH = 3600.0, 1e-7

@@ -1,13 +1,30 @@
-"""The profile of faces that are not plain cones: worn ones, or any other shape that is the same all around."""
+"""The `[film]` table: faces, fluid and pressures; and the profile of faces that are not plain cones: worn ones, or any
+other shape that is the same all around."""
 
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
-from ..gap import MOST_NODES
-from ..units import Length, Quantity, QuantityError, shown
+from .units import (
+    Angle,
+    AxialFilmDamping,
+    AxialFilmStiffness,
+    Density,
+    Length,
+    Pressure,
+    Quantity,
+    QuantityError,
+    SignedTiltDamping,
+    SignedTiltStiffness,
+    SpecificHeat,
+    Varying,
+    Viscosity,
+    shown,
+)
 
+# Most radii of a profile: kernels keep room for them.
+MOST_NODES = 65
 LENGTH = Length.__metadata__[0]
 
 
@@ -46,6 +63,43 @@ class Profile:
 
     radius: Column
     depth: Column
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """A linear film in the user's own numbers (a vendor's, a test's): forces fall by `stiffness` times
+    displacement and `damping` times rate.  `cross` terms follow from the wedge, mean spin times damping."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    tilt_stiffness: SignedTiltStiffness
+    tilt_damping: SignedTiltDamping
+    axial_stiffness: AxialFilmStiffness
+    axial_damping: AxialFilmDamping
+
+
+@dataclass(frozen=True)
+class Film:
+    """The `[film]` table: faces, fluid, pressures and the rung of the ladder."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    inner_radius: Length
+    outer_radius: Length
+    viscosity: Varying[Viscosity]
+    outer_pressure: Varying[Pressure]
+    inner_pressure: Varying[Pressure]
+    model: str = "auto"
+    geometry: Literal["cylindrical", "planar"] = "cylindrical"
+    tilt_radius: Literal["local", "mean"] = "local"
+    clearance: Length | None = None
+    coning: Angle = 0.0
+    density: Density = 1000.0
+    specific_heat: SpecificHeat = 4180.0
+    cavitation_pressure: Pressure | None = None
+    coefficients: Literal["green", "radial"] | Coefficients = "green"
+    floor: float = 1e-3
+    profile: Profile | None = None
 
 
 # Films that know a coned face only.
