@@ -16,7 +16,9 @@ import numpy as np
 
 from . import watch
 from .audit import Audit
-from .methods import BETWEEN, METHODS, TIGHTEST, Counts, SolverFailure, attainable, tolerance_for
+from .matrix_exponential import BETWEEN
+from .method_contract import TIGHTEST, Counts, SolverFailure, attainable, tolerance_for
+from .methods import METHODS
 from .model_error import model_error
 from .problem import Problem
 from .recorder import Recorder

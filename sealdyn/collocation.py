@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .methods import SolverFailure
+from .method_contract import SolverFailure
 
 # Stages; the error estimate is filtered with this multiple of the step, so that what is stiff does not count.
 GAUSS, RADAU, FILTER = 6, 5, 0.2

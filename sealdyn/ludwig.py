@@ -17,7 +17,8 @@ from .closed_form import ludwig_allen as closed
 from .film_table import Film
 from .films import radial
 from .gap import CAVITATED, DZ, DZ_RATE, FORCE, GAP_STATE_SIZE, GX, GX_RATE, MEAN_SPIN, MOMENT_X, MOMENT_Y, VISCOSITY
-from .methods import METHODS, Counts, SolverFailure, tolerance_for
+from .method_contract import Counts, SolverFailure, tolerance_for
+from .methods import METHODS
 
 # Film error: below what the integrator is asked, so that it meets a smooth function.
 FILM_ERROR = 1e-10

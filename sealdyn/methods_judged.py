@@ -9,8 +9,10 @@ import warnings
 
 import numpy as np
 
-from . import methods
-from .methods import FEW, SolverFailure
+from .method_contract import SolverFailure
+from .methods import METHODS
+from .scipy_methods import scipy_steps
+from .sundials import FEW, cvode
 
 # Spectral radius of generalised-alpha at infinite frequency: how much it damps what the step does not resolve.
 RHO = 0.8
@@ -23,7 +25,7 @@ SLOW = 0.3
 def _bdf_of_order_two(problem, leg, tau, y, method, tolerance, counts):
     """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
     _refuse_massless(problem, method)
-    yield from methods.cvode(problem, leg, tau, y, method, tolerance, counts, max_order=2)
+    yield from cvode(problem, leg, tau, y, method, tolerance, counts, max_order=2)
 
 
 def _scipy(problem, leg, tau, y, method, tolerance, counts):
@@ -32,7 +34,7 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
 
     _refuse_massless(problem, method)
     kind = RK45 if method == "rk45" else LSODA
-    steps = methods.scipy_steps(kind, kind is LSODA, problem, leg, tau, y, method, tolerance, counts)
+    steps = scipy_steps(kind, kind is LSODA, problem, leg, tau, y, method, tolerance, counts)
     while True:
         # LSODA warns before it gives up.
         with warnings.catch_warnings():
@@ -210,7 +212,7 @@ class _System:
             if not np.all(np.isfinite(x)):
                 break
         raise SolverFailure(
-            methods._said(self.method, "Newton does not converge at this step: too long for this film.", t)
+            failure_message(self.method, "Newton does not converge at this step: too long for this film.", t)
         )
 
     def _refresh(self, t, whole, tied, matrix):
@@ -239,7 +241,7 @@ def _only_with_rates(steps):
 
 
 CHOSEN = {
-    name: steps if name == "ida" else _only_with_rates(steps) for name, steps in methods.METHODS.items()
+    name: steps if name == "ida" else _only_with_rates(steps) for name, steps in METHODS.items()
 }  # fmt: skip
 JUDGED = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "newmark": _newmark,
           "generalised_alpha": _generalised_alpha, "midpoint": _midpoint}  # fmt: skip

@@ -9,7 +9,8 @@ from . import modes
 from .collocation import collocation
 from .faces import film_module, film_names
 from .film_table import Coefficients, aligned_gaps
-from .methods import METHODS, tolerance_for
+from .method_contract import tolerance_for
+from .methods import METHODS
 from .observables import errors, observe, worst
 from .scenario_study import varied
 from .simulation import prepare

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .methods import Counts, SolverFailure
+from .method_contract import Counts, SolverFailure
 from .recorder import Recorder
 from .signals import signals
 from .solve import solve

@@ -11,7 +11,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from .methods import METHODS, Counts, SolverFailure
+from .method_contract import Counts, SolverFailure
+from .methods import METHODS
 from .problem import Problem
 from .recorder import Recorder
 from .solve import solve

@@ -19,7 +19,7 @@ from .audit import Audit
 from .certify import Trial, certify, follow, try_tolerance
 from .film_choice import lowest_rung
 from .legs import time_of_angle
-from .methods import attainable
+from .method_contract import attainable
 from .piecewise_linear import PiecewiseLinear
 from .ring import RING_NAMES
 from .scene import ImpossibleScene

@@ -16,7 +16,9 @@ import numpy as np
 
 from .audit import Audit
 from .dense import sample
-from .methods import BLOCK, FEW, METHODS, Counts, SolverFailure, tolerance_for
+from .method_contract import Counts, SolverFailure, tolerance_for
+from .methods import METHODS
+from .sundials import BLOCK, FEW
 
 # Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
 OVERLAP = 4

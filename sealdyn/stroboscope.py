@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .methods import METHODS, Counts, SolverFailure, tolerance_for
+from .method_contract import Counts, SolverFailure, tolerance_for
+from .methods import METHODS
 from .problem import Problem
 from .recorder import Recorder
 from .scene import ImpossibleScene

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .. import modes
-from ..methods import Counts
+from ..method_contract import Counts
 from ..methods_judged import JUDGED
 from ..validation import green_scene
 from ..whirl import Whirling, contact_tilt_aligned, free_problem, least_damped

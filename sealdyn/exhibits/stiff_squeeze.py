@@ -3,7 +3,8 @@
 import math
 from dataclasses import replace
 
-from ..methods import METHODS, Counts
+from ..method_contract import Counts
+from ..methods import METHODS
 from ..ring import Rotor, Stator
 from ..validation import green_scene
 from ._show import integrated, row, started

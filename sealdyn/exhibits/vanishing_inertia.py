@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..methods import METHODS, Counts, SolverFailure
+from ..method_contract import Counts, SolverFailure
+from ..methods import METHODS
 from ..ring import Rotor, Stator
 from ..validation import green_scene
 from ._show import integrated, row, started

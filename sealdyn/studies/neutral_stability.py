@@ -11,7 +11,7 @@ import numpy as np
 
 from ..exhibits import neutral_stability as exhibit
 from ..film_table import Coefficients
-from ..methods import Counts, SolverFailure, attainable, tolerance_for
+from ..method_contract import Counts, SolverFailure, attainable, tolerance_for
 from ..methods_judged import JUDGED
 from ..problem import Problem
 from ..ring import ROTOR, STATOR

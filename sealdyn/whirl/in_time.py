@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..methods import attainable
+from ..method_contract import attainable
 from ..recorder import Recorder
 from ..solve import solve
 from .turning import Whirling, contact_tilt_aligned, free_problem, least_damped

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from sksundae.cvode import CVODE
 
 import sealdyn
-from sealdyn.methods import _tolerances
+from sealdyn.method_contract import absolute_tolerances
 from sealdyn.problem import Problem
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
@@ -27,7 +27,7 @@ def cvode(problem, tolerance, times):
     def rhs(t, y, yp):
         problem.rhs(t, y, yp)
 
-    solver = CVODE(rhs, method="Adams", rtol=tolerance, atol=_tolerances(problem, tolerance),
+    solver = CVODE(rhs, method="Adams", rtol=tolerance, atol=absolute_tolerances(problem, tolerance),
                    jacfn=problem.jacobian, max_num_steps=10**7)  # fmt: skip
     return solver.solve(times, problem.y0).y
 
@@ -39,7 +39,7 @@ def dop853(problem, tolerance, times):
         return yp
 
     return solve_ivp(rhs, (0.0, times[-1]), problem.y0, "DOP853", t_eval=times,
-                     rtol=max(tolerance, 2.3e-14), atol=_tolerances(problem, tolerance)).y.T  # fmt: skip
+                     rtol=max(tolerance, 2.3e-14), atol=absolute_tolerances(problem, tolerance)).y.T  # fmt: skip
 
 
 def measure(method, tolerance, times, reference, scale):

@@ -14,7 +14,7 @@ from sksundae.cvode import CVODE
 
 import sealdyn
 from sealdyn.films import radial
-from sealdyn.methods import _tolerances, tolerance_for
+from sealdyn.method_contract import absolute_tolerances, tolerance_for
 from sealdyn.problem import Problem
 from sealdyn.recorder import Recorder
 from sealdyn.solve import solve
@@ -66,7 +66,7 @@ def shares(scene):
 
     def bare():
         calls[0] = 0
-        solver = CVODE(counted, method="Adams", rtol=tolerance, atol=_tolerances(problem, tolerance),
+        solver = CVODE(counted, method="Adams", rtol=tolerance, atol=absolute_tolerances(problem, tolerance),
                        jacfn=problem.jacobian, max_num_steps=10**7)  # fmt: skip
         return solver.solve(np.array([0.0, duration]), problem.y0)
 

@@ -24,7 +24,7 @@ from scenes import Problem, prepared, run  # noqa: E402
 
 import sealdyn  # noqa: E402
 from sealdyn.contact_table import levels  # noqa: E402
-from sealdyn.methods import SolverFailure  # noqa: E402
+from sealdyn.method_contract import SolverFailure  # noqa: E402
 
 SCENES = ("pressure_step", "squeeze", "impact")
 PACKAGE = ("adams", "bdf", "ida", "radau", "dop853")

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from sealdyn.linear_side import ExactMotion
-from sealdyn.methods import BETWEEN
+from sealdyn.matrix_exponential import BETWEEN
 from sealdyn.recorder import Recorder
 from sealdyn.ring import Rotor
 from sealdyn.solve import solve

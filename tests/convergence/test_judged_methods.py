@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from sealdyn.collocation import GAUSS, RADAU, collocation, rule
-from sealdyn.methods import Counts, SolverFailure
+from sealdyn.method_contract import Counts, SolverFailure
 from sealdyn.methods_judged import JUDGED
 from sealdyn.ring import Rotor, Stator
 from sealdyn.scene import Initial, RingStart

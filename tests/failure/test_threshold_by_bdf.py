@@ -11,7 +11,8 @@ import pytest
 from scenes import INERTIA, SUPPORT, fmr
 
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
-from sealdyn.methods import METHODS, Counts
+from sealdyn.method_contract import Counts
+from sealdyn.methods import METHODS
 from sealdyn.whirl import Whirling, contact_tilt_aligned, free_problem, growth_rate, least_damped
 
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)

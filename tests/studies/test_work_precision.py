@@ -61,7 +61,7 @@ def test_errors_are_those_of_an_independent_integration(reference_seal):
     atol[-1] = 1e30
     exact = solve_ivp(rhs, (0, problem.duration), problem.y0, "Radau", rtol=3e-14, atol=atol).y[:, -1]
     tolerance = answer["methods"]["adams"]["tolerance"][0]
-    from sealdyn.methods import Counts
+    from sealdyn.method_contract import Counts
 
     y = problem.y0.copy()
     for _, ys, _ in JUDGED["adams"](problem, problem.begin(0), 0.0, y, "adams", tolerance, Counts()):

@@ -26,7 +26,7 @@ from scenes import (
 from sealdyn.certify import LOOSER, certify, follow, solver_error, try_tolerance
 from sealdyn.contact_table import Contact
 from sealdyn.film_choice import lowest_rung
-from sealdyn.methods import Counts, tolerance_for
+from sealdyn.method_contract import Counts, tolerance_for
 from sealdyn.model_error import model_error, model_errors
 from sealdyn.motion import AngularVibration, Housing
 from sealdyn.piecewise_linear import PiecewiseLinear

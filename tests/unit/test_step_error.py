@@ -8,7 +8,7 @@ import pytest
 from scenes import SPEED, TILT_SCALE, apart, fmr, fms, fmsr, free_ring, prepared
 
 from sealdyn.dense import integrals
-from sealdyn.methods import tolerance_for
+from sealdyn.method_contract import tolerance_for
 from sealdyn.recorder import Recorder
 from sealdyn.solve import solve
 from sealdyn.step_error import StepErrors
