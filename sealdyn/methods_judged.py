@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 
-from .method_contract import SolverFailure
+from .method_contract import SolverFailure, failure_message
 from .methods import METHODS
 from .scipy_methods import scipy_steps
 from .sundials import FEW, cvode
