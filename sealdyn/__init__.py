@@ -16,9 +16,9 @@ drop_stale_kernels()
 def __getattr__(name):
     # Loaded on first use, so that `sealdyn --help` answers at once.
     if name == "read_scenario":
-        from .scenario import read_scenario as found
+        from .scenario.reader import read_scenario as found
     elif name == "simulate":
-        from .simulation import simulate as found
+        from .simulation.simulate import simulate as found
     elif name == "open_archive":
         from .archive import open_archive as found
     else:

@@ -65,7 +65,7 @@ class Stop(Exception):
 def _read(path: Path, overrides):
     """Scenario of a TOML file or of an archive; input errors end here."""
     from .archive import ArchiveError, read_info
-    from .scenario import ScenarioError, parse_scenario, read_scenario
+    from .scenario.reader import ScenarioError, parse_scenario, read_scenario
 
     try:
         if path.suffix == ".h5":
@@ -88,9 +88,9 @@ def run(
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
     from .archive import ArchiveError
-    from .report import lines
-    from .scene import ImpossibleScene
-    from .simulation import simulate
+    from .report.text import lines
+    from .scene.scene import SceneError
+    from .simulation.simulate import simulate
 
     scenario = _read(file, set)
     if out is None:
@@ -105,13 +105,13 @@ def run(
     with _Progress() as bar, _libraries_on_stderr():
         try:
             result = simulate(scenario, out, progress=bar, stop=lambda: bool(flag), resume=resume)
-        except (ImpossibleScene, ArchiveError) as error:
+        except (SceneError, ArchiveError) as error:
             raise Stop("invalid", f"{file}: {error}") from None
         except OSError as error:
             raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
     summary = {**result.summary, "figure": None}
     if plot and result.status != "interrupted":
-        from .charts import overview
+        from .report.charts import overview
 
         figure = result.archive.with_suffix(".png")
         overview.draw(result.archive, figure)
@@ -196,17 +196,17 @@ class _Progress:
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
+    from .analysis.design_rules import followability
     from .archive import ArchiveError
-    from .design_rules import followability
-    from .report import resolved_lines
-    from .scene import ImpossibleScene
-    from .simulation import prepare
-    from .summary import model
+    from .report.text import resolved_lines
+    from .scene.scene import SceneError
+    from .simulation.simulate import prepare_run
+    from .simulation.summary import model
 
     scenario = _read(file, set)
     try:
-        problem, method, why, *_ = prepare(scenario)
-    except (ImpossibleScene, ArchiveError) as error:
+        problem, method, why, *_ = prepare_run(scenario)
+    except (SceneError, ArchiveError) as error:
         raise Stop("invalid", f"{file}: {error}") from None
     found = {
         "status": "ok",
@@ -227,7 +227,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 @app.command()
 def schema():
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario import json_schema
+    from .scenario.reader import json_schema
 
     print(json.dumps(json_schema(), indent=2))
 
@@ -240,7 +240,7 @@ def show(
 ):
     """Say what an archive holds; works while a run writes it."""
     from .archive import ArchiveError, column, read_info
-    from .report import archive_lines, csv_rows
+    from .report.text import archive_lines, csv_rows
 
     try:
         info = read_info(file)
@@ -276,7 +276,7 @@ def plot(
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     try:
-        importlib.import_module(f"sealdyn.charts.{kind}").draw(file, out)
+        importlib.import_module(f"sealdyn.report.charts.{kind}").draw(file, out)
     except ArchiveError as error:
         raise Stop("invalid", str(error)) from None
     print(out)
@@ -285,7 +285,7 @@ def plot(
 @app.command()
 def validate(as_json: AsJson = False):
     """Compare published numbers with three independent roads: formula, linear algebra, time domain."""
-    from .validation import report, validate_all
+    from .analysis.validation import report, validate_all
 
     with _libraries_on_stderr():
         rows = validate_all()
@@ -311,9 +311,9 @@ def study(
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
     import importlib
 
-    from .investigate import investigate, study_names
-    from .scenario import ScenarioError
-    from .scene import ImpossibleScene
+    from .scenario.reader import ScenarioError
+    from .scene.scene import SceneError
+    from .studies._runner import run_study, study_names
 
     names = study_names()
     if name.replace("_", "-") not in names:
@@ -322,17 +322,17 @@ def study(
     _say_compiling(file=sys.stderr)
     with _Progress() as bar, _libraries_on_stderr():
         try:
-            answer = investigate(
+            answer = run_study(
                 name, scenario, out, flags=_flags(context.args), workers=workers, progress=lambda t, end: bar(t, end)
             )
-        except (ScenarioError, ImpossibleScene) as error:
+        except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "
             raise Stop("invalid", f"{where}{error}") from None
         except OSError as error:
             raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
     if plot:
         figure = Path(answer["archive"]).with_suffix(".png")
-        importlib.import_module(f"sealdyn.charts.study_{answer['study']}").draw(answer["archive"], figure)
+        importlib.import_module(f"sealdyn.report.charts.study_{answer['study']}").draw(answer["archive"], figure)
         answer["figure"] = str(figure)
     if as_json:
         print(json.dumps(answer))

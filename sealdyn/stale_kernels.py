@@ -15,8 +15,7 @@ STAMP = "kernels.stamp"
 
 def sources() -> list[Path]:
     """Files that hold kernels or the constants they take in."""
-    films = (PACKAGE / "films").glob("*.py")
-    return sorted([*films, *(path for path in PACKAGE.glob("*.py") if b"njit" in path.read_bytes())])
+    return sorted(PACKAGE.rglob("*.py"))
 
 
 def kept_kernels() -> list[Path]:

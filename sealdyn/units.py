@@ -12,7 +12,7 @@ from decimal import Decimal, DecimalException
 from functools import cache
 from typing import Annotated, Any
 
-from .piecewise_linear import PiecewiseLinear
+from .numerics.piecewise_linear import PiecewiseLinear
 from .unit_names import dimension_and_factor, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
@@ -41,11 +41,11 @@ class Quantity:
     def read(self, value: Any) -> float:
         """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`."""
         if isinstance(value, str):
-            return self._limited(self._from_string(value), shown(value))
+            return self._limited(self._from_string(value), quoted(value))
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise QuantityError(shown(value), self.expected())
+            raise QuantityError(quoted(value), self.expected())
         try:
-            return self._limited(float(value), shown(value))
+            return self._limited(float(value), quoted(value))
         except OverflowError:
             raise QuantityError("a number beyond 1e308", self.expected()) from None
 
@@ -66,31 +66,31 @@ class Quantity:
         try:
             dimension, factor = dimension_and_factor(unit)
         except ValueError:
-            raise QuantityError(f"{shown(text)} ({unknown_unit(unit)})", self.expected()) from None
+            raise QuantityError(f"{quoted(text)} ({unknown_unit(unit)})", self.expected()) from None
         if dimension not in [dimension_and_factor(u)[0] for u in (self.unit, *self.also)]:
-            raise QuantityError(f"{shown(text)} ({_named(dimension)})", self.expected())
+            raise QuantityError(f"{quoted(text)} ({_named(dimension)})", self.expected())
         try:
             return float(Decimal(number) * factor / dimension_and_factor(self.unit)[1])
         except (DecimalException, OverflowError):
-            raise QuantityError(shown(text), f"a finite {self.name}") from None
+            raise QuantityError(quoted(text), f"a finite {self.name}") from None
 
     def _split(self, text: str) -> tuple[str, str]:
         """Number and unit of a string, with this quantity's own reading of `g` and of gauge pressure."""
         match = NUMBER.fullmatch(text.strip()) if len(text) < 200 else None
         if not match:
-            raise QuantityError(shown(text), self.expected())
+            raise QuantityError(quoted(text), self.expected())
         number, unit = match[1], match[2]
         if not unit:
-            raise QuantityError(f"{shown(text)} (no unit)", self.expected())
+            raise QuantityError(f"{quoted(text)} (no unit)", self.expected())
         unit = unit.translate(WRITTEN)
         if self.name == "acceleration":
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
         if self.name == "absolute pressure" and GAUGE.search(unit):
-            raise QuantityError(f"{shown(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air")
+            raise QuantityError(f"{quoted(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air")
         if re.search(r"\bTIR\b", unit):
             raise QuantityError(
-                f"{shown(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
+                f"{quoted(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
             )
         return number, unit
 
@@ -120,7 +120,7 @@ WRITTEN = {
 WRITTEN |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
 
 
-def shown(value: Any, most: int = 60) -> str:
+def quoted(value: Any, most: int = 60) -> str:
     """What a file held, in a few printable words."""
     if isinstance(value, dict):
         return "a table"
@@ -161,10 +161,10 @@ class VaryingQuantity:
         for key in value:
             if key not in ("time", "value"):
                 near = difflib.get_close_matches(key, ["time", "value"], 1)
-                raise QuantityError(f"key {shown(key)}", form + (f"; nearest key {near[0]!r}" if near else ""))
+                raise QuantityError(f"key {quoted(key)}", form + (f"; nearest key {near[0]!r}" if near else ""))
         for key in ("time", "value"):
             if not isinstance(value.get(key), list):
-                found = shown(value[key]) if key in value else "nothing"
+                found = quoted(value[key]) if key in value else "nothing"
                 raise QuantityError(f"{key} = {found}", form)
         return self._checked(_entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value"))
 

@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from sealdyn.film_table import Coefficients, Film
-from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.ring import Rotor, Stator, Support
-from sealdyn.scene import Initial, RingStart, Scene
-from sealdyn.signals import signals
-from sealdyn.solve import solve
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.signals import signals
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft
+from sealdyn.scene.film import Coefficients, Film
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Initial, RingStart, Scene
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 CLEARANCE, R_I, R_O, SPEED = 1e-5, 0.032, 0.040, 1000.0
 INERTIA, MISALIGNMENT = 8e-4, 25e-6
@@ -147,7 +147,7 @@ class Run:
         return np.concatenate([part[name] for part in self.parts])
 
     def record(self, window):
-        """Extremes of one window, as `sealdyn.watch` names its slots."""
+        """Extremes of one window, as `sealdyn.dynamics.extrema` names its slots."""
         return self.problem.records[window]
 
     def scaled(self):
@@ -161,7 +161,7 @@ class Run:
         return self.q[:, at] + 1j * self.q[:, at + 1]
 
 
-def prepared(scene, duration, accuracy, start="rest", problem_class=Problem):
+def prepared(scene, duration, accuracy, start="rest", problem_class=Model):
     """A problem with its start: at rest (plus what [initial] gives) or on the linear steady state."""
     problem = problem_class(scene, duration, accuracy)
     if start == "steady":
@@ -176,7 +176,7 @@ def prepared(scene, duration, accuracy, start="rest", problem_class=Problem):
 
 
 def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="rest", duration=None,
-        problem_class=Problem):  # fmt: skip
+        problem_class=Model):  # fmt: skip
     """Integrate a scene; the last two turns are the windows 1 and 2."""
     speed = scene.shaft.speed if not isinstance(scene.shaft.speed, PiecewiseLinear) else max(scene.shaft.speed.value)
     turn = 2 * math.pi / abs(speed)

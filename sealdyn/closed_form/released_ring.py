@@ -14,7 +14,8 @@ so there is a film for pi/4 < m < 1 only: below, the ring straightens and is squ
 between the faces has arm enough (R) and the ring hangs open.  Ludwig & Allen's film is the one whose support carries
 the moment about the tilt axis: K_s gamma = e R F_s.
 
-**Source** derived here from Ludwig & Allen, NASA TN D-8102 (1976); confirmed in time by ludwig_released.py.
+**Source** derived here from Ludwig & Allen, NASA TN D-8102 (1976); confirmed in time by
+studies/sealing_number/released.py.
 **Valid** their assumptions (ludwig_allen.py); ring that slides on its secondary seal all around, no support damping,
 seat tilted by more than h1/R.  `guide` is K_s gamma / (R F_s), `group` mu U dR^3 / F_s in m^2.
 """

@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from ..closed_form import film_coefficients, narrow_seal_opening_force
-from ..gap import (
+from ..faces.geometry import (
     CAVITATED,
     CLEARANCE,
     CONING,
@@ -42,8 +42,8 @@ from ..gap import (
     TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
-    above_floor,
-    face_block,
+    face_parameters,
+    regularised_thickness,
 )
 
 RUNG = 1
@@ -60,7 +60,7 @@ FLOW_ANGLES = 64
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     """The film's block of the parameter array, shape (BLOCK_SIZE,).  `error` is not needed: no quadrature."""
     f = np.zeros(BLOCK_SIZE)
-    f[:FACE_SIZE] = face_block(film, clearance)
+    f[:FACE_SIZE] = face_parameters(film, clearance)
     faces = dict(
         inner_radius=film.inner_radius,
         outer_radius=film.outer_radius,
@@ -125,8 +125,8 @@ def flow(f, s):
     conductance = drag = 0.0
     for j in range(FLOW_ANGLES):
         cos_b = math.cos(2.0 * math.pi * j / FLOW_ANGLES)
-        h_i = above_floor(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
-        h_o = above_floor(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
+        h_i = regularised_thickness(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
+        h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
         conductance += 2.0 * (h_i * h_o) ** 2 / (width * (h_i + h_o))
         change = (h_o - h_i) / h_i
         drag += width / h_i * (math.log1p(change) / change if abs(change) > 1e-9 else 1.0)

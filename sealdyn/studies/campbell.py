@@ -8,9 +8,9 @@ import numpy as np
 from scipy.linalg import eig
 from scipy.optimize import brentq, linear_sum_assignment
 
-from ..modes import NEUTRAL
-from ..problem import Problem
-from ..twin import held
+from ..analysis.arrangements import frozen_at_start
+from ..dynamics.model import Model
+from ..dynamics.modes import NEUTRAL
 from ..units import Speed
 
 units = {"speed": "rad/s", "modes/frequency": "rad/s"}
@@ -35,8 +35,8 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
-    scene = held(scenario.scene)
-    problem, own = Problem(scene, 1.0), abs(scene.shaft.speed)
+    scene = frozen_at_start(scenario.scene)
+    problem, own = Model(scene, 1.0), abs(scene.shaft.speed)
     top = settings.speed_to if settings.speed_to is not None else 6 * own or 6000.0
     speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
 

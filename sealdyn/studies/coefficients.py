@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from ..film_table import aligned_gaps
-from ..gap import (
+from ..analysis.arrangements import frozen_at_start
+from ..dynamics.model import Model
+from ..dynamics.modes import linearise
+from ..faces.geometry import (
     DZ,
     FORCE,
     GAP_STATE_SIZE,
@@ -24,10 +26,8 @@ from ..gap import (
     VISCOSITY,
     smallest_gap,
 )
-from ..modes import linearise
-from ..problem import Problem
-from ..scene import ImpossibleScene
-from ..twin import held
+from ..scene.film import aligned_gaps
+from ..scene.scene import SceneError
 from ..units import Angle, Length, Speed
 
 # Rows and columns of the matrices.
@@ -72,8 +72,8 @@ class State:
 
 def run(scenario, settings, tools) -> dict:
     """Matrices aligned and tilted, and sweeps."""
-    scene = held(scenario.scene)
-    problem, speed = Problem(scene, 1.0, 1e-10), scene.shaft.speed
+    scene = frozen_at_start(scenario.scene)
+    problem, speed = Model(scene, 1.0, 1e-10), scene.shaft.speed
     stiffness, damping = matrices(problem, State())
     answer = {
         "order": list(ORDER),
@@ -91,7 +91,7 @@ def run(scenario, settings, tools) -> dict:
     return answer | {"verdict": _verdict(answer)}
 
 
-def matrices(problem: Problem, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+def matrices(problem: Model, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
     lose per displacement and per rate of (dz, g_x, g_y).  Raises ValueError where the faces touch."""
     s = gap_state(problem, state, speed)
@@ -105,7 +105,7 @@ def matrices(problem: Problem, state: State, speed: float | None = None) -> tupl
     return linearise(problem.film.wrench, problem.f, s, (length, tilt, length * pace, tilt * pace))
 
 
-def gap_state(problem: Problem, state: State, speed: float | None = None) -> np.ndarray:
+def gap_state(problem: Model, state: State, speed: float | None = None) -> np.ndarray:
     """The gap-state array of a state at a shaft speed (rad/s)."""
     scene, s = problem.scene, np.zeros(GAP_STATE_SIZE)
     w_r, w_s = scene.shaft.speed if speed is None else speed, scene.stator.speed
@@ -118,7 +118,7 @@ def gap_state(problem: Problem, state: State, speed: float | None = None) -> np.
     return s
 
 
-def opened(problem: Problem, tilt: complex, whirl: float) -> float:
+def opened(problem: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
     scene = problem.scene
     stiffness = [ring.support.axial_stiffness for ring in (scene.stator, scene.rotor) if ring.support]
@@ -143,7 +143,7 @@ def opened(problem: Problem, tilt: complex, whirl: float) -> float:
     return float(brentq(excess, low, high, xtol=1e-9 * reach))
 
 
-def steady_tilt(problem: Problem) -> tuple[complex, float, str]:
+def steady_tilt(problem: Model) -> tuple[complex, float, str]:
     """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
     linear = problem.linear_scene()
     parts: dict[float, complex] = {}
@@ -224,8 +224,8 @@ def _against_clearance(scene, problem, settings) -> dict:
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(_row(matrices(Problem(held(scene, clearance=float(clearance)), 1.0, 1e-10), State())))
-        except (ImpossibleScene, ValueError) as error:
+            rows.append(_row(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1.0, 1e-10), State())))
+        except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)
 

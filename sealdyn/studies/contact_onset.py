@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .. import modes
-from ..orbit import NoOrbit, Shooter
-from ..problem import Problem
-from ..scenario import parse_scenario
-from ..scenario_study import varied
+from ..analysis.shooting import NoOrbit, Shooter
+from ..dynamics import modes
+from ..dynamics.model import Model
+from ..scenario.reader import parse_scenario
+from ..scenario.settings import with_values
 
 units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
 
@@ -60,12 +60,12 @@ def onset(point: dict) -> dict:
     """Linear and nonlinear onset of one scenario; `path` the orbits on the way."""
     scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     for key, value in point["set"].items():
-        scenario = varied(scenario, {key: value})
+        scenario = with_values(scenario, {key: value})
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
     key = point["key"]
 
     def scene(value):
-        made = varied(scenario, {key: value, "film.floor": floor, "run.start": '"steady"'}).scene
+        made = with_values(scenario, {key: value, "film.floor": floor, "run.start": '"steady"'}).scene
         return made
 
     formula, touching = linear_onset(scene, key)
@@ -114,7 +114,7 @@ def linear_onset(scene, key: str) -> tuple[float, float]:
     Raises NoOrbit if the linear response does not depend on the key."""
 
     def excess(value):
-        problem = Problem(scene(value), 1.0, 1e-6)
+        problem = Model(scene(value), 1.0, 1e-6)
         linear = problem.linear_scene()
         answers = [(h, linear.response(h)) for h in problem.harmonics()]
         most, _, closing = modes.steady_extremes(linear, answers, problem.period())

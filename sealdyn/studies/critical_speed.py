@@ -11,11 +11,19 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from .. import closed_form, modes
-from ..equilibrium import initially
-from ..ring import ROTOR, STATOR
-from ..scenario import parse_scenario
-from ..whirl import bounded_or_not, branch, contact_tilt_aligned, free_problem, growth_rate, tipping_disturbance
+from .. import closed_form
+from ..analysis.whirl import (
+    bounded_or_not,
+    branch,
+    contact_tilt_aligned,
+    free_problem,
+    growth_rate,
+    tipping_disturbance,
+)
+from ..dynamics import modes
+from ..dynamics.equilibrium import initially
+from ..scenario.reader import parse_scenario
+from ..scene.rings import ROTOR, STATOR
 
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",

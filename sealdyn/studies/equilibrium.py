@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..equilibrium import ClosingForce, closed_below, equilibria, initially, rise, settle
-from ..faces import film_module
-from ..scene import ImpossibleScene
-from ..twin import held
+from ..analysis.arrangements import frozen_at_start
+from ..dynamics.equilibrium import ClosingForce, closed_below, equilibria, initially, rise, settle
+from ..films import film_module
+from ..scene.scene import SceneError
 from ..units import Length
 
 units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/stiffness": "N/m"}
@@ -28,7 +28,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
-    scene = held(scenario.scene)
+    scene = frozen_at_start(scenario.scene)
     film, opening = scene.film, film_module(scene.film.model, scene.film.profile).opening_force
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
@@ -64,7 +64,7 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
         return law, said
     film, closing = scene.film, scene.closing
     if closing.balance_ratio is None or closing.spring_force is None:
-        raise ImpossibleScene("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
+        raise SceneError("film.clearance", "nothing", "a length, or both balance_ratio and spring_force")
     area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
     law = ClosingForce(area, closing.balance_ratio, closing.spring_force, film.outer_pressure >= film.inner_pressure)
     return law, "closing force from balance ratio and spring"
@@ -80,7 +80,7 @@ def _range(film, roots, settings) -> tuple[float, float]:
     low = max(low, least + 0.01 * max(found))
     if not low < high:
         wanted = f"clearances above {least:.4g} m, where the faces are open"
-        raise ImpossibleScene("study.equilibrium.clearance_to", f"{high:.4g} m", wanted)
+        raise SceneError("study.equilibrium.clearance_to", f"{high:.4g} m", wanted)
     return float(low), float(high)
 
 

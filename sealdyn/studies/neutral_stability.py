@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..exhibits import neutral_stability as exhibit
-from ..film_table import Coefficients
-from ..method_contract import Counts, SolverFailure, attainable, tolerance_for
-from ..methods_judged import JUDGED
-from ..problem import Problem
-from ..ring import ROTOR, STATOR
-from ..scenario import parse_scenario
-from ..scene import Closing, ImpossibleScene
-from ..whirl import free_problem, growth_rate, undisturbed
+from ..analysis.whirl import free_problem, growth_rate, unforced
+from ..dynamics.model import Model
+from ..scenario.reader import parse_scenario
+from ..scene.film import Coefficients
+from ..scene.rings import ROTOR, STATOR
+from ..scene.scene import Closing, SceneError
+from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
+from ..solvers.fixed_step import REFERENCE_METHODS
+from .failures.cases import neutral_stability as exhibit
 
 METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
 DEFAULT = "adams"
@@ -48,7 +48,7 @@ def run(scenario, settings, tools) -> dict:
     try:
         speed = exhibit.threshold(linear)
         why = "" if speed else "no critical speed: nothing is neutral to be kept"
-    except (ImpossibleScene, ValueError, np.linalg.LinAlgError) as error:
+    except (SceneError, ValueError, np.linalg.LinAlgError) as error:
         why = str(error)
     if speed and free_problem(linear, speed).massless:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
@@ -68,7 +68,7 @@ def run(scenario, settings, tools) -> dict:
         drift = joined(points, tools.map(drifted, points, "drift"))
         if all("failed" in row for row in drift):
             drift, drift_why = [], drift[0]["failed"]
-    except ImpossibleScene as error:
+    except SceneError as error:
         drift_why = str(error)
     answer = {"critical_speed": speed, "reason": why, "damping": damping, "resolved": resolved, "drift": drift,
               "drift_reason": drift_why, "turns": settings.turns}  # fmt: skip
@@ -127,13 +127,13 @@ def free_ring(scene):
     name = next((n for n, ring in (("rotor", scene.rotor), ("stator", scene.stator))
                  if ring.support and ring.transverse_inertia > 0), None)  # fmt: skip
     if name is None:
-        raise ImpossibleScene("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
+        raise SceneError("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
     speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
-    still = undisturbed(scene, float(speed))
+    still = unforced(scene, float(speed))
     ring = getattr(still, name)
     support = replace(ring.support, axial_damping=0.0, tilt_damping=None if ring.support.radius is not None else 0.0)
     if support.tilt()[0] <= 0.0 or speed == 0.0:
-        raise ImpossibleScene(f"{name}.support", "no tilt stiffness, or a shaft at rest", "a ring that can precess")
+        raise SceneError(f"{name}.support", "no tilt stiffness, or a shaft at rest", "a ring that can precess")
     other = "stator" if name == "rotor" else "rotor"
     # The film does nothing, so any clearance will do; a linear motion does not know its size.
     film = replace(still.film, model="linear", coefficients=NOTHING, cavitation_pressure=None,
@@ -150,7 +150,7 @@ def drifted(point: dict) -> dict:
     """
     scene, name = free_ring(scene_of(point)[0])
     turn = 2 * math.pi / abs(scene.shaft.speed)
-    problem = Problem(scene, point["turns"] * turn, point["accuracy"])
+    problem = Model(scene, point["turns"] * turn, point["accuracy"])
     ring, side = getattr(scene, name), ROTOR if name == "rotor" else STATOR
     spin = scene.shaft.speed if side == ROTOR else (scene.stator.speed or 0.0)
     inertia, gyro, stiffness = ring.transverse_inertia, ring.polar_inertia * spin, ring.support.tilt()[0]
@@ -174,7 +174,7 @@ def drifted(point: dict) -> dict:
     try:
         tau, y = 0.0, problem.y0
         for k in range(len(problem.legs)):
-            for _, ys, _ in JUDGED[method](problem, problem.begin(k), tau, y, method, held, counts):
+            for _, ys, _ in REFERENCE_METHODS[method](problem, problem.begin(k), tau, y, method, held, counts):
                 y = ys[-1]
                 if counts.rhs > MOST_CALLS and point["turns"] < 1000:
                     return {**nothing, "reason": f"more than {MOST_CALLS} right-hand sides"}

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import modes
-from ..equilibrium import initially
-from ..orbit import NoOrbit, Shooter
-from ..problem import Problem
-from ..recorder import Recorder
-from ..scenario import parse_scenario
-from ..scenario_study import varied
-from ..solve import solve
+from ..analysis.shooting import NoOrbit, Shooter
+from ..dynamics import modes
+from ..dynamics.equilibrium import initially
+from ..dynamics.model import Model
+from ..scenario.reader import parse_scenario
+from ..scenario.settings import with_values
+from ..solvers.integrate import solve
+from ..solvers.recorder import Recorder
 
 WITH_CONTACT = True
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
@@ -72,7 +72,7 @@ def run(scenario, settings, tools) -> dict:
 
 def _waves(shooter, waves) -> dict:
     """Relative tilt and h_min over one period, from the problem's own signals."""
-    from ..signals import signals
+    from ..dynamics.signals import signals
 
     problem = shooter.problem
     problem.begin(0)
@@ -116,7 +116,9 @@ def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
 def cost(point: dict) -> dict:
     """Periods of integration that shooting needs at one speed, and periods until a transient from rest repeats
     itself within the accuracy (None: not within `longest`)."""
-    scenario = varied(parse_scenario(point["text"], point["name"], point["overrides"]), {"shaft.speed": point["speed"]})
+    scenario = with_values(
+        parse_scenario(point["text"], point["name"], point["overrides"]), {"shaft.speed": point["speed"]}
+    )
     shooter = Shooter(scenario.scene, scenario.run.accuracy, point["turns"])
     row = {"part": point["part"], "speed": point["speed"]}
     orbit = shooter.find()
@@ -129,7 +131,7 @@ def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> int | None:
     """Periods until a transient from rest stays within the accuracy of the orbit."""
     chunk, start = 32, 0
     while start < longest:
-        problem = Problem(scene, shooter.period * (start + chunk), accuracy)
+        problem = Model(scene, shooter.period * (start + chunk), accuracy)
         recorder = Recorder(problem, shooter.period)
         outcome = solve(problem, "adams", accuracy, recorder)
         _, q, _ = recorder.arrays()
@@ -148,7 +150,7 @@ def _time_domain(scenario, reason: str) -> dict:
     scene = scenario.scene
     speed = abs(initially(scene.shaft.speed)) or 1.0
     turns = 200
-    problem = Problem(scene, turns * 2 * math.pi / speed, scenario.run.accuracy)
+    problem = Model(scene, turns * 2 * math.pi / speed, scenario.run.accuracy)
     half = 0.5 * problem.duration
     problem.windows[1:] = [[half, problem.duration], [half, problem.duration]]
     outcome = solve(problem, problem.solver()[0], scenario.run.accuracy, Recorder(problem))

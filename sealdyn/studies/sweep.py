@@ -5,11 +5,11 @@ import difflib
 import itertools
 from dataclasses import dataclass
 
-from ..scenario import parse_scenario
-from ..scenario_errors import ScenarioError
-from ..scenario_study import axis, varied
-from ..scene import ImpossibleScene
-from ..simulation import prepare, run_briefly
+from ..scenario.errors import ScenarioError
+from ..scenario.reader import parse_scenario
+from ..scenario.settings import axis, with_values
+from ..scene.scene import SceneError
+from ..simulation.simulate import prepare_run, simulate_in_memory
 
 WITH_CONTACT = True
 OUTPUTS = (
@@ -65,8 +65,8 @@ def run(scenario, settings, tools) -> dict:
 
 def one_run(point: dict) -> dict:
     """The outputs of one point's run, its status, and its message when it did not end well."""
-    scenario = varied(parse_scenario(point["text"], point["name"], point["overrides"]), point["set"])
-    summary = run_briefly(scenario)
+    scenario = with_values(parse_scenario(point["text"], point["name"], point["overrides"]), point["set"])
+    summary = simulate_in_memory(scenario)
     row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
     return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
 
@@ -98,12 +98,12 @@ def make_ready(scenario, grid):
     first = None
     for values in grid:
         try:
-            ready = varied(scenario, values)
+            ready = with_values(scenario, values)
         except ScenarioError as error:
             first = first or error
             continue
-        with contextlib.suppress(ImpossibleScene):
-            prepare(ready)
+        with contextlib.suppress(SceneError):
+            prepare_run(ready)
         return
     raise first
 

@@ -16,17 +16,17 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .. import closed_form as cf
-from .. import modes
-from ..film_table import Coefficients, aligned_gaps
-from ..problem import Problem
-from ..recorder import Recorder
-from ..scenario import parse_scenario
-from ..scene import Scene
-from ..signals import signals
-from ..solve import solve
-from ..twin import SEALS, Seal, arrangement, held, seals_of
+from ..analysis.arrangements import SEALS, Arrangement, arrangement, frozen_at_start, seals_of
+from ..dynamics import modes
+from ..dynamics.extrema import MOST
+from ..dynamics.model import Model
+from ..dynamics.signals import signals
+from ..scenario.reader import parse_scenario
+from ..scene.film import Coefficients, aligned_gaps
+from ..scene.scene import Scene
+from ..solvers.integrate import solve
+from ..solvers.recorder import Recorder
 from ..units import Speed
-from ..watch import MOST
 
 QUANTITIES = ("static", "dynamic", "total")
 PHASES = ("static_phase", "dynamic_phase")
@@ -69,7 +69,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Transmissibilities of both arrangements by three roads, the speeds at which they cross, and the table."""
     seals = seals_of(scenario)
-    own_speed = abs(held(scenario.scene).shaft.speed)
+    own_speed = abs(frozen_at_start(scenario.scene).shaft.speed)
     top = settings.speed_to if settings.speed_to is not None else 3 * own_speed or 3000.0
     speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
@@ -96,7 +96,7 @@ def run(scenario, settings, tools) -> dict:
     return answer | {"verdict": _verdict(answer, own_speed)}
 
 
-def crossings(seals: dict[str, Seal], speeds) -> list[dict]:
+def crossings(seals: dict[str, Arrangement], speeds) -> list[dict]:
     """Every speed (rad/s) inside the range where one arrangement overtakes the other, located to rounding; at rest
     both transmit the same."""
     found = []
@@ -199,14 +199,14 @@ def measured(point: dict) -> dict:
     }  # fmt: skip
 
 
-def _amplitude(seal: Seal, speed: float) -> float:
+def _amplitude(seal: Arrangement, speed: float) -> float:
     """Forcing (rad) that leaves the film open."""
     film = seal.scene.film
     thinnest = min(h for _, h in aligned_gaps(film, film.clearance))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
 
-def _forced(seal: Seal, speed: float, amplitude: float) -> Scene:
+def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
     """The arrangement with both forcings, on the linear film."""
     linear = seal.linear(speed)
     own = Coefficients(
@@ -215,7 +215,7 @@ def _forced(seal: Seal, speed: float, amplitude: float) -> Scene:
         axial_stiffness=linear.film_k[0, 0],
         axial_damping=linear.film_d[0, 0],
     )
-    scene = held(seal.scene, speed)
+    scene = frozen_at_start(seal.scene, speed)
     return replace(
         scene,
         film=replace(scene.film, model="linear", coefficients=own),
@@ -230,7 +230,7 @@ def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tupl
     speed = scene.shaft.speed
     # A turn of the shaft seen from the stator: over it the two frequencies are orthogonal and meet once.
     turn = 2 * math.pi / abs(speed - scene.stator.speed)
-    problem = Problem(scene, turns * turn, accuracy)
+    problem = Model(scene, turns * turn, accuracy)
     problem.windows[1] = [problem.duration - turn, problem.duration]
     recorder = Recorder(problem, turn / PER_TURN)
     outcome = solve(problem, problem.solver()[0], accuracy, recorder)
@@ -247,7 +247,7 @@ def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tupl
 # --- the table ---------------------------------------------------------------------------------------
 
 
-def table(seals: dict[str, Seal], speed: float, by_formula: bool, rows: list[dict]) -> list[dict]:
+def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: list[dict]) -> list[dict]:
     """FMR against FMS in the form of Green's Table 1, at one speed (rad/s), by every road that goes there."""
     roads = {"formula": {}, "linear_algebra": {}, "time_domain": {}}
     for name, seal in seals.items():
@@ -268,7 +268,7 @@ def table(seals: dict[str, Seal], speed: float, by_formula: bool, rows: list[dic
     ]
 
 
-def _critical_misalignment(seal: Seal, values) -> float | None:
+def _critical_misalignment(seal: Arrangement, values) -> float | None:
     """Partner's misalignment at first touch, in units of C/r_o, with a unit own misalignment."""
     if values[0] is None:
         return None
@@ -279,7 +279,7 @@ def _critical_misalignment(seal: Seal, values) -> float | None:
     return float(found) if np.isfinite(found) else None
 
 
-def _critical_speed(seal: Seal, road: str, by_formula: bool) -> float | None:
+def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | None:
     if road == "time_domain" or (road == "formula" and not by_formula):
         return None
     if road == "linear_algebra":

@@ -16,8 +16,8 @@ from scipy.integrate import solve_ivp
 from sksundae.cvode import CVODE
 
 import sealdyn
-from sealdyn.method_contract import absolute_tolerances
-from sealdyn.problem import Problem
+from sealdyn.dynamics.model import Model
+from sealdyn.solvers.contract import absolute_tolerances
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 TURNS, REPEATS = 400, 5
@@ -54,7 +54,7 @@ def measure(method, tolerance, times, reference, scale):
 
 def fresh():
     scene = sealdyn.read_scenario(SCENARIO).scene
-    return Problem(scene, TURNS * 2 * math.pi / scene.shaft.speed, 1e-8)
+    return Model(scene, TURNS * 2 * math.pi / scene.shaft.speed, 1e-8)
 
 
 def main():

@@ -15,9 +15,9 @@ from pathlib import Path
 
 import sealdyn
 from sealdyn.archive import read_study
-from sealdyn.charts import study_work_precision as chart
-from sealdyn.charts.page import look, save, sheet, shortened
-from sealdyn.investigate import investigate
+from sealdyn.report.charts import study_work_precision as chart
+from sealdyn.report.charts.page import look, save, sheet, shortened
+from sealdyn.studies._runner import run_study
 
 ROOT = Path(__file__).parents[2]
 KEPT = ROOT / "outputs" / "work_precision"
@@ -40,7 +40,7 @@ def archives(fresh: bool) -> list[Path]:
         if fresh or not out.exists():
             scenario = sealdyn.read_scenario(path, SHORTENED.get(path.stem, []))
             try:
-                answer = investigate("work-precision", scenario, out, flags=FLAGS | FEWER.get(path.stem, {}), workers=1)
+                answer = run_study("work-precision", scenario, out, flags=FLAGS | FEWER.get(path.stem, {}), workers=1)
             except ValueError as error:
                 # A scenario of another study, or one being written.
                 print(f"{path.stem}: {error}")

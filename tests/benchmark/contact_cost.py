@@ -9,17 +9,17 @@ minima); then the runout of scenarios/rub.toml, whose faces touch all the time a
 import time
 from pathlib import Path
 
-from sealdyn.recorder import Recorder
-from sealdyn.scenario import parse_scenario, read_scenario
-from sealdyn.simulation import prepare
-from sealdyn.solve import solve
+from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.simulation.simulate import prepare_run
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 
 
 def seconds(scenario):
-    problem, method, *_ = prepare(scenario)
+    problem, method, *_ = prepare_run(scenario)
     begun = time.perf_counter()
     outcome = solve(problem, method, scenario.run.accuracy, Recorder(problem))
     return time.perf_counter() - begun, outcome, problem

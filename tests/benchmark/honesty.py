@@ -19,17 +19,17 @@ from pathlib import Path
 
 import numpy as np
 
-from sealdyn.certify import certify, follow, try_tolerance
-from sealdyn.charts import palette
-from sealdyn.film_choice import lowest_rung
-from sealdyn.film_table import Film
-from sealdyn.motion import AngularVibration, Housing, Shaft
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.ring import Rotor, Stator, Support
-from sealdyn.scene import Scene
-from sealdyn.signals import signals
-from sealdyn.solve import solve
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.signals import signals
+from sealdyn.report.charts import palette
+from sealdyn.scene.excitation import AngularVibration, Housing, Shaft
+from sealdyn.scene.film import Film
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Scene
+from sealdyn.simulation.certificate import certify, choose_tolerance, error_estimator
+from sealdyn.simulation.film_selection import select_film
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 SEED, SAMPLES, TIMES = 20_26, 32, 3
 METHODS, EXACT = ("adams", "bdf", "dop853"), "expm"
@@ -114,9 +114,9 @@ def apart(found, truth):
 def automatic(made, duration, accuracy, start, interval):
     """Wall times (s) of choosing, running and certifying; problem, method, what was found, certificate."""
     begun = time.perf_counter()
-    problem, by_model = lowest_rung(made, duration, accuracy, begin(start))
+    problem, by_model = select_film(made, duration, accuracy, begin(start))
     method, _ = problem.solver()
-    trial, errors = try_tolerance(problem, method), follow(problem, method)
+    trial, errors = choose_tolerance(problem, method), error_estimator(problem, method)
     chosen = time.perf_counter() - begun
     options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
     found, wall = looked_at(problem, method, accuracy, interval, errors=errors, **options)
@@ -142,7 +142,7 @@ def judge(made, duration, accuracy, start):
     radial = replace(made, film=replace(made.film, model="radial"))
 
     def problem_of(film_scene, knob):
-        problem = Problem(film_scene, duration, knob)
+        problem = Model(film_scene, duration, knob)
         begin(start)(problem)
         return problem
 

@@ -15,8 +15,8 @@ from collections import Counter
 from pathlib import Path
 
 from sealdyn.archive import read_study
-from sealdyn.charts.study_work_precision import SHORT
-from sealdyn.studies.work_precision import BUSY, LIKE, NAMES
+from sealdyn.report.charts.study_work_precision import SHORT
+from sealdyn.studies.work_precision.study import BUSY, LIKE, NAMES
 
 ROOT = Path(__file__).parents[2]
 README, GALLERY = ROOT / "README.md", ROOT / "outputs" / "gallery"

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 
 import sealdyn
-from sealdyn.charts import palette
-from sealdyn.film_table import Coefficients
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.ring import Rotor
-from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal_table import SecondarySeal
-from sealdyn.solve import solve
+from sealdyn.dynamics.model import Model
+from sealdyn.report.charts import palette
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import Rotor
+from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.scene.secondary_seal import SecondarySeal
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
@@ -36,7 +36,7 @@ def problem_with(seal):
     film = replace(scene.film, model="linear", coefficients=NOTHING)
     scene = replace(scene, film=film, stator=stator, rotor=Rotor(), initial=Initial(stator=RingStart(z=START)))
     period = 2 * math.pi / math.sqrt(support.axial_stiffness / stator.mass)
-    problem = Problem(scene, CYCLES * period, ACCURACY)
+    problem = Model(scene, CYCLES * period, ACCURACY)
     problem.y0[problem.names.index("stator_z")] = START
     return problem, support.axial_stiffness
 

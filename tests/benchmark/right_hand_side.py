@@ -13,11 +13,11 @@ import numpy as np
 from sksundae.cvode import CVODE
 
 import sealdyn
-from sealdyn.films import radial
-from sealdyn.method_contract import absolute_tolerances, tolerance_for
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.solve import solve
+from sealdyn.dynamics.model import Model
+from sealdyn.films.radial import film as radial
+from sealdyn.solvers.contract import absolute_tolerances, tolerance_for
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 TURNS = 400
@@ -41,7 +41,7 @@ def film_kernel(scene):
     print("film kernel (us a call, dispatch from Python included), by film accuracy and tilt")
     for error in (1e-5, 1e-7, 1e-9, 1e-11):
         f = radial.parameters(scene.film, scene.film.clearance, error)
-        problem = Problem(scene, 1.0, 1e-6)
+        problem = Model(scene, 1.0, 1e-6)
         s = problem.s
         row = []
         for tilt in (0.01, 0.3, 0.8, 1.1, 1.2):
@@ -53,7 +53,7 @@ def film_kernel(scene):
 
 def shares(scene):
     duration = TURNS * 2 * math.pi / scene.shaft.speed
-    problem = Problem(scene, duration, 1e-6)
+    problem = Model(scene, duration, 1e-6)
     y, yp = problem.y0.copy(), np.empty(problem.size)
     film = per_call(lambda: problem.film.wrench(problem.f, problem.s))
     rhs = per_call(lambda: problem.rhs(0.1, y, yp))
@@ -74,7 +74,7 @@ def shares(scene):
     outcome = [None]
 
     def whole():
-        run = Problem(scene, duration, 1e-6)
+        run = Model(scene, duration, 1e-6)
         outcome[0] = solve(run, "adams", 1e-6, Recorder(run))
 
     whole()
@@ -91,7 +91,7 @@ def shares(scene):
 
 
 def _wall(scene, duration):
-    problem = Problem(scene, duration, 1e-6)
+    problem = Model(scene, duration, 1e-6)
     return solve(problem, "adams", 1e-6, Recorder(problem)).wall_time
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sealdyn import read_scenario
-from sealdyn.stability_map import Grid
+from sealdyn.studies.stability.grid import Grid
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CASES = (
@@ -32,7 +32,7 @@ def measure(name, model, x, y, count=500) -> float:
     more = []
     if name == "balanced":
         # The clearance follows from the balance: every spring force is another equilibrium.
-        from sealdyn.scenario import parse_scenario
+        from sealdyn.scenario.reader import parse_scenario
 
         text = (SCENARIOS / "fmr_reference.toml").read_text().replace('clearance = "10 um"', "")
         scenario = parse_scenario(text + "[closing]\nbalance_ratio = 0.75\nspring_force = 50\n", name,

@@ -20,11 +20,11 @@ from scipy import integrate
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from scenes import Problem, prepared, run  # noqa: E402
+from scenes import Model, prepared, run  # noqa: E402
 
 import sealdyn  # noqa: E402
-from sealdyn.contact_table import levels  # noqa: E402
-from sealdyn.method_contract import SolverFailure  # noqa: E402
+from sealdyn.scene.contact import contact_thresholds  # noqa: E402
+from sealdyn.solvers.contract import SolverFailure  # noqa: E402
 
 SCENES = ("pressure_step", "squeeze", "impact")
 PACKAGE = ("adams", "bdf", "ida", "radau", "dop853")
@@ -44,7 +44,7 @@ def scenario(name):
     return sealdyn.read_scenario(ROOT / "scenarios" / f"{name}.toml")
 
 
-class Observed(Problem):
+class Observed(Model):
     """A problem that counts its evaluations, stops a method beyond its budget, and remembers every accepted step."""
 
     budget = BUDGET
@@ -206,7 +206,7 @@ def draw(found, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    from sealdyn.charts import palette
+    from sealdyn.report.charts import palette
 
     colours = dict(zip((*PACKAGE, *SCIPY), (palette.BLUE, palette.GREEN, palette.SKY, palette.PURPLE,
                    palette.VERMILLION, palette.GREY, palette.ORANGE), strict=True))  # fmt: skip
@@ -225,7 +225,9 @@ def draw(found, path):
         gap.plot(times, h * 1e6, color=palette.FILM)
         contact = scenario(name).scene.contact
         if contact:
-            gap.axhline(levels(contact)[1] * 1e6, color=palette.CONTACT, lw=1, ls="--", label="asperities meet")
+            gap.axhline(
+                contact_thresholds(contact)[1] * 1e6, color=palette.CONTACT, lw=1, ls="--", label="asperities meet"
+            )
             gap.legend(loc="lower right", frameon=False)
         for axis in (steps, gap):
             axis.set(xscale=SHOWN[name][0], yscale="log", xlim=SHOWN[name][1])

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from scenes import NOTHING, SUPPORT, film, fmr, fms, fmsr, ring, run
 
-from sealdyn import contact, dynamics
-from sealdyn.contact_table import Contact
-from sealdyn.gap import CONTACT_ENERGY
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.ring import Stator
-from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal_table import SecondarySeal
+from sealdyn.dynamics import equations
+from sealdyn.faces import contact
+from sealdyn.faces.geometry import CONTACT_ENERGY
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.rings import Stator
+from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.scene.secondary_seal import SecondarySeal
 
 HARD = Contact(roughness=1e-7, compressive_strength=3e8)
 GAUSSIAN = Contact(
@@ -66,9 +67,9 @@ def test_contact_work_is_the_change_of_its_potential():
         energies = []
         for state in (problem.y0, y):
             problem.rhs(found.outcome.tau, state, np.empty(problem.size))
-            contact.rub(problem.contact, problem.f, problem.s)
+            contact.contact_load_and_friction(problem.contact, problem.f, problem.s)
             energies.append(problem.s[CONTACT_ENERGY])
-        work = y[problem.works][dynamics.WORKS.index("contact")]
+        work = y[problem.works][equations.WORKS.index("contact")]
         assert work == pytest.approx(energies[0] - energies[1], abs=10 * accuracy * y[-1])
 
 
@@ -82,7 +83,7 @@ def test_an_undamped_ring_keeps_its_energy_through_impacts():
     start = found.problem.energies(np.zeros(1), found.problem.y0[None, :])[0]
     end = found.problem.energies(np.zeros(1), found.outcome.y[None, :])[0]
     found.problem.rhs(found.outcome.tau, found.outcome.y, np.empty(found.problem.size))
-    contact.rub(found.problem.contact, found.problem.f, found.problem.s)
+    contact.contact_load_and_friction(found.problem.contact, found.problem.f, found.problem.s)
     assert end + found.problem.s[CONTACT_ENERGY] == pytest.approx(start, rel=1e-5)
 
 

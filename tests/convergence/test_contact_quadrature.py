@@ -9,9 +9,9 @@ import math
 import numpy as np
 import pytest
 
-from sealdyn import contact, gap
-from sealdyn.contact_table import Contact
-from sealdyn.film_table import Film
+from sealdyn.faces import contact, geometry
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Film
 
 R_I, R_O, C0, CONING, ROUGHNESS = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6
 C = 3 * ROUGHNESS
@@ -21,11 +21,11 @@ GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=1e11,
 
 def answers(law, points, coning, dz, tilt, r_i=R_I):
     """Force, moment times 1/r_o, and energy per half height."""
-    f = gap.face_block(Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning), C0)
-    s = np.zeros(gap.GAP_STATE_SIZE)
-    s[gap.DZ], s[gap.GX] = dz, tilt
-    contact.rub(contact.parameters(law, f, points), f, s)
-    return np.array([s[gap.CONTACT_FORCE], s[gap.CONTACT_X] / R_O, s[gap.CONTACT_ENERGY] / C])
+    f = geometry.face_parameters(Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning), C0)
+    s = np.zeros(geometry.GAP_STATE_SIZE)
+    s[geometry.DZ], s[geometry.GX] = dz, tilt
+    contact.contact_load_and_friction(contact.parameters(law, f, points), f, s)
+    return np.array([s[geometry.CONTACT_FORCE], s[geometry.CONTACT_X] / R_O, s[geometry.CONTACT_ENERGY] / C])
 
 
 STATES = {

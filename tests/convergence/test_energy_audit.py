@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 from scenes import INERTIA, SPEED, SUPPORT, fmr, fms, fmsr, prepared, run
 
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.solve import solve
-from sealdyn.step_error import StepErrors
+from sealdyn.dynamics.model import Model
+from sealdyn.solvers.global_error import GlobalErrorEstimate
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 K_S, D_S = SUPPORT.tilt()
 
 
 def wrong(change):
-    """A Problem whose equation of motion is off by `change(y, rates' part)` while its works are as before."""
+    """A Model whose equation of motion is off by `change(y, rates' part)` while its works are as before."""
 
-    class Wrong(Problem):
+    class Wrong(Model):
         def _bind(self):
             super()._bind()
             right, tilt, rate = self.rhs, self.n - 2, self.n_mechanical - 2
@@ -56,12 +56,12 @@ def test_works_summed_over_the_steps_expose_it_too(mistake):
 
     def audited(problem_class, follow):
         problem = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4, problem_class=problem_class)
-        told = {"errors": StepErrors(problem)} if follow else {}
+        told = {"errors": GlobalErrorEstimate(problem)} if follow else {}
         return solve(problem, "adams", 1e-4, Recorder(problem), tolerance=3e-6, **told).energy_residual
 
     # The damped rotor forgets its errors, its works do not.
-    right = audited(Problem, True)
-    assert 3 * right < audited(Problem, False)
+    right = audited(Model, True)
+    assert 3 * right < audited(Model, False)
     assert right < 1e-5 < audited(wrong(MISTAKES[mistake]), True)
 
 

@@ -9,11 +9,11 @@ from scenes import SPEED, SUPPORT, TILT_SCALE, film, fmr, fms, fmsr, free_ring, 
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sealdyn.linear_side import ExactMotion
-from sealdyn.matrix_exponential import BETWEEN
-from sealdyn.recorder import Recorder
-from sealdyn.ring import Rotor
-from sealdyn.solve import solve
+from sealdyn.dynamics.linearisation import ExactMotion
+from sealdyn.scene.rings import Rotor
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.matrix_exponential import BETWEEN
+from sealdyn.solvers.recorder import Recorder
 
 TURN = 2 * math.pi / SPEED
 SCENES = {

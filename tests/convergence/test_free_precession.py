@@ -13,7 +13,7 @@ import pytest
 from scenes import INERTIA, SPEED, SUPPORT, TILT_SCALE, free_ring, run
 
 from sealdyn import read_scenario
-from sealdyn.simulation import prepare
+from sealdyn.simulation.simulate import prepare_run
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "free_precession.toml"
 K_S = SUPPORT.axial_stiffness * SUPPORT.radius**2 / 2
@@ -97,7 +97,7 @@ def test_a_short_disk_precesses_at_2224_and_minus_225_rad_per_s():
 
 
 def warnings(*overrides):
-    return prepare(read_scenario(SCENARIO, overrides))[0].warnings
+    return prepare_run(read_scenario(SCENARIO, overrides))[0].warnings
 
 
 def test_an_accuracy_that_cannot_be_kept_is_warned_of():

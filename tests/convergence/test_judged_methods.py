@@ -10,13 +10,13 @@ from scenes import CLEARANCE, NOTHING, SUPPORT, Sink, film, fmr, fms, free_ring,
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sealdyn.collocation import GAUSS, RADAU, collocation, rule
-from sealdyn.method_contract import Counts, SolverFailure
-from sealdyn.methods_judged import JUDGED
-from sealdyn.ring import Rotor, Stator
-from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal_table import SecondarySeal
-from sealdyn.solve import solve
+from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.scene.secondary_seal import SecondarySeal
+from sealdyn.solvers.collocation import GAUSS, RADAU, collocation, rule
+from sealdyn.solvers.contract import Counts, SolverFailure
+from sealdyn.solvers.fixed_step import REFERENCE_METHODS
+from sealdyn.solvers.integrate import solve
 
 FIXED = ("newmark", "midpoint", "generalised_alpha")
 
@@ -45,7 +45,7 @@ def test_fixed_steps_are_of_second_order(method):
     found = []
     for tolerance in (1e-3, 2.5e-4, 6.25e-5):
         problem = prepared(free_ring(), duration, 1e-9)
-        y, _ = integrated(problem, JUDGED[method], method, tolerance)
+        y, _ = integrated(problem, REFERENCE_METHODS[method], method, tolerance)
         at = problem.names.index("rotor_tilt_x")
         found.append(np.max(np.abs(y[at : at + 2] - exact)) / 20e-6)
     orders = np.log2(np.array(found[:-1]) / np.array(found[1:]))
@@ -57,11 +57,11 @@ def test_fixed_steps_are_of_second_order(method):
 def test_fixed_steps_are_of_second_order_on_a_damped_forced_scene(method):
     """Reference seal with a linear film, from rest, against the package's exact steps."""
     duration = 2 * math.pi / 1000.0
-    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), JUDGED["expm"], "expm", 1e-9)
+    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), REFERENCE_METHODS["expm"], "expm", 1e-9)
     found = []
     for tolerance in (1e-3, 2.5e-4, 6.25e-5):
         problem = prepared(fmr("linear"), duration, 1e-9)
-        y, _ = integrated(problem, JUDGED[method], method, tolerance)
+        y, _ = integrated(problem, REFERENCE_METHODS[method], method, tolerance)
         found.append(np.max(np.abs(y - exact)[: problem.n_mechanical] / problem.scales[: problem.n_mechanical]))
     assert np.log2(np.array(found[:-1]) / np.array(found[1:])) == pytest.approx([2.0, 2.0], abs=0.15), found
 
@@ -72,7 +72,7 @@ def test_newmark_and_midpoint_keep_the_energy_and_generalised_alpha_does_not():
     drift = {}
     for method in FIXED:
         problem = prepared(free_ring(), duration, 1e-9)
-        y, _ = integrated(problem, JUDGED[method], method, 1e-2)
+        y, _ = integrated(problem, REFERENCE_METHODS[method], method, 1e-2)
         energy = [float(problem.energies(np.zeros(1), state[None, :])[0]) for state in (problem.y0, y)]
         drift[method] = energy[1] / energy[0] - 1
     assert abs(drift["newmark"]) < 1e-9 and abs(drift["midpoint"]) < 1e-9
@@ -137,11 +137,11 @@ def test_the_judge_agrees_with_scipy_on_the_nonlinear_film():
 @pytest.mark.parametrize("method", ["bdf2", "rk45", "lsoda"])
 def test_library_methods_follow_their_tolerance(method):
     duration = 0.01
-    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), JUDGED["expm"], "expm", 1e-9)
+    exact, _ = integrated(prepared(fmr("linear"), duration, 1e-9), REFERENCE_METHODS["expm"], "expm", 1e-9)
     found, calls = [], []
     for tolerance in (1e-3, 1e-6):
         problem = prepared(fmr("linear"), duration, 1e-9)
-        y, counts = integrated(problem, JUDGED[method], method, tolerance)
+        y, counts = integrated(problem, REFERENCE_METHODS[method], method, tolerance)
         m = problem.n_mechanical
         found.append(np.max(np.abs(y - exact)[:m] / problem.scales[:m]))
         calls.append(counts.rhs)
@@ -154,7 +154,7 @@ def test_a_massless_ring_is_refused_with_the_reason():
     problem = prepared(scene, 0.01, 1e-6)
     for method in ("adams", "newmark", "lsoda", "bdf2"):
         with pytest.raises(SolverFailure, match="massless"):
-            integrated(problem, JUDGED[method], method, 1e-4)
+            integrated(problem, REFERENCE_METHODS[method], method, 1e-4)
 
 
 # Measured: judges and Radau 8e-14, the others 4e-10 to 6e-9; 6e-6 to 3e-3 where the capture lay within the
@@ -175,7 +175,7 @@ def test_the_speed_of_a_ring_is_known_up_to_its_capture(method, tolerance):
                                                  z_rate=-swing * natural * math.sin(phase))))  # fmt: skip
     problem = prepared(scene, 1.05 * math.pi / natural, 1e-6)
     sink = Sink(problem, problem.duration / 20_000)
-    steps = collocation if method in ("radau_nodes", "gauss") else JUDGED[method]
+    steps = collocation if method in ("radau_nodes", "gauss") else REFERENCE_METHODS[method]
     solve(problem, method, 1e-6, sink, steps=steps, tolerance=tolerance)
     time, speed = np.concatenate(sink.times), np.concatenate(sink.rates)[:, 0]
     angle = natural * time + phase

@@ -8,10 +8,20 @@ import numpy as np
 import pytest
 from scenes import fmr, ring
 
-from sealdyn.imposed import OSCILLATOR_COUNT, OSCILLATORS, PER_RING, ROW, TILT_X, TILT_Y, Z, impose, oscillators
-from sealdyn.legs import cut
-from sealdyn.motion import AxialVibration, Housing, Shaft, Whirl
-from sealdyn.ring import ROTOR, STATOR, AxialRunout, Rotor, Stator
+from sealdyn.dynamics.imposed_motion import (
+    OSCILLATOR_COUNT,
+    OSCILLATORS,
+    PER_RING,
+    ROW,
+    TILT_X,
+    TILT_Y,
+    Z,
+    harmonics_of_segment,
+    imposed_state,
+)
+from sealdyn.dynamics.segments import split_at_breaks
+from sealdyn.scene.excitation import AxialVibration, Housing, Shaft, Whirl
+from sealdyn.scene.rings import ROTOR, STATOR, AxialRunout, Rotor, Stator
 
 RATIO, TONE, ORDER = 0.4837, 5400.0, 7
 
@@ -33,10 +43,10 @@ def scene(speed):
 
 def by_kernel(made, leg, tau):
     """exp(i phase) of the whirl, cosines of the runout and of the housing tone."""
-    rows = oscillators(made.shaft, made.housing, made.rotor, made.stator, leg)
+    rows = harmonics_of_segment(made.shaft, made.housing, made.rotor, made.stator, leg)
     p, c = np.zeros(OSCILLATORS + ROW * len(rows)), np.zeros(2 * PER_RING)
     p[OSCILLATOR_COUNT], p[OSCILLATORS:] = len(rows), rows.ravel()
-    impose(tau, p, c)
+    imposed_state(tau, p, c)
     rotor, stator = PER_RING * ROTOR, PER_RING * STATOR
     return complex(c[rotor + TILT_X], c[rotor + TILT_Y]), c[rotor + Z], c[stator + Z]
 
@@ -72,7 +82,7 @@ def worst(found, speed, legs):
 # A leg is at most 2000 turns: a phase inside it is as good as a float of that size, whatever came before.
 @pytest.mark.parametrize("speed", [1047.1975511965977, 2 * math.pi * 16.0], ids=["10000 rpm", "16 Hz"])
 def test_phases_after_a_million_turns(speed):
-    legs = cut(2 * math.pi * 1e6 / speed, speed, 0.0, [])
+    legs = split_at_breaks(2 * math.pi * 1e6 / speed, speed, 0.0, [])
     inside = 2 * math.pi * 2000
     largest = inside * np.array([RATIO, ORDER, 2 * math.pi * TONE / speed])
     kept, lost = (worst(found, speed, legs) for found in (by_kernel, by_floats))

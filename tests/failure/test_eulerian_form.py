@@ -9,7 +9,7 @@ from scenes import INERTIA, MISALIGNMENT, SPEED, SUPPORT, TILT_SCALE, fmr, run
 from scipy.integrate import solve_ivp
 
 from sealdyn.closed_form import film_coefficients
-from sealdyn.scene import Initial, RingStart
+from sealdyn.scene.scene import Initial, RingStart
 
 W = SPEED
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, NOTHING, SPEED, SUPPORT, film, fms, ring, run
 
-from sealdyn.contact_table import Contact, levels
-from sealdyn.ring import AxialRunout, Rotor, Stator
-from sealdyn.scene import Initial, RingStart
+from sealdyn.scene.contact import Contact, contact_thresholds
+from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
 
 EMPTY = film("linear", coefficients=NOTHING)
 # Faces so soft that touching changes nothing: what is seen is the search alone.
 SOFT = Contact(roughness=1e-7, compressive_strength=1e-6)
-TOUCH = levels(SOFT)[1]
+TOUCH = contact_thresholds(SOFT)[1]
 TURN = 2 * math.pi / SPEED
 
 

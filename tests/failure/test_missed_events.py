@@ -22,8 +22,8 @@ from scenes import (
 from sksundae.cvode import CVODE
 
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
-from sealdyn.ring import AxialRunout, Rotor, Stator
-from sealdyn.scene import Initial, RingStart
+from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
 
 TURN = 2 * math.pi / SPEED
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)

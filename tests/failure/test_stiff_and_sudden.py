@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import Problem, film, fmr, prepared, run
+from scenes import Model, film, fmr, prepared, run
 from scipy.integrate import quad, solve_ivp
 
-from sealdyn.gap import TOUCH, above_floor
-from sealdyn.ring import Rotor
-from sealdyn.scene import Initial, RingStart
+from sealdyn.faces.geometry import TOUCH, regularised_thickness
+from sealdyn.scene.rings import Rotor
+from sealdyn.scene.scene import Initial, RingStart
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmark"))
 import stiff_and_sudden as measured
@@ -206,8 +206,8 @@ def test_a_raw_film_lets_the_faces_through_silently():
     through, _ = thrown(lambda h: h, "RK45")
     assert through.success and through.y[0, -1] < -0.1
     with pytest.raises(RuntimeError, match="crawls"):
-        thrown(lambda h: above_floor(h, 1e-3 * C), "RK45")
-    right, beyond = thrown(lambda h: above_floor(h, 1e-3 * C), "Radau")
+        thrown(lambda h: regularised_thickness(h, 1e-3 * C), "RK45")
+    right, beyond = thrown(lambda h: regularised_thickness(h, 1e-3 * C), "Radau")
     assert right.success and beyond > 0 and right.y[0].min() > 0
     # Momentum, exactly: F t + m v = D1/2 (1/h^2 - 1/C^2), once the ring is slow.
     assert right.y[0, -1] == pytest.approx((1 / C**2 + 2 * (5000.0 * 0.01 + 1.0) / D1) ** -0.5, rel=1e-3)
@@ -257,7 +257,7 @@ def test_auto_chooses_the_survivor(name, survivor):
 def test_massless_ring_takes_ida_and_is_as_right():
     scene = measured.scenario("squeeze").scene
     light = replace(scene, rotor=Rotor(support=scene.rotor.support))
-    assert Problem(light, 8.0).solver()[0] == "ida"
+    assert Model(light, 8.0).solver()[0] == "ida"
     found = run(light, method="ida", duration=8.0, per_turn=2.5)
     exact = by("squeeze", "ida").q
     assert found.outcome.status == "ok"

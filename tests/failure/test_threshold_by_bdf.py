@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scenes import INERTIA, SUPPORT, fmr
 
+from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_problem, growth_rate, least_damped
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
-from sealdyn.method_contract import Counts
-from sealdyn.methods import METHODS
-from sealdyn.whirl import Whirling, contact_tilt_aligned, free_problem, growth_rate, least_damped
+from sealdyn.solvers.contract import Counts
+from sealdyn.solvers.methods import METHODS
 
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
 K_S, D_S = SUPPORT.tilt()
@@ -34,7 +34,7 @@ def exact(speed):
 def rate_by_bdf(speed, tolerance):
     """Growth rate (1/s) of a tenth of the contact tilt over 200 turns of CVODE BDF at a bare solver tolerance."""
     problem = free_problem(fmr("linear", 3.0), speed, TURNS * 2 * math.pi / speed)
-    whirling = Whirling(problem)
+    whirling = RotatingWave(problem)
     frequency, shape = least_damped(problem, speed)
     start = whirling.state(0.1 * contact_tilt_aligned(problem) * shape, frequency)
     blocks = list(METHODS["bdf"](problem, problem.begin(0), 0.0, start, "bdf", tolerance, Counts()))

@@ -6,7 +6,7 @@ from scenes import INERTIA, MISALIGNMENT, SPEED, SUPPORT, fmr, fms, fmsr, run
 
 from sealdyn import closed_form
 from sealdyn.closed_form import film_coefficients
-from sealdyn.watch import LEAST, MOST
+from sealdyn.dynamics.extrema import LEAST, MOST
 
 ACCURACY = 1e-8
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)

@@ -6,10 +6,10 @@ Face width over mean radius is 0.017: the arm of the sine moment, dR^2/(20 R^2) 
 import numpy as np
 import pytest
 
-from sealdyn import ludwig
 from sealdyn.closed_form import ludwig_allen as la
+from sealdyn.studies.sealing_number import quasi_static
 
-RING = ludwig.Ring()
+RING = quasi_static.Ring()
 RATIOS = [2.0, 3.0, 5.0, 20.0]
 
 
@@ -20,24 +20,24 @@ def closed(q):
 @pytest.mark.parametrize("q", RATIOS)
 def test_static_residuals_vanish_at_the_closed_form_and_a_root_finder_returns_to_it(q):
     films = closed(q)
-    force, moment = ludwig.static_residuals(q, films, RING)
+    force, moment = quasi_static.static_residuals(q, films, RING)
     assert abs(force) < 1e-9
     assert moment == pytest.approx((RING.face_width / RING.mean_radius) ** 2 / 20, rel=1e-3)
     for start in ((1.3, 1.04), (0.5, 0.3), (3.0, 2.0)):
-        found = ludwig.static_root(q, (start[0] * films[0], start[1] * films[0]), RING)
+        found = quasi_static.static_root(q, (start[0] * films[0], start[1] * films[0]), RING)
         assert found == pytest.approx(films, rel=1e-4)
 
 
 def test_no_static_film_below_the_least_ratio():
     with pytest.raises(ValueError, match="hang-up"):
-        ludwig.static_root(1.6, (5e-7, 1e-7), RING)
+        quasi_static.static_root(1.6, (5e-7, 1e-7), RING)
 
 
 @pytest.mark.parametrize("q", RATIOS)
 def test_quasi_static_run_settles_on_the_closed_form_from_above(q):
     films = closed(q)
     for above in (1.02, 1.1) if q < 3 else (1.02, 1.2):
-        run = ludwig.quasi_static(q, above * films, RING)
+        run = quasi_static.quasi_static(q, above * films, RING)
         assert run.status == "settled", run.message
         assert np.array(run.films) == pytest.approx(films, rel=1e-4)
         cosine = la.cosine_moment(RING.viscosity, RING.sliding_speed, RING.face_width, RING.mean_radius, *films)
@@ -47,15 +47,15 @@ def test_quasi_static_run_settles_on_the_closed_form_from_above(q):
 @pytest.mark.parametrize("q", RATIOS)
 def test_eigenvalues_of_the_radial_film_are_the_closed_form(q):
     expected = la.eigenvalues(q, 0.5 * RING.shaft_speed)
-    assert ludwig.linearised(q, closed(q), RING) == pytest.approx(expected, rel=1e-5)
+    assert quasi_static.linearised(q, closed(q), RING) == pytest.approx(expected, rel=1e-5)
 
 
 def test_the_run_turns_and_decays_with_them():
     """Two windows of the free motion: decay and frequency of what is left of a 0.1 % start, at q = 2."""
     films = closed(2.0)
-    run = ludwig.quasi_static(2.0, 1.001 * films, RING, duration=0.02, accuracy=1e-7)
+    run = quasi_static.quasi_static(2.0, 1.001 * films, RING, duration=0.02, accuracy=1e-7)
     value = la.eigenvalues(2.0, 500.0)[1]
-    rest = np.array(ludwig.static_root(2.0, films, RING))
+    rest = np.array(quasi_static.static_root(2.0, films, RING))
     left = run.mean_film - rest[0]
     inside = (run.time > 0) & (run.time < 0.01)
     t = run.time[inside]
@@ -68,12 +68,12 @@ def test_the_run_turns_and_decays_with_them():
 @pytest.mark.parametrize("start", [(3e-7, 1.5e-7), (5e-7, 2e-7)])
 @pytest.mark.parametrize("q", [1.65, 1.62])
 def test_hang_up_is_named(q, start):
-    run = ludwig.quasi_static(q, start, RING, duration=0.02)
+    run = quasi_static.quasi_static(q, start, RING, duration=0.02)
     assert run.status == "hang-up" and run.message.startswith("hang-up")
 
 
 def test_a_start_too_thick_hangs_too():
-    run = ludwig.quasi_static(3.0, 1.5 * closed(3.0), RING)
+    run = quasi_static.quasi_static(3.0, 1.5 * closed(3.0), RING)
     assert run.status == "hang-up" and "no squeeze" in run.message
 
 
@@ -81,7 +81,7 @@ def test_a_start_too_thick_hangs_too():
 def test_a_guided_ring_straightens(q):
     """It obeys the moment about the tilt axis: from the very balance of Ludwig & Allen it goes straight, and on
     doing so (h1 falls as h0^3 while the film is squeezed): 0.011 at q = 2 after 0.1 s."""
-    run = ludwig.guided(q, closed(q), RING, duration=0.1)
+    run = quasi_static.guided(q, closed(q), RING, duration=0.1)
     assert run.status == "straightened", run.message
     ratio = run.amplitude / run.mean_film
     assert ratio[-1] < 0.04 and np.all(np.diff(ratio[run.time > 0.01]) < 0)

@@ -8,8 +8,8 @@ from scenes import INERTIA, TILT_SCALE, film, fmr, fms, ring, run
 from scipy.integrate import solve_ivp
 
 from sealdyn.closed_form import film_coefficients
-from sealdyn.film_table import Coefficients
-from sealdyn.ring import Rotor, Stator, Support
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import Rotor, Stator, Support
 
 TURNS, PER_TURN = 2, 32
 

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr, fms, run
 
-from sealdyn import contact, gap, open_archive
-from sealdyn.contact_table import Contact
-from sealdyn.film_table import Profile
-from sealdyn.piecewise_linear import PiecewiseLinear
+from sealdyn import open_archive
+from sealdyn.faces import contact, geometry
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Profile
 
 SCENARIO = """
 [shaft]
@@ -101,9 +102,9 @@ def test_wear_at_the_radii_is_the_wear_rate_of_the_run():
     problem, out = found.problem, np.zeros(len(RADIUS))
     areas, rates = contact.hat_areas(problem.face), []
     for dz, x, y in zip(*(found[n] for n in ("axial_gap_change", "relative_tilt_x", "relative_tilt_y")), strict=True):
-        s = np.zeros(gap.GAP_STATE_SIZE)
-        s[gap.DZ], s[gap.GX], s[gap.GY] = dz, x, y
-        contact.worn(problem.contact, problem.f, s, out)
+        s = np.zeros(geometry.GAP_STATE_SIZE)
+        s[geometry.DZ], s[geometry.GX], s[geometry.GY] = dz, x, y
+        contact.wear_rates(problem.contact, problem.f, s, out)
         depth_rates = 1e-16 * SPEED * out / areas
         rates.append(np.sum(depth_rates * areas) / np.sum(areas))
     assert max(rates) > 0 and np.array(rates) == pytest.approx(found["wear_rate"], rel=1e-12, abs=1e-30)

@@ -6,7 +6,7 @@ from scenes import CLEARANCE, INERTIA, R_I, R_O, SPEED, SUPPORT, TILT_SCALE, fil
 
 from sealdyn import closed_form
 from sealdyn.closed_form import radial_film_coefficients
-from sealdyn.watch import LEAST, MOST
+from sealdyn.dynamics.extrema import LEAST, MOST
 
 K_S, D_S = SUPPORT.tilt()
 

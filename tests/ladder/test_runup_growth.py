@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from sealdyn import modes
-from sealdyn.ramps.orders import centres, tracked
-from sealdyn.ramps.passing import foretold, grown
-from sealdyn.ramps.trip import Trip, passed
-from sealdyn.scenario import read_scenario
-from sealdyn.whirl import free_problem
-from sealdyn.whirl.along import along
+from sealdyn.analysis.whirl import free_problem
+from sealdyn.analysis.whirl.mode_over_speed import along
+from sealdyn.dynamics import modes
+from sealdyn.numerics.order_tracking import centres, tracked
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.studies.runup.ramp_run import RampCycle, run_cycle
+from sealdyn.studies.runup.speed_ramp import measured_growth, predicted_growth
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SCALE, INERTIA, POLAR = 1e-5 / 0.04, 8e-4, 16e-4
@@ -73,8 +73,8 @@ def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     problem = free_problem(asked.scene, 1000.0)
     crossing = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4)
     mode = along(problem, 0.9 * crossing, 1.05 * crossing, crossing)
-    trip = Trip("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
-    return passed(asked, trip, per_turn, mode, kick * SCALE), trip, mode
+    trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
+    return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
 
 
 def shaft(trip):
@@ -118,7 +118,7 @@ def test_linear_film_passes_as_the_complex_ring_does(rate):
     assert abs(tilt[0]) == pytest.approx(1e-3 * SCALE, rel=2e-3)
     expected = oracle(stator, trip, times, tilt[0])
     assert tilt / expected == pytest.approx(np.ones(len(times)), abs=3e-4)
-    integral, factor = foretold(mode, trip, times)
+    integral, factor = predicted_growth(mode, trip, times)
     assert np.log(np.abs(expected / expected[0])) == pytest.approx(integral + factor - factor[0], abs=5e-3)
 
 
@@ -126,7 +126,7 @@ def test_linear_film_passes_as_the_complex_ring_does(rate):
 def test_growth_is_the_integral_of_the_linear_growth_rate(rate):
     """The issue's 5 %: -0.7 to +0.1 % by the integral of the quadratic's roots alone, 0.1 % with the factor."""
     run, trip, mode = passage(scenario(), rate, kick=3e-4)
-    found = grown(mode, trip, run.free, SCALE)
+    found = measured_growth(mode, trip, run.free, SCALE)
     upto = found["speed"] if found["until"] < trip.top else None
     one_way = quad(lambda w: whirl(stator, w).real, trip.crossing, trip.end, epsrel=1e-10)[0]
     if upto is not None:
@@ -143,7 +143,7 @@ def test_growth_is_the_integral_of_the_linear_growth_rate(rate):
 def test_growth_in_the_radial_film(rate):
     """With 10 urad of runout and misalignment: within 1.5 %; the rest is the square of the forced tilt."""
     run, trip, mode = passage(scenario(model="radial"), rate)
-    found = grown(mode, trip, run.free, SCALE)
+    found = measured_growth(mode, trip, run.free, SCALE)
     assert trip.crossing == pytest.approx(5588.7, abs=0.1)
     assert found["measured"] > 0.8
     assert abs(found["error"]) < 0.05
@@ -155,7 +155,7 @@ def test_what_forcing_adds_goes_with_its_square():
     errors = []
     for runout in ("0 urad", "12.5 urad", "25 urad"):
         run, trip, mode = passage(scenario("fms_reference", f"rotor.runout={runout}", model="radial"), 20000.0, 3e-4)
-        errors.append(grown(mode, trip, run.free, SCALE)["error_with_factor"])
+        errors.append(measured_growth(mode, trip, run.free, SCALE)["error_with_factor"])
     assert abs(errors[0]) < 2e-3
     assert 0.03 < errors[2] < 0.08
     assert (errors[2] - errors[0]) / (errors[1] - errors[0]) == pytest.approx(4.0, rel=0.15)
@@ -182,7 +182,7 @@ def test_a_flexible_rotor_whose_gyroscopic_term_changes():
     expected = oracle(rotor, trip, times, tilt[0])
     assert tilt / expected == pytest.approx(np.ones(len(times)), abs=3e-4)
     k = int(np.searchsorted(times, trip.top))
-    integral, factor = foretold(mode, trip, times)
+    integral, factor = predicted_growth(mode, trip, times)
     measured = np.log(np.abs(tilt / tilt[0]))
     assert measured[k] == pytest.approx(integral[k] + factor[k], abs=2e-3)
     assert abs(factor[k]) > 5 * abs(measured[k] - integral[k] - factor[k])
@@ -197,9 +197,9 @@ def transmitted(w):
 def swept(rate, begin=1200.0, end=3600.0, per_turn=32, turns=8):
     """Speeds and tracked relative tilt per runout, on the way up and down."""
     asked = scenario("fms_reference", "stator.misalignment=0 rad", "run.accuracy=1e-8")
-    run = passed(asked, Trip("shaft.speed", begin, end, rate, 0.02, rest=0.01), per_turn)
+    run = run_cycle(asked, RampCycle("shaft.speed", begin, end, rate, 0.02, rest=0.01), per_turn)
     number, times, speed, tilt, _ = run.samples
-    trip, out = Trip("shaft.speed", begin, end, rate, 0.02), []
+    trip, out = RampCycle("shaft.speed", begin, end, rate, 0.02), []
     for a, b in ((trip.settle, trip.top), (trip.back, trip.home)):
         firsts = centres(*np.searchsorted(times, (a, b)), turns * per_turn, speed, 400)
         middle = firsts + turns * per_turn // 2

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, INERTIA, NOTHING, R_O, SUPPORT, film, fmr, fms, ring, run
 
-from sealdyn.film_table import Coefficients
-from sealdyn.motion import AngularVibration, AxialVibration, Housing
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.ring import Rotor, Stator
-from sealdyn.scene import Initial, RingStart
-from sealdyn.secondary_seal_table import SecondarySeal
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.scene.secondary_seal import SecondarySeal
 
 STIFFNESS, MASS, RADIUS = SUPPORT.axial_stiffness, 1.0, 0.04
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)
@@ -140,7 +140,7 @@ def run_at_rest(scene, duration, points):
     """A run of a scene whose shaft does not turn."""
     from scenes import Run, Sink, prepared
 
-    from sealdyn.solve import solve
+    from sealdyn.solvers.integrate import solve
 
     problem = prepared(scene, duration, 1e-6)
     sink = Sink(problem, duration / points)

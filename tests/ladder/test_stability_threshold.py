@@ -5,8 +5,8 @@ import pytest
 from scenes import INERTIA, SUPPORT, fmr, fms, run
 
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_critical_speed
-from sealdyn.modes import critical_speed, verdict
-from sealdyn.scene import Initial, RingStart
+from sealdyn.dynamics.modes import critical_speed, verdict
+from sealdyn.scene.scene import Initial, RingStart
 
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
 K_S, D_S = SUPPORT.tilt()

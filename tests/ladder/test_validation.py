@@ -2,8 +2,9 @@
 
 import pytest
 
-from sealdyn import closed_form, validation
-from sealdyn.validation import report, validate_all
+from sealdyn import closed_form
+from sealdyn.analysis import validation
+from sealdyn.analysis.validation import report, validate_all
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ import pytest
 
 import sealdyn
 from sealdyn import closed_form as cf
-from sealdyn.films import radial
-from sealdyn.orbit import Shooter
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.scenario_study import varied
-from sealdyn.solve import solve
+from sealdyn.analysis.shooting import Shooter
+from sealdyn.dynamics.model import Model
+from sealdyn.films.radial import film as radial
+from sealdyn.scenario.settings import with_values
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 from sealdyn.studies import contact_onset
 from sealdyn.studies.contact_onset import Settings, onset
 
@@ -64,9 +64,9 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
     """From the touching orbit itself, so that no start-up transient decides."""
     _, scenario, key, answer = found
     for part, status in ((0.995, "ok"), (1.005, "collapsed")):
-        scene = varied(scenario, {key: part * answer["nonlinear"], "run.start": '"steady"'}).scene
+        scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": '"steady"'}).scene
         shooter = Shooter(scene, 1e-7, tight=1e-10)
-        problem = Problem(scene, 40 * shooter.period, 1e-6)
+        problem = Model(scene, 40 * shooter.period, 1e-6)
         start = np.array(answer["start"])
         # Below, the orbit lies within a trial of Newton; above, the film must be reached from the touching one.
         if status == "ok":
@@ -100,7 +100,7 @@ class Tools:
 @pytest.mark.parametrize("floor", [False, True])
 def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
     from sealdyn.archive import write_study
-    from sealdyn.charts import study_contact_onset
+    from sealdyn.report.charts import study_contact_onset
 
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
     settings = Settings(over="film.coning", values=(2.0, 3.0, 4.0), floor=floor)
@@ -123,7 +123,7 @@ def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
 
 def test_a_failed_onset_leaves_its_curve(tmp_path):
     from sealdyn.archive import write_study
-    from sealdyn.charts import study_contact_onset
+    from sealdyn.report.charts import study_contact_onset
 
     class Broken(Tools):
         def map(self, function, points, what="points"):

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scenes import INERTIA, SUPPORT, fmr, fms
 
-from sealdyn.investigate import investigate
-from sealdyn.scenario import parse_scenario
-from sealdyn.whirl import growth_rate
+from sealdyn.analysis.whirl import growth_rate
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.studies._runner import run_study
 
 K_S, D_S = SUPPORT.tilt()
 # Green's film coefficients of his reference seal, N m/rad and N m s/rad (Green 1989, Fig. 8).
@@ -22,7 +22,7 @@ def study(scenario, tmp_path, overrides=(), **flags):
 
     path = Path(__file__).parents[2] / "scenarios" / f"{scenario}.toml"
     read = parse_scenario(path.read_text(), scenario, [*overrides])
-    return investigate("critical-speed", read, tmp_path / "out.h5", flags=flags, workers=1)
+    return run_study("critical-speed", read, tmp_path / "out.h5", flags=flags, workers=1)
 
 
 @pytest.mark.parametrize(

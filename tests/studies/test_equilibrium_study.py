@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 
 from sealdyn import read_scenario
 from sealdyn.archive import read_study
-from sealdyn.charts import study_equilibrium
-from sealdyn.investigate import investigate
-from sealdyn.scenario import parse_scenario
+from sealdyn.report.charts import study_equilibrium
+from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import equilibrium
+from sealdyn.studies._runner import run_study
 from sealdyn.studies.equilibrium import Settings
 
 REFERENCE = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
@@ -82,7 +82,7 @@ def test_curve_is_the_opening_force():
 
 def test_a_scenario_without_a_question_has_a_figure_too(tmp_path):
     text = "".join(line for line in REFERENCE.read_text().splitlines(True) if not line.startswith("#"))
-    found = investigate("equilibrium", parse_scenario(text, "[bare]"), tmp_path / "bare.h5", workers=1)
+    found = run_study("equilibrium", parse_scenario(text, "[bare]"), tmp_path / "bare.h5", workers=1)
     study = read_study(found["archive"])
     assert (study["question"], study["name"]) == ("", "[bare]")
     assert study_equilibrium.draw(found["archive"], tmp_path / "bare.png")

@@ -9,10 +9,10 @@ import pytest
 
 import sealdyn
 from sealdyn.archive import read_study
-from sealdyn.charts import study_failures
-from sealdyn.investigate import investigate
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.studies.failures import exhibit_names
+from sealdyn.report.charts import study_failures
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.failures.study import exhibit_names
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
 KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}
@@ -56,7 +56,7 @@ def test_all_twelve_places_have_an_exhibit():
 
 @pytest.mark.parametrize("name", exhibits())
 def test_the_failure_is_there_and_the_survivor_holds(name):
-    rows = importlib.import_module(f"sealdyn.exhibits.{name}").show()
+    rows = importlib.import_module(f"sealdyn.studies.failures.cases.{name}").show()
     assert sum("absent" in row for row in rows) == NOT_YET.get(name, 0)
     shown = {row["title"]: row for row in rows if "absent" not in row}
     assert set(shown) == set(BOUNDS[name])
@@ -73,7 +73,7 @@ def test_the_failure_is_there_and_the_survivor_holds(name):
 
 def test_the_gallery_is_drawn_with_its_crosses_and_what_is_missing(tmp_path):
     out = tmp_path / "failures.h5"
-    answer = investigate("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": [3, 5, 8]}, workers=1)
+    answer = run_study("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": [3, 5, 8]}, workers=1)
     assert answer["status"] == "ok" and answer["items"] == [3, 5, 8]
     assert answer["scenario"]["method"] == "adams"
     assert any("not there yet" in line for line in answer["verdict"])
@@ -83,21 +83,21 @@ def test_the_gallery_is_drawn_with_its_crosses_and_what_is_missing(tmp_path):
 
 
 def test_an_exhibit_that_breaks_is_a_row_with_its_reason(tmp_path, monkeypatch):
-    from sealdyn.exhibits import touch_between_steps
+    from sealdyn.studies.failures.cases import touch_between_steps
 
     def broken():
         raise ValueError("broken on purpose")
 
     monkeypatch.setattr(touch_between_steps, "show", broken)
     out = tmp_path / "failures.h5"
-    answer = investigate("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": 3}, workers=1)
+    answer = run_study("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": 3}, workers=1)
     assert answer["status"] == "failed" and "broken on purpose" in answer["rows"][0]["failed"]
     study_failures.draw(out, tmp_path / "failures.png")
 
 
 def test_items_that_do_not_exist_are_refused(tmp_path):
     with pytest.raises(ScenarioError, match="items"):
-        investigate("failures", sealdyn.read_scenario(SCENARIO), tmp_path / "x.h5", flags={"items": [13]}, workers=1)
+        run_study("failures", sealdyn.read_scenario(SCENARIO), tmp_path / "x.h5", flags={"items": [13]}, workers=1)
 
 
 # --- sampling --------------------------------------------------------------------------------------------
@@ -105,7 +105,7 @@ def test_items_that_do_not_exist_are_refused(tmp_path):
 
 def edge_share(order, per_turn, turns=40):
     """Share at the edge of the band of a unit circle with a hundredth of a response at one order."""
-    from sealdyn.charts.spectrum import at_the_edge, order_spectrum
+    from sealdyn.report.charts.spectrum import at_the_edge, order_spectrum
 
     at = np.arange(turns * per_turn) / per_turn
     orders, amplitude, resolution, _ = order_spectrum(at, np.cos(2 * np.pi * at) + 0.1 * np.cos(2 * np.pi * order * at))
@@ -114,7 +114,7 @@ def edge_share(order, per_turn, turns=40):
 
 def test_a_response_at_the_edge_of_the_band_is_said_to_be_folded():
     """A tenth of the amplitude, a hundredth of the power; at order 33 of 64 samples a turn it shows at 31."""
-    from sealdyn.charts.spectrum import FOLDED
+    from sealdyn.report.charts.spectrum import FOLDED
 
     for order in (30, 31, 33, 34):
         assert edge_share(order, 64) == pytest.approx(0.01 / 1.01, rel=0.05)
@@ -125,7 +125,7 @@ def test_a_response_at_the_edge_of_the_band_is_said_to_be_folded():
 
 def drawn_texts(monkeypatch, order, samples):
     """What the spectrum of a seal says whose tilt has a part at one order."""
-    from sealdyn.charts import spectrum
+    from sealdyn.report.charts import spectrum
 
     class Made:
         turning, rows, turns = True, samples, np.arange(samples) / 64
@@ -142,7 +142,7 @@ def drawn_texts(monkeypatch, order, samples):
         def housing(self, kind):
             return []
 
-    from sealdyn.charts.page import look, sheet
+    from sealdyn.report.charts.page import look, sheet
 
     with look():
         ax = sheet(8, 4).add_axes((0.1, 0.1, 0.8, 0.8))

@@ -8,10 +8,10 @@ import pytest
 from scenes import INERTIA, SUPPORT, fmr
 
 import sealdyn
-from sealdyn.charts import study_neutral_stability
-from sealdyn.exhibits import neutral_stability as exhibit
-from sealdyn.investigate import investigate
-from sealdyn.scenario import parse_scenario
+from sealdyn.report.charts import study_neutral_stability
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.failures.cases import neutral_stability as exhibit
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 THREE = ["rotor.polar_inertia=2.6667e-4"]
@@ -22,7 +22,7 @@ K_S, D_S = SUPPORT.tilt()
 
 def study(scenario, tmp_path, overrides=(), **flags):
     read = parse_scenario((SCENARIOS / f"{scenario}.toml").read_text(), scenario, [*overrides])
-    return investigate("neutral-stability", read, tmp_path / "out.h5", flags=flags, workers=1)
+    return run_study("neutral-stability", read, tmp_path / "out.h5", flags=flags, workers=1)
 
 
 def test_threshold_is_where_the_roots_written_out_here_cross():

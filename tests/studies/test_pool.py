@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from sealdyn.pool import Journal, evaluate
+from sealdyn.numerics.parallel import Checkpoint, evaluate
 
 CALLS = "SEALDYN_TEST_CALLS"
 
@@ -38,7 +38,7 @@ def quiet(done, count):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_rows_come_in_the_order_of_the_points(calls, tmp_path, workers):
-    rows = evaluate(square, points(5), Journal(tmp_path / "j", "a"), workers, quiet, "squares")
+    rows = evaluate(square, points(5), Checkpoint(tmp_path / "j", "a"), workers, quiet, "squares")
     assert [row.get("y") for row in rows] == [0, 1, None, 9, 16]
     assert rows[2] == {"failed": "ValueError: two is not for squaring"}
     assert calls() == ["0", "1", "2", "3", "4"]
@@ -46,10 +46,10 @@ def test_rows_come_in_the_order_of_the_points(calls, tmp_path, workers):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_finished_points_are_not_repeated(calls, tmp_path, workers):
-    evaluate(square, points(3), Journal(tmp_path / "j", "a"), workers, quiet, "squares")
+    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), workers, quiet, "squares")
     told = []
     rows = evaluate(
-        square, points(5), Journal(tmp_path / "j", "a"), workers, lambda n, m: told.append((n, m)), "squares"
+        square, points(5), Checkpoint(tmp_path / "j", "a"), workers, lambda n, m: told.append((n, m)), "squares"
     )
     assert [row.get("y") for row in rows] == [0, 1, None, 9, 16]
     assert calls() == ["0", "1", "2", "3", "4"]
@@ -57,10 +57,10 @@ def test_finished_points_are_not_repeated(calls, tmp_path, workers):
 
 
 def test_a_line_torn_by_the_kill_is_done_again(calls, tmp_path):
-    evaluate(square, points(3), Journal(tmp_path / "j", "a"), 1, quiet, "squares")
+    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
     text = (tmp_path / "j").read_text()
     (tmp_path / "j").write_text(text[:-9])
-    rows = evaluate(square, points(3), Journal(tmp_path / "j", "a"), 1, quiet, "squares")
+    rows = evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
     assert [row.get("y") for row in rows] == [0, 1, None]
     assert calls() == ["0", "1", "2", "2"]
     # The mended journal is whole again: every line reads.
@@ -68,13 +68,13 @@ def test_a_line_torn_by_the_kill_is_done_again(calls, tmp_path):
 
 
 def test_another_study_does_not_use_the_journal(calls, tmp_path):
-    evaluate(square, points(2), Journal(tmp_path / "j", "a"), 1, quiet, "squares")
-    evaluate(square, points(2), Journal(tmp_path / "j", "b"), 1, quiet, "squares")
+    evaluate(square, points(2), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
+    evaluate(square, points(2), Checkpoint(tmp_path / "j", "b"), 1, quiet, "squares")
     assert calls() == ["0", "0", "1", "1"]
 
 
 def test_the_same_point_of_another_question_is_another(calls, tmp_path):
-    journal = Journal(tmp_path / "j", "a")
+    journal = Checkpoint(tmp_path / "j", "a")
     evaluate(square, points(1), journal, 1, quiet, "squares")
     evaluate(square, points(1), journal, 1, quiet, "cubes")
     assert calls() == ["0", "0"]

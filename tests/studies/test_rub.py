@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 
 import sealdyn
-from sealdyn import attractor, continuation
-from sealdyn.charts import study_rub
-from sealdyn.investigate import investigate
-from sealdyn.orbit import Shooter
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.stroboscope import SAMPLES, Stroboscope, share_below
-from sealdyn.whirl import Whirling, free_problem, least_damped
-from sealdyn.whirl.rubbing import settles
+from sealdyn.analysis import continuation
+from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
+from sealdyn.analysis.shooting import Shooter
+from sealdyn.analysis.whirl import RotatingWave, free_problem, least_damped
+from sealdyn.analysis.whirl.rubbing import settles
+from sealdyn.numerics import time_series
+from sealdyn.report.charts import study_rub
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 QUICK = {"ramp": 10, "drop": 6, "keep": 16, "exponent_turns": 16, "judge_turns": 0}
@@ -29,7 +30,7 @@ def read(name, *overrides):
 def reference(tmp_path_factory):
     out = tmp_path_factory.mktemp("rub") / "reference.h5"
     flags = QUICK | {"values": "3.6:4.8 mrad:2", "down": True}
-    return investigate("rub", read("rub"), out, flags=flags, workers=1), out
+    return run_study("rub", read("rub"), out, flags=flags, workers=1), out
 
 
 def test_reference_seal_rubs_with_period_one(reference):
@@ -55,7 +56,7 @@ def test_exponent_of_a_periodic_rub_is_its_floquet_multiplier(reference):
     two trajectories (Adams) grow by."""
     answer, _ = reference
     row = [row for row in answer["rows"] if row["direction"] == "up"][-1]
-    scene = continuation.with_part(continuation.lasting(read("rub").scene), "rotor.runout", row["value"])
+    scene = continuation.with_part(continuation.frozen_at_end(read("rub").scene), "rotor.runout", row["value"])
     orbit = Shooter(scene, 1e-6, tight=1e-9).find(np.array(row["end"]), target=1e-6)
     assert row["exponent"] == pytest.approx(math.log(np.abs(orbit.multipliers).max()), abs=row["uncertainty"] + 0.1)
     assert orbit.extremes["h_min"]["value"] == pytest.approx(min(row["h_min"]), abs=2e-9)
@@ -68,15 +69,15 @@ def test_chart_is_drawn(reference, tmp_path):
 
 def test_a_seal_without_contact_table_is_refused(tmp_path):
     with pytest.raises(ScenarioError, match="contact"):
-        investigate("rub", read("fms_reference"), tmp_path / "x.h5", workers=1)
+        run_study("rub", read("fms_reference"), tmp_path / "x.h5", workers=1)
 
 
 def test_impulse_share_and_film_do_not_depend_on_sampling():
     """Impulse integrated with the motion against samples of the force; located contacts against the sampled film."""
-    scene = continuation.lasting(read("rub_chaotic").scene)
+    scene = continuation.frozen_at_end(read("rub_chaotic").scene)
     scene = continuation.with_part(scene, "rotor.runout", 0.33e-3)
-    stroboscope = Stroboscope(scene, 1e-7)
-    x = continuation.led(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
+    stroboscope = PeriodMap(scene, 1e-7)
+    x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
     turns = stroboscope.run(x, 24)
     assert turns.impulse == pytest.approx(turns.contact_force.mean() * stroboscope.period, rel=2e-3)
     share = share_below(turns.h_min, 3e-6)
@@ -88,9 +89,9 @@ def test_impulse_share_and_film_do_not_depend_on_sampling():
 
 
 def test_tangents_are_differences_of_the_map():
-    scene = continuation.with_part(continuation.lasting(read("rub_chaotic").scene), "rotor.runout", 0.33e-3)
-    x = continuation.led(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
-    stroboscope, q = Stroboscope(scene, 1e-8, "dop853"), np.eye(6)[:, [1, 5]]
+    scene = continuation.with_part(continuation.frozen_at_end(read("rub_chaotic").scene), "rotor.runout", 0.33e-3)
+    x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
+    stroboscope, q = PeriodMap(scene, 1e-8, "dop853"), np.eye(6)[:, [1, 5]]
     samples = []
     x1, moved = stroboscope.tangents(x, q, samples)
     step = 1e-4
@@ -103,7 +104,7 @@ def test_tangents_are_differences_of_the_map():
 
 def test_whirl_beyond_the_critical_speed_ends_in_contact():
     """Below 5588.7 rad/s it dies; above it grows into the faces, and the reference seal's asperities give way."""
-    scene = continuation.lasting(read("rub").scene)
+    scene = continuation.frozen_at_end(read("rub").scene)
     below, above = settles(scene, 5400.0), settles(scene, 6200.0)
     assert below["fate"] == "decays"
     assert below["first_contact"] is None
@@ -123,7 +124,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
     low, high = found["amplitude"]
     assert high - low < 1e-5 * high
     problem = free_problem(scene, speed)
-    whirling, shape = Whirling(problem), least_damped(problem, speed)[1]
+    whirling, shape = RotatingWave(problem), least_damped(problem, speed)[1]
     q = high * shape
     q[problem.names.index("stator_z")] = 0.5 * high * problem.face[0]
     whirl = whirling.solve(high, (q, found["whirl_ratio"] * speed, speed))
@@ -137,7 +138,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
 def test_chaotic_rub_two_methods_agree(tmp_path):
     """Period 6 at 0.4 mrad, chaos at 0.55: exponent positive by both methods, averages the same, trajectories not."""
     flags = {"values": "0.4:0.55 mrad:2", "drop": 150, "keep": 64, "exponent_turns": 120, "judge_turns": 400}
-    answer = investigate("rub", read("rub_chaotic"), tmp_path / "c.h5", flags=flags)
+    answer = run_study("rub", read("rub_chaotic"), tmp_path / "c.h5", flags=flags)
     assert answer["rows"][0]["class"] == "period 6"
     assert answer["rows"][-1]["class"] == "chaotic"
     entries = answer["methods"]["invariants"]
@@ -165,33 +166,33 @@ def test_classes_of_the_logistic_map():
     """Periods 1, 2, 4 and chaos, as everyone knows them."""
     for r, expected in ((2.8, 1), (3.2, 2), (3.5, 4), (3.83, 3), (3.9, None)):
         section = orbit_of(lambda x, r=r: r * x * (1 - x), 0.3, 600)[500:]
-        assert attractor.period_of(section, 1.0) == expected
-        assert expected is None or attractor.distinct(section, 1.0) == expected
+        assert time_series.period_of(section, 1.0) == expected
+        assert expected is None or time_series.distinct_points(section, 1.0) == expected
     # A slow spiral towards a fixed point is no period 16.
     spiral = 0.2 * 0.99 ** np.arange(96) * np.exp(2j * np.pi * np.arange(96) / 16.0)
-    assert attractor.period_of(spiral, 1.0) is None
-    assert attractor.shrinking(spiral)
+    assert time_series.period_of(spiral, 1.0) is None
+    assert time_series.shrinking(spiral)
     slow = 0.006 * np.exp(2j * np.pi * np.arange(96) / 15.9)
-    assert attractor.period_of(slow, 1.0) is None
-    assert attractor.kind(None, -0.01, 0.02, still=True) == "settling"
-    assert attractor.kind(None, 0.4, 0.1) == "chaotic"
-    assert attractor.kind(None, 0.01, 0.005) == "undecided"
-    assert attractor.kind(None, 0.0, 0.01) == "quasi-periodic"
-    assert attractor.kind(2, -0.1, 0.01) == "period 2"
-    assert attractor.kind(2, 0.3, 0.1) == "settling"
-    assert attractor.kind(2, -0.3, 0.1, still=True) == "settling"
-    assert attractor.kind(None, 0.0, 0.2) == "undecided"
+    assert time_series.period_of(slow, 1.0) is None
+    assert time_series.classify(None, -0.01, 0.02, still=True) == "settling"
+    assert time_series.classify(None, 0.4, 0.1) == "chaotic"
+    assert time_series.classify(None, 0.01, 0.005) == "undecided"
+    assert time_series.classify(None, 0.0, 0.01) == "quasi-periodic"
+    assert time_series.classify(2, -0.1, 0.01) == "period 2"
+    assert time_series.classify(2, 0.3, 0.1) == "settling"
+    assert time_series.classify(2, -0.3, 0.1, still=True) == "settling"
+    assert time_series.classify(None, 0.0, 0.2) == "undecided"
 
 
 def test_spectrum_in_orders():
     t = np.arange(64 * 40) / 64
-    orders, size = attractor.spectrum(3.0 + 2.0 * np.cos(2 * np.pi * t) + 0.1 * np.sin(4 * np.pi * t), 64)
-    found = attractor.lines(orders, size)
+    orders, size = time_series.spectrum(3.0 + 2.0 * np.cos(2 * np.pi * t) + 0.1 * np.sin(4 * np.pi * t), 64)
+    found = time_series.lines(orders, size)
     assert (found["1"], found["2"], found["between"]) == pytest.approx((2.0, 0.1, 0.0), abs=1e-9)
     # Half a bin off, a line stays within its neighbourhood.
-    orders, size = attractor.spectrum(np.cos(2 * np.pi * t * (1 + 0.5 / 40)), 64)
+    orders, size = time_series.spectrum(np.cos(2 * np.pi * t * (1 + 0.5 / 40)), 64)
     assert size[np.abs(orders - 1) > 0.5].max() < 1e-3
-    half = attractor.lines(*attractor.spectrum(np.cos(np.pi * t), 64))
+    half = time_series.lines(*time_series.spectrum(np.cos(np.pi * t), 64))
     assert half["0.5"] == pytest.approx(1.0, abs=1e-9)
     assert half["between"] == pytest.approx(1.0, abs=1e-9)
 
@@ -204,7 +205,7 @@ def test_share_below_a_level():
 
 def test_averages_and_their_comparison():
     rng = np.random.default_rng(1)
-    one, other, third = (attractor.statistics(rng.normal(size=800) + shift, "h") for shift in (0.0, 0.0, 0.5))
-    assert all(entry["agree"] for entry in attractor.compared(one, other, {}).values())
-    assert not attractor.compared(one, third, {})["h_mean"]["agree"]
-    assert attractor.spread(np.tile([0.0, 5.0], 40)) == 0.0
+    one, other, third = (time_series.statistics(rng.normal(size=800) + shift, "h") for shift in (0.0, 0.0, 0.5))
+    assert all(entry["agree"] for entry in time_series.compared(one, other, {}).values())
+    assert not time_series.compared(one, third, {})["h_mean"]["agree"]
+    assert time_series.spread(np.tile([0.0, 5.0], 40)) == 0.0

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from sealdyn.archive import read_study
-from sealdyn.charts.study_runup import draw
-from sealdyn.gap import COLLAPSE
-from sealdyn.investigate import investigate
-from sealdyn.problem import Problem
-from sealdyn.ramps.passing import touch_tilt
-from sealdyn.scenario import read_scenario
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.studies import runup
+from sealdyn.dynamics.model import Model
+from sealdyn.faces.geometry import COLLAPSE
+from sealdyn.report.charts.study_runup import draw
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.runup import study as runup
+from sealdyn.studies.runup.speed_ramp import touch_tilt
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 GREEN = 5890.6
@@ -27,7 +27,7 @@ def read(name="runup_past_threshold", *overrides):
 
 
 def study(folder, scenario, **flags):
-    return investigate("runup", scenario, folder / "r.h5", flags=flags, workers=1)
+    return run_study("runup", scenario, folder / "r.h5", flags=flags, workers=1)
 
 
 def no_nan(tree):
@@ -250,7 +250,7 @@ def test_the_tilt_that_touches_whatever_the_profile():
     """Faces 30 um apart everywhere, by a profile of 25 um on a clearance of 5: h = floor at the outer radius."""
     film = "film.profile={ radius = ['32 mm', '40 mm'], depth = ['25 um', '25 um'] }"
     scene = read("fms_reference", film, "film.clearance=5 um", "film.coning=0 rad", "film.model=auto").scene
-    problem = Problem(scene, 1.0)
+    problem = Model(scene, 1.0)
     assert touch_tilt(problem) == pytest.approx((30e-6 - problem.face[COLLAPSE]) / 40e-3, rel=1e-9)
 
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn import ludwig_released
-from sealdyn.charts import study_sealing_number
-from sealdyn.investigate import investigate
-from sealdyn.scenario import parse_scenario
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scene import ImpossibleScene
+from sealdyn.report.charts import study_sealing_number
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scene.scene import SceneError
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.sealing_number import released
 
 PATH = Path(__file__).parents[2] / "scenarios" / "ludwig_allen.toml"
 RATIOS = (1.2, 1.45, 1.6, 2.5)
@@ -25,7 +25,7 @@ def read(*overrides):
 def found(tmp_path_factory):
     out = tmp_path_factory.mktemp("sealing") / "number.h5"
     flags = {"force_ratios": RATIOS, "starts": ("closed form",), "turns": 60}
-    return investigate("sealing-number", read(), out, flags=flags, workers=1), out
+    return run_study("sealing-number", read(), out, flags=flags, workers=1), out
 
 
 def number(q):
@@ -83,18 +83,18 @@ def test_chart_of_failed_points(tmp_path, monkeypatch):
     def fails(*anything):
         raise RuntimeError("no such luck")
 
-    monkeypatch.setattr(ludwig_released, "released", fails)
+    monkeypatch.setattr(released, "released", fails)
     flags = {"force_ratios": 2.5, "starts": "closed form"}
-    answer = investigate("sealing-number", read(), tmp_path / "none.h5", flags=flags, workers=1)
+    answer = run_study("sealing-number", read(), tmp_path / "none.h5", flags=flags, workers=1)
     assert all("failed" in row for row in answer["released"])
     assert "2 of 2 released runs failed; first: RuntimeError: no such luck" in " ".join(answer["verdict"])
     assert study_sealing_number.draw(tmp_path / "none.h5", tmp_path / "none.png").exists()
 
 
 def test_other_seals_are_refused(tmp_path):
-    with pytest.raises(ImpossibleScene, match=r"film\.coning"):
-        investigate("sealing-number", read("film.coning=1 mrad"), tmp_path / "a.h5", workers=1)
+    with pytest.raises(SceneError, match=r"film\.coning"):
+        run_study("sealing-number", read("film.coning=1 mrad"), tmp_path / "a.h5", workers=1)
     with pytest.raises(ScenarioError, match="force_ratio"):
-        investigate("sealing-number", read(), tmp_path / "b.h5", flags={"force_ratio": 2.0}, workers=1)
+        run_study("sealing-number", read(), tmp_path / "b.h5", flags={"force_ratio": 2.0}, workers=1)
     with pytest.raises(ScenarioError, match="force_ratios"):
-        investigate("sealing-number", read(), tmp_path / "c.h5", flags={"force_ratios": [0.0]}, workers=1)
+        run_study("sealing-number", read(), tmp_path / "c.h5", flags={"force_ratios": [0.0]}, workers=1)

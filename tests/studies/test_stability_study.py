@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from sealdyn import read_scenario
-from sealdyn.problem import Problem
-from sealdyn.scenario import parse_scenario
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scenario_study import varied
-from sealdyn.stability_map import Grid, growth_rates
-from sealdyn.studies import stability
-from sealdyn.studies.stability import Settings
-from sealdyn.twin import held
+from sealdyn.analysis.arrangements import frozen_at_start
+from sealdyn.dynamics.model import Model
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scenario.settings import with_values
+from sealdyn.studies.stability import study as stability
+from sealdyn.studies.stability.grid import Grid, growth_rates
+from sealdyn.studies.stability.study import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR, FMS, FMSR = (SCENARIOS / f"{n}.toml" for n in ("fmr_reference", "fms_reference", "fmsr_both_flexible"))
@@ -40,8 +40,8 @@ def one_by_one(scenario, values) -> tuple[float, float]:
         for ring in ("rotor", "stator"):
             if getattr(scenario.scene, ring).support:
                 values[f"{ring}.polar_inertia"] = getattr(scenario.scene, ring).transverse_inertia / c
-    changed = varied(scenario, {**values, "run.start": '"steady"'})
-    modes = Problem(held(changed.scene), 1.0).linear_scene().modes()
+    changed = with_values(scenario, {**values, "run.start": '"steady"'})
+    modes = Model(frozen_at_start(changed.scene), 1.0).linear_scene().modes()
     return modes[0].value.real, max(m.value.real for m in modes if m.kind == "tilt")
 
 

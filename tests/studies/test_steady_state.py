@@ -7,7 +7,7 @@ import pytest
 
 import sealdyn
 from sealdyn.archive import read_study
-from sealdyn.investigate import investigate
+from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -15,7 +15,7 @@ SCENARIOS = Path(__file__).parents[2] / "scenarios"
 def test_answer_archive_and_figure(tmp_path):
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
     flags = {"approach": [0.9, 0.98]}
-    answer = investigate("steady-state", scenario, tmp_path / "s.h5", flags=flags, workers=1)
+    answer = run_study("steady-state", scenario, tmp_path / "s.h5", flags=flags, workers=1)
     assert answer["stable"] and len(answer["multipliers"]) == 6
     low, high = answer["near_threshold"]
     # Waiting takes ever longer, shooting does not.
@@ -28,7 +28,7 @@ def test_answer_archive_and_figure(tmp_path):
         assert at_least < row["transient"] < at_most
     kept = read_study(tmp_path / "s.h5")
     assert kept["answer"]["h_min"] == answer["h_min"] and kept["scenario"] == scenario.text
-    from sealdyn.charts import study_steady_state
+    from sealdyn.report.charts import study_steady_state
 
     assert study_steady_state.draw(tmp_path / "s.h5", tmp_path / "s.png").stat().st_size < 300_000
     assert not list(tmp_path.glob("*.jsonl"))
@@ -53,7 +53,7 @@ def test_a_linear_scene_answers_with_roots_and_formulas(tmp_path):
     speed = 5000.0
     overrides = ["film.model=linear", f"shaft.speed={speed}"]
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", overrides)
-    answer = investigate("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
+    answer = run_study("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
     assert answer["period"] == pytest.approx(2 * np.pi / speed)
     k, d = GREEN
     multipliers = [complex(*pair) for pair in answer["multipliers"]]
@@ -74,9 +74,9 @@ def test_a_linear_scene_answers_with_roots_and_formulas(tmp_path):
 
 def test_incommensurate_forcing_falls_back_and_says_so(tmp_path):
     text = (SCENARIOS / "fmr_reference.toml").read_text() + "[[shaft.whirl]]\nratio = 0.41421356\nangle = 2e-6\n"
-    from sealdyn.scenario import parse_scenario
+    from sealdyn.scenario.reader import parse_scenario
 
-    answer = investigate("steady-state", parse_scenario(text, "x.toml"), tmp_path / "s.h5", workers=1)
+    answer = run_study("steady-state", parse_scenario(text, "x.toml"), tmp_path / "s.h5", workers=1)
     assert answer["period"] is None and "time domain" in answer["verdict"][0]
     # 0.076 of the stator's tilt and 0.058 of its own, 25 urad each, and at most the whirl's 2 urad more or less.
     tilt = answer["relative_misalignment"]

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sealdyn.investigate import investigate
-from sealdyn.scenario import parse_scenario
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scenario_study import axis
-from sealdyn.simulation import simulate
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scenario.settings import axis
+from sealdyn.simulation.simulate import simulate
+from sealdyn.studies._runner import run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']
@@ -24,7 +24,7 @@ SHORT = ["run.turns=6", 'run.start="steady"']
 def sweep(tmp_path, vary, outputs=None, workers=1, overrides=SHORT):
     scenario = parse_scenario(PATH.read_text(), "fms_reference", list(overrides))
     flags = {"vary": vary} | ({"outputs": outputs} if outputs else {})
-    return investigate("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=workers)
+    return run_study("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=workers)
 
 
 @pytest.mark.parametrize(

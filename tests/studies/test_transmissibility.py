@@ -8,12 +8,12 @@ import pytest
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
+from sealdyn.analysis.arrangements import counterpart, frozen_at_start, with_single_flexible_ring
 from sealdyn.closed_form import GREEN_1989
-from sealdyn.pool import Journal
-from sealdyn.problem import Problem
+from sealdyn.dynamics.model import Model
+from sealdyn.numerics.parallel import Checkpoint
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
-from sealdyn.twin import held, one_flexible, twin
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -22,7 +22,7 @@ class Tools:
     """Evaluates in this process."""
 
     def __init__(self, folder):
-        self.journal = Journal(folder / "j", "x")
+        self.journal = Checkpoint(folder / "j", "x")
 
     def map(self, function, points, what="points"):
         return [self.one(function, p) for p in points]
@@ -70,7 +70,7 @@ def test_greens_table_1_follows_from_either_scenario(tmp_path, file, ring, c):
 def test_crossovers_solve_greens_formulas(tmp_path):
     """K_s 400 N m, D_s 0.24 N m s, K_f 5791 N m, D_f 4.082 N m s of the paper's Fig. 8, c = 1/2."""
     seal = read_scenario(SCENARIOS / "fmr_reference.toml", ["film.model=linear"])
-    k, d = (m[1, 1] for m in Problem(seal.scene, 1.0).film_matrices())
+    k, d = (m[1, 1] for m in Model(seal.scene, 1.0).film_matrices())
     assert (k, d) == (pytest.approx(5791, rel=1e-4), pytest.approx(4.082, rel=1e-3))
     inertia, polar, k_s, d_s = 8e-4, 16e-4, 400.0, 0.24
 
@@ -131,9 +131,7 @@ def lags(seal, w, k, d, c=0.5):
 def test_phases_follow_from_the_equations_in_turning_axes(tmp_path, c):
     overrides = ["film.model=linear", f"rotor.polar_inertia={8e-4 / c!r}"]
     found = answer(tmp_path, overrides=overrides, points=7, speed_to=4200.0, time_points=3)
-    k, d = (
-        m[1, 1] for m in Problem(read_scenario(SCENARIOS / "fmr_reference.toml", overrides).scene, 1).film_matrices()
-    )
+    k, d = (m[1, 1] for m in Model(read_scenario(SCENARIOS / "fmr_reference.toml", overrides).scene, 1).film_matrices())
     assert found["phases_apart"] < 1e-9 and "behind" in found["phase"]
     for seal in ("fmr", "fms"):
         for i, w in enumerate(found["speed"]):
@@ -186,27 +184,27 @@ def test_a_point_without_a_steady_state_is_a_row_with_its_reason(tmp_path):
 def test_the_twin_of_the_twin_is_the_scene():
     for name in ("fmr_reference", "fms_reference"):
         scene = read_scenario(SCENARIOS / f"{name}.toml").scene
-        assert twin(twin(scene)) == scene
-        assert twin(scene) != scene
+        assert counterpart(counterpart(scene)) == scene
+        assert counterpart(scene) != scene
 
 
 def test_the_twin_of_greens_fmr_is_greens_fms():
     fmr = read_scenario(SCENARIOS / "fmr_reference.toml").scene
     fms = read_scenario(SCENARIOS / "fms_reference.toml").scene
-    assert twin(fmr) == fms and twin(fms) == fmr
+    assert counterpart(fmr) == fms and counterpart(fms) == fmr
 
 
 def test_two_floating_rings_are_compared_with_either_held():
     scene = read_scenario(SCENARIOS / "fmsr_both_flexible.toml").scene
-    assert one_flexible(scene, "FMR").stator.support is None
-    assert one_flexible(scene, "FMS").rotor.runout == scene.rotor.misalignment
+    assert with_single_flexible_ring(scene, "FMR").stator.support is None
+    assert with_single_flexible_ring(scene, "FMS").rotor.runout == scene.rotor.misalignment
 
 
 def test_held_scene_keeps_its_clearance_when_the_balance_gave_it():
     text = (SCENARIOS / "fmr_reference.toml").read_text().replace('clearance = "10 um"', "")
-    from sealdyn.scenario import parse_scenario
+    from sealdyn.scenario.reader import parse_scenario
 
     scene = parse_scenario(text + "[closing]\nbalance_ratio = 0.78\nspring_force = 0\n", "x").scene
-    clearance = Problem(scene, 1.0).clearance
-    assert Problem(held(scene, 50.0, clearance), 1.0).clearance == clearance
-    assert replace(held(scene), shaft=scene.shaft) == scene
+    clearance = Model(scene, 1.0).clearance
+    assert Model(frozen_at_start(scene, 50.0, clearance), 1.0).clearance == clearance
+    assert replace(frozen_at_start(scene), shaft=scene.shaft) == scene

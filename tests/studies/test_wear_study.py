@@ -15,18 +15,18 @@ import pytest
 from scenes import fms, ring
 
 import sealdyn
-from sealdyn import contact
 from sealdyn.archive import read_study
-from sealdyn.charts import study_wear
-from sealdyn.contact_table import Contact
-from sealdyn.film_table import Film
-from sealdyn.investigate import investigate
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.ring import Rotor, Stator, Support
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scene import Closing
-from sealdyn.wear import Control, Hats, NoAverage, Worn, advance, unevenness
-from sealdyn.worn_runs import WornRuns
+from sealdyn.faces import contact
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.report.charts import study_wear
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Film
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Closing
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.wear.averages import ShortRunAverages
+from sealdyn.studies.wear.rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 R_I, R_O, SPEED, LOAD, ROUGH, PER = 0.032, 0.040, 300.0, 250.0, 1e-7, 1e-17
@@ -46,9 +46,9 @@ def pressed(coning=0.0, pressure=0.0, stiffness=0.0, **wears):
 
 def history(scene, hours, accuracy=1e-2, allowed=1.0, radius=RADIUS):
     """All profiles with their averages."""
-    runs = WornRuns(scene, radius, within=0.1 * accuracy)
+    runs = ShortRunAverages(scene, radius, within=0.1 * accuracy)
     control = Control(ROUGH, accuracy, allowed * ROUGH)
-    return runs, list(advance(runs, Hats(radius), Worn(0.0, np.zeros(len(radius))), hours * HOUR, control))
+    return runs, list(advance(runs, HatBasis(radius), WearState(0.0, np.zeros(len(radius))), hours * HOUR, control))
 
 
 def test_the_closing_force_is_what_the_start_has_decided():
@@ -58,8 +58,8 @@ def test_the_closing_force_is_what_the_start_has_decided():
     scene = replace(
         scene, film=replace(scene.film, viscosity=5e-4, clearance=1.5e-6, coning=1e-4, outer_pressure=fallen)
     )
-    runs = WornRuns(scene, RADIUS)
-    at_first = WornRuns(replace(scene, film=replace(scene.film, outer_pressure=4e5)), RADIUS).closing
+    runs = ShortRunAverages(scene, RADIUS)
+    at_first = ShortRunAverages(replace(scene, film=replace(scene.film, outer_pressure=4e5)), RADIUS).closing
     assert runs.closing.balance_ratio == at_first.balance_ratio
     seen = runs(np.zeros(len(RADIUS))).row
     assert seen["closing_force"] == pytest.approx(at_first.balance_ratio * 2e5 * AREA + 60.0, rel=1e-9)
@@ -72,7 +72,7 @@ def test_the_closing_force_is_what_the_start_has_decided():
 def test_new_flat_faces_wear_by_k_p_v():
     """Depth k p v t at every radius as long as the pressure is still that of new faces: for a few milliseconds."""
     _, found = history(pressed(), 1e-6)
-    rate, exact = Hats(RADIUS).rates(found[0][1].nodal)
+    rate, exact = HatBasis(RADIUS).rates(found[0][1].nodal)
     assert exact
     assert rate == pytest.approx(PER * LOAD / AREA * SPEED * RADIUS, rel=1e-6, abs=0.0)
     worn = found[-1][0]
@@ -84,11 +84,11 @@ def test_run_in_flat_faces_wear_evenly():
     _, found = history(pressed(), 3000.0)
     worn, average = found[-1]
     even = PER * SPEED * LOAD / (2 * math.pi * (R_O - R_I))
-    rate, _ = Hats(RADIUS).rates(average.nodal)
-    assert unevenness(Hats(RADIUS).rates(found[0][1].nodal)[0]) > 0.2
+    rate, _ = HatBasis(RADIUS).rates(average.nodal)
+    assert unevenness(HatBasis(RADIUS).rates(found[0][1].nodal)[0]) > 0.2
     assert rate == pytest.approx(even, rel=1e-6, abs=0.0)
     for worn, _ in found[1:]:
-        assert worn.volume == pytest.approx(Hats(RADIUS).volume(worn.depth), rel=1e-10, abs=0.0)
+        assert worn.volume == pytest.approx(HatBasis(RADIUS).volume(worn.depth), rel=1e-10, abs=0.0)
     # The rate of the volume is k W int p r dA: from F r_2 (r_2 the mean lever of a uniform p) to that of a uniform p r.
     lever = 2 / 3 * (R_O**3 - R_I**3) / (R_O**2 - R_I**2)
     assert found[0][1].volume_rate == pytest.approx(PER * SPEED * LOAD * lever, rel=1e-9, abs=0.0)
@@ -99,7 +99,7 @@ def test_the_springs_give_way_as_the_ring_follows():
     """The load falls by stiffness times travel: d(depth)/dt = c (F - K depth) once run in, c = k W / (2 pi width)."""
     stiffness = 2e7
     _, found = history(pressed(stiffness=stiffness), 300.0, accuracy=1e-3)
-    start = next(k for k, (worn, a) in enumerate(found) if unevenness(Hats(RADIUS).rates(a.nodal)[0]) < 2e-3)
+    start = next(k for k, (worn, a) in enumerate(found) if unevenness(HatBasis(RADIUS).rates(a.nodal)[0]) < 2e-3)
     (first, one), (last, other) = found[start], found[-1]
     per = PER * SPEED / (2 * math.pi * (R_O - R_I))
     assert last.time > 1.5 * first.time
@@ -126,14 +126,14 @@ def test_two_floating_rings_share_the_travel():
 
 def test_faces_with_a_profile_wear_on_from_it(tmp_path):
     """What one study leaves is where the next begins."""
-    whole = investigate("wear", read("run_in"), tmp_path / "a.h5", flags={"duration": "8 h"}, workers=1)
-    half = investigate("wear", read("run_in"), tmp_path / "b.h5", flags={"duration": "4 h"}, workers=1)
+    whole = run_study("wear", read("run_in"), tmp_path / "a.h5", flags={"duration": "8 h"}, workers=1)
+    half = run_study("wear", read("run_in"), tmp_path / "b.h5", flags={"duration": "4 h"}, workers=1)
     lengths = [[f"{v!r} m" for v in column] for column in (half["radius"], _both(half))]
     text = (SCENARIOS / "run_in.toml").read_text()
     table = f"[film.profile]\nradius = {json.dumps(lengths[0])}\ndepth = {json.dumps(lengths[1])}\n[closing]"
     worn = tmp_path / "worn.toml"
     worn.write_text(text.replace("[closing]", table))
-    rest = investigate("wear", sealdyn.read_scenario(worn), tmp_path / "c.h5", flags={"duration": "4 h"}, workers=1)
+    rest = run_study("wear", sealdyn.read_scenario(worn), tmp_path / "c.h5", flags={"duration": "4 h"}, workers=1)
     # The spring is as long as new again: nothing beside the load.
     assert np.array(_both(half)) + np.array(_both(rest)) == pytest.approx(np.array(_both(whole)), abs=2e-2 * ROUGH)
 
@@ -143,14 +143,14 @@ def _both(answer) -> list[float]:
 
 
 def test_kernel_s_hats_are_the_slow_scale_s():
-    runs = WornRuns(pressed(), RADIUS)
+    runs = ShortRunAverages(pressed(), RADIUS)
     problem = runs.problem(np.zeros(17), 0.0, 1.0)
-    assert contact.hat_areas(problem.face) == pytest.approx(Hats(RADIUS).areas, rel=1e-13, abs=0.0)
+    assert contact.hat_areas(problem.face) == pytest.approx(HatBasis(RADIUS).areas, rel=1e-13, abs=0.0)
 
 
 def test_slope_of_faces_at_rest_is_that_of_their_averages():
     """Against differences of whole short runs, ring and film going along."""
-    runs = WornRuns(pressed(coning=2e-5, pressure=3e5, stiffness=1e5), RADIUS)
+    runs = ShortRunAverages(pressed(coning=2e-5, pressure=3e5, stiffness=1e5), RADIUS)
     depth = 2e-8 * np.cos(300 * RADIUS)
     start = runs(depth)
     for k in (0, 7, 16):
@@ -169,15 +169,15 @@ def read(name, *overrides):
 @pytest.fixture
 def calls(monkeypatch):
     """Counts short runs."""
-    counted, whole = [], WornRuns.__call__
-    monkeypatch.setattr(WornRuns, "__call__", lambda self, d, m=None: counted.append(1) or whole(self, d, m))
+    counted, whole = [], ShortRunAverages.__call__
+    monkeypatch.setattr(ShortRunAverages, "__call__", lambda self, d, m=None: counted.append(1) or whole(self, d, m))
     return counted
 
 
 @pytest.fixture(scope="module")
 def run_in(tmp_path_factory):
     out = tmp_path_factory.mktemp("wear") / "run_in.h5"
-    return investigate("wear", read("run_in"), out, workers=1), out
+    return run_study("wear", read("run_in"), out, workers=1), out
 
 
 def test_a_coned_face_runs_in_to_a_uniform_p_v(run_in):
@@ -213,7 +213,7 @@ def test_two_materials_wear_in_the_ratio_of_their_coefficients(run_in):
     stator, rotor = (np.array(answer["profile"][face]) for face in ("stator", "rotor"))
     assert 20 * rotor == pytest.approx(stator, rel=1e-12, abs=0.0)
     hard = read("run_in", "contact.stator_wear_coefficient=0 1/Pa")
-    other = investigate("wear", hard, Path(run_in[1]).parent / "o.h5", flags={"duration": "1 h"}, workers=1)
+    other = run_study("wear", hard, Path(run_in[1]).parent / "o.h5", flags={"duration": "1 h"}, workers=1)
     assert not np.any(other["profile"]["stator"])
     assert np.max(other["profile"]["rotor"]) > 0.0
 
@@ -234,7 +234,7 @@ def test_halving_the_step_changes_less_than_the_accuracy(accuracy, allowed):
 def test_extrapolation_only_when_asked(run_in, tmp_path):
     answer, _ = run_in
     assert answer["extrapolated"] is None
-    told = investigate("wear", read("run_in"), tmp_path / "x.h5", flags={"run_in": "extrapolate"}, workers=1)
+    told = run_study("wear", read("run_in"), tmp_path / "x.h5", flags={"run_in": "extrapolate"}, workers=1)
     far = told["extrapolated"]
     hours = (far["time"] - far["from"]) / HOUR
     assert far["time"] == 100 * HOUR
@@ -246,7 +246,7 @@ def test_extrapolation_only_when_asked(run_in, tmp_path):
 
 def test_asked_to_go_on_it_wears_to_the_end_in_few_steps(run_in, tmp_path):
     flags = {"duration": "300 h", "run_in": "go on"}
-    answer = investigate("wear", read("run_in"), tmp_path / "o.h5", flags=flags, workers=1)
+    answer = run_study("wear", read("run_in"), tmp_path / "o.h5", flags=flags, workers=1)
     assert (answer["end"]["kind"], answer["end"]["time"]) == ("duration", 300 * HOUR)
     assert answer["steps"] < run_in[0]["steps"] + 40
     assert np.ptp(answer["pv"][-1]) < 1e-3 * np.max(answer["pv"][-1])
@@ -259,7 +259,7 @@ def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
     """The rubbing reference seal: its thin edge wears; the average is that of a long run of the same scene."""
     flags = {"duration": "0.2 h", "nodes": 5}
     scenario = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa")
-    answer = investigate("wear", scenario, tmp_path / "rub.h5", flags=flags, workers=1)
+    answer = run_study("wear", scenario, tmp_path / "rub.h5", flags=flags, workers=1)
     assert (answer["status"], answer["end"]["kind"]) == ("ok", "duration")
     assert answer["not_settled"] == 0
     assert answer["volume"]["residual"] < 1e-10
@@ -290,7 +290,7 @@ def _late(path, name) -> float:
 
 
 def test_a_film_that_carries_everything_does_not_wear(tmp_path):
-    answer = investigate("wear", read("run_in", "closing.balance_ratio=0.6", "closing.spring_force=5 N"),
+    answer = run_study("wear", read("run_in", "closing.balance_ratio=0.6", "closing.spring_force=5 N"),
                          tmp_path / "o.h5", workers=1)  # fmt: skip
     assert answer["end"]["kind"] == "lift-off"
     assert "no contact from the start" in answer["verdict"][0]
@@ -299,7 +299,7 @@ def test_a_film_that_carries_everything_does_not_wear(tmp_path):
 def test_springs_that_give_way_let_the_film_lift_off(tmp_path):
     """A stiff support loses its load as the ring follows, until film and hydraulics alone balance."""
     scenario = read("run_in", "stator.support.axial_stiffness=1e9 N/m", "contact.stator_wear_coefficient=1e-15 1/Pa")
-    answer = investigate("wear", scenario, tmp_path / "o.h5", flags={"duration": "2000 h", "run_in": "go on"},
+    answer = run_study("wear", scenario, tmp_path / "o.h5", flags={"duration": "2000 h", "run_in": "go on"},
                          workers=1)  # fmt: skip
     assert answer["end"]["kind"] == "lift-off"
     assert 0 < answer["end"]["time"] < 2000 * HOUR
@@ -308,22 +308,22 @@ def test_springs_that_give_way_let_the_film_lift_off(tmp_path):
 
 def test_crushed_asperities_are_a_result(tmp_path):
     """Asperities too soft to carry their share of the load."""
-    answer = investigate("wear", read("run_in", "contact.compressive_strength=0.03 MPa"), tmp_path / "o.h5", workers=1)
+    answer = run_study("wear", read("run_in", "contact.compressive_strength=0.03 MPa"), tmp_path / "o.h5", workers=1)
     assert (answer["status"], answer["end"]["kind"], answer["steps"]) == ("collapsed", "collapsed", 0)
     assert "crushed" in answer["verdict"][0]
     assert study_wear.draw(tmp_path / "o.h5", tmp_path / "o.png").stat().st_size > 5_000
 
 
 def test_a_short_run_that_fails_on_the_way_leaves_what_came_before(run_in, tmp_path, monkeypatch):
-    whole, answer = WornRuns.__call__, run_in[0]
+    whole, answer = ShortRunAverages.__call__, run_in[0]
 
     def broken(self, depth, motion=None):
         if depth.max() > 2e-7:
             raise NoAverage("failed", "the solver gave up")
         return whole(self, depth, motion)
 
-    monkeypatch.setattr(WornRuns, "__call__", broken)
-    found = investigate("wear", read("run_in"), tmp_path / "o.h5", workers=1)
+    monkeypatch.setattr(ShortRunAverages, "__call__", broken)
+    found = run_study("wear", read("run_in"), tmp_path / "o.h5", workers=1)
     assert (found["status"], found["end"]["kind"]) == ("failed", "failed")
     assert "gave up" in found["verdict"][0]
     last = 1.05 * np.array(found["profile"]["stator"][-1]).max()
@@ -346,14 +346,14 @@ def test_a_short_run_that_fails_on_the_way_leaves_what_came_before(run_in, tmp_p
 )
 def test_what_cannot_be_asked_is_one_clear_line(overrides, flags, words, tmp_path):
     with pytest.raises(ScenarioError, match=words):
-        investigate("wear", read("run_in", *overrides), tmp_path / "o.h5", flags=flags, workers=1)
+        run_study("wear", read("run_in", *overrides), tmp_path / "o.h5", flags=flags, workers=1)
 
 
 def test_a_contact_on_one_side_is_said(tmp_path):
     """Faces tilted by hundreds of roughnesses rub at a patch: the profile spreads its wear over the circle."""
     scenario = read("rub", "contact.stator_wear_coefficient=1e-17 1/Pa", "run.accuracy=1e-4")
     flags = {"duration": "10 s", "nodes": 3, "patience": 2}
-    answer = investigate("wear", scenario, tmp_path / "o.h5", flags=flags, workers=1)
+    answer = run_study("wear", scenario, tmp_path / "o.h5", flags=flags, workers=1)
     tilt = answer["tilt_over_roughness"]
     assert tilt == pytest.approx(max(answer["history"]["relative_misalignment"]) * 0.04 / 1e-7, rel=1e-12)
     assert tilt > 100 and any("touch unevenly" in said for said in answer["verdict"])
@@ -361,7 +361,7 @@ def test_a_contact_on_one_side_is_said(tmp_path):
 
 def test_no_contact_table_is_one_clear_line(tmp_path):
     with pytest.raises(ScenarioError, match=r"found nothing; expected a .contact. table"):
-        investigate("wear", read("fms_reference"), tmp_path / "o.h5", workers=1)
+        run_study("wear", read("fms_reference"), tmp_path / "o.h5", workers=1)
 
 
 # --- interrupted and killed -----------------------------------------------------------------------------
@@ -398,20 +398,20 @@ def test_a_killed_study_goes_on_where_it_was(run_in, tmp_path, calls):
     done = len(steps_of(journal))
     assert 6 < done < 40 and not out.exists()
 
-    answer = investigate("wear", read("run_in"), out, workers=1)
+    answer = run_study("wear", read("run_in"), out, workers=1)
     rest = len(calls)
     expected, _ = run_in
     assert answer["history"] == expected["history"]
     assert answer["profile"] == expected["profile"]
     # Each finished step took four short runs or more: none of them again.
-    investigate("wear", read("run_in"), tmp_path / "whole.h5", workers=1)
+    run_study("wear", read("run_in"), tmp_path / "whole.h5", workers=1)
     assert rest <= len(calls) - rest - 4 * (done - 1)
     assert not journal.exists()
 
 
 def test_an_interruption_keeps_the_steps(run_in, tmp_path, monkeypatch):
     out = tmp_path / "run_in.h5"
-    calls, whole = [], WornRuns.__call__
+    calls, whole = [], ShortRunAverages.__call__
 
     def interrupted(self, depth, motion=None):
         calls.append(1)
@@ -420,9 +420,9 @@ def test_an_interruption_keeps_the_steps(run_in, tmp_path, monkeypatch):
         return whole(self, depth, motion)
 
     with monkeypatch.context() as patch:
-        patch.setattr(WornRuns, "__call__", interrupted)
+        patch.setattr(ShortRunAverages, "__call__", interrupted)
         with pytest.raises(KeyboardInterrupt):
-            investigate("wear", read("run_in"), out, workers=1)
+            run_study("wear", read("run_in"), out, workers=1)
     done = steps_of(out.with_suffix(".partial.jsonl"))
     assert done == [f"step:{k}" for k in range(len(done))] and len(done) > 4
-    assert investigate("wear", read("run_in"), out, workers=1)["profile"] == run_in[0]["profile"]
+    assert run_study("wear", read("run_in"), out, workers=1)["profile"] == run_in[0]["profile"]

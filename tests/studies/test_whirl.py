@@ -7,8 +7,8 @@ import pytest
 from scenes import fmr, fms, fmsr
 from scipy.integrate import solve_ivp
 
-from sealdyn.modes import critical_speed
-from sealdyn.whirl import Whirling, branch, contact_tilt_aligned, free_problem
+from sealdyn.analysis.whirl import RotatingWave, branch, contact_tilt_aligned, free_problem
+from sealdyn.dynamics.modes import critical_speed
 
 SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
 
@@ -66,7 +66,7 @@ def test_departs_at_the_growth_rate_stated(family):
     _, scene, _, _, whirls = family
     whirl = whirls[30]
     problem = free_problem(scene, whirl.speed, accuracy=1e-10)
-    whirling = Whirling(problem)
+    whirling = RotatingWave(problem)
 
     def rhs(t, y):
         yp = np.empty_like(y)

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sealdyn import model_rungs, observables
 from sealdyn.archive import read_study
-from sealdyn.charts import study_work_precision as chart
-from sealdyn.film_table import Coefficients
-from sealdyn.gap import h_min as thinnest
-from sealdyn.investigate import investigate
-from sealdyn.methods_judged import JUDGED
-from sealdyn.scenario import parse_scenario
-from sealdyn.studies import work_precision as study
+from sealdyn.faces.geometry import h_min as thinnest
+from sealdyn.report.charts import study_work_precision as chart
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scene.film import Coefficients
+from sealdyn.solvers.fixed_step import REFERENCE_METHODS
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.work_precision import errors, film_ladder, study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 5}
@@ -27,7 +26,7 @@ def scenario(name, *overrides):
 
 
 def studied(tmp_path, name, *overrides, **flags):
-    return investigate("work-precision", scenario(name, *overrides), tmp_path / "w.h5", flags={**FEW, **flags})
+    return run_study("work-precision", scenario(name, *overrides), tmp_path / "w.h5", flags={**FEW, **flags})
 
 
 @pytest.fixture(scope="module")
@@ -61,10 +60,10 @@ def test_errors_are_those_of_an_independent_integration(reference_seal):
     atol[-1] = 1e30
     exact = solve_ivp(rhs, (0, problem.duration), problem.y0, "Radau", rtol=3e-14, atol=atol).y[:, -1]
     tolerance = answer["methods"]["adams"]["tolerance"][0]
-    from sealdyn.method_contract import Counts
+    from sealdyn.solvers.contract import Counts
 
     y = problem.y0.copy()
-    for _, ys, _ in JUDGED["adams"](problem, problem.begin(0), 0.0, y, "adams", tolerance, Counts()):
+    for _, ys, _ in REFERENCE_METHODS["adams"](problem, problem.begin(0), 0.0, y, "adams", tolerance, Counts()):
         y = ys[-1]
     (tilt, film), (tilt_exact, film_exact) = looked_at(y), looked_at(exact)
     found = answer["methods"]["adams"]["observables"]["end"]
@@ -112,16 +111,16 @@ def test_models_against_the_radial_film(reference_seal):
 def test_harmonic_balance_is_the_linear_film_in_time():
     problem = study.ready(scenario("fms_reference", 'film.model="linear"', 'run.start="steady"', "run.turns=3"))
     problem.windows[1] = [problem.duration * 2 / 3, problem.duration]
-    found = observables.observe(problem, JUDGED["expm"], "expm", 1e-9, samples=30)
-    balance = model_rungs.harmonic_balance(problem, 0)
+    found = errors.observe(problem, REFERENCE_METHODS["expm"], "expm", 1e-9, samples=30)
+    balance = film_ladder.harmonic_balance(problem, 0)
     assert balance["relative_misalignment"] == pytest.approx(found.steady["relative_misalignment"], rel=1e-5)
     assert balance["h_min"] == pytest.approx(found.steady["h_min"][0], rel=1e-8)
 
 
 def test_a_given_linear_film_has_no_rung_above_it():
-    ladder = model_rungs.rungs(scenario("free_precession"))
+    ladder = film_ladder.rungs(scenario("free_precession"))
     assert isinstance(scenario("free_precession").scene.film.coefficients, Coefficients) and len(ladder) == 1
-    assert [label for label, _ in model_rungs.rungs(scenario("fmr_reference"))][-1] != ladder[0][0]
+    assert [label for label, _ in film_ladder.rungs(scenario("fmr_reference"))][-1] != ladder[0][0]
 
 
 def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
@@ -144,8 +143,8 @@ def test_judges_agree_where_a_ring_sticks():
     assert exact.status == "ok" and judges["second"] and exact.impulse > 0
     assert max(band.values()) < 3e-7
     # A judged method, whose steps are its own, agrees as well.
-    found = observables.observe(study.ready(asked), JUDGED["dop853"], "dop853", 1e-12, samples=200)
-    assert max(observables.worst(observables.errors(found, exact)).values()) < 3e-7
+    found = errors.observe(study.ready(asked), REFERENCE_METHODS["dop853"], "dop853", 1e-12, samples=200)
+    assert max(errors.worst(errors.errors(found, exact)).values()) < 3e-7
 
 
 def test_a_run_that_takes_too_long_is_stopped(tmp_path):

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scenes import fmr, fms, fmsr, housing_vibration, prepared
 
-from sealdyn import dynamics
-from sealdyn.contact_table import Contact
-from sealdyn.gap import h_min
-from sealdyn.secondary_seal_table import SecondarySeal
-from sealdyn.signals import signals
+from sealdyn.dynamics import equations
+from sealdyn.dynamics.signals import signals
+from sealdyn.faces.geometry import h_min
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.secondary_seal import SecondarySeal
 
 
 def sealed():
@@ -54,7 +54,7 @@ def test_signals_are_those_of_each_instant(drawn):
     for k in (0, 17, 39):
         alone = signals(problem, taus[k : k + 1], q[k : k + 1], rate[k : k + 1])
         assert all(together[name][k] == alone[name][0] for name in alone)
-        dynamics.kinematics(taus[k], problem.unknowns(q[k], rate[k]), np.zeros(problem.size), problem.p, problem.w,
+        equations.kinematics(taus[k], problem.unknowns(q[k], rate[k]), np.zeros(problem.size), problem.p, problem.w,
                             problem.s)  # fmt: skip
         low = h_min(problem.face, *problem.s[:3])
         assert together["h_min"][k] == low[0] and together["axial_gap_change"][k] == problem.s[0]

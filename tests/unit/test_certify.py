@@ -23,19 +23,19 @@ from scenes import (
     run,
 )
 
-from sealdyn.certify import LOOSER, certify, follow, solver_error, try_tolerance
-from sealdyn.contact_table import Contact
-from sealdyn.film_choice import lowest_rung
-from sealdyn.method_contract import Counts, tolerance_for
-from sealdyn.model_error import model_error, model_errors
-from sealdyn.motion import AngularVibration, Housing
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.ring import Stator
-from sealdyn.scenario import read_scenario
-from sealdyn.simulation import run_briefly
-from sealdyn.solve import solve
+from sealdyn.dynamics.model import Model
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.excitation import AngularVibration, Housing
+from sealdyn.scene.rings import Stator
+from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, error_estimator, solver_error
+from sealdyn.simulation.film_error import model_error, model_errors
+from sealdyn.simulation.film_selection import select_film
+from sealdyn.simulation.simulate import simulate_in_memory
+from sealdyn.solvers.contract import Counts, tolerance_for
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 TURN = 2 * math.pi / SPEED
 
@@ -75,7 +75,7 @@ def test_model_error_is_the_difference_of_the_films(name, start):
         motions.append(film_change(found))
     z, tilt = (a - b for a, b in zip(*motions, strict=True))
     actual = np.max(np.abs(z) + np.abs(tilt))
-    problem = Problem(on(SCENES[name], "linear", coefficients="radial"), 12 * TURN, 1e-9)
+    problem = Model(on(SCENES[name], "linear", coefficients="radial"), 12 * TURN, 1e-9)
     if start == "steady":
         problem.y0 = problem.steady_start()
     assert actual > 1e-6
@@ -88,10 +88,10 @@ def test_model_error_is_the_difference_of_the_films(name, start):
 @pytest.mark.parametrize("start", ["rest", "steady"])
 def test_model_error_does_not_depend_on_how_many_steps_are_taken_at_once(start, monkeypatch):
     problem = prepared(on(SCENES["fmsr"], "linear", coefficients="radial"), 12 * TURN, 1e-6, start)
-    monkeypatch.setattr("sealdyn.model_error.STEADY", 4)
+    monkeypatch.setattr("sealdyn.simulation.film_error.STEADY", 4)
     found = []
     for at_once in (7, 1000):
-        monkeypatch.setattr("sealdyn.model_error.AT_ONCE", at_once)
+        monkeypatch.setattr("sealdyn.simulation.film_error.AT_ONCE", at_once)
         found.append(model_errors(problem))
     # Leakage is counted relative to the largest seen so far.
     assert found[0] == pytest.approx(found[1], rel=1e-3) and found[0][0] == pytest.approx(found[1][0], rel=1e-10)
@@ -104,7 +104,7 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     scene = fms()
     rough, sharp = (run(scene, turns=20, accuracy=a, method=m) for a, m in ((accuracy, method), (1e-11, "dop853")))
     true = float(np.max(np.abs(rough.scaled() - sharp.scaled())[:, : rough.problem.n]))
-    estimate = solver_error(Problem(scene, 20 * TURN, accuracy), method)
+    estimate = solver_error(Model(scene, 20 * TURN, accuracy), method)
     assert true / 3 < estimate + 1e-11 and estimate < accuracy
 
 
@@ -118,7 +118,7 @@ def test_an_undamped_scene_adds_its_errors_up():
 
 def followed(problem, method, trial, sharp=1e-13):
     """True largest error of displacements of a run (relative to their scales), and the estimate of its own steps."""
-    errors = follow(problem, method)
+    errors = error_estimator(problem, method)
     told = {"tolerance": trial.tolerance, "steps": trial.steps, "errors": errors}
     return apart(problem, (method, told), ("dop853", {"tolerance": sharp}), problem.fast_time / 12), errors.worst
 
@@ -130,7 +130,7 @@ def test_a_tolerance_on_trial_keeps_the_accuracy(name, start, method, accuracy):
     """Looser than the cautious one, and the run at it is still as exact as was asked; its own steps tell its error
     within half (of the shaken scene at 1e-7 by Adams eight times too much, cause not found)."""
     problem = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy, start)
-    trial = try_tolerance(problem, method)
+    trial = choose_tolerance(problem, method)
     cautious = tolerance_for(method, accuracy, problem.memory)
     assert cautious <= trial.tolerance <= LOOSER * cautious * (1 + 1e-12)
     true, estimate = followed(problem, method, trial)
@@ -144,15 +144,15 @@ def test_what_comes_after_the_stretch_is_not_forgotten(accuracy):
     faint = AngularVibration(frequency=60.5 * SPEED / (2 * math.pi), displacement=1e-5 * TILT_SCALE)
     scene = replace(on(SCENES["larger"], "radial"), housing=Housing(angular=[faint]))
     problem = prepared(scene, 10 * TURN, accuracy)
-    true, estimate = followed(problem, "adams", try_tolerance(problem, "adams"))
+    true, estimate = followed(problem, "adams", choose_tolerance(problem, "adams"))
     assert true / 1.5 < estimate < accuracy
 
 
 def test_a_run_goes_on_from_its_trial(monkeypatch):
     """The steps of the stretch are the run's first; what they cost is counted."""
-    monkeypatch.setattr("sealdyn.certify.SHARE", 5.0)
+    monkeypatch.setattr("sealdyn.simulation.certificate.SHARE", 5.0)
     problem = prepared(SCENES["fmsr"], 5 * TURN, 1e-4)
-    trial, sink = try_tolerance(problem, "adams"), Recorder(problem, TURN / 32)
+    trial, sink = choose_tolerance(problem, "adams"), Recorder(problem, TURN / 32)
     assert len(trial.times) > 10 and trial.times[-1] == pytest.approx(3 * problem.fast_time)
     blocks = list(trial.steps(problem, problem.begin(0), 0.0, problem.y0.copy(), "adams", trial.tolerance, Counts()))
     assert blocks[0][0] is trial.times and blocks[1][0][0] > trial.times[-1] and blocks[-1][0][-1] == 5 * TURN
@@ -166,9 +166,9 @@ def test_a_run_goes_on_from_its_trial(monkeypatch):
 @pytest.mark.parametrize("name,accuracy", [("larger", 1e-7), ("fmsr", 1e-5), ("fms", 1e-6)])
 def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypatch):
     """A trial that believes anything: the run's own steps tell, before what they lead to is handed over."""
-    monkeypatch.setattr("sealdyn.certify.TOLD", 1e-9)
-    monkeypatch.setattr("sealdyn.certify.ENERGY", 1e9)
-    monkeypatch.setattr("sealdyn.certify.LOOSER", 300.0)
+    monkeypatch.setattr("sealdyn.simulation.certificate.TOLD", 1e-9)
+    monkeypatch.setattr("sealdyn.simulation.certificate.ENERGY", 1e9)
+    monkeypatch.setattr("sealdyn.simulation.certificate.LOOSER", 300.0)
     problem, times = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy), []
 
     class Seen(Recorder):
@@ -176,7 +176,7 @@ def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypa
             times.append(taus)
             super().take(index, taus, q, q_rate)
 
-    trial, errors, found = try_tolerance(problem, "adams"), follow(problem, "adams"), []
+    trial, errors, found = choose_tolerance(problem, "adams"), error_estimator(problem, "adams"), []
     cautious = tolerance_for("adams", accuracy, problem.memory)
     assert trial.tolerance > 50 * cautious
     told = {"tolerance": trial.tolerance, "steps": trial.steps, "errors": errors}
@@ -194,17 +194,17 @@ def test_a_trial_that_errs_too_much_is_done_again_sharper(monkeypatch):
     """The tolerance goes down with the estimated error, and never below the cautious one."""
     problem = prepared(SCENES["fmsr"], 30 * TURN, 1e-4)
     cautious = tolerance_for("adams", 1e-4, problem.memory)
-    monkeypatch.setattr("sealdyn.certify.SHARE", 5.0)
-    taken = try_tolerance(problem, "adams")
+    monkeypatch.setattr("sealdyn.simulation.certificate.SHARE", 5.0)
+    taken = choose_tolerance(problem, "adams")
     assert taken.tolerance == LOOSER * cautious and len(taken.times)
-    monkeypatch.setattr("sealdyn.certify.SHARE", 0.3)
-    sharper = try_tolerance(problem, "adams")
+    monkeypatch.setattr("sealdyn.simulation.certificate.SHARE", 0.3)
+    sharper = choose_tolerance(problem, "adams")
     assert cautious < sharper.tolerance < taken.tolerance and not len(sharper.times)
-    monkeypatch.setattr("sealdyn.certify.SHARE", 1e-6)
-    assert try_tolerance(problem, "adams").tolerance == cautious
-    monkeypatch.setattr("sealdyn.certify.SHARE", 1.0)
-    monkeypatch.setattr("sealdyn.certify.ENERGY", 1e-6)
-    assert try_tolerance(problem, "adams").tolerance == cautious
+    monkeypatch.setattr("sealdyn.simulation.certificate.SHARE", 1e-6)
+    assert choose_tolerance(problem, "adams").tolerance == cautious
+    monkeypatch.setattr("sealdyn.simulation.certificate.SHARE", 1.0)
+    monkeypatch.setattr("sealdyn.simulation.certificate.ENERGY", 1e-6)
+    assert choose_tolerance(problem, "adams").tolerance == cautious
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
@@ -212,7 +212,7 @@ def test_a_trial_that_errs_too_much_is_done_again_sharper(monkeypatch):
 def test_a_tolerance_on_trial_keeps_the_energy(name, accuracy):
     """Ten times the accuracy, although the motion is but a tenth of a scale."""
     path = Path(__file__).parents[2] / "scenarios" / f"{name}.toml"
-    summary = run_briefly(read_scenario(path, [f"run.accuracy={accuracy}"]))
+    summary = simulate_in_memory(read_scenario(path, [f"run.accuracy={accuracy}"]))
     assert summary["energy_residual"] < 10 * accuracy
 
 
@@ -227,16 +227,16 @@ def test_a_tolerance_on_trial_keeps_the_energy(name, accuracy):
     ids=["contact", "run-up", "unstable", "undamped"],
 )
 def test_where_a_stretch_does_not_tell_of_the_run(scene):
-    assert try_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams") is None
+    assert choose_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams") is None
 
 
 def choose(scene, accuracy, start=None):
-    return lowest_rung(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))[0]
+    return select_film(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))[0]
 
 
 def test_the_lowest_film_that_keeps_the_accuracy():
     gentle = SCENES["fms"]
-    error = model_error(Problem(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
+    error = model_error(Model(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
     assert choose(gentle, 2.2 * error).film_name == "linear"
     assert choose(gentle, 1.8 * error).film_name == "radial"
     assert any("film auto" in reason for reason in choose(gentle, 1.8 * error).reasons)
@@ -272,5 +272,5 @@ def test_the_sentence_says_what_was_asked_and_what_was_found():
     found = certify(problem, "adams")
     assert found.estimated == pytest.approx(found.solver + found.model)
     assert found.said.startswith("asked 1e-02, estimated ") and "model" in found.said and "NOT met" not in found.said
-    linear = Problem(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
+    linear = Model(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
     assert "NOT met: try a higher film rung" in certify(linear, "adams").said

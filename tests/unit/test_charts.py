@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from sealdyn.archive import ArchiveWriter, Series
-from sealdyn.charts import record
-from sealdyn.charts.record import Run
+from sealdyn.report.charts import record
+from sealdyn.report.charts.record import Run
 
 KINDS = ["overview", "orbit", "film", "spectrum", "poincare"]
 FILM = {"inner_radius": 0.032, "outer_radius": 0.04, "clearance": 1e-5, "coning": 3e-3}
@@ -120,7 +120,7 @@ def test_every_chart_draws_every_archive_legibly(tmp_path, figures, kind, name):
     from PIL import Image
 
     columns, options = ARCHIVES[name]
-    chart = importlib.import_module(f"sealdyn.charts.{kind}")
+    chart = importlib.import_module(f"sealdyn.report.charts.{kind}")
     seen = figures(chart)
     out = tmp_path / "chart.png"
     assert chart.draw(write(tmp_path / "seal.h5", columns, **options), out) == out
@@ -164,7 +164,7 @@ def shown(text, figure):
 
 
 def test_what_is_missing_is_said(tmp_path, figures):
-    from sealdyn.charts import overview
+    from sealdyn.report.charts import overview
 
     columns, options = ARCHIVES["bare"]
     seen = figures(overview)
@@ -174,7 +174,7 @@ def test_what_is_missing_is_said(tmp_path, figures):
 
 
 def test_the_overview_says_question_model_verdict_and_numbers(tmp_path, figures):
-    from sealdyn.charts import overview
+    from sealdyn.report.charts import overview
 
     seen = figures(overview)
     overview.draw(write(tmp_path / "seal.h5", whirling(), message="done"), tmp_path / "chart.png")
@@ -200,7 +200,7 @@ def test_turns_count_through_wraps_blocks_and_changing_speed(tmp_path, monkeypat
 
 
 def test_thinning_loses_no_extreme(tmp_path, figures, monkeypatch):
-    from sealdyn.charts import overview
+    from sealdyn.report.charts import overview
 
     columns = whirling(samples=300_000, turns=3000)
     spikes = {7: 3e-6, 123_456: 1e-6, 299_990: 2e-6}
@@ -223,7 +223,7 @@ def at_order(orders, amplitude, order):
 
 
 def test_the_spectrum_gives_orders_amplitudes_and_directions():
-    from sealdyn.charts.spectrum import order_spectrum
+    from sealdyn.report.charts.spectrum import order_spectrum
 
     turns = np.arange(64 * 20 + 1) / 64
     angle = 2 * np.pi * turns
@@ -238,7 +238,7 @@ def test_the_spectrum_gives_orders_amplitudes_and_directions():
 
 
 def test_with_changing_speed_orders_stay_sharp():
-    from sealdyn.charts.spectrum import order_spectrum
+    from sealdyn.report.charts.spectrum import order_spectrum
 
     # Even in time, speed from 1 to 3 turns per unit: over time the line would smear across a factor of three.
     time = np.linspace(0, 20, 6001)
@@ -250,7 +250,7 @@ def test_with_changing_speed_orders_stay_sharp():
 
 
 def test_the_map_is_thinnest_where_the_archive_says(tmp_path):
-    from sealdyn.charts.film import thickness
+    from sealdyn.report.charts.film import thickness
 
     columns = whirling(samples=200, turns=3)
     run = Run(write(tmp_path / "seal.h5", columns))
@@ -265,7 +265,7 @@ def test_the_map_is_thinnest_where_the_archive_says(tmp_path):
 
 
 def test_the_reach_of_an_orbit_holds_every_row(tmp_path):
-    from sealdyn.charts.orbit import hull
+    from sealdyn.report.charts.orbit import hull
 
     columns = whirling(samples=5000, turns=40)
     corners = hull(Run(write(tmp_path / "seal.h5", columns)), "relative_tilt")
@@ -325,7 +325,7 @@ def test_study_charts_are_legible(tmp_path, figures, study, name, overrides, set
     from sealdyn.archive import write_study
 
     module = importlib.import_module(f"sealdyn.studies.{study}")
-    chart = importlib.import_module(f"sealdyn.charts.study_{study}")
+    chart = importlib.import_module(f"sealdyn.report.charts.study_{study}")
     scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / f"{name}.toml", overrides)
     answer = module.run(scenario, module.Settings(**settings), Tools())
     meta = {"name": name, "question": scenario.question}

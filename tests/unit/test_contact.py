@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import pbdv
 
-from sealdyn import asperities, contact, gap
-from sealdyn.contact_table import Contact, faults, levels
-from sealdyn.film_table import Film
+from sealdyn.faces import contact, geometry, roughness
+from sealdyn.scene.contact import Contact, contact_errors, contact_thresholds
+from sealdyn.scene.film import Film
 
 R_I, R_O, C0, CONING, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 3.125e-3, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS
@@ -19,19 +19,21 @@ CHRISTENSEN = Contact(
 NUMBER, TIP, MODULUS = 1e11, 5e-6, 30e9
 GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=NUMBER, asperity_radius=TIP, modulus=MODULUS)
 LAWS = pytest.mark.parametrize("law", [CHRISTENSEN, GAUSSIAN], ids=["christensen", "gaussian"])
-SLOTS = {n: getattr(gap, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")}
-SLOTS["wear"] = gap.WEAR
+SLOTS = {
+    n: getattr(geometry, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")
+}
+SLOTS["wear"] = geometry.WEAR
 
 
 def face(coning=CONING, tilt_radius="local", geometry="cylindrical", r_i=R_I):
     film = Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning, tilt_radius=tilt_radius, geometry=geometry)
-    return gap.face_block(film, C0)
+    return geometry.face_parameters(film, C0)
 
 
 def rub(law, f, dz, g_x, g_y, spin=SPEED):
-    s = np.full(gap.GAP_STATE_SIZE, np.nan)
-    s[: gap.GY + 1], s[gap.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
-    contact.rub(contact.parameters(law, f), f, s)
+    s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[: geometry.GY + 1], s[geometry.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
+    contact.contact_load_and_friction(contact.parameters(law, f), f, s)
     return {name: s[slot] for name, slot in SLOTS.items()}
 
 
@@ -159,7 +161,7 @@ def test_turning_the_tilt_turns_the_moment(law, angle, depth, log_tilt):
 )
 def test_first_touch_is_smooth(law, coning, tilt, order):
     """Zero above touch, then depth to the 4th power (flat) or 5.5th (a corner): three derivatives vanish."""
-    touch = levels(law)[1]
+    touch = contact_thresholds(law)[1]
     f = face(coning)
     low = min(C0 - R_I * tilt, C0 + coning * (R_O - R_I) - R_O * tilt)
     above = rub(law, f, touch - low + 1e-18, tilt, 0.0)
@@ -216,17 +218,17 @@ def test_closed_forms_against_the_density():
                 mpmath.quad(lambda d: max(x + d, 0) ** power * 35 / mpmath.mpf(32) * (1 - d * d) ** 3, [low, high])
             )
 
-        assert asperities.contact_fraction(x) == pytest.approx(1 - mean(0), abs=1e-14)
-        assert asperities.mean_film(x) == pytest.approx(mean(1), abs=1e-14)
-        assert asperities.mean_film_cubed(x) == pytest.approx(mean(3), abs=1e-13)
+        assert roughness.contact_fraction(x) == pytest.approx(1 - mean(0), abs=1e-14)
+        assert roughness.mean_film(x) == pytest.approx(mean(1), abs=1e-14)
+        assert roughness.mean_film_cubed(x) == pytest.approx(mean(3), abs=1e-13)
 
 
 def test_film_floor_is_the_mean_flow_of_touching_faces():
     """E(H^3)^(1/3) at h = 0: 0.30 c, 0.31 c for Gaussian heights; the film law's own at h = 0 is floor/2."""
     gauss = float(mpmath.quad(lambda s: s**3 * mpmath.npdf(s), [0, 20])) ** (1 / 3) / 3
-    for law, mean in ((CHRISTENSEN, float(asperities.mean_film_cubed(0.0)) ** (1 / 3)), (GAUSSIAN, gauss)):
-        floor, touch, collapse = levels(law)
-        assert gap.above_floor(0.0, floor) == pytest.approx(mean * C, rel=0.04)
+    for law, mean in ((CHRISTENSEN, float(roughness.mean_film_cubed(0.0)) ** (1 / 3)), (GAUSSIAN, gauss)):
+        floor, touch, collapse = contact_thresholds(law)
+        assert geometry.regularised_thickness(0.0, floor) == pytest.approx(mean * C, rel=0.04)
         assert collapse == -C < 0 < floor < touch
 
 
@@ -234,7 +236,7 @@ def test_film_floor_is_the_mean_flow_of_touching_faces():
 def test_gaussian_overlap(n):
     for d in (-3.0, -1.0, 0.0, 1.0, 3.0, 5.0):
         exact = float(mpmath.quad(lambda s, d=d: (s - d) ** n * mpmath.npdf(s), [d, d + 1, d + 4, d + 20]))
-        assert asperities.gaussian_overlap(n, d) == pytest.approx(exact, rel=1e-11)
+        assert roughness.gaussian_overlap(n, d) == pytest.approx(exact, rel=1e-11)
 
 
 def test_gaussian_law_is_the_paper_s():
@@ -271,11 +273,11 @@ FAULTS = {
 @pytest.mark.parametrize("case", FAULTS)
 def test_faults_name_the_key(case):
     given, key = FAULTS[case]
-    found = faults(Contact(**{"roughness": ROUGHNESS, **given}))
+    found = contact_errors(Contact(**{"roughness": ROUGHNESS, **given}))
     assert [fault[0] for fault in found] == [key]
     assert all(isinstance(part, str) and part for part in found[0])
 
 
 @LAWS
 def test_nothing_wrong_with_a_whole_table(law):
-    assert faults(law) == []
+    assert contact_errors(law) == []

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import KroghInterpolator
 from sksundae.cvode import CVODE
 
-from sealdyn.dense import NODES, fit, sample, window
+from sealdyn.numerics.hermite import NODES, fit, sample, window
 
 
 def sampled(t, motion, times, begin=0, end=None):
@@ -123,7 +123,8 @@ def restarted(seed):
 
 def test_errors_of_the_steps_after_a_start_are_not_magnified():
     """A solver starts with short steps, and the errors of its long ones beside them must not be magnified: whatever
-    lies between steps errs hardly more than the steps around do (without the last rule of dense.py up to 16 times)."""
+    lies between steps errs hardly more than the steps around do (without the last rule of numerics/hermite.py up to
+    16 times)."""
     worst = []
     for seed in range(40):
         t, y, motion = restarted(seed)

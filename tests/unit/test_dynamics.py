@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, R_O, SPEED, SUPPORT, film, ring
 
-from sealdyn.dynamics import PLAIN, WORKS
-from sealdyn.film_table import Coefficients
-from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.ring import AxialRunout, Rotor, Stator
-from sealdyn.scene import Scene
+from sealdyn.dynamics.equations import PLAIN, WORKS
+from sealdyn.dynamics.model import Model
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.scene import Scene
 
 K_F, D_F, K_FZ, D_FZ = 5300.0, 3.7, 6.1e6, 5200.0
 FILM = film("linear", coefficients=Coefficients(K_F, D_F, K_FZ, D_FZ))
@@ -42,7 +42,7 @@ TAU = 0.0371
 
 
 def problem_of(name, film_table=FILM):
-    return Problem(Scene(**(dict(shaft=SHAFT, film=film_table, housing=SHAKING) | SCENES[name])), 0.1)
+    return Model(Scene(**(dict(shaft=SHAFT, film=film_table, housing=SHAKING) | SCENES[name])), 0.1)
 
 
 def random_state(problem, seed):
@@ -158,7 +158,7 @@ def test_residual_is_the_same_equation(name, model):
 def test_residual_of_a_massless_ring_is_its_force_balance():
     """Mass times acceleration plus the massless residual is zero for the acceleration of the ring with mass."""
     massive = problem_of("FMR")
-    light = Problem(
+    light = Model(
         replace(massive.scene, rotor=replace(FLEXIBLE_R, mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)), 0.1
     )
     y, yp, res = random_state(massive, 2), np.empty(massive.size), np.empty(light.size)

@@ -8,13 +8,13 @@ import pytest
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run
 from scipy.integrate import quad
 
-from sealdyn.continuation import lasting
-from sealdyn.equilibrium import equilibria, settle
-from sealdyn.gap import FLOOR
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.scenario import read_scenario
-from sealdyn.scene import Closing, ImpossibleScene
+from sealdyn.analysis.continuation import frozen_at_end
+from sealdyn.dynamics.equilibrium import equilibria, settle
+from sealdyn.dynamics.model import Model
+from sealdyn.faces.geometry import FLOOR
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scene.scene import Closing, SceneError
 
 AREA = math.pi * (R_O**2 - R_I**2)
 P_O, P_I = 6e5, 1e5
@@ -50,7 +50,7 @@ def scene(closing=None, build=fms, **film_changes):
 @pytest.mark.parametrize("geometry", ["cylindrical", "planar"])
 @pytest.mark.parametrize("balance,spring", [(0.72, 40.0), (0.80, 0.0), (0.65, 120.0)])
 def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balance, spring):
-    problem = Problem(scene(Closing(balance, spring), clearance=None, geometry=geometry), 1e-3)
+    problem = Model(scene(Closing(balance, spring), clearance=None, geometry=geometry), 1e-3)
     force = closing_force(balance, spring)
     assert opening(problem.clearance, geometry=geometry) == pytest.approx(force, rel=1e-10)
     root = problem.equilibria[0]
@@ -65,30 +65,30 @@ def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balan
 
 
 def test_two_give_the_third_around_the_circle():
-    first = Problem(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
-    spring = Problem(scene(Closing(balance_ratio=0.72), clearance=first.clearance), 1e-3).closing.spring
-    balance = Problem(scene(Closing(spring_force=40.0), clearance=first.clearance), 1e-3).closing.balance_ratio
+    first = Model(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
+    spring = Model(scene(Closing(balance_ratio=0.72), clearance=first.clearance), 1e-3).closing.spring
+    balance = Model(scene(Closing(spring_force=40.0), clearance=first.clearance), 1e-3).closing.balance_ratio
     assert spring == pytest.approx(40.0, rel=1e-9)
     assert balance == pytest.approx(0.72, rel=1e-12)
 
 
 def test_clearance_alone_is_held_by_hydraulic_closing():
-    problem = Problem(scene(), 1e-3)
+    problem = Model(scene(), 1e-3)
     assert problem.clearance == CLEARANCE and problem.closing.spring == 0.0
     assert closing_force(problem.closing.balance_ratio, 0.0) == pytest.approx(opening(CLEARANCE), rel=1e-12)
 
 
 def test_equal_pressures_are_held_by_the_spring():
-    problem = Problem(scene(inner_pressure=P_O), 1e-3)
+    problem = Model(scene(inner_pressure=P_O), 1e-3)
     assert problem.closing.at(P_O, P_O, problem.closing.spring) == pytest.approx(P_O * AREA, rel=1e-12)
-    with pytest.raises(ImpossibleScene, match="equal pressures"):
-        Problem(scene(Closing(spring_force=40.0), inner_pressure=P_O), 1e-3)
+    with pytest.raises(SceneError, match="equal pressures"):
+        Model(scene(Closing(spring_force=40.0), inner_pressure=P_O), 1e-3)
 
 
 def test_a_pressure_step_moves_the_closing_force():
     """Hydraulic closing follows the sealed pressure, the spring does not."""
     step = PiecewiseLinear((0.0, 0.01, 0.01, 0.02), (P_O, P_O, 4e5, 4e5))
-    problem = Problem(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
+    problem = Model(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
     late = problem.closing.over(problem.legs[-1], problem.scene.film)
     assert late[0] == pytest.approx(closing_force(0.72, 40.0, P_I, 4e5), rel=1e-12)
     assert late[1] == pytest.approx(0.0, abs=1e-9)
@@ -111,8 +111,8 @@ def test_the_ring_settles_at_the_new_clearance_after_a_pressure_step():
 def test_inside_pressurised_seal_is_the_outside_pressurised_one_mirrored():
     """Narrow film: a face converging inwards under inner pressure.  The inner film of one is the outer of the other."""
     coning, width = 3.125e-3, R_O - R_I
-    outside = Problem(scene(Closing(0.72, 40.0), model="linear", clearance=None, coning=coning), 1e-3)
-    inside = Problem(
+    outside = Model(scene(Closing(0.72, 40.0), model="linear", clearance=None, coning=coning), 1e-3)
+    inside = Model(
         scene(
             Closing(0.72, 40.0), model="linear", clearance=None, coning=-coning,
             outer_pressure=P_I, inner_pressure=P_O,
@@ -124,7 +124,7 @@ def test_inside_pressurised_seal_is_the_outside_pressurised_one_mirrored():
 
 
 def test_inside_pressurised_cylindrical_film_balances():
-    problem = Problem(
+    problem = Model(
         scene(Closing(0.72, 40.0), clearance=None, coning=-3.125e-3, outer_pressure=P_I, inner_pressure=P_O), 1e-3
     )
     force = closing_force(0.72, 40.0, P_O, P_I)
@@ -155,8 +155,8 @@ def test_all_roots_are_found_and_the_widest_stable_one_is_taken():
 
 @pytest.mark.parametrize("balance", [1.2, 0.3])
 def test_too_much_or_too_little_closing_has_no_equilibrium(balance):
-    with pytest.raises(ImpossibleScene, match="no equilibrium clearance") as raised:
-        Problem(scene(Closing(balance, 0.0), clearance=None), 1e-3)
+    with pytest.raises(SceneError, match="no equilibrium clearance") as raised:
+        Model(scene(Closing(balance, 0.0), clearance=None), 1e-3)
     assert raised.value.key == "closing.balance_ratio"
     # What is expected brackets what a converging film can carry.
     least, most = (float(word) for word in raised.value.expected.split() if word.replace(".", "").isdigit())
@@ -167,29 +167,29 @@ def test_too_much_or_too_little_closing_has_no_equilibrium(balance):
 def test_a_diverging_film_has_only_an_unstable_one():
     force = opening(20e-6, coning=-1e-3)
     spring = force - closing_force(0.3, 0.0)
-    with pytest.raises(ImpossibleScene, match="only unstable equilibria") as raised:
-        Problem(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
+    with pytest.raises(SceneError, match="only unstable equilibria") as raised:
+        Model(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
     assert "20 um" in raised.value.found
 
 
 def test_flat_faces_have_none():
     """The same force at every clearance: whatever the closing force, nothing decides the clearance."""
     for spring in (0.0, opening(1e-5, 0.0) - closing_force(0.5, 0.0)):
-        with pytest.raises(ImpossibleScene):
-            Problem(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
+        with pytest.raises(SceneError):
+            Model(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
 
 
 def test_a_root_far_from_the_coning_is_found():
     """Coning of 25 um, clearances from 0.1 um to 1 mm."""
     for clearance in (0.1e-6, 1e-6, 1e-4, 1e-3):
         force = opening(clearance)
-        problem = Problem(scene(Closing(0.5, force - closing_force(0.5, 0.0)), clearance=None), 1e-3)
+        problem = Model(scene(Closing(0.5, force - closing_force(0.5, 0.0)), clearance=None), 1e-3)
         # The force hardly knows a clearance far from the coning: rounding over its slope.
         assert problem.clearance == pytest.approx(clearance, rel=1e-8)
 
 
 def test_a_flexible_rotor_finds_the_same_clearance():
-    one, other = (Problem(scene(Closing(0.72, 40.0), build, clearance=None), 1e-3) for build in (fms, fmr))
+    one, other = (Model(scene(Closing(0.72, 40.0), build, clearance=None), 1e-3) for build in (fms, fmr))
     assert one.clearance == other.clearance
     y, yp = np.zeros(other.size), np.empty(other.size)
     other.rhs(0.0, y, yp)
@@ -201,7 +201,7 @@ def test_a_flexible_rotor_finds_the_same_clearance():
 def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring):
     """Also where the film is thinner than 0.6 c and its law is continued: the run's own forces agree."""
     path = Path(__file__).parents[2] / "scenarios" / "run_in.toml"
-    problem = Problem(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
+    problem = Model(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
     if spring == "4000 N":
         assert problem.clearance < 0.5 * problem.face[FLOOR]
     y, yp = np.zeros(problem.size), np.empty(problem.size)
@@ -215,7 +215,7 @@ def test_what_a_scene_drives_to_is_closed_as_its_run_is():
     falling = scene(
         Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=PiecewiseLinear((0.0, 1.0), (P_O, P_O / 3))
     )
-    whole, end = Problem(falling, 2.0), Problem(lasting(falling), 2.0)
+    whole, end = Model(falling, 2.0), Model(frozen_at_end(falling), 2.0)
     last = whole.closing.over(whole.legs[-1], falling.film)[0]
     assert end.closing_force() == pytest.approx(last, rel=1e-12)
     assert end.axial_shift(0) == pytest.approx(whole.axial_shift(len(whole.legs) - 1), rel=1e-9)

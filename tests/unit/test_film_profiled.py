@@ -8,10 +8,11 @@ import pytest
 from scenes import CLEARANCE, R_I, R_O, SPEED, film
 from scipy.integrate import solve_ivp
 
-from sealdyn import gap
-from sealdyn.faces import film_module, film_names
-from sealdyn.film_table import Profile
-from sealdyn.films import profiled, radial
+from sealdyn.faces import geometry
+from sealdyn.films import film_module, film_names
+from sealdyn.films.profiled import film as profiled
+from sealdyn.films.radial import film as radial
+from sealdyn.scene.film import Profile
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5
 AREA = np.pi * (R_O**2 - R_I**2)
@@ -49,15 +50,21 @@ def random_state(shape, share, seed, coning=0.0, tilt_radius="local"):
 
 def kernel(f, state, module=profiled):
     """Force, complex moment, flow in +r at both radii, torque."""
-    s = np.full(gap.GAP_STATE_SIZE, np.nan)
-    s[:6], s[gap.MEAN_SPIN], s[gap.SPIN_DIFFERENCE] = state[:6], state[6], SPEED
-    s[gap.VISCOSITY], s[gap.INNER_PRESSURE], s[gap.OUTER_PRESSURE] = MU, P_I, P_O
+    s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[:6], s[geometry.MEAN_SPIN], s[geometry.SPIN_DIFFERENCE] = state[:6], state[6], SPEED
+    s[geometry.VISCOSITY], s[geometry.INNER_PRESSURE], s[geometry.OUTER_PRESSURE] = MU, P_I, P_O
     module.flow(f, s)
     only = s.copy()
     module.wrench(f, only)
-    here = slice(gap.FORCE, gap.MOMENT_Y + 1)
-    assert np.max(np.abs(only[here] - s[here])) < 1e-12 * abs(s[gap.FORCE])
-    return s[gap.FORCE], complex(s[gap.MOMENT_X], s[gap.MOMENT_Y]), s[gap.FLOW_INNER], s[gap.FLOW_OUTER], s[gap.TORQUE]
+    here = slice(geometry.FORCE, geometry.MOMENT_Y + 1)
+    assert np.max(np.abs(only[here] - s[here])) < 1e-12 * abs(s[geometry.FORCE])
+    return (
+        s[geometry.FORCE],
+        complex(s[geometry.MOMENT_X], s[geometry.MOMENT_Y]),
+        s[geometry.FLOW_INNER],
+        s[geometry.FLOW_OUTER],
+        s[geometry.TORQUE],
+    )
 
 
 def shot(shape, state, geometry, tilt_radius, angles):
@@ -133,12 +140,12 @@ def test_a_cone_is_the_radial_film(coning, geometry, tilt_radius):
 @pytest.mark.parametrize("error", [1e-4, 1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("shape", BENT.values(), ids=BENT)
 def test_quadrature_follows_the_asked_error(shape, error):
-    for geometry in ("cylindrical", "planar"):
-        fine, asked = block(shape, 1e-14, geometry=geometry), block(shape, error, geometry=geometry)
+    for shape_name in ("cylindrical", "planar"):
+        fine, asked = block(shape, 1e-14, geometry=shape_name), block(shape, error, geometry=shape_name)
         for share in (0.9, 0.5, 0.1, 0.03, 0.01, 0.004, 0.002):
             for seed in range(6):
                 state = random_state(shape, share, seed)
-                assert off(kernel(asked, state)[:2], kernel(fine, state)[:2]) < error, (geometry, share, seed)
+                assert off(kernel(asked, state)[:2], kernel(fine, state)[:2]) < error, (shape_name, share, seed)
 
 
 @pytest.mark.parametrize("shape", BENT.values(), ids=BENT)
@@ -181,7 +188,7 @@ def test_finite_and_smooth_below_the_floor(shape):
         state = random_state(shape, -depth, 4)
         force, moment, *_ = kernel(f, state)
         assert np.isfinite(force) and np.isfinite(moment)
-    touch = -np.min(h) + f[gap.FLOOR]
+    touch = -np.min(h) + f[geometry.FLOOR]
     sides = [kernel(f, np.array([touch + e, *[0.0] * 5, 0.0]))[0] for e in (1e-16, -1e-16)]
     assert sides[0] == pytest.approx(sides[1], rel=1e-6)
 

@@ -5,9 +5,9 @@ import pytest
 from oracles import floored_wrench, radial_wrench
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr
 
-from sealdyn import gap
-from sealdyn.faces import linearised_film
-from sealdyn.films import radial
+from sealdyn.dynamics.interface import linearised_film
+from sealdyn.faces import geometry
+from sealdyn.films.radial import film as radial
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5
 AREA = np.pi * (R_O**2 - R_I**2)
@@ -41,9 +41,9 @@ def random_state(face, share, seed, pressures=(P_I, P_O), mean_spin=0.5 * SPEED,
 
 
 def gap_state(state, spin_difference=SPEED):
-    s = np.zeros(gap.GAP_STATE_SIZE)
-    s[:6], s[gap.MEAN_SPIN], s[gap.SPIN_DIFFERENCE] = state[:6], state[6], spin_difference
-    s[gap.VISCOSITY], s[gap.INNER_PRESSURE], s[gap.OUTER_PRESSURE] = state[7:10]
+    s = np.zeros(geometry.GAP_STATE_SIZE)
+    s[:6], s[geometry.MEAN_SPIN], s[geometry.SPIN_DIFFERENCE] = state[:6], state[6], spin_difference
+    s[geometry.VISCOSITY], s[geometry.INNER_PRESSURE], s[geometry.OUTER_PRESSURE] = state[7:10]
     return s
 
 
@@ -51,8 +51,8 @@ def kernel(f, state, spin_difference=SPEED):
     """Force, complex moment, flow in +r at both radii, torque."""
     s = gap_state(state, spin_difference)
     radial.flow(f, s)
-    moment = complex(s[gap.MOMENT_X], s[gap.MOMENT_Y])
-    return s[gap.FORCE], moment, s[gap.FLOW_INNER], s[gap.FLOW_OUTER], s[gap.TORQUE]
+    moment = complex(s[geometry.MOMENT_X], s[geometry.MOMENT_Y])
+    return s[geometry.FORCE], moment, s[geometry.FLOW_INNER], s[geometry.FLOW_OUTER], s[geometry.TORQUE]
 
 
 def deviation(found, expected):
@@ -91,13 +91,13 @@ def test_aligned_film(coning, tilt_radius):
 def test_quadrature_follows_the_asked_error(coning, error):
     """Points and angles chosen from the gap keep the asked error from wide open to 0.2 % of the clearance; the
     finest rule, itself checked above against the shooting solution, is the measure."""
-    for geometry in ("cylindrical", "planar"):
-        face = face_of(coning, geometry)
-        fine, asked = block(coning, geometry, error=1e-14), block(coning, geometry, error=error)
+    for shape_name in ("cylindrical", "planar"):
+        face = face_of(coning, shape_name)
+        fine, asked = block(coning, shape_name, error=1e-14), block(coning, shape_name, error=error)
         for share in (0.9, 0.5, 0.31, 0.1, 0.03, 0.01, 0.004, 0.002):
             for seed in range(12):
                 state = random_state(face, share, seed)
-                assert deviation(kernel(asked, state), kernel(fine, state)) < error, (geometry, share, seed)
+                assert deviation(kernel(asked, state), kernel(fine, state)) < error, (shape_name, share, seed)
 
 
 @pytest.mark.parametrize("tilt_radius", ["local", "mean"])

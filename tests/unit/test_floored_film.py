@@ -9,9 +9,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from sealdyn import gap
-from sealdyn.film_table import Film
-from sealdyn.films import _floored_circle, radial
+from sealdyn.faces import geometry
+from sealdyn.films.radial import cavitated_circle
+from sealdyn.films.radial import film as radial
+from sealdyn.scene.film import Film
 
 R_I, R_O, C, MU = 0.0495, 0.0505, 2e-6, 5e-3
 R_M, WIDTH = 0.5 * (R_I + R_O), R_O - R_I
@@ -26,9 +27,9 @@ def block(error, mean=True, coning=0.0, geometry="planar", cavitation=0.0, radii
 
 
 def gap_state(motion, mean_spin, p_i, p_o, spin_difference=0.0):
-    s = np.zeros(gap.GAP_STATE_SIZE)
-    s[:6], s[gap.MEAN_SPIN], s[gap.VISCOSITY] = motion, mean_spin, MU
-    s[gap.INNER_PRESSURE], s[gap.OUTER_PRESSURE], s[gap.SPIN_DIFFERENCE] = p_i, p_o, spin_difference
+    s = np.zeros(geometry.GAP_STATE_SIZE)
+    s[:6], s[geometry.MEAN_SPIN], s[geometry.VISCOSITY] = motion, mean_spin, MU
+    s[geometry.INNER_PRESSURE], s[geometry.OUTER_PRESSURE], s[geometry.SPIN_DIFFERENCE] = p_i, p_o, spin_difference
     return s
 
 
@@ -116,11 +117,11 @@ def test_planar_flat_face_against_exact_lines(name, pressures, share):
     for error in (1e-5, 1e-7, 1e-9):
         s = gap_state(motion, 300.0, p_i, p_o)
         radial.flow(block(error), s)
-        found = complex(s[gap.MOMENT_X], s[gap.MOMENT_Y])
-        assert s[gap.FORCE] == pytest.approx(force, rel=error)
+        found = complex(s[geometry.MOMENT_X], s[geometry.MOMENT_Y])
+        assert s[geometry.FORCE] == pytest.approx(force, rel=error)
         assert abs(found - moment) < error * abs(moment)
-        assert s[gap.CAVITATED] == pytest.approx(dry, abs=3e-5 if error > 1e-6 else 1e-6)
-        assert s[gap.TORQUE] == pytest.approx(torque, rel=10 * error, abs=1e-12 * abs(moment))
+        assert s[geometry.CAVITATED] == pytest.approx(dry, abs=3e-5 if error > 1e-6 else 1e-6)
+        assert s[geometry.TORQUE] == pytest.approx(torque, rel=10 * error, abs=1e-12 * abs(moment))
 
 
 @pytest.mark.parametrize("mean", [True, False])
@@ -136,7 +137,7 @@ def test_smooth_in_the_state(pressures, mean):
             motion[3] = centre + 1e-8 * step
             s = gap_state(motion, 300.0, p_i, p_o)
             radial.wrench(f, s)
-            values.append([s[gap.FORCE], s[gap.MOMENT_X] / R_M, s[gap.MOMENT_Y] / R_M])
+            values.append([s[geometry.FORCE], s[geometry.MOMENT_X] / R_M, s[geometry.MOMENT_Y] / R_M])
         values = np.array(values)
         smooth = np.array([np.polyval(np.polyfit(steps, v, 2), steps) for v in values.T]).T
         assert np.max(np.abs(values - smooth)) < 1e-9 * np.max(values)
@@ -144,9 +145,9 @@ def test_smooth_in_the_state(pressures, mean):
 
 def test_the_tables_are_a_gauss_kronrod_pair():
     """Exact for polynomials up to degree 31 and 19, and not beyond."""
-    x = np.concatenate([_floored_circle.NODES, -_floored_circle.NODES[-2::-1]])
-    fine = np.concatenate([_floored_circle.KRONROD, _floored_circle.KRONROD[-2::-1]])
-    coarse = np.concatenate([_floored_circle.GAUSS, _floored_circle.GAUSS[::-1]])
+    x = np.concatenate([cavitated_circle.NODES, -cavitated_circle.NODES[-2::-1]])
+    fine = np.concatenate([cavitated_circle.KRONROD, cavitated_circle.KRONROD[-2::-1]])
+    coarse = np.concatenate([cavitated_circle.GAUSS, cavitated_circle.GAUSS[::-1]])
     for weights, nodes, degree in ((fine, x, 31), (coarse, x[1::2], 19)):
         for power in range(0, degree + 1, 2):
             assert weights @ nodes**power == pytest.approx(2 / (power + 1), abs=2e-15)

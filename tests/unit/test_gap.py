@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, R_I, R_O, film
 
-from sealdyn.gap import FLOOR, above_floor, edge_gaps, face_block, h_min
+from sealdyn.faces.geometry import FLOOR, edge_gaps, face_parameters, h_min, regularised_thickness
 
 CONINGS = {"converging": 3.125e-3, "flat": 0.0, "diverging": -1.1e-3}
 
@@ -26,7 +26,7 @@ def states(count=40):
 @pytest.mark.parametrize("mean", [False, True], ids=["local", "mean"])
 @pytest.mark.parametrize("coning", CONINGS.values(), ids=CONINGS)
 def test_smallest_thickness_against_a_search(coning, mean):
-    f = face_block(film(coning=coning, tilt_radius="mean" if mean else "local"), CLEARANCE)
+    f = face_parameters(film(coning=coning, tilt_radius="mean" if mean else "local"), CLEARANCE)
     count = 3600
     theta, r = np.meshgrid(2 * np.pi * np.arange(count) / count, np.linspace(R_I, R_O, 9))
     sides = set()
@@ -48,25 +48,25 @@ def test_thinnest_edge_changes_at_the_critical_coning():
     """Flat faces touch at the outer edge, coned ones beyond C / r_i at the inner."""
     critical, touching = CLEARANCE / R_I, CLEARANCE / R_I
     for share, edge in ((0.99, R_O), (1.01, R_I)):
-        f = face_block(film(coning=share * critical), CLEARANCE)
+        f = face_parameters(film(coning=share * critical), CLEARANCE)
         assert h_min(f, 0.0, 0.0, touching)[2] == edge
 
 
 def test_untilted_faces_have_a_finite_place():
-    low, at, radius = h_min(face_block(film(), CLEARANCE), 1e-6, 0.0, 0.0)
+    low, at, radius = h_min(face_parameters(film(), CLEARANCE), 1e-6, 0.0, 0.0)
     assert low == pytest.approx(CLEARANCE + 1e-6, rel=1e-15) and np.isfinite(at) and radius == R_I
 
 
 def test_thickness_below_the_floor_stays_positive_and_smooth():
-    floor = face_block(film(floor=1e-3), CLEARANCE)[FLOOR]
+    floor = face_parameters(film(floor=1e-3), CLEARANCE)[FLOOR]
     assert floor == pytest.approx(1e-3 * CLEARANCE, rel=1e-15)
     h = np.concatenate([-np.geomspace(1e3, 1e-3, 200) * floor, np.linspace(0.0, 3.0, 301) * floor])
-    seen = np.array([above_floor(value, floor) for value in h])
+    seen = np.array([regularised_thickness(value, floor) for value in h])
     assert np.all(seen > 0.0) and np.all(np.diff(seen) > 0.0)
     assert np.all(seen[h >= floor] == h[h >= floor])
     # Value and slope are continuous: one-sided differences on both sides agree as the step shrinks.
-    assert above_floor(floor * (1 - 1e-15), floor) == pytest.approx(floor, rel=1e-14)
+    assert regularised_thickness(floor * (1 - 1e-15), floor) == pytest.approx(floor, rel=1e-14)
     for step in (1e-3, 1e-5):
-        below = (floor - above_floor(floor * (1 - step), floor)) / (step * floor)
-        above = (above_floor(floor * (1 + step), floor) - floor) / (step * floor)
+        below = (floor - regularised_thickness(floor * (1 - step), floor)) / (step * floor)
+        above = (regularised_thickness(floor * (1 + step), floor) - floor) / (step * floor)
         assert abs(below - above) < 1.5 * step

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, NOTHING, R_O, SPEED, SUPPORT, film, fmr, fms, fmsr, ring
 
-from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.ring import AxialRunout, Rotor, Support
-from sealdyn.scene import Closing, Initial, RingStart
+from sealdyn.dynamics.model import Model
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.scene.rings import AxialRunout, Rotor, Support
+from sealdyn.scene.scene import Closing, Initial, RingStart
 
 TURN = 2 * math.pi / SPEED
 ALIGNED = dict(own=0.0, fixed=0.0)
@@ -19,7 +19,7 @@ MASSLESS = dict(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)
 
 
 def layout(scene):
-    return Problem(scene, TURN)
+    return Model(scene, TURN)
 
 
 def said(problem, words):
@@ -147,7 +147,7 @@ def test_scales_are_the_clearance_and_its_tilt_and_the_shaft_speed():
 
 def test_a_shaft_at_rest_takes_its_pace_from_what_shakes_it():
     shaking = Housing(axial=[AxialVibration(frequency=400.0, acceleration=20.0)])
-    problem = Problem(fms(**dict(own=0.0, runout=0.0), speed=0.0, housing=shaking), 0.01)
+    problem = Model(fms(**dict(own=0.0, runout=0.0), speed=0.0, housing=shaking), 0.01)
     assert problem.pace == pytest.approx(2 * math.pi * 400.0, rel=1e-15)
 
 
@@ -157,7 +157,7 @@ def test_memory_is_the_run_for_an_undamped_ring_and_short_for_a_damped_one():
         rotor=Rotor(**ring(support=Support(axial_stiffness=5e5, radius=0.04))),
         fixed=1e-6,
     )
-    free, damped = Problem(undamped, 1000 * TURN), Problem(fmr("linear"), 1000 * TURN)
+    free, damped = Model(undamped, 1000 * TURN), Model(fmr("linear"), 1000 * TURN)
     # Fastest period of the free ring: the forward root of -I w^2 + J W w + K_s = 0.
     fastest = SPEED + math.sqrt(SPEED**2 + SUPPORT.tilt()[0] / 8e-4)
     assert free.memory == pytest.approx(1000 * TURN * fastest / (2 * math.pi), rel=1e-9)

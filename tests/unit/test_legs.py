@@ -10,7 +10,7 @@ import pytest
 from scenes import fmr, ring
 from scipy.integrate import quad
 
-from sealdyn.imposed import (
+from sealdyn.dynamics.imposed_motion import (
     OSCILLATOR_COUNT,
     OSCILLATORS,
     PER_RING,
@@ -20,13 +20,13 @@ from sealdyn.imposed import (
     TILT_Y,
     TILT_Y_RATE,
     Z,
-    impose,
-    oscillators,
+    harmonics_of_segment,
+    imposed_state,
 )
-from sealdyn.legs import constant_and_slope, cut, reduced, time_of_angle
-from sealdyn.motion import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.ring import STATOR, AxialRunout, Rotor, Stator
+from sealdyn.dynamics.segments import constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.scene.rings import STATOR, AxialRunout, Rotor, Stator
 
 SPEED = 1047.1975511965977  # 10 000 rpm, not a whole number of rad/s
 MILLION = 2 * math.pi * 1e6 / SPEED
@@ -48,11 +48,11 @@ def circle(phase):
 
 def imposed(scene, leg, tau):
     """State of both carriers, (2, PER_RING), from the compiled kernel."""
-    rows = oscillators(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
+    rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
     p = np.zeros(OSCILLATORS + ROW * len(rows))
     p[OSCILLATOR_COUNT], p[OSCILLATORS:] = len(rows), rows.ravel()
     c = np.zeros(2 * PER_RING)
-    impose(tau, p, c)
+    imposed_state(tau, p, c)
     return c.reshape(2, PER_RING)
 
 
@@ -60,12 +60,12 @@ def imposed(scene, leg, tau):
 
 
 def test_phase_after_a_million_turns():
-    legs = cut(MILLION, SPEED, -300.0, [])
+    legs = split_at_breaks(MILLION, SPEED, -300.0, [])
     assert len(legs) >= 500
     for leg in (legs[1], legs[len(legs) // 2], legs[-1]):
         for spin, angle in ((SPEED, leg.rotor_angle), (-300.0, leg.stator_angle)):
             turned = mpmath.mpf(spin) * exact(leg.start)
-            assert abs(circle(reduced(angle)) - circle(turned)) < 1e-15
+            assert abs(circle(modulo_turn(angle)) - circle(turned)) < 1e-15
     # What plain floating point makes of the same angle: 1.2e-10 rad at the last leg's start.
     naive = abs(circle(SPEED * legs[-1].time) - circle(mpmath.mpf(SPEED) * exact(legs[-1].start)))
     assert naive > 1e-11
@@ -80,7 +80,7 @@ def test_imposed_motion_after_a_million_turns():
         stator=Stator(),
         housing=Housing(axial=[AxialVibration(frequency=tone, displacement=1.0)]),
     )
-    leg = cut(MILLION, SPEED, 0.0, [])[-1]
+    leg = split_at_breaks(MILLION, SPEED, 0.0, [])[-1]
     for tau in (0.0, 0.01 * leg.length):
         stator, rotor = imposed(scene, leg, tau)
         t = exact(leg.start) + mpmath.mpf(tau)
@@ -94,7 +94,7 @@ def test_imposed_motion_after_a_million_turns():
 def test_phase_of_a_ramp():
     """The angle is the integral of a speed table, whatever legs it is cut into."""
     speed = PiecewiseLinear((0.0, 10.0, 2010.0, 2020.0), (0.0, 1000.0, 1500.0, -200.0))
-    legs = cut(2020.0, speed, 0.0, [speed])
+    legs = split_at_breaks(2020.0, speed, 0.0, [speed])
     assert len(legs) > 100
     ends = {0.0: 0, 10.0: 5000, 2010.0: 5000 + 2000 * 1250, 2020.0: 5000 + 2000 * 1250 + 6500}
     for leg in legs:
@@ -117,7 +117,7 @@ def test_rates_are_the_slopes_of_the_imposed_motion():
         stator=Stator(**ring()),
         housing=Housing(angular=[AngularVibration(frequency=31.0, displacement=0.7, direction=0.6, phase=0.2)]),
     )
-    leg = cut(1.0, ramp, 0.0, [ramp])[0]
+    leg = split_at_breaks(1.0, ramp, 0.0, [ramp])[0]
     step, tau = 1e-6, 0.37
     late, early, now = (imposed(scene, leg, tau + x) for x in (step, -step, 0.0))
     for ring_index in range(2):
@@ -139,24 +139,26 @@ STEPPED = PiecewiseLinear((0.0, 1.0, 1.0, 2.0, 3.5), (5.0, 7.0, -2.0, -2.0, 4.0)
 
 def test_legs_tile_time_and_stop_at_every_kink():
     other = PiecewiseLinear((0.5, 2.2), (1.0, 2.0))
-    legs = cut(4.0, 100.0, 0.0, [100.0, STEPPED, other])
+    legs = split_at_breaks(4.0, 100.0, 0.0, [100.0, STEPPED, other])
     assert [leg.time for leg in legs] == [0.0, 0.5, 1.0, 2.0, 2.2, 3.5]
     for a, b in pairwise(legs):
         assert a.start + a.span == b.start
     assert legs[-1].start + legs[-1].span == 4
     # A table beyond the run leaves no leg behind.
-    assert len(cut(0.4, 100.0, 0.0, [STEPPED, other])) == 1
+    assert len(split_at_breaks(0.4, 100.0, 0.0, [STEPPED, other])) == 1
 
 
 def test_value_and_slope_on_each_side_of_a_step():
-    legs = cut(5.0, 0.0, 0.0, [STEPPED])
+    legs = split_at_breaks(5.0, 0.0, 0.0, [STEPPED])
     found = [constant_and_slope(STEPPED, leg) for leg in legs]
     expected = [(5.0, 2.0), (-2.0, 0.0), (-2.0, 4.0), (4.0, 0.0)]
     assert np.allclose(found, expected, rtol=0, atol=1e-13)
     assert constant_and_slope(3.25, legs[0]) == (3.25, 0.0)
     # Held before the first time of a table.
     late = PiecewiseLinear((1.0, 2.0), (3.0, 4.0))
-    assert np.allclose([constant_and_slope(late, leg) for leg in cut(2.0, 0.0, 0.0, [late])], [(3, 0), (3, 1)])
+    assert np.allclose(
+        [constant_and_slope(late, leg) for leg in split_at_breaks(2.0, 0.0, 0.0, [late])], [(3, 0), (3, 1)]
+    )
 
 
 # --- time of an angle ----------------------------------------------------------------------------------

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scenes import INERTIA, NOTHING, SPEED, SUPPORT, film, ring
 
-from sealdyn.film_table import Coefficients
-from sealdyn.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
-from sealdyn.motion import Shaft
-from sealdyn.problem import Problem
-from sealdyn.ring import Rotor, Stator
-from sealdyn.scene import Scene
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
+from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.scene.scene import Scene
 
 K_F, D_F, K_FZ, D_FZ = 5790.0, 4.08, 6.1e6, 5200.0
 FILM = film("linear", coefficients=Coefficients(K_F, D_F, K_FZ, D_FZ))
@@ -24,7 +24,7 @@ SLENDER = INERTIA / 3
 def problem(stator=None, rotor=None, speed=SPEED, film_table=FILM, turns=1.0, **parts):
     shaft = parts.pop("shaft", Shaft(speed=speed))
     scene = Scene(shaft=shaft, film=film_table, stator=stator or Stator(), rotor=rotor or Rotor(), **parts)
-    return Problem(scene, 2 * math.pi * turns / abs(speed))
+    return Model(scene, 2 * math.pi * turns / abs(speed))
 
 
 def free_ring():

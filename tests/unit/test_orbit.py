@@ -8,11 +8,11 @@ import pytest
 from scenes import fmr, fms, fmsr, free_ring
 
 import sealdyn
-from sealdyn.motion import Whirl
-from sealdyn.orbit import NoOrbit, Shooter
-from sealdyn.problem import Problem
-from sealdyn.recorder import Recorder
-from sealdyn.solve import solve
+from sealdyn.analysis.shooting import NoOrbit, Shooter
+from sealdyn.dynamics.model import Model
+from sealdyn.scene.excitation import Whirl
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring", "housing_vibration"]
@@ -48,7 +48,7 @@ def test_orbit_agrees_with_a_long_transient(name):
     shooter = Shooter(scenario.scene, accuracy)
     orbit = shooter.find()
     turns = 60 if name != "housing_vibration" else 12
-    problem = Problem(scenario.scene, turns * orbit.period, accuracy)
+    problem = Model(scenario.scene, turns * orbit.period, accuracy)
     recorder = Recorder(problem, orbit.period)
     solve(problem, problem.solver()[0], accuracy, recorder)
     _, q, _ = recorder.arrays()

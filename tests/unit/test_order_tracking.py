@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scenes import fms
 
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.problem import Problem
-from sealdyn.ramps.orders import FOLDED, at_the_edge, centres, peak, resolution, tracked, waterfall
-from sealdyn.ramps.trip import Evenly, Trip
+from sealdyn.dynamics.model import Model
+from sealdyn.numerics.order_tracking import FOLDED, at_the_edge, centres, peak, resolution, tracked, waterfall
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.studies.runup.ramp_run import EvenAngleSink, RampCycle
 
 PER_TURN = 32
 
@@ -91,12 +91,12 @@ def test_peak():
 
 
 def test_trip():
-    trip = Trip("shaft.speed", 100.0, 500.0, 1000.0, 0.1, hold=0.2, rest=0.05, crossing=300.0)
+    trip = RampCycle("shaft.speed", 100.0, 500.0, 1000.0, 0.1, hold=0.2, rest=0.05, crossing=300.0)
     assert trip.crossed() == pytest.approx((0.3, 0.9))
     table = trip.table()
     assert table.time == pytest.approx((0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.15))
     assert table.value == (100.0, 100.0, 300.0, 500.0, 500.0, 300.0, 100.0, 100.0)
-    step = Trip("film.outer_pressure", 5e5, 1e5, None, 0.1, hold=0.2, rest=0.1).table()
+    step = RampCycle("film.outer_pressure", 5e5, 1e5, None, 0.1, hold=0.2, rest=0.1).table()
     assert step.at(0.1 - 1e-9) == 5e5 and step.at(0.1) == 1e5 and step.at(0.3001) == 5e5
 
 
@@ -104,8 +104,8 @@ def test_samples_stand_at_even_angles():
     """Times between two samples, speed integrated over them exactly: 1/32 of a turn each, over kinks and reversals of
     the ramp, none twice and none left out."""
     times, values = (0.0, 0.01, 0.11, 0.15, 0.25), (0.0, 300.0, 4000.0, 4000.0, 500.0)
-    problem = Problem(fms("linear", speed=PiecewiseLinear(times, values)), 0.25)
-    sink = Evenly(problem, PER_TURN)
+    problem = Model(fms("linear", speed=PiecewiseLinear(times, values)), 0.25)
+    sink = EvenAngleSink(problem, PER_TURN)
     found, first = [], []
     for k, leg in enumerate(problem.legs):
         taus = sink.due(k)

@@ -8,16 +8,18 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from sealdyn import contact, gap
-from sealdyn.contact_table import Contact
-from sealdyn.film_table import Film, Profile
+from sealdyn.faces import contact, geometry
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Film, Profile
 
 R_I, R_O, C0, ROUGHNESS, STRENGTH, SPEED = 0.032, 0.040, 10e-6, 0.1e-6, 300e6, 1000.0
 C = 3 * ROUGHNESS
 LAW = Contact(ROUGHNESS, compressive_strength=STRENGTH, stator_wear_coefficient=2e-16, rotor_wear_coefficient=3e-16)
 GAUSSIAN = Contact(ROUGHNESS, law="greenwood-williamson", asperity_density=1e11, asperity_radius=5e-6, modulus=30e9)
-SLOTS = {n: getattr(gap, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")}
-SLOTS["wear"] = gap.WEAR
+SLOTS = {
+    n: getattr(geometry, f"CONTACT_{n.upper()}") for n in ("force", "x", "y", "torque", "area", "pressure", "energy")
+}
+SLOTS["wear"] = geometry.WEAR
 # Thinnest in the middle, at an edge, and with a groove.
 BENT = {
     "middle": ((0.032, 0.0335, 0.0371, 0.040), (4e-6, 0.3e-6, 0.0, 6e-6)),
@@ -36,24 +38,24 @@ def table(shape=None, mean=False, coning=0.0, **changes):
 
 
 def face(*args, **more):
-    return gap.face_block(table(*args, **more), C0)
+    return geometry.face_parameters(table(*args, **more), C0)
 
 
 def state(dz, g_x, g_y, spin=SPEED):
-    s = np.full(gap.GAP_STATE_SIZE, np.nan)
-    s[: gap.GY + 1], s[gap.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
+    s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[: geometry.GY + 1], s[geometry.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
     return s
 
 
 def rub(f, at, law=LAW, points=None):
     s = state(*at)
-    contact.rub(contact.parameters(law, f, points), f, s)
+    contact.contact_load_and_friction(contact.parameters(law, f, points), f, s)
     return {name: s[slot] for name, slot in SLOTS.items()}
 
 
 def wear_integrals(f, at):
-    out = np.full(int(f[gap.PROFILE]), np.nan)
-    contact.worn(contact.parameters(LAW, f), f, state(*at), out)
+    out = np.full(int(f[geometry.PROFILE]), np.nan)
+    contact.wear_rates(contact.parameters(LAW, f), f, state(*at), out)
     return out
 
 
@@ -129,13 +131,13 @@ def test_smallest_film_is_the_least_of_a_fine_scan(shape, mean, coning):
     f, seen = face(shape, mean, coning), set()
     theta, r = np.linspace(-np.pi, np.pi, 3601)[:, None], np.unique(np.r_[np.linspace(R_I, R_O, 400), shape[0]])
     for at in states(shape, 1, 25, mean, coning, -20.0):
-        low, angle, radius = gap.h_min(f, *at)
+        low, angle, radius = geometry.h_min(f, *at)
         scanned = thickness(shape, r, theta, at, mean, coning).min()
         slack = R_O * np.hypot(*at[1:]) * (np.pi / 3600) ** 2 / 2
         assert low - 1e-18 <= scanned <= low + slack + 1e-18
         assert thickness(shape, radius, angle, at, mean, coning) == pytest.approx(low, abs=1e-17)
         edges = [thickness(shape, e, angle, at, mean, coning) for e in (R_I, R_O)]
-        assert gap.edge_gaps(f, at[0], np.hypot(*at[1:])) == pytest.approx(edges, abs=1e-17)
+        assert geometry.edge_gaps(f, at[0], np.hypot(*at[1:])) == pytest.approx(edges, abs=1e-17)
         seen.add(radius)
     assert seen <= set(shape[0])
 
@@ -149,7 +151,7 @@ def test_a_linear_profile_is_coning_and_zeros_are_nothing(coning, mean):
         straight = r, coning * (r - R_I)
         for f in (face((r, np.zeros(n)), mean, coning), face(straight, mean)):
             for at in states(straight, 2, 20, mean):
-                assert gap.h_min(f, *at)[:2] == pytest.approx(gap.h_min(plain, *at)[:2], abs=1e-20, rel=1e-13)
+                assert geometry.h_min(f, *at)[:2] == pytest.approx(geometry.h_min(plain, *at)[:2], abs=1e-20, rel=1e-13)
                 # The law's own points around the circle leave 1e-9 of a shallow load; with twice as many, rounding.
                 for law, points, allowed in ((LAW, None, 1e-9), (LAW, 30, 1e-12), (GAUSSIAN, 40, 1e-12)):
                     expected = rub(plain, at, law, points)
@@ -255,7 +257,7 @@ def test_above_touch_nothing_wears():
 def test_65_radii_fit():
     r = np.linspace(R_I, R_O, 65)
     f = face((r, 1e-6 * np.sin(400 * r)))
-    assert len(contact.hat_areas(f)) == 65 and f[gap.PROFILE_RADII + 64] == R_O
+    assert len(contact.hat_areas(f)) == 65 and f[geometry.PROFILE_RADII + 64] == R_O
     with pytest.raises(ValueError):
         r = np.linspace(R_I, R_O, 66)
         face((r, 0 * r))

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scenes import film, fmr
 
-from sealdyn.contact_table import Contact
-from sealdyn.film_choice import lowest_rung
-from sealdyn.film_table import Profile
-from sealdyn.problem import Problem
-from sealdyn.report import resolved_lines
-from sealdyn.scenario import ScenarioError, json_schema, parse_scenario
-from sealdyn.scene import ImpossibleScene
+from sealdyn.dynamics.model import Model
+from sealdyn.report.text import resolved_lines
+from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Profile
+from sealdyn.scene.scene import SceneError
+from sealdyn.simulation.film_selection import select_film
 
 SCENARIO = """
 [shaft]
@@ -100,7 +100,7 @@ def test_half_a_profile():
 
 def test_auto_goes_straight_to_the_profiled_film():
     worn = fmr(film=film("auto", profile=Profile((0.032, 0.036, 0.04), (0.0, 2e-6, 0.0))))
-    problem, error = lowest_rung(worn, 0.01, 1e-3, lambda p: None)
+    problem, error = select_film(worn, 0.01, 1e-3, lambda p: None)
     assert problem.film_name == "profiled" and error is None
     assert any("film auto: the profiled film" in line for line in problem.reasons)
 
@@ -111,12 +111,12 @@ def test_scenes_built_in_python_are_refused_too():
         film("auto", profile=Profile((0.032, 0.04), (0.0, float("nan")))),
         film("profiled", profile=Profile(np.linspace(0.032, 0.04, 66), np.zeros(66))),
     ):
-        with pytest.raises(ImpossibleScene):
-            Problem(fmr(film=bad), 0.01, 1e-6)
+        with pytest.raises(SceneError):
+            Model(fmr(film=bad), 0.01, 1e-6)
 
 
 def test_profiled_without_a_profile_is_the_radial_film():
-    fine, other = (Problem(fmr(model), 0.01, 1e-9) for model in ("radial", "profiled"))
+    fine, other = (Model(fmr(model), 0.01, 1e-9) for model in ("radial", "profiled"))
     for one, two in zip(fine.film_matrices(), other.film_matrices(), strict=True):
         assert two == pytest.approx(one, rel=1e-8, abs=1e-8 * np.max(np.abs(one)))
 
@@ -125,8 +125,8 @@ def test_the_aligned_faces_rest_on_their_asperities_where_they_are_highest():
     """Closed by more than the film carries, the faces of a bent profile meet at its highest radius."""
     rough = Contact(roughness=0.1e-6, compressive_strength=300e6)
     worn = film("auto", clearance=0.2e-6, coning=0.0, profile=Profile((0.032, 0.036, 0.04), (5e-6, 0.0, 5e-6)))
-    problem = Problem(fmr(film=worn, contact=rough, own=0.0, fixed=0.0), 0.01, 1e-6)
-    film_only = Problem(fmr(film=worn, own=0.0, fixed=0.0), 0.01, 1e-6)
+    problem = Model(fmr(film=worn, contact=rough, own=0.0, fixed=0.0), 0.01, 1e-6)
+    film_only = Model(fmr(film=worn, own=0.0, fixed=0.0), 0.01, 1e-6)
     area = np.pi * (0.04**2 - 0.032**2)
     carried = (problem.closing.balance_ratio - film_only.closing.balance_ratio) * 5e5 * area
     # Of a ridge |r - r_m| < (c - h) L / (2 depth): 2 pi r_m p_m int P dr, P the share in contact.

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sealdyn.archive import column, read_info
-from sealdyn.scenario import read_scenario
-from sealdyn.simulation import simulate
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.simulation.simulate import simulate
 
 RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
 SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario import ScenarioError, json_schema, parse_scenario, read_scenario, unused_keys
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario, read_scenario, unused_keys
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR = (SCENARIOS / "fmr_reference.toml").read_text()

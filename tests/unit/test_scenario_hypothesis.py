@@ -8,7 +8,7 @@ from pathlib import Path
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sealdyn.scenario import Scenario, ScenarioError, parse_scenario
+from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
 
 SHIPPED = [p.read_text() for p in sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml"))]
 TREES = [tomllib.loads(text) for text in SHIPPED]

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sealdyn.secondary_seal import excess, sliding
-from sealdyn.secondary_seal_table import SecondarySeal, faults
+from sealdyn.dynamics.secondary_seal import excess, sliding
+from sealdyn.scene.secondary_seal import SecondarySeal, secondary_seal_errors
 
 LINE, RADIUS = 37.0, 0.045
 speeds = st.floats(-1.0, 1.0).filter(lambda x: abs(x) > 1e-6)
@@ -85,5 +85,5 @@ def test_breakaway_of_force_and_moment():
     ],
 )
 def test_faults_name_the_key(table, key):
-    assert [fault[0] for fault in faults(SecondarySeal(**table))] == [key]
-    assert not faults(SecondarySeal(radius=1.0, line_friction=1.0))
+    assert [fault[0] for fault in secondary_seal_errors(SecondarySeal(**table))] == [key]
+    assert not secondary_seal_errors(SecondarySeal(radius=1.0, line_friction=1.0))

@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 from scenes import SPEED, TILT_SCALE, apart, fmr, fms, fmsr, free_ring, prepared
 
-from sealdyn.dense import integrals
-from sealdyn.method_contract import tolerance_for
-from sealdyn.recorder import Recorder
-from sealdyn.solve import solve
-from sealdyn.step_error import StepErrors
+from sealdyn.numerics.hermite import integrals
+from sealdyn.solvers.contract import tolerance_for
+from sealdyn.solvers.global_error import GlobalErrorEstimate
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 TURN = 2 * math.pi / SPEED
 
 
 def followed(problem, method, tolerance, exact):
     """True largest error at samples and the estimate, both relative to the scales."""
-    errors = StepErrors(problem)
+    errors = GlobalErrorEstimate(problem)
     run = method, {"tolerance": tolerance, "errors": errors}
     return apart(problem, run, exact, TURN / 64), errors.worst
 
@@ -58,10 +58,10 @@ def test_a_large_tilt_is_near_enough_to_its_linearisation():
 def test_what_is_kept_goes_on():
     """Half a run, kept as an archive keeps it, and the other half: as if there had been no pause."""
     problem = prepared(fmr("linear"), 60 * TURN, 1e-4)
-    whole, first = StepErrors(problem), StepErrors(problem)
+    whole, first = GlobalErrorEstimate(problem), GlobalErrorEstimate(problem)
     steps = []
 
-    class Seen(StepErrors):
+    class Seen(GlobalErrorEstimate):
         def take(self, t, ys, accelerations, begin, end):
             steps.append((t, ys, accelerations, begin, end))
 
@@ -70,7 +70,7 @@ def test_what_is_kept_goes_on():
         whole.take(*block)
     assert len(steps) > 1
     first.take(*steps[0])
-    later = StepErrors(problem)
+    later = GlobalErrorEstimate(problem)
     later.restore(json.loads(json.dumps(first.kept())))
     for block in steps[1:]:
         later.take(*block)

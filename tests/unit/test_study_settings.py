@@ -5,10 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn.scenario import read_scenario
-from sealdyn.scenario_errors import ScenarioError
-from sealdyn.scenario_study import axis, study_settings
-from sealdyn.studies import contact_onset, failures, rub, sealing_number, steady_state, sweep, work_precision
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.settings import axis, study_settings
+from sealdyn.studies import contact_onset, steady_state, sweep
+from sealdyn.studies.failures import study as failures
+from sealdyn.studies.rub import study as rub
+from sealdyn.studies.sealing_number import study as sealing_number
+from sealdyn.studies.work_precision import study as work_precision
 
 SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml")
 

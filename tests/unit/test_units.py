@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from sealdyn import units
-from sealdyn.piecewise_linear import PiecewiseLinear
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.units import QuantityError
 
 
@@ -121,7 +121,7 @@ def test_refused_with_what_was_found_and_expected(kind, value, says):
 def test_an_integer_that_python_does_not_print():
     with pytest.raises(QuantityError):
         read(units.Mass, 10**5000)
-    assert units.shown(10**5000) == "a number of thousands of digits"
+    assert units.quoted(10**5000) == "a number of thousands of digits"
 
 
 def test_signed_kinds_take_negative_values():

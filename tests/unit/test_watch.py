@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, INERTIA, NOTHING, R_I, SPEED, SUPPORT, film, fmr, fms, free_ring, ring, run
 
-from sealdyn.motion import Shaft, Whirl
-from sealdyn.ring import AxialRunout, Rotor, Stator
-from sealdyn.scene import Initial, RingStart
-from sealdyn.watch import H_TAU, LEAST, LEAST_TAU, MOST, MOST_TAU, H
+from sealdyn.dynamics.extrema import H_TAU, LEAST, LEAST_TAU, MOST, MOST_TAU, H
+from sealdyn.scene.excitation import Shaft, Whirl
+from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.scene import Initial, RingStart
 
 EMPTY_FILM = film("linear", coefficients=NOTHING)
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)

@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from sealdyn.wear import ALPHA, IMPLICIT, LOWER, WEIGHTS, Average, Control, Hats, NoAverage, Worn, advance, unevenness
+from sealdyn.studies.wear.rosenbrock import (
+    ALPHA,
+    IMPLICIT,
+    LOWER,
+    WEIGHTS,
+    Average,
+    Control,
+    HatBasis,
+    NoAverage,
+    WearState,
+    advance,
+    unevenness,
+)
 
 R_I, R_O, SPEED, LOAD, PER = 0.032, 0.040, 1000.0, 500.0, 2.5e-18
 HOUR, ROUGH = 3600.0, 1e-7
@@ -68,8 +80,8 @@ def control(accuracy=1e-3, allowed=1.0):
 
 
 def last(averages, radius, hours, start=None, **given):
-    worn = Worn(0.0, np.zeros(len(radius)) if start is None else start)
-    return list(advance(averages, Hats(radius), worn, hours * HOUR, control(**given)))[-1][0]
+    worn = WearState(0.0, np.zeros(len(radius)) if start is None else start)
+    return list(advance(averages, HatBasis(radius), worn, hours * HOUR, control(**given)))[-1][0]
 
 
 # --- hats ----------------------------------------------------------------------------------------------
@@ -77,7 +89,7 @@ def last(averages, radius, hours, start=None, **given):
 
 def test_masses_of_the_hats():
     radius = np.array([0.032, 0.0325, 0.0341, 0.037, 0.040])
-    hats = Hats(radius)
+    hats = HatBasis(radius)
     assert hats.mass == pytest.approx(moments(radius, 0), rel=1e-13, abs=0.0)
     assert hats.areas.sum() == pytest.approx(AREA, rel=1e-14, abs=0.0)
 
@@ -86,7 +98,7 @@ def test_flat_faces_wear_in_proportion_to_their_radius():
     """k p W r at every node, the ends too: no lumping of the half hats there."""
     radius = radii()
     nodal = PER * SPEED * LOAD / AREA * moments(radius, 1) @ np.ones(17)
-    rate, exact = Hats(radius).rates(nodal)
+    rate, exact = HatBasis(radius).rates(nodal)
     assert exact
     assert rate == pytest.approx(PER * LOAD / AREA * SPEED * radius, rel=1e-12, abs=0.0)
 
@@ -95,7 +107,7 @@ def test_flat_faces_wear_in_proportion_to_their_radius():
 def test_a_narrow_contact_lets_no_face_grow_and_keeps_its_volume(touched):
     nodal = np.zeros(17)
     nodal[touched] = 1e-12
-    hats = Hats(radii())
+    hats = HatBasis(radii())
     rate, exact = hats.rates(nodal)
     assert not exact
     assert rate.min() >= 0.0 and not np.delete(rate, touched).any()
@@ -106,8 +118,8 @@ def test_a_narrow_contact_lets_no_face_grow_and_keeps_its_volume(touched):
 
 
 def test_no_contact_no_wear():
-    found = list(advance(lambda depth, motion: Average(np.zeros(5), 0.0), Hats(radii(5)), Worn(0.0, np.zeros(5)), 1e6,
-                         control()))  # fmt: skip
+    nothing, fresh = Average(np.zeros(5), 0.0), WearState(0.0, np.zeros(5))
+    found = list(advance(lambda depth, motion: nothing, HatBasis(radii(5)), fresh, 1e6, control()))
     assert found[-1][0].time == 1e6
     assert not found[-1][0].depth.any()
     assert len(found) < 5
@@ -143,8 +155,8 @@ def test_elastic_faces_run_in_as_the_exponential_says(slope, accuracy):
     (they are about one), by implicit and by explicit steps."""
     radius, start = radii(), 0.5 * ROUGH * (radii() - R_I) / (R_O - R_I)
     springs = Springs(radius, slope)
-    worn = Worn(0.0, start)
-    for worn, _ in advance(springs, Hats(radius), worn, 4 * HOUR, control(accuracy)):  # noqa: B020
+    worn = WearState(0.0, start)
+    for worn, _ in advance(springs, HatBasis(radius), worn, 4 * HOUR, control(accuracy)):  # noqa: B020
         assert worn.depth == pytest.approx(springs.exact(start, worn.time), abs=accuracy * ROUGH)
     assert worn.time == 4 * HOUR
 
@@ -154,7 +166,7 @@ def test_run_in_faces_wear_evenly():
     radius = radii()
     springs = Springs(radius)
     worn = last(springs, radius, 200.0)
-    rate, _ = Hats(radius).rates(springs(worn.depth, None).nodal)
+    rate, _ = HatBasis(radius).rates(springs(worn.depth, None).nodal)
     assert rate == pytest.approx(PER * SPEED * LOAD / (2 * math.pi * (R_O - R_I)), rel=1e-6, abs=0.0)
     assert unevenness(rate) < 1e-6
 
@@ -174,7 +186,7 @@ def test_volume_is_the_integral_of_its_rate():
     radius, start = radii(), 2e-7 * np.cos(400 * radii())
     springs = Springs(radius)
     worn = last(springs, radius, 7.0, start)
-    assert worn.volume == pytest.approx(Hats(radius).volume(worn.depth - start), rel=1e-12, abs=0.0)
+    assert worn.volume == pytest.approx(HatBasis(radius).volume(worn.depth - start), rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
@@ -188,7 +200,10 @@ def test_halving_the_step_changes_less_than_the_accuracy(accuracy):
 def test_no_step_changes_the_shape_by_more_than_allowed():
     radius = radii()
     springs = Springs(radius)
-    steps = [w.depth for w, _ in advance(springs, Hats(radius), Worn(0.0, np.zeros(17)), 2 * HOUR, control(0.5, 0.01))]
+    steps = [
+        w.depth
+        for w, _ in advance(springs, HatBasis(radius), WearState(0.0, np.zeros(17)), 2 * HOUR, control(0.5, 0.01))
+    ]
     changes = np.ptp(np.diff(steps, axis=0), axis=1)
     assert changes.max() <= 0.01 * ROUGH * (1 + 1e-12)
     assert changes.max() > 0.004 * ROUGH
@@ -203,15 +218,15 @@ def test_allowed_also_holds_where_wear_hastens_wear():
         nodal = mass @ (1e-11 * shape * (1.0 + 20.0 * depth / ROUGH))
         return Average(nodal, float(nodal.sum()))
 
-    start = Worn(0.0, np.zeros(17))
-    found = [w.depth for w, _ in advance(hastening, Hats(radius), start, 1.5 * HOUR, control(1.0, 0.05))]
+    start = WearState(0.0, np.zeros(17))
+    found = [w.depth for w, _ in advance(hastening, HatBasis(radius), start, 1.5 * HOUR, control(1.0, 0.05))]
     assert np.ptp(np.diff(found, axis=0), axis=1).max() <= 0.05 * ROUGH * (1 + 1e-12)
 
 
 def test_taken_up_from_any_step_it_goes_on_the_same():
     radius, start = radii(), ROUGH * (radii() - R_I) / (R_O - R_I) / 3
-    whole = [w for w, _ in advance(Springs(radius), Hats(radius), Worn(0.0, start), 3 * HOUR, control())]
-    rest = [w for w, _ in advance(Springs(radius), Hats(radius), whole[4], 3 * HOUR, control())]
+    whole = [w for w, _ in advance(Springs(radius), HatBasis(radius), WearState(0.0, start), 3 * HOUR, control())]
+    rest = [w for w, _ in advance(Springs(radius), HatBasis(radius), whole[4], 3 * HOUR, control())]
     assert len(rest) == len(whole) - 4
     for a, b in zip(whole[4:], rest, strict=True):
         assert (a.time, a.volume, a.span) == (b.time, b.volume, b.span)
@@ -230,7 +245,7 @@ def test_a_stage_that_fails_is_tried_shorter():
         return springs(depth, motion)
 
     before = [np.zeros(17)]
-    for worn, _ in advance(fragile, Hats(radius), Worn(0.0, before[0]), 0.3 * HOUR, control(1.0)):
+    for worn, _ in advance(fragile, HatBasis(radius), WearState(0.0, before[0]), 0.3 * HOUR, control(1.0)):
         before.append(worn.depth)
     assert failed
     assert before[-1] == pytest.approx(springs.exact(before[0], 0.3 * HOUR), abs=1e-2 * ROUGH)
@@ -243,7 +258,7 @@ def test_a_run_that_never_works_says_why():
         return Springs(radii())(depth, motion)
 
     with pytest.raises(NoAverage, match="gave up"):
-        list(advance(broken, Hats(radii()), Worn(0.0, np.zeros(17)), HOUR, control()))
+        list(advance(broken, HatBasis(radii()), WearState(0.0, np.zeros(17)), HOUR, control()))
 
 
 def test_a_wall_is_met_and_said():
@@ -258,7 +273,7 @@ def test_a_wall_is_met_and_said():
 
     found = []
     with pytest.raises(NoAverage, match="crushed"):
-        found.extend(w for w, _ in advance(wall, Hats(radii()), Worn(0.0, np.zeros(17)), 9 * HOUR, control()))
+        found.extend(w for w, _ in advance(wall, HatBasis(radii()), WearState(0.0, np.zeros(17)), 9 * HOUR, control()))
     assert len(calls) < 150
 
 
@@ -274,7 +289,7 @@ def test_scatter_is_not_taken_for_an_error():
             shaken = found.nodal * (1 + 0.01 * noise.standard_normal(17))
             return Average(shaken, float(shaken.sum()), found.slope, 0.02 * found.nodal if told else None)
 
-        counts.append(len(list(itertools.islice(
-            advance(rough, Hats(radius), Worn(0.0, np.zeros(17)), 20 * HOUR, control(1e-4)), 4000))))  # fmt: skip
+        steps = advance(rough, HatBasis(radius), WearState(0.0, np.zeros(17)), 20 * HOUR, control(1e-4))
+        counts.append(len(list(itertools.islice(steps, 4000))))
     assert counts[0] < 200
     assert counts[1] > 3 * counts[0]

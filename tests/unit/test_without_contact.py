@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn.investigate import investigate
-from sealdyn.scenario import ScenarioError, parse_scenario
-from sealdyn.scenario_study import without_contact
+from sealdyn.scenario.reader import ScenarioError, parse_scenario
+from sealdyn.scenario.settings import without_contact
+from sealdyn.studies._runner import run_study
 
 TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
@@ -29,7 +29,7 @@ def test_keys_outside_a_table_are_refused_by_name():
 
 def test_the_verdict_says_what_was_left_out(tmp_path):
     scenario = parse_scenario(TEXT + CONTACT, "x")
-    answer = investigate("equilibrium", scenario, tmp_path / "a.h5")
+    answer = run_study("equilibrium", scenario, tmp_path / "a.h5")
     assert "[contact] left out" in answer["verdict"][-1]
-    alone = investigate("equilibrium", parse_scenario(TEXT, "x"), tmp_path / "b.h5")
+    alone = run_study("equilibrium", parse_scenario(TEXT, "x"), tmp_path / "b.h5")
     assert answer["roots"] == alone["roots"]

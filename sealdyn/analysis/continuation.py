@@ -1,0 +1,144 @@
+"""A rubbing seal followed over a key: each point from the last one's end, and what its motion is like there."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..dynamics.interface import Interface
+from ..dynamics.model import Model
+from ..numerics import time_series
+from ..numerics.lyapunov import two_trajectories
+from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scenario.reader import parse_scenario
+from ..scene.scene import Closing
+from ..solvers.integrate import solve
+from ..solvers.recorder import Recorder
+from .poincare_map import SAMPLES, PeriodMap
+
+# What is led to its new value in time; anything else changes between two turns.
+LED = ("rotor.runout", "rotor.misalignment", "stator.misalignment", "shaft.speed")
+# Highest order kept of a spectrum.
+ORDERS = 5.0
+# Distance of two neighbours, in units of the scales, and how much finer they are integrated.
+FINER, APART = 100.0, 1e-4
+
+
+def part(thing, key: str):
+    """The value of a scene at a dotted key."""
+    for name in key.split("."):
+        thing = getattr(thing, name)
+    return thing
+
+
+def with_part(thing, key: str, value):
+    """The scene with another value at a dotted key."""
+    name, _, rest = key.partition(".")
+    return replace(thing, **{name: with_part(getattr(thing, name), rest, value) if rest else value})
+
+
+def frozen_at_end(scene):
+    """The scene with every table at its last value: what it drives to, closed by the law that its start decides."""
+    film = scene.film
+    if film.clearance is not None and any(
+        isinstance(p, PiecewiseLinear) for p in (film.inner_pressure, film.outer_pressure)
+    ):
+        law = Interface(scene, 1e-6).closing
+        scene = replace(scene, closing=Closing(law.balance_ratio, law.spring))
+    for table in ("shaft", "film", "rotor", "stator", "closing"):
+        owner = getattr(scene, table)
+        ends = {n: float(v.value[-1]) for n, v in vars(owner).items() if isinstance(v, PiecewiseLinear)}
+        scene = replace(scene, **{table: replace(owner, **ends)})
+    return scene
+
+
+class FilmCollapsed(RuntimeError):
+    """The film did not survive the way to a point."""
+
+
+def ramp_to(scene, key, last, x, point):
+    """Unknowns (n,) after the ramp to the scene from the value `last` and its end `x`, or from a seal without any
+    misalignment (x None).  Raises Lost."""
+    starts = {key: last} if x is not None and key in LED else {}
+    if x is None:
+        starts = {k: 0.0 for k in LED[:3] if part(scene, k)}
+    stroboscope = PeriodMap(scene, point["accuracy"])
+    if not starts:
+        return np.zeros(stroboscope.size) if x is None else x
+    span, moving = point["ramp"] * stroboscope.period, scene
+    if key == "shaft.speed" and x is not None:
+        # Whole turns, so that the phases meet.
+        span *= 2 * scene.shaft.speed / (scene.shaft.speed + last)
+    for k, start in starts.items():
+        moving = with_part(moving, k, PiecewiseLinear((0.0, span), (start, part(scene, k))))
+    problem = Model(moving, span, point["accuracy"])
+    if x is not None:
+        problem.y0[: stroboscope.size] = x
+    outcome = solve(problem, stroboscope.method, point["accuracy"], Recorder(problem))
+    if outcome.status != "ok":
+        raise FilmCollapsed(outcome.message)
+    return outcome.y[: stroboscope.size]
+
+
+def sweep_branch(point: dict) -> dict:
+    """The points of one direction, each from the end of the one before."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    scene, x, last, rows = frozen_at_end(scenario.scene), None, None, []
+    for value in point["values"]:
+        here = with_part(scene, point["key"], value)
+        row = {"value": value, "direction": point["direction"], "start": "continued" if x is not None else "aligned"}
+        try:
+            x, more = characterise(here, ramp_to(here, point["key"], last, x, point), point)
+            rows.append(row | {"status": "ok", **more})
+        except FilmCollapsed as lost:
+            x = None
+            rows.append(row | {"status": "collapsed", "message": str(lost), "class": "collapse"})
+        last = value
+    return {"rows": rows}
+
+
+def neighbours(scene, x, turns, accuracy, method=None):
+    """Exponent by two trajectories, integrated FINER than the rest: their distance must be far above the integrator's
+    error even after a turn that draws them together."""
+    fine = PeriodMap(scene, accuracy / FINER, method)
+    return two_trajectories(fine.step, x, fine.scales, turns, distance=APART)
+
+
+def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
+    """Where the motion ends up at one point: its last unknowns, and what it is like.  Raises Lost."""
+    stroboscope = PeriodMap(scene, point["accuracy"])
+    for periods in (point["drop"], point["keep"]):
+        turns = stroboscope.run(x, periods)
+        x = turns.last
+        if turns.status != "ok":
+            raise FilmCollapsed(turns.message)
+    problem = stroboscope.problem
+    scale = problem.clearance / problem.face[1]
+    exponent = neighbours(scene, x, point["exponent_turns"], point["accuracy"])
+    size = max(scale, float(np.ptp(turns.section.real)), float(np.ptp(turns.section.imag)))
+    period = time_series.period_of(turns.section[len(turns.section) // 2 :], size)
+    points, still = time_series.distinct_points(turns.section, size), time_series.shrinking(turns.section)
+    kind = time_series.classify(period, exponent.value, exponent.uncertainty, still, points)
+    orders, amplitude = time_series.spectrum(turns.ring.ravel(), SAMPLES / stroboscope.turns_per_period)
+    kept = orders <= ORDERS
+    return x, {
+        "class": "no contact" if not turns.touching.any() and period == 1 else kind,
+        "period": period,
+        "distinct": points,
+        "contacts": turns.contacts / point["keep"],
+        "contact_share": float(turns.touching.mean()),
+        "contact_force": float(turns.contact_force.mean() / problem.closing_force()),
+        "impulse": turns.impulse,
+        "contact_power": float(turns.contact_power.mean()),
+        "exponent": exponent.value,
+        "uncertainty": exponent.uncertainty,
+        "multiplier": math.exp(exponent.value * period) if period else None,
+        "section": [[float(s.real), float(s.imag)] for s in turns.section],
+        "h_min": turns.lowest.tolist(),
+        "lines": time_series.lines(orders, amplitude),
+        "orders": orders[kept].tolist(),
+        "amplitude": amplitude[kept].tolist(),
+        "end": [float(v) for v in x],
+        "evaluations": turns.evaluations,
+        "wall_time": turns.wall_time,
+    }

@@ -1,0 +1,59 @@
+"""Rules of thumb that a scene can be held against before it runs.
+
+**Source** Hayden & Keller, Design Guide for Helicopter Transmission Seals, NASA CR-120997 (1974).
+"""
+
+import math
+
+import numpy as np
+
+from ..dynamics.segments import constant_and_slope
+from ..scene.rings import RING_NAMES
+
+# Looks at one turn of the runout, and turns looked at when an order is no integer.
+POINTS, TURNS = 2000, 20
+
+
+def followability(problem) -> list[dict]:
+    """Whether the spring keeps a flexible ring on a partner that runs out axially (hang-up).
+
+    The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its
+    inertia and the change of its support springs at every angle: F > -m z_r'' - k z_r + F_f where it moves away.
+    **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of
+    following the runout.  **Valid** balanced or absent pressures, no film force, constant speed, one ring floats.
+    Returns one dict for the ring that floats, or none: `ring`, `available` (spring, N), `needed` (N), `friction`,
+    `inertia` (N), `holds`, `said`.
+    """
+    scene = problem.scene
+    floating = [k for k, floats in problem.floats.items() if floats]
+    if len(floating) != 1 or not scene.rotor.axial_runout or scene.closing.spring_force is None:
+        return []
+    k = floating[0]
+    ring = (scene.stator, scene.rotor)[k]
+    spring = constant_and_slope(scene.closing.spring_force, problem.legs[0])[0]
+    speed = constant_and_slope(scene.shaft.speed, problem.legs[0])[0]
+    friction = ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0
+    whole = all(float(r.order).is_integer() for r in scene.rotor.axial_runout)
+    phi = np.linspace(0, 2 * math.pi * (1 if whole else TURNS), POINTS * (1 if whole else TURNS))
+    z, rate, acceleration = (np.zeros_like(phi) for _ in range(3))
+    for runout in scene.rotor.axial_runout:
+        w = runout.order * speed
+        angle = runout.order * phi + runout.phase
+        z += runout.amplitude * np.cos(angle)
+        rate -= runout.amplitude * w * np.sin(angle)
+        acceleration -= runout.amplitude * w * w * np.cos(angle)
+    # A rotor that carries the runout itself has nothing to follow.
+    if k != 0:
+        return []
+    pull = -ring.mass * acceleration - ring.support.axial_stiffness * z
+    needed = float(np.max(np.where(rate <= 0, pull + friction, pull - friction)))
+    inertia = float(np.max(ring.mass * np.abs(acceleration)))
+    holds = spring > needed
+    text = (
+        f"spring {spring:.4g} N {'exceeds' if holds else 'does not exceed'} the {needed:.4g} N that the "
+        f"{RING_NAMES[k]} needs to follow the axial runout (secondary-seal friction {friction:.4g} N, inertia "
+        f"{inertia:.4g} N, support springs; NASA CR-120997): "
+        + ("the faces stay together" if holds else "the faces part (hang-up)")
+    )
+    return [{"rule": "hang-up", "ring": RING_NAMES[k], "available": spring, "needed": needed, "friction": friction,
+             "inertia": inertia, "holds": holds, "said": text}]  # fmt: skip

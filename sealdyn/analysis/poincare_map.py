@@ -1,0 +1,229 @@
+"""A driven seal seen once per period of its forcing: the period map, runs of whole periods, tangents of the map.
+
+**Source** Moon, *Chaotic Vibrations* (1987), ch. 2 (stroboscopic section); the tangents are those of the equations of
+motion, differenced across the right-hand side and integrated beside the motion.
+**Valid** constant conditions and commensurate forcing.  A ring that sticks has no map with a derivative.
+"""
+
+import math
+import time as clock
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..dynamics.model import Model
+from ..dynamics.signals import signals
+from ..scene.scene import SceneError
+from ..solvers.contract import Counts, SolverFailure, tolerance_for
+from ..solvers.integrate import solve
+from ..solvers.methods import METHODS
+from ..solvers.recorder import Recorder
+
+# Periods integrated at a time; samples of a period.
+PIECE, SAMPLES = 250, 64
+# Step across the right-hand side, in units of the scales; accuracy of tangents relative to their length.
+ACROSS, TANGENT = 1e-6, 1e-6
+
+
+@dataclass(frozen=True)
+class PeriodSamples:
+    """Whole periods of a run.  `section` (m,) relative tilt (rad, complex, fixed axes) at the start of each; `tilt`
+    (m, samples) the same all along; `ring` (m, samples) tilt of a flexible ring about xi (rad); `h_min`,
+    `contact_force`, `friction_power`, `contact_power` (m, samples) in SI; `lowest` (m,) smallest film of each period
+    (m); `touching` (m,) share of each period in contact; `contacts` touches that ended or go on; `impulse` of contact
+    per period (N s); `last` (n,) unknowns at the end; `status`, `message`;
+    `evaluations` and wall time (s) per period."""
+
+    section: np.ndarray
+    tilt: np.ndarray
+    ring: np.ndarray
+    h_min: np.ndarray
+    contact_force: np.ndarray
+    friction_power: np.ndarray
+    contact_power: np.ndarray
+    lowest: np.ndarray
+    touching: np.ndarray
+    contacts: int
+    impulse: float
+    last: np.ndarray
+    status: str
+    message: str
+    evaluations: float
+    wall_time: float
+
+
+class PeriodMap:
+    """The period map of a scene by one method at one accuracy; `method` None: what the scene wants.
+    Raises ImpossibleScene if there is no period."""
+
+    def __init__(self, scene, accuracy: float = 1e-6, method: str | None = None):
+        self.scene, self.accuracy = scene, accuracy
+        probe = Model(scene, 1.0, accuracy)
+        period = probe.period()
+        if period is None or not probe.constant:
+            raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
+        self.period = float(period)
+        self.problem = Model(scene, self.period, accuracy)
+        self.method = method or self.problem.solver()[0]
+        self.size = self.problem.n if self.problem.massless else self.problem.n_mechanical
+        self.scales = self.problem.scales[: self.size]
+        self.turns_per_period = self.period * abs(scene.shaft.speed) / (2 * math.pi)
+
+    def step(self, x) -> np.ndarray:
+        """The unknowns (n,) one period later."""
+        problem = self.problem
+        if problem.sticking:
+            raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "smooth" for exponents')
+        leg = problem.begin(0)
+        y = np.zeros(problem.size)
+        y[: self.size] = x
+        tolerance = tolerance_for(self.method, self.accuracy, problem.memory)
+        for _, block, _ in METHODS[self.method](problem, leg, 0.0, y, self.method, tolerance, Counts()):
+            last = block[-1]
+        return last[: self.size].copy()
+
+    def run(self, x, periods: int) -> PeriodSamples:
+        """Whole periods from the unknowns x (n,); ends early if the film collapses."""
+        parts, done = [], 0
+        while done < periods:
+            count = min(PIECE, periods - done)
+            parts.append(self._piece(x, count))
+            x, done = parts[-1].last, done + count
+            if parts[-1].status != "ok":
+                break
+        return joined(parts)
+
+    def _piece(self, x, periods: int) -> PeriodSamples:
+        problem = Model(self.scene, periods * self.period, self.accuracy)
+        problem.y0[: self.size] = x
+        sink, begun = Recorder(problem, self.period / SAMPLES), clock.perf_counter()
+        outcome = solve(problem, self.method, self.accuracy, sink)
+        t, q, rate = sink.arrays()
+        whole = min(periods, int(t[-1] / self.period * (1 + 1e-9))) * SAMPLES
+        touched = []
+        problem.tell_contacts(touched.extend, end=(outcome.tau, outcome.y))
+        end = problem.legs[outcome.leg].time + outcome.tau
+        share = touching(touched, self.period * np.arange(whole // SAMPLES + 1), end)
+        impulse = float(outcome.y[problem.layout.impulse]) if problem.layout.extended else 0.0
+        spent = clock.perf_counter() - begun
+        return PeriodSamples(
+            **self.looked_at(t[:whole], q[:whole], rate[:whole], problem), touching=share,
+            contacts=sum(e["kind"] == "contact" for e in touched), impulse=impulse / periods,
+            last=outcome.y[: self.size].copy(), status=outcome.status, message=outcome.message,
+            evaluations=outcome.counts.rhs / periods, wall_time=spent / periods,
+        )  # fmt: skip
+
+    def looked_at(self, t, q, rate, problem=None) -> dict:
+        """What is kept of a motion sampled SAMPLES times a period: displacements and rates (m, n)."""
+        problem = problem or self.problem
+        starts = np.array([leg.time for leg in problem.legs])
+        legs = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
+        parts = []
+        for k in np.unique(legs):
+            problem.begin(int(k))
+            inside = legs == k
+            parts.append(signals(problem, t[inside] - starts[k], q[inside], rate[inside]))
+        names = parts[0] if parts else ()
+        seen = {name: np.concatenate([p[name] for p in parts]).reshape(-1, SAMPLES) for name in names}
+        if not seen:
+            return dict.fromkeys(("section", "lowest"), np.empty(0)) | dict.fromkeys(
+                ("tilt", "ring", "h_min", "contact_force", "friction_power", "contact_power"), np.empty((0, SAMPLES))
+            )
+        tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
+        ring = "stator" if problem.floats[0] else "rotor"
+        torque = seen.get("contact_torque", np.zeros(tilt.shape))
+        spin = self.scene.shaft.speed - self.scene.stator.speed
+        return {
+            "section": tilt[:, 0], "tilt": tilt, "ring": seen[f"{ring}_tilt_x"], "h_min": seen["h_min"],
+            "contact_force": seen.get("contact_force", np.zeros(tilt.shape)), "friction_power": seen["friction_power"],
+            "contact_power": torque * spin, "lowest": dips(seen["h_min"]),
+        }  # fmt: skip
+
+    def tangents(self, x, q, samples: list | None = None):
+        """One period by DOP853: the unknowns (n,) and the tangents (n, k), in units of the scales; keeps the motion,
+        SAMPLES times, in `samples` as (displacements, rates)."""
+        from scipy.integrate import DOP853
+
+        problem, n, k = self.problem, self.size, q.shape[1]
+        if problem.massless or problem.sticking:
+            raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
+        problem.begin(0)
+        y, yp, scales = np.zeros(problem.size), np.zeros(problem.size), self.scales
+
+        def rate(tau, z):
+            out = np.empty_like(z)
+            y[:n] = z[:n]
+            problem.rhs(tau, y, yp)
+            out[:n] = yp[:n]
+            vectors, moved = z[n:].reshape(k, n), out[n:].reshape(k, n)
+            for v, dv in zip(vectors, moved, strict=True):
+                # A tangent grows as it goes: the step keeps its length.
+                size = ACROSS / max(float(np.linalg.norm(v)), 1e-30)
+                y[:n] = z[:n] + size * scales * v
+                problem.rhs(tau, y, yp)
+                dv[:] = yp[:n]
+                y[:n] = z[:n] - size * scales * v
+                problem.rhs(tau, y, yp)
+                dv[:] = (dv - yp[:n]) / (2 * size * scales)
+            return out
+
+        tolerance = tolerance_for("dop853", self.accuracy, problem.memory)
+        relative = np.concatenate([np.full(n, max(tolerance, 2.3e-14)), np.full(k * n, TANGENT)])
+        absolute = np.concatenate([tolerance * scales, np.full(k * n, TANGENT)])
+        solver = DOP853(rate, 0.0, np.concatenate([x, q.T.ravel()]), self.period, rtol=relative, atol=absolute)
+        due, done = self.period * np.arange(SAMPLES) / SAMPLES, 0
+        while solver.status == "running":
+            message = solver.step()
+            if solver.status == "failed":
+                raise SolverFailure(f"dop853 gave up on the tangents: {message}")
+            last = int(np.searchsorted(due, solver.t, side="left"))
+            if samples is not None and last > done:
+                seen = solver.dense_output()(due[done:last])[:n].T
+                samples.append((seen[:, : problem.n], seen[:, problem.rate_places]))
+                done = last
+        return solver.y[:n].copy(), solver.y[n:].reshape(k, n).T.copy()
+
+
+def touching(touched: list[dict], starts, end: float) -> np.ndarray:
+    """Share of each period, `starts` (m + 1,) s, in contact."""
+    spans = [(e["time"], e["lift_off"] if np.isfinite(e["lift_off"]) else end)
+             for e in touched if e["kind"] == "contact"]  # fmt: skip
+    total = np.zeros(len(starts))
+    for a, b in spans:
+        total += np.clip(starts - a, 0.0, b - a)
+    return np.diff(total) / np.diff(starts)
+
+
+def dips(h) -> np.ndarray:
+    """Smallest of each row of samples (m, samples) of a smooth series: the vertex of a parabola where it is low."""
+    flat = h.ravel()
+    at = np.clip(np.argmin(h, axis=1) + h.shape[1] * np.arange(len(h)), 1, len(flat) - 2)
+    a, b, c = flat[at - 1], flat[at], flat[at + 1]
+    bend = a - 2 * b + c
+    vertex = b - (a - c) ** 2 / (8 * np.where(bend > 0, bend, np.inf))
+    return np.minimum(h.min(axis=1), np.where((b <= a) & (b <= c), vertex, b))
+
+
+def joined(parts: list[PeriodSamples]) -> PeriodSamples:
+    """Runs that follow each other as one."""
+    if len(parts) == 1:
+        return parts[0]
+    rows = {name: np.concatenate([getattr(p, name) for p in parts]) for name in PeriodSamples.__annotations__
+            if isinstance(getattr(parts[0], name), np.ndarray) and name != "last"}  # fmt: skip
+    weights = np.array([max(len(p.section), 1) for p in parts], dtype=float)
+    means = {name: float(np.average([getattr(p, name) for p in parts], weights=weights))
+             for name in ("impulse", "evaluations", "wall_time")}  # fmt: skip
+    # A contact that goes on over the seam of two pieces counts once more: as little as one in PIECE periods.
+    return PeriodSamples(**rows, **means, contacts=sum(p.contacts for p in parts), last=parts[-1].last,
+                 status=parts[-1].status, message=parts[-1].message)  # fmt: skip
+
+
+def share_below(h, level: float) -> np.ndarray:
+    """Share of each row (m, samples) of an evenly sampled film below a level, straight between samples."""
+    flat = h.ravel()
+    a, b = flat - level, np.append(flat[1:], flat[-1]) - level
+    below = np.where(a < 0, 1.0, 0.0)
+    crossing = a * b < 0
+    part = np.abs(a) / np.where(crossing, np.abs(a) + np.abs(b), 1.0)
+    below = np.where(crossing, np.where(a < 0, part, 1.0 - part), below)
+    return below.reshape(h.shape).mean(axis=1)

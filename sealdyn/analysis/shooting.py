@@ -1,0 +1,165 @@
+"""Periodic steady state by shooting, and its Floquet multipliers.
+
+**Source** Newton's method on the period map P(x) = x (Nayfeh & Balachandran, Applied Nonlinear Dynamics, 1995,
+sec. 5.2); the multipliers are the eigenvalues of dP/dx at the orbit, and the orbit is stable when all lie inside
+the unit circle.  The derivative comes from fourth-order central differences of the flow.
+**Valid** constant conditions and commensurate forcing; a scene without forcing has its rest state as orbit.
+"""
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+
+from ..dynamics.extrema import H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
+from ..dynamics.model import Model
+from ..solvers.contract import Counts, SolverFailure
+from ..solvers.integrate import solve
+from ..solvers.methods import METHODS
+from ..solvers.recorder import Recorder
+
+TIGHT = 1e-13
+# Differences of the flow: steps in units of the scales.  The error is the fourth power of the step plus the
+# integrator's tolerance over the step.
+DIFFERENCE = 3e-3
+# Right-hand sides that each of its fastest forcing periods may cost; a healthy one takes some hundreds.
+CRAWLING = 10_000
+WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
+
+
+class NoOrbit(ValueError):
+    """There is no isolated periodic orbit, or Newton did not find it: the sentence says which."""
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic steady state: period (s), mechanical unknowns at its start, monodromy matrix and its eigenvalues,
+    what Newton left (in units of the scales), periods integrated on the way, and the extremes over the orbit."""
+
+    period: float
+    start: np.ndarray
+    monodromy: np.ndarray
+    multipliers: np.ndarray
+    residual: float
+    periods_used: int
+    extremes: dict
+
+    @property
+    def stable(self) -> bool:
+        """All multipliers inside the unit circle."""
+        return bool(np.max(np.abs(self.multipliers)) < 1.0)
+
+
+class Shooter:
+    """The period map of a scene, integrated at the tolerance `tight`.
+    Raises NoOrbit if the forcing has no common period."""
+
+    def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
+        self.scene, self.accuracy, self.tight = scene, accuracy, tight
+        probe = Model(scene, 1.0, accuracy)
+        period = probe.period()
+        if period is None or not probe.constant:
+            raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
+        if probe.sticking:
+            raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
+        self.period = float(turns * period)
+        self.problem = Model(scene, self.period, accuracy)
+        # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
+        method, _ = self.problem.solver()
+        self.method = {"adams": "dop853", "bdf": "radau"}.get(method, method)
+        n = self.problem.n if self.problem.massless else self.problem.n_mechanical
+        self.size, self.scales = n, self.problem.scales[:n]
+        self.flows = 0
+
+    def flow(self, start: np.ndarray) -> np.ndarray:
+        """The unknowns one period later."""
+        problem = self.problem
+        leg = replace(problem.begin(0), span=Fraction(self.period))
+        y = np.zeros(problem.size)
+        y[: self.size] = start
+        self.flows += 1
+        tolerance = self.tight if self.method != "ida" else max(self.tight, 1e-11)
+        counts = Counts()
+        for _, block, _ in METHODS[self.method](problem, leg, 0.0, y, self.method, tolerance, counts):
+            last = block[-1]
+            if counts.rhs > CRAWLING * max(1.0, self.period / problem.fast_time):
+                raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
+        return last[: self.size].copy()
+
+    def monodromy(self, start: np.ndarray) -> np.ndarray:
+        """Derivative of the period map at `start`, (size, size), in units of the scales."""
+        matrix = np.empty((self.size, self.size))
+        for j in range(self.size):
+            column = np.zeros(self.size)
+            for steps, weight in WEIGHTS:
+                moved = start.copy()
+                moved[j] += steps * DIFFERENCE * self.scales[j]
+                column += weight * self.flow(moved)
+            matrix[:, j] = column / DIFFERENCE / self.scales
+        return matrix
+
+    def guess(self) -> np.ndarray:
+        """The linear steady state at the start of the period."""
+        self.problem.begin(0)
+        return self.problem.steady_start()[: self.size]
+
+    def find(self, guess=None, monodromy=None, target: float = 1e-11, most: int = 12) -> Orbit:
+        """Newton from `guess` (default: the linear steady state).  A `monodromy` handed in is used unchanged as
+        long as it contracts (chord method), and only the last one is computed anew.  Raises NoOrbit."""
+        x = self.guess() if guess is None else np.array(guess, dtype=float)
+        frozen = monodromy is not None
+        before = np.inf
+        begun = self.flows
+        for _ in range(most):
+            try:
+                defect = (self.flow(x) - x) / self.scales
+            except SolverFailure as failure:
+                raise NoOrbit(f"the period map failed: {failure}") from None
+            size = float(np.max(np.abs(defect)))
+            if not np.isfinite(size) or size > 1e3:
+                raise NoOrbit("Newton diverged: no periodic orbit near the linear steady state")
+            # Below the target, or at the integrator's own noise.
+            if size < target or (size < 1e3 * target and size > 0.3 * before):
+                break
+            if monodromy is None or (frozen and size > 0.2 * before):
+                monodromy, frozen = self.monodromy(x), False
+            elif not frozen:
+                monodromy = self.monodromy(x)
+            x = x + self._correction(monodromy, defect) * self.scales
+            before = size
+        else:
+            raise NoOrbit(f"Newton did not converge in {most} steps (defect {size:.1e} of the scales)")
+        if monodromy is None or not frozen:
+            monodromy = self.monodromy(x) if monodromy is None else monodromy
+        return Orbit(
+            self.period, x, monodromy, np.linalg.eigvals(monodromy), size, self.flows - begun, self.extremes(x)
+        )
+
+    def _correction(self, monodromy, defect):
+        matrix = np.eye(self.size) - monodromy
+        if np.min(np.abs(np.linalg.eigvals(matrix))) < 1e-10:
+            raise NoOrbit("a multiplier is one: the orbit is not isolated (no damping, or a bifurcation)")
+        return np.linalg.solve(matrix, defect)
+
+    def extremes(self, start: np.ndarray, per_period: int | None = None) -> dict:
+        """Located extremes over one period: h_min with place and time, relative misalignment."""
+        problem = Model(self.scene, self.period, self.accuracy)
+        problem.y0[: self.size] = start
+        recorder = Recorder(problem, self.period / per_period if per_period else None)
+        method = "ida" if problem.massless else problem.solver()[0]
+        outcome = solve(problem, method, self.accuracy, recorder)
+        record = problem.records[0]
+        found = {
+            "h_min": {
+                "value": float(record[H]),
+                "time": float(record[H_TAU]),
+                "theta": float(record[H_THETA]),
+                "radius": float(record[H_RADIUS]),
+                "of_clearance": float(record[H] / problem.clearance),
+            },
+            "relative_misalignment": {"max": float(record[MOST]), "min": float(record[LEAST])},
+            "collapsed": outcome.status == "collapsed",
+        }
+        if per_period:
+            found["times"], found["displacements"], found["rates"] = recorder.arrays()
+        return found

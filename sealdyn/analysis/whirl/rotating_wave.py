@@ -1,0 +1,234 @@
+"""Circular whirl of the aligned seal, free of forcing, as a relative equilibrium: no time integration.
+
+A scene without forcing looks the same from every angle, so it has motions that only turn: every tilt is
+`q exp(i omega t)`, every axial displacement constant.  In the frame turning with omega that is a point where the
+net moments equal `-omega^2 I q`.  The family of such points, shaft speed against whirl amplitude, leaves the
+aligned seal at the stability threshold (a Hopf bifurcation): falling speed means subcritical.
+**Source** Golubitsky, Stewart & Schaeffer (1988), Singularities and Groups II, ch. XVI (rotating waves).
+**Valid** rings, supports and film alike in all directions (all of this package's), constant parameters.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq, root
+
+from ...dynamics import equations
+from ...dynamics.imposed_motion import ROTOR_SPEED
+from ...dynamics.model import Model
+from ...faces.geometry import smallest_gap
+from ...numerics.piecewise_linear import PiecewiseLinear
+from ...scene.excitation import Housing, Shaft
+from ...scene.scene import Initial, RingStart
+
+SPEED_AT = equations.LEG_AT + ROTOR_SPEED
+# A solution's residual, relative to the scales of force; central-difference step of the linearisation.
+SOLVED, STEP = 1e-9, 1e-5
+
+
+@dataclass(frozen=True)
+class Whirl:
+    """One circular whirl: amplitude |g| of the relative tilt (rad), shaft speed and whirl frequency (rad/s), axial
+    opening of the gap (m), smallest film thickness (m), displacements `q` (n,) and unknowns `y` (size,), and
+    growth rate (1/s) of the least damped disturbance of it at constant speed."""
+
+    amplitude: float
+    speed: float
+    frequency: float
+    opening: float
+    h_min: float
+    growth: float
+    q: np.ndarray
+    y: np.ndarray
+
+
+def unforced(scene, speed: float):
+    """The scene aligned and free of forcing, at constant conditions (tables at time zero) and one shaft speed
+    (rad/s), with a tilt to start from so that its tilts are unknowns."""
+
+    def first(table):
+        now = {n: v.at(0.0) for n, v in vars(table).items() if isinstance(v, PiecewiseLinear)}
+        return replace(table, **now)
+
+    still = dict(misalignment=0.0)
+    nudge = RingStart(tilt_x=1e-6)
+    return replace(
+        scene,
+        shaft=Shaft(speed=speed),
+        film=first(scene.film),
+        closing=first(scene.closing),
+        rotor=replace(first(scene.rotor), **still, runout=0.0, axial_runout=[]),
+        stator=replace(first(scene.stator), **still),
+        housing=Housing(),
+        initial=Initial(rotor=nudge, stator=nudge),
+    )
+
+
+def free_problem(scene, speed: float, duration: float = 1.0, accuracy: float = 1e-8) -> Model:
+    """Model of the unforced scene at a speed (rad/s), its film evaluated to `accuracy`."""
+    return Model(unforced(scene, speed), duration, accuracy)
+
+
+class RotatingWave:
+    """Circular whirls of one free problem, its unknowns and scales at hand."""
+
+    def __init__(self, problem: Model):
+        self.problem, self.n = problem, problem.n
+        self.places = problem.rate_places
+        names = problem.names
+        self.tilts = [i for i, name in enumerate(names) if name.endswith("tilt_x")]
+        self.signs = [1.0 if names[i].startswith("stator") else -1.0 for i in self.tilts]
+        self.axial = [i for i, name in enumerate(names) if name.endswith("_z")]
+        self.axial_signs = [1.0 if names[i].startswith("stator") else -1.0 for i in self.axial]
+        self.scales = problem.scales[: self.n]
+        self.pace = problem.pace
+
+    def turned(self, q) -> np.ndarray:
+        """Displacements turned by a quarter in the tilt planes, zero along the axis."""
+        out = np.zeros_like(q)
+        for i in self.tilts:
+            out[i], out[i + 1] = -q[i + 1], q[i]
+        return out
+
+    def state(self, q, frequency) -> np.ndarray:
+        """Unknowns of a circular whirl: rates are the tilts turned by a quarter, times the frequency (rad/s)."""
+        return self.problem.unknowns(q, frequency * self.turned(q))
+
+    def relative(self, q):
+        """Relative tilt g_x + i g_y (rad), stator minus rotor, of displacements (n,) or (n, m)."""
+        return sum(s * (q[i] + 1j * q[i + 1]) for s, i in zip(self.signs, self.tilts, strict=True))
+
+    def opening(self, q) -> float:
+        """How much wider the axial gap is than at rest (m)."""
+        return float(sum(s * q[i] for s, i in zip(self.axial_signs, self.axial, strict=True)))
+
+    def least_film(self, q) -> float:
+        """Smallest film thickness over the face (m)."""
+        return float(smallest_gap(self.problem.face, self.opening(q), abs(self.relative(q)))[0])
+
+    def _accelerations(self, y, speed):
+        self.problem.p[SPEED_AT] = speed
+        yp = np.empty(self.problem.size)
+        self.problem.rhs(0.0, y, yp)
+        return yp
+
+    def _unbalance(self, x, amplitude):
+        """Accelerations left over (n,) and the two conditions that fix amplitude and phase; all scaled."""
+        q, frequency, speed = x[: self.n] * self.scales, x[-2] * self.pace, x[-1] * self.pace
+        yp = self._accelerations(self.state(q, frequency), speed)
+        wanted = frequency**2 * self.turned(self.turned(q))
+        left = (yp[self.places] - wanted) / (self.scales * self.pace**2)
+        fault = (self.relative(q) - amplitude) / self.scales[self.tilts[0]]
+        return np.concatenate([left, [fault.real, fault.imag]])
+
+    def solve(self, amplitude: float, guess) -> Whirl | None:
+        """The whirl of a relative amplitude (rad) near `guess` = (q, frequency, speed); None if there is none."""
+        q, frequency, speed = guess
+        x = np.concatenate([q / self.scales, [frequency / self.pace, speed / self.pace]])
+        found = root(self._unbalance, x, args=(amplitude,), tol=1e-13)
+        if not np.max(np.abs(found.fun)) < SOLVED:
+            return None
+        q, frequency, speed = found.x[: self.n] * self.scales, found.x[-2] * self.pace, found.x[-1] * self.pace
+        y = self.state(q, frequency)
+        return Whirl(
+            amplitude, float(speed), float(frequency), self.opening(q), self.least_film(q),
+            self._growth(y, frequency, speed), q, y,
+        )  # fmt: skip
+
+    def _growth(self, y, frequency, speed) -> float:
+        """Largest growth rate (1/s) of disturbances in the turning frame, the neutral one of phase left out."""
+        m, scales = self.problem.n_mechanical, self.problem.scales
+        matrix = np.empty((m, m))
+        for j in range(m):
+            step, sides = STEP * scales[j], []
+            for sign in (1, -1):
+                moved = y.copy()
+                moved[j] += sign * step
+                sides.append(self._accelerations(moved, speed)[:m])
+            matrix[:, j] = (sides[0] - sides[1]) / (2 * step)
+        for i in self.tilts:
+            for a, b in ((i, i + 1), (self.places[i], self.places[i + 1])):
+                matrix[a, b] += frequency
+                matrix[b, a] -= frequency
+        values = np.linalg.eigvals(matrix)
+        return float(np.max(np.delete(values, np.argmin(np.abs(values))).real))
+
+    def onset(self, speed: float):
+        """Guess at zero amplitude: shape (relative tilt 1) and frequency of the least damped tilt mode at the
+        threshold `speed` (rad/s)."""
+        frequency, shape = least_damped(self.problem, speed)
+        return np.array(shape), frequency, speed
+
+
+def least_damped(problem: Model, speed: float):
+    """Whirl frequency (rad/s, positive forward) and shape of the least damped tilt mode at a speed (rad/s): the
+    displacements (n,) of a circular whirl whose relative tilt is 1 along xi."""
+    linear = problem.linear_scene(speed=speed)
+    values, shapes = linear.eigen()
+    tilting = [k for k in range(len(values)) if np.linalg.norm(shapes[0::3, k]) < 0.02 * np.linalg.norm(shapes[:, k])]
+    k = max(tilting, key=lambda i: values[i].real)
+    value, shape = values[k], shapes[:, k]
+    # x + i y turns with exp(value t) or, of the conjugate eigenvalue, with its mirror image.
+    forward, backward = shape[1::3] + 1j * shape[2::3], np.conj(shape[1::3] - 1j * shape[2::3])
+    ahead = np.linalg.norm(forward) > np.linalg.norm(backward)
+    whirl, frequency = (forward, value.imag) if ahead else (backward, -value.imag)
+    signs = [linear.rings[r].sign for r in linear.floating]
+    whirl = whirl / sum(s * w for s, w in zip(signs, whirl, strict=True))
+    q = np.zeros(problem.n)
+    for a, i in enumerate(i for i, name in enumerate(problem.names) if name.endswith("tilt_x")):
+        q[i], q[i + 1] = whirl[a].real, whirl[a].imag
+    return float(frequency), q
+
+
+def branch(problem: Model, threshold: float, steps: int = 48) -> list[Whirl]:
+    """Circular whirls from the threshold speed (rad/s) up to contact, by continuation in the amplitude.
+
+    The last one has its film at the floor, unless the family ends before (a fold in the amplitude).
+    """
+    whirling = RotatingWave(problem)
+    shape, frequency, speed = whirling.onset(threshold)
+    floor = problem.face[4]
+    touching = contact_tilt_aligned(problem)
+    found, amplitude, step = [], 0.0, touching / steps
+    while len(found) < 6 * steps and step > 1e-4 * touching:
+        guess = _ahead(found, amplitude + step) if found else (shape * step, frequency, speed)
+        whirl = whirling.solve(amplitude + step, guess)
+        if whirl is None:
+            step /= 2
+            continue
+        if whirl.h_min < floor:
+            return [*found, _at_contact(whirling, found, whirl, floor)]
+        found.append(whirl)
+        amplitude += step
+    return found
+
+
+def contact_tilt_aligned(problem: Model) -> float:
+    """Relative tilt (rad) at which the faces touch without axial opening."""
+    face = problem.face
+    beyond = 2 * (problem.clearance / face[0] + abs(face[3]))
+    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0], 0.0, beyond))
+
+
+def _ahead(found, amplitude):
+    """Guess by the last two whirls' straight line."""
+    last = found[-1]
+    if len(found) < 2:
+        scale = amplitude / last.amplitude
+        return last.q * scale, last.frequency, last.speed
+    t = (amplitude - last.amplitude) / (last.amplitude - found[-2].amplitude)
+    return tuple(getattr(last, n) + t * (getattr(last, n) - getattr(found[-2], n)) for n in ("q", "frequency", "speed"))
+
+
+def _at_contact(whirling, found, beyond, floor):
+    """The whirl between the last one found and one beyond contact whose film is at the floor."""
+    last = found[-1]
+    kept = {}
+
+    def excess(amplitude):
+        kept[amplitude] = whirling.solve(amplitude, (last.q * amplitude / last.amplitude, last.frequency, last.speed))
+        return kept[amplitude].h_min - floor
+
+    low = last.amplitude
+    at = brentq(excess, low, beyond.amplitude, xtol=1e-12 * low, rtol=1e-12)
+    return kept[at]

@@ -1,0 +1,155 @@
+"""Whirl of the unforced seal in the time domain: growth of a small one, fate of a large one, what tips it."""
+
+import math
+
+import numpy as np
+
+from ...solvers.contract import attainable
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+from .rotating_wave import RotatingWave, contact_tilt_aligned, free_problem, least_damped
+
+# Amplitude of a small disturbance over the tilt of contact: its square is lost in the growth rate.
+SMALL = 3e-4
+PER_TURN = 8
+TIGHTER = 1 / 30
+
+
+class Until(Recorder):
+    """Records displacements, and ends the run once the relative tilt falls below `least` (rad)."""
+
+    def __init__(self, whirling, interval, least=0.0):
+        super().__init__(whirling.problem, interval)
+        self.whirling, self.least = whirling, least
+
+    def state(self, index, tau, y):
+        if abs(self.whirling.relative(y[: self.whirling.n])) < self.least:
+            raise KeyboardInterrupt
+
+
+def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=math.inf):
+    """Relative tilt in time from a start `(q, frequency)`, or the least damped mode at relative tilt `start` (rad);
+    ends when it falls below `least` (rad), kept at least every `interval` (s).
+    Returns (outcome, times (m,), relative tilt (m,) complex, problem)."""
+    turn = 2 * math.pi / abs(speed)
+    problem = free_problem(scene, speed, turns * turn, accuracy)
+    whirling = RotatingWave(problem)
+    if isinstance(start, float):
+        frequency, shape = least_damped(problem, speed)
+        start = (start * shape, frequency)
+    problem.y0 = whirling.state(*start)
+    sink = Until(whirling, min(turn / PER_TURN, interval), least)
+    outcome = solve(problem, method, accuracy, sink)
+    t, q, _ = sink.arrays()
+    return outcome, t, whirling.relative(q.T), problem
+
+
+def fitted(t, tilt) -> tuple[float, float]:
+    """Growth rate (1/s) of |tilt| over the last three quarters, and how far its two halves differ from it."""
+    late = t > 0.25 * t[-1]
+    t, size = t[late], np.log(np.abs(tilt[late]))
+    half = len(t) // 2
+    parts = (slice(None), slice(half), slice(half, None))
+    whole, first, second = (float(np.polyfit(t[part], size[part], 1)[0]) for part in parts)
+    return whole, max(abs(first - whole), abs(second - whole))
+
+
+def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
+    """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until method and fit cannot
+    decide its sign.
+
+    `numerical_damping` bounds the method's own share: the change on tightening by thirty, or what the asked accuracy
+    lets pass, whichever is more; `uncertainty` adds the fit's
+    spread; `decided` whether the rate is three times that; `eigenvalue` the linear rate, for comparison only.
+    """
+    problem = free_problem(scene, speed)
+    values = [m.value.real for m in problem.linear_scene().modes() if m.kind == "tilt"]
+    start = SMALL * contact_tilt_aligned(problem)
+    # Some forty samples of a disturbance that dies within a turn.
+    interval = 0.2 / max(abs(max(values)), 1e-300)
+
+    def rate_at(accuracy):
+        _, t, tilt, problem = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
+        # A disturbance that sinks into the tolerance, or is no longer small, says nothing more.
+        fit = (np.abs(tilt) > 1e-3 * start) & (np.abs(tilt) < 10 * start)
+        upto = len(t) if fit.all() else max(int(np.argmin(fit)), 16)
+        t, tilt = t[:upto], tilt[:upto]
+        scale = problem.clearance / problem.face[1]
+        allowed = accuracy * scale / np.min(np.abs(tilt)) / (0.75 * t[-1])
+        return *fitted(t, tilt), allowed, attainable(method, problem.memory)
+
+    rate, *_ = rate_at(accuracy)
+    while True:
+        finer, spread, allowed, best = rate_at(accuracy * TIGHTER)
+        # What tightening changed, or what the asked accuracy would let pass, whichever is more.
+        own = float(max(abs(finer - rate), allowed))
+        if own + spread < 0.1 * abs(finer) or accuracy * TIGHTER**2 < best:
+            break
+        rate, accuracy = finer, accuracy * TIGHTER
+    uncertainty = own + spread
+    return {
+        "rate": finer,
+        "uncertainty": uncertainty,
+        "numerical_damping": own,
+        "decided": bool(abs(finer) > 3 * uncertainty),
+        "eigenvalue": float(max(values)),
+        "accuracy": accuracy * TIGHTER,
+    }
+
+
+def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns: int = 4000) -> dict:
+    """Smallest circular whirl in the shape of the least damped mode (gap not opened) that grows to contact, by
+    bisection between decay and contact; and the whirl both last runs linger at before they part.
+
+    `disturbance`, `whirl`: relative tilts (rad); `frequency` of that whirl (rad/s); `apart` its uncertainty (rad).
+    """
+    unit = contact_tilt_aligned(free_problem(scene, speed))
+    low, high, runs = 0.0, 0.985 * unit, {}
+
+    def tips(amplitude):
+        outcome, t, tilt, _ = followed(scene, speed, most_turns, "adams", accuracy, amplitude, 0.3 * amplitude)
+        runs[amplitude] = (t, tilt)
+        return outcome.status == "collapsed"
+
+    if not tips(high):
+        return {"disturbance": None, "whirl": None, "said": "no whirl short of contact tips it"}
+    while high - low > 1e-6 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if tips(middle) else (middle, high)
+        runs = {a: run for a, run in runs.items() if a in (low, high)}
+    if low == 0.0:
+        return {"disturbance": None, "whirl": None, "said": "any whirl tips it"}
+    t, a = runs[low]
+    b = runs[high][1][: len(a)]
+    t, a = t[: len(b)], a[: len(b)]
+    apart = np.abs(np.abs(a) - np.abs(b))
+    # The runs stay together until they leave the whirl for good, one way each.
+    last = int(np.argmax(apart > 1e-4 * unit)) - 1
+    window = slice(max(0, last - 4 * PER_TURN), last + 1)
+    frequency = float(np.polyfit(t[window], np.unwrap(np.angle(a[window])), 1)[0])
+    whirl = 0.5 * float(abs(a[last]) + abs(b[last]))
+    return {"disturbance": 0.5 * (low + high), "whirl": whirl, "frequency": frequency, "apart": float(apart[last])}
+
+
+def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000) -> dict:
+    """What becomes of a whirl at a speed: "decays", "bounded" (with its amplitude `whirl`, rad) or "contact".
+
+    `start` "small" (a tenth of contact) or "large" (displacements `shape`, turning at `frequency`).
+    """
+    problem = free_problem(scene, speed)
+    unit = contact_tilt_aligned(problem)
+    linear = max(m.value.real for m in problem.linear_scene().modes() if m.kind == "tilt")
+    turns = min(most, int(9 / abs(linear) * abs(speed) / (2 * math.pi)) + 50)
+    begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
+    least = 0.03 * unit
+    outcome, t, tilt, _ = followed(scene, speed, turns, "adams", accuracy, begin, least)
+    size = np.abs(tilt)
+    row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * abs(speed) / (2 * math.pi))}
+    if outcome.status == "collapsed":
+        return {"fate": "contact", **row}
+    if outcome.status == "interrupted":
+        return {"fate": "decays", **row}
+    late = size[t > 0.9 * t[-1]]
+    if np.ptp(late) < 1e-3 * late[-1]:
+        return {"fate": "bounded", **row, "whirl": float(late[-1]), "drift": float(np.ptp(late))}
+    return {"fate": "decays" if late[-1] < late[0] else "grows", **row}

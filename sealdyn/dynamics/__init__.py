@@ -1,0 +1,1 @@
+"""The equations of motion of the rings: unknowns, forces, linear form, events, signals."""

@@ -1,0 +1,174 @@
+"""Contacts of the faces, located between steps: touch, deepest place, lift-off, impulse.
+
+As in dynamics/extrema.py the motion inside a step is a polynomial and the imposed motion exact, so no contact is
+missed however long the step; what is closer to touching than the gap's own error is called grazing, since it cannot
+be decided.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from ..faces.geometry import TOUCH
+from ..numerics.hermite import NODES, fit, value
+from .extrema import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, crossing_time, gap_and_tilt, locate_minimum, scan_step
+
+# One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film
+# thickness (m), angle (rad) and radius (m) there; impulse (N s).
+KIND, TOUCHED, LIFTED, DEEPEST, DEPTH_H, DEPTH_THETA, DEPTH_RADIUS, IMPULSE = range(8)
+ROW = 8
+# A contact that goes on, carried from block to block: its row so far, whether it is open, and whether the gap was
+# sinking at the last step's end.
+OPEN, SINKING = ROW, ROW + 1
+STATE = ROW + 2
+
+
+@dataclass
+class ContactSummary:
+    """Contacts so far: how many, grazing ones, the first touch (s), the deepest below touch (m), the longest (s), and
+    the sum of impulses (N s)."""
+
+    count: int = 0
+    grazing: int = 0
+    first: float | None = None
+    lowest: float | None = None
+    longest: float = 0.0
+    impulse: float = 0.0
+
+    def add(self, rows):
+        for row in rows:
+            if row[KIND] == 0.0:
+                self.grazing += 1
+                continue
+            self.count += 1
+            self.first = float(row[TOUCHED]) if self.first is None else self.first
+            self.lowest = float(row[DEPTH_H] if self.lowest is None else min(self.lowest, row[DEPTH_H]))
+            self.impulse += float(row[IMPULSE])
+            if np.isfinite(row[LIFTED]):
+                self.longest = max(self.longest, float(row[LIFTED] - row[TOUCHED]))
+
+
+def contact_event(row, level: float) -> dict:
+    """A row as an event of the archive."""
+    kind = "contact" if row[KIND] else "grazing"
+    depth = level - row[DEPTH_H]
+    text = (
+        f"faces touch, {depth * 1e6:.3g} um deep"
+        if row[KIND]
+        else f"{abs(depth) * 1e6:.2g} um {'below' if depth > 0 else 'above'} touch: undecided at this accuracy"
+    )
+    return {"kind": kind, "time": float(row[TOUCHED]), "value": float(row[DEPTH_H]), "text": text,
+            "lift_off": float(row[LIFTED]), "deepest": float(row[DEEPEST]), "theta": float(row[DEPTH_THETA]),
+            "radius": float(row[DEPTH_RADIUS]), "impulse": float(row[IMPULSE]), "depth": float(depth)}  # fmt: skip
+
+
+def no_contact() -> np.ndarray:
+    """No contact yet."""
+    return np.zeros(STATE)
+
+
+@njit(cache=True)
+def _begin(state, touched, impulse):
+    state[OPEN], state[TOUCHED], state[IMPULSE], state[DEPTH_H] = 1.0, touched, impulse, np.inf
+
+
+@njit(cache=True)
+def _deepen(state, at, h, theta, radius):
+    if h < state[DEPTH_H]:
+        state[DEEPEST], state[DEPTH_H], state[DEPTH_THETA], state[DEPTH_RADIUS] = at, h, theta, radius
+
+
+@njit(cache=True)
+def _close(state, lifted, impulse, level, error, rows, count):
+    """A contact ends: its row is written; shallower than the error it is grazing."""
+    rows[count] = state[:ROW]
+    rows[count, LIFTED], rows[count, IMPULSE] = lifted, impulse - state[IMPULSE]
+    rows[count, KIND] = 1.0 if level - state[DEPTH_H] > error else 0.0
+    state[OPEN] = 0.0
+    return count + 1
+
+
+@njit(cache=True)
+def locate_contacts(
+    t, q_all, q_rate_all, impulse, count, begin, end, reach, p, f, y, yp, w, s, start, pace, error, state, rows
+):
+    """Contacts in steps [begin, end] of a leg that starts at `start` (s), into `rows`; returns how many ended.
+
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
+    `reach` (count,) what no film of a step is thinner than (m);
+    `error` of the gap (m); `pace` the fastest imposed motion (rad/s); `state` is carried from call to call.
+    """
+    n, level = q_all.shape[1], f[TOUCH]
+    table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
+    q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
+    # Times looked at in a step: the scan, and the located dips between its points.
+    at, height = np.zeros(2 * MOST_SCAN + 2), np.zeros(2 * MOST_SCAN + 2)
+    found = 0
+    for k in range(begin, end):
+        low, high = t[k], t[k + 1]
+        scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+        if high <= low:
+            continue
+        if state[OPEN] == 0.0 and reach[k] > level + error:
+            state[SINKING] = 0.0
+            continue
+        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
+        size = fit(t, q_all, q_rate_all, k, count, table, nodes)
+        step = (high - low) / scan
+        points = 0
+        for i in range(scan + 1):
+            value(table, nodes, size, low + i * step, q, q_rate)
+            gap_and_tilt(low + i * step, q, y, yp, p, f, w, s, out)
+            left, right = max(i - 1, 0), min(i + 1, scan)
+            dip = seen[i, THICKNESS] <= seen[left, THICKNESS] and seen[i, THICKNESS] <= seen[right, THICKNESS]
+            here, here_h = low + i * step, out[THICKNESS]
+            if dip:
+                best = locate_minimum(
+                    THICKNESS, low + left * step, low + right * step,
+                    table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
+                )  # fmt: skip
+                value(table, nodes, size, best, q, q_rate)
+                gap_and_tilt(best, q, y, yp, p, f, w, s, out)
+                before = best < here
+                if out[THICKNESS] < here_h and best != here:
+                    if before:
+                        at[points], height[points] = best, out[THICKNESS]
+                        at[points + 1], height[points + 1] = here, here_h
+                    else:
+                        at[points], height[points] = here, here_h
+                        at[points + 1], height[points + 1] = best, out[THICKNESS]
+                    points += 2
+                    continue
+            at[points], height[points] = here, here_h
+            points += 1
+        for i in range(points):
+            if i > 0 and height[i - 1] >= level > height[i] and state[OPEN] == 0.0:
+                touched = crossing_time(
+                    at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                )  # fmt: skip
+                _begin(state, start + touched, impulse[k])
+            elif state[OPEN] == 0.0 and height[i] < level:
+                _begin(state, start + at[i], impulse[k])
+            if height[i] < level:
+                value(table, nodes, size, at[i], q, q_rate)
+                theta, radius = gap_and_tilt(at[i], q, y, yp, p, f, w, s, out)
+                _deepen(state, start + at[i], height[i], theta, radius)
+            elif state[OPEN] != 0.0:
+                lifted = at[i]
+                if i > 0:
+                    lifted = crossing_time(
+                        at[i], at[i - 1], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                    )
+                if found < len(rows):
+                    found = _close(state, start + lifted, impulse[k + 1], level, error, rows, found)
+            elif i < points - 1 and height[i] <= level + error:
+                sinking = height[i] <= height[i - 1] if i > 0 else state[SINKING] != 0.0
+                if sinking and height[i] < height[i + 1] and found < len(rows):
+                    value(table, nodes, size, at[i], q, q_rate)
+                    theta, radius = gap_and_tilt(at[i], q, y, yp, p, f, w, s, out)
+                    _begin(state, start + at[i], impulse[k])
+                    _deepen(state, start + at[i], height[i], theta, radius)
+                    found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
+        state[SINKING] = height[points - 1] <= height[points - 2]
+    return found

@@ -1,0 +1,307 @@
+"""Equations of motion of the two rings in the solver's inner loop.
+
+**Source** Green (1989), eqs. 1-6; Green & Etsion (1985) for the flexibly mounted stator; one equation for
+both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 rotor):
+
+    m z'' = sg (F_film - F_closing) - D_z (z' - z_c') - K_z (z - z_c)
+    I gamma'' = sg M_film + i J W gamma' - D_s [(gamma - gamma_c)' - i W (gamma - gamma_c)]
+                - K_s (gamma - gamma_c - gamma_own)
+**Valid** small tilts (1e-4 rad: exact to 1e-8); a changing speed drops -i J W' gamma.
+Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on its
+ring, and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
+
+Unknowns `y`: displacements, then their rates (a massless ring has none), with contact or a secondary seal the
+impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both rings, the index of the
+works, whether there are two more of them, then the leg (dynamics/imposed_motion.py).
+"""
+
+from numba import njit
+
+from ..faces.contact import contact_load
+from ..faces.geometry import (
+    CONTACT_FORCE,
+    CONTACT_X,
+    CONTACT_Y,
+    DZ,
+    DZ_RATE,
+    FORCE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+)
+from .imposed_motion import (
+    CLOSING_AT,
+    INNER_AT,
+    OUTER_AT,
+    OWN_X,
+    OWN_X_RATE,
+    OWN_Y,
+    OWN_Y_RATE,
+    PER_RING,
+    ROTOR_SPEED,
+    STATOR_SPEED,
+    TILT_X,
+    TILT_X_ACCELERATION,
+    TILT_X_RATE,
+    TILT_Y,
+    TILT_Y_ACCELERATION,
+    TILT_Y_RATE,
+    VISCOSITY_AT,
+    Z_ACCELERATION,
+    Z_RATE,
+    Z,
+    imposed_state,
+)
+from .secondary_seal import excess, sliding
+
+# Slots of one ring in the parameter block: it floats?, inertia, support, where its unknowns are in `y`
+# (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself); its secondary seal:
+# friction per length, radius, sliding speed below which it fades, a smooth law?, and whether it sticks now.
+FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
+SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK = range(12, 17)
+RING = 17
+WORKS_AT = 2 * RING
+EXTENDED = WORKS_AT + 1
+LEG_AT = WORKS_AT + 2
+
+# Scratch `w`: imposed state of both rings, their own state, the net force and moments on each; then per ring the
+# friction of its secondary seal, its sliding speed, how far what it must hold lies outside what it can, and the
+# acceleration that follows the carrier.
+OWN_STATE = 2 * PER_RING
+NET = OWN_STATE + 2 * 6
+SEALS = NET + 2 * 3
+SEAL_SPEED, SEAL_EXCESS, FOLLOWING = 3, 4, 5
+PER_SEAL = 8
+SCRATCH = SEALS + 2 * PER_SEAL
+
+# The works, in the order of `y`; the last two only with contact or a secondary seal.
+WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact", "secondary_seal")
+PLAIN = 5
+
+
+@njit(cache=True)
+def kinematics(tau, y, yp, p, w, s):
+    """Imposed motion, ring states and the gap state `s` at leg time tau (s) and unknowns `y`.
+    `yp` is read only for the rates of a massless ring."""
+    leg = p[LEG_AT:]
+    imposed_state(tau, leg, w[: 2 * PER_RING])
+    for k in range(2):
+        ring, c, x = k * RING, k * PER_RING, OWN_STATE + 6 * k
+        for i in range(6):
+            w[x + i] = w[c + i]
+        if p[ring + FLOATS] != 0.0:
+            for i in range(6):
+                w[x + i] = 0.0
+            z, tilt = int(p[ring + AT_Z]), int(p[ring + AT_TILT])
+            z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
+            if z >= 0:
+                w[x + Z] = y[z]
+                w[x + Z_RATE] = y[z_rate] if z_rate >= 0 else yp[z]
+            if tilt >= 0:
+                w[x + TILT_X], w[x + TILT_Y] = y[tilt], y[tilt + 1]
+                if tilt_rate >= 0:
+                    w[x + TILT_X_RATE], w[x + TILT_Y_RATE] = y[tilt_rate], y[tilt_rate + 1]
+                else:
+                    w[x + TILT_X_RATE], w[x + TILT_Y_RATE] = yp[tilt], yp[tilt + 1]
+    a, b = OWN_STATE, OWN_STATE + 6
+    s[DZ], s[DZ_RATE] = w[a + Z] - w[b + Z], w[a + Z_RATE] - w[b + Z_RATE]
+    s[GX], s[GX_RATE] = w[a + TILT_X] - w[b + TILT_X], w[a + TILT_X_RATE] - w[b + TILT_X_RATE]
+    s[GY], s[GY_RATE] = w[a + TILT_Y] - w[b + TILT_Y], w[a + TILT_Y_RATE] - w[b + TILT_Y_RATE]
+    spin_s = leg[STATOR_SPEED] + leg[STATOR_SPEED + 1] * tau
+    spin_r = leg[ROTOR_SPEED] + leg[ROTOR_SPEED + 1] * tau
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (spin_s + spin_r), spin_r - spin_s
+    s[VISCOSITY] = leg[VISCOSITY_AT] + leg[VISCOSITY_AT + 1] * tau
+    s[INNER_PRESSURE] = leg[INNER_AT] + leg[INNER_AT + 1] * tau
+    s[OUTER_PRESSURE] = leg[OUTER_AT] + leg[OUTER_AT + 1] * tau
+
+
+@njit(cache=True)
+def _net(tau, k, p, w, s, power):
+    """Net force and moments on ring k (without inertia) into the scratch; adds the powers of the elements and
+    returns the springs' power."""
+    leg = p[LEG_AT:]
+    ring, c, x, net = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k
+    sign = 1.0 if k == 0 else -1.0
+    spin_at = STATOR_SPEED if k == 0 else ROTOR_SPEED
+    spin = leg[spin_at] + leg[spin_at + 1] * tau
+    closing = leg[CLOSING_AT] + leg[CLOSING_AT + 1] * tau
+    v, v_x, v_y = w[x + Z_RATE], w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
+
+    # Support: damper on the velocity relative to the turning carrier, spring from the ring's own rest tilt.
+    d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
+    damper = -p[ring + AXIAL_D] * (v - w[c + Z_RATE])
+    damper_x = -p[ring + TILT_D] * (v_x - w[c + TILT_X_RATE] + spin * d_y)
+    damper_y = -p[ring + TILT_D] * (v_y - w[c + TILT_Y_RATE] - spin * d_x)
+    spring = -p[ring + AXIAL_K] * (w[x + Z] - w[c + Z])
+    spring_x = -p[ring + TILT_K] * (d_x - w[c + OWN_X])
+    spring_y = -p[ring + TILT_K] * (d_y - w[c + OWN_Y])
+    gyro_x, gyro_y = -p[ring + POLAR] * spin * v_y, p[ring + POLAR] * spin * v_x
+
+    w[net] = sign * (s[FORCE] + s[CONTACT_FORCE] - closing) + damper + spring
+    w[net + 1] = sign * (s[MOMENT_X] + s[CONTACT_X]) + damper_x + spring_x + gyro_x
+    w[net + 2] = sign * (s[MOMENT_Y] + s[CONTACT_Y]) + damper_y + spring_y + gyro_y
+
+    # An unknown that is not integrated (tilt of an axial scene, z of a tilt scene) has rate zero.
+    power[0] += damper * v + damper_x * v_x + damper_y * v_y
+    power[1] += sign * (s[FORCE] * v + s[MOMENT_X] * v_x + s[MOMENT_Y] * v_y)
+    power[2] -= sign * closing * v
+    power[4] += gyro_x * v_x + gyro_y * v_y
+    if len(power) > PLAIN:
+        power[5] += sign * (s[CONTACT_FORCE] * v + s[CONTACT_X] * v_x + s[CONTACT_Y] * v_y)
+        if p[ring + SEAL_LINE] > 0.0:
+            power[6] += _secondary_seal(k, spin, leg[spin_at + 1], p, w)
+    return spring * v + spring_x * v_x + spring_y * v_y
+
+
+@njit(cache=True)
+def _secondary_seal(k, spin, spin_rate, p, w):
+    """Friction of ring k's secondary seal onto its net load; returns the power of that friction."""
+    ring, c, x, net, seal = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k, SEALS + PER_SEAL * k
+    line, radius = p[ring + SEAL_LINE], p[ring + SEAL_RADIUS]
+    v, v_x, v_y = w[x + Z_RATE], w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
+    d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
+    dv_x, dv_y = v_x - w[c + TILT_X_RATE], v_y - w[c + TILT_Y_RATE]
+
+    # What it would take to carry the ring along with its carrier.
+    follow = w[seal + FOLLOWING : seal + FOLLOWING + 3]
+    follow[0] = w[c + Z_ACCELERATION]
+    follow[1] = w[c + TILT_X_ACCELERATION] - spin * dv_y - spin_rate * d_y
+    follow[2] = w[c + TILT_Y_ACCELERATION] + spin * dv_x + spin_rate * d_x
+    force = p[ring + MASS] * follow[0] - w[net] if p[ring + AT_Z] >= 0.0 else 0.0
+    moment_x = moment_y = 0.0
+    if p[ring + AT_TILT] >= 0.0:
+        moment_x = p[ring + INERTIA] * follow[1] - w[net + 1]
+        moment_y = p[ring + INERTIA] * follow[2] - w[net + 2]
+    w[seal + SEAL_EXCESS] = excess(force, moment_x, moment_y, line, radius)
+
+    friction = w[seal : seal + 3]
+    if p[ring + STUCK] != 0.0:
+        friction[0], friction[1], friction[2] = force, moment_x, moment_y
+        w[seal + SEAL_SPEED] = 0.0
+    else:
+        w[seal + SEAL_SPEED] = sliding(
+            v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x,
+            line, radius, p[ring + SEAL_BAND], p[ring + SEAL_SMOOTH] != 0.0, friction,
+        )  # fmt: skip
+    for i in range(3):
+        w[net + i] += friction[i]
+    return friction[0] * v + friction[1] * v_x + friction[2] * v_y
+
+
+@njit(cache=True)
+def _works(tau, p, w, s, yp, at):
+    """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers, gyroscopic
+    term (zero), contact and secondary seals, and the sum of absolute powers, springs included; the contact force, whose
+    integral is the impulse, just before them.  The springs' energy is a state function,
+    so what counts as work is that of their moving ends (carrier, own misalignment)."""
+    count = PLAIN
+    if p[EXTENDED] != 0.0:
+        count, yp[at - 1] = PLAIN + 2, s[CONTACT_FORCE]
+    power = yp[at : at + count]
+    power[:] = 0.0
+    springs = 0.0
+    for k in range(2):
+        if p[k * RING + FLOATS] != 0.0:
+            springs += _net(tau, k, p, w, s, power)
+            ring, c, x = k * RING, k * PER_RING, OWN_STATE + 6 * k
+            if p[ring + AT_Z] >= 0.0:
+                power[3] -= p[ring + AXIAL_K] * (w[x + Z] - w[c + Z]) * w[c + Z_RATE]
+            if p[ring + AT_TILT] >= 0.0:
+                e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
+                e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
+                power[3] -= p[ring + TILT_K] * (
+                    e_x * (w[c + TILT_X_RATE] + w[c + OWN_X_RATE]) + e_y * (w[c + TILT_Y_RATE] + w[c + OWN_Y_RATE])
+                )
+    exchanged = abs(springs)
+    for i in range(count):
+        exchanged += abs(power[i])
+    yp[at + count] = exchanged
+
+
+@njit(cache=True)
+def rates(tau, y, p, w, s, yp):
+    """Right-hand side: y' from the states and net forces (kinematics and film already evaluated)."""
+    at = int(p[WORKS_AT])
+    _works(tau, p, w, s, yp, at)
+    for k in range(2):
+        ring, x, net = k * RING, OWN_STATE + 6 * k, NET + 3 * k
+        z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
+        if z_rate >= 0:
+            yp[int(p[ring + AT_Z])] = w[x + Z_RATE]
+            yp[z_rate] = w[net] / p[ring + MASS] if p[ring + STUCK] == 0.0 else w[SEALS + PER_SEAL * k + FOLLOWING]
+        if tilt_rate >= 0:
+            tilt = int(p[ring + AT_TILT])
+            yp[tilt], yp[tilt + 1] = w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
+            if p[ring + STUCK] == 0.0:
+                yp[tilt_rate] = w[net + 1] / p[ring + INERTIA]
+                yp[tilt_rate + 1] = w[net + 2] / p[ring + INERTIA]
+            else:
+                # Not the sum of forces, which is the same but for rounding: a stuck ring does not creep.
+                yp[tilt_rate] = w[SEALS + PER_SEAL * k + FOLLOWING + 1]
+                yp[tilt_rate + 1] = w[SEALS + PER_SEAL * k + FOLLOWING + 2]
+
+
+@njit(cache=True)
+def touching_rates(tau, y, p, w, s, yp, k, f):
+    """As `rates`, with contact: `k` the contact's block, `f` the film's.  One call, since each costs 0.3 us."""
+    contact_load(k, f, s)
+    rates(tau, y, p, w, s, yp)
+
+
+@njit(cache=True)
+def residual(tau, y, yp, p, w, s, work, res):
+    """Residual form of the same equations, for IDA: a massless ring's row is its force balance.
+    `work` is scratch of the size of y."""
+    at = int(p[WORKS_AT])
+    _works(tau, p, w, s, work, at)
+    first, count = (at - 1, 9) if p[EXTENDED] != 0.0 else (at, 6)
+    for i in range(first, first + count):
+        res[i] = yp[i] - work[i]
+    for k in range(2):
+        ring, x, net = k * RING, OWN_STATE + 6 * k, NET + 3 * k
+        z, tilt = int(p[ring + AT_Z]), int(p[ring + AT_TILT])
+        z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
+        if z_rate >= 0:
+            res[z] = yp[z] - w[x + Z_RATE]
+            res[z_rate] = yp[z_rate] - w[net] / p[ring + MASS]
+        elif z >= 0:
+            res[z] = w[net]
+        if tilt_rate >= 0:
+            res[tilt], res[tilt + 1] = yp[tilt] - w[x + TILT_X_RATE], yp[tilt + 1] - w[x + TILT_Y_RATE]
+            res[tilt_rate] = yp[tilt_rate] - w[net + 1] / p[ring + INERTIA]
+            res[tilt_rate + 1] = yp[tilt_rate + 1] - w[net + 2] / p[ring + INERTIA]
+        elif tilt >= 0:
+            res[tilt], res[tilt + 1] = w[net + 1], w[net + 2]
+
+
+@njit(cache=True)
+def energies(taus, ys, yp, p, w, s, out):
+    """Energy at several steps, `ys` (m, unknowns), into `out` (m,)."""
+    for k in range(len(taus)):
+        kinematics(taus[k], ys[k], yp, p, w, s)
+        out[k] = energy(p, w)
+
+
+@njit(cache=True)
+def energy(p, w):
+    """Kinetic energy of the rings and energy of their support springs (J), from the scratch state."""
+    total = 0.0
+    for k in range(2):
+        ring, c, x = k * RING, k * PER_RING, OWN_STATE + 6 * k
+        if p[ring + AT_Z] >= 0.0:
+            stretch = w[x + Z] - w[c + Z]
+            total += 0.5 * p[ring + MASS] * w[x + Z_RATE] ** 2 + 0.5 * p[ring + AXIAL_K] * stretch**2
+        if p[ring + AT_TILT] >= 0.0:
+            e_x = w[x + TILT_X] - w[c + TILT_X] - w[c + OWN_X]
+            e_y = w[x + TILT_Y] - w[c + TILT_Y] - w[c + OWN_Y]
+            total += 0.5 * p[ring + INERTIA] * (w[x + TILT_X_RATE] ** 2 + w[x + TILT_Y_RATE] ** 2)
+            total += 0.5 * p[ring + TILT_K] * (e_x * e_x + e_y * e_y)
+    return total

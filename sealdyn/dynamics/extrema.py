@@ -1,0 +1,195 @@
+"""The gap watched between steps: where it is smallest, where the tilt is largest, and whether it closes.
+
+Every step's two ends carry positions and rates, so the motion inside is a polynomial (numerics/hermite.py) and the
+imposed motion is exact.  Each interval is scanned on a cubic; a candidate that could beat the record is
+then located on the full interpolant.  No event function, no sample: the step size does not matter.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..faces.geometry import COLLAPSE, DZ, GX, GY
+from ..faces.geometry import h_min as smallest
+from ..numerics.hermite import NODES, fit, value
+from .equations import kinematics
+
+# One record per window: value, leg time, angle, radius of h_min; value and time of the largest and of the
+# smallest relative misalignment.  Windows: the whole run, the last forcing period, the one before.
+H, H_TAU, H_THETA, H_RADIUS, MOST, MOST_TAU, LEAST, LEAST_TAU, H_LEG, MOST_LEG, LEAST_LEG = range(11)
+RECORD = 11
+WINDOWS = 3
+# Points looked at in a step: at least these, and at least so many per radian of the fastest imposed motion.
+SCAN, PER_RADIAN, MOST_SCAN = 6, 3.0, 4096
+# What is made small: the film thickness, minus the squared tilt, the squared tilt (smooth through zero).
+THICKNESS, MINUS_TILT, TILT = range(3)
+
+
+def empty_records() -> np.ndarray:
+    """Records of no motion yet, shape (WINDOWS, RECORD)."""
+    records = np.zeros((WINDOWS, RECORD))
+    records[:, H], records[:, MOST], records[:, LEAST] = np.inf, -np.inf, np.inf
+    return records
+
+
+@njit(cache=True)
+def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
+    """The three measures at displacements q and leg time tau, into `out`; returns angle and radius of h_min."""
+    y[: len(q)] = q
+    kinematics(tau, y, yp, p, w, s)
+    out[THICKNESS], theta, radius = smallest(f, s[DZ], s[GX], s[GY])
+    out[TILT] = s[GX] ** 2 + s[GY] ** 2
+    out[MINUS_TILT] = -out[TILT]
+    return theta, radius
+
+
+@njit(cache=True)
+def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
+    """Time in [low, high] where one measure is smallest on the full interpolant: three rounds of five
+    points, then the vertex of a parabola."""
+    best, best_at = np.inf, low
+    for _ in range(3):
+        width = 0.25 * (high - low)
+        for i in range(5):
+            tau = low + i * width
+            value(table, nodes, size, tau, q, q_rate)
+            gap_and_tilt(tau, q, y, yp, p, f, w, s, out)
+            if out[kind] < best:
+                best, best_at = out[kind], tau
+        low, high = max(low, best_at - width), min(high, best_at + width)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    points = np.zeros(3)
+    for i in range(3):
+        value(table, nodes, size, middle + (i - 1) * half, q, q_rate)
+        gap_and_tilt(middle + (i - 1) * half, q, y, yp, p, f, w, s, out)
+        points[i] = out[kind]
+    bend = points[0] - 2.0 * points[1] + points[2]
+    if bend > 0.0:
+        vertex = middle + 0.5 * half * (points[0] - points[2]) / bend
+        vertex = min(max(vertex, low), high)
+        value(table, nodes, size, vertex, q, q_rate)
+        gap_and_tilt(vertex, q, y, yp, p, f, w, s, out)
+        if out[kind] <= best:
+            return vertex
+    return best_at
+
+
+@njit(cache=True)
+def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
+    """Time at which the film crosses a level, by bisection between a time when it is above and one when it is below,
+    whichever is earlier; the film is below there."""
+    for _ in range(60):
+        middle = 0.5 * (above + below)
+        value(table, nodes, size, middle, q, q_rate)
+        gap_and_tilt(middle, q, y, yp, p, f, w, s, out)
+        if out[THICKNESS] < level:
+            below = middle
+        else:
+            above = middle
+    return below
+
+
+@njit(cache=True)
+def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan):
+    """The measures at scan + 1 times in [low, high] of step k, on the cubic between its ends."""
+    a, b = t[k], t[k + 1]
+    span = b - a
+    for i in range(scan + 1):
+        x = (low + (high - low) * i / scan - a) / span
+        for j in range(len(q)):
+            q0, q1 = q_all[k, j], q_all[k + 1, j]
+            v0, v1 = span * q_rate_all[k, j], span * q_rate_all[k + 1, j]
+            q[j] = q0 + x * (v0 + x * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + x * (2.0 * (q0 - q1) + v0 + v1)))
+        gap_and_tilt(a + x * span, q, y, yp, p, f, w, s, out)
+        seen[i] = out
+
+
+@njit(cache=True)
+def current_record(record, kind, tolerance):
+    """The record so far in the measure of this kind, and the improvement not worth locating."""
+    if kind == THICKNESS:
+        return record[H], tolerance[0]
+    known = record[MOST] if kind == MINUS_TILT else record[LEAST]
+    if not abs(known) < np.inf:
+        return np.inf, 0.0
+    sign = -1.0 if kind == MINUS_TILT else 1.0
+    return sign * known * known, tolerance[1] * (2.0 * known + tolerance[1])
+
+
+@njit(cache=True)
+def store(record, kind, out, at, theta, radius, leg):
+    if kind == THICKNESS:
+        record[H], record[H_TAU], record[H_LEG] = out[kind], at, leg
+        record[H_THETA], record[H_RADIUS] = theta, radius
+    elif kind == MINUS_TILT:
+        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, leg
+    else:
+        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, leg
+
+
+@njit(cache=True)
+def track_extrema(
+    t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach
+):
+    """Update the records over steps [begin, end]; returns the leg time of collapse (film at the floor), or -1.
+
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
+    `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
+    fastest imposed motion (rad/s).  `reach` (count,) is filled: no film in the step is thinner than that (m).
+    """
+    n = q_all.shape[1]
+    table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
+    q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
+    for k in range(begin, end):
+        size, reach[k] = 0, -np.inf
+        for window in range(WINDOWS):
+            low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
+            if high <= low:
+                continue
+            scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
+            record = records[window]
+            if window == 0:
+                least, most = np.inf, -np.inf
+                for i in range(scan + 1):
+                    least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
+                # Between the points it may sink by no more than it varies over the step.
+                reach[k] = least - (most - least)
+            for kind in range(3):
+                for best in range(scan + 1):
+                    # Every dip of the scan, however many a long step holds.
+                    left, right = max(best - 1, 0), min(best + 1, scan)
+                    if seen[best, kind] > seen[left, kind] or seen[best, kind] > seen[right, kind]:
+                        continue
+                    # How far it may sink between the points: at most the rise to the farther neighbour.
+                    far_left, far_right = min(left, scan - 2), max(right, 2)
+                    dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
+                    held, slack = current_record(record, kind, tolerance)
+                    lowest = seen[best, kind] - dip
+                    sinks = kind == THICKNESS and lowest < f[COLLAPSE]
+                    if not sinks and lowest >= held - slack:
+                        continue
+                    if size == 0:
+                        size = fit(t, q_all, q_rate_all, k, count, table, nodes)
+                    step = (high - low) / scan
+                    at = locate_minimum(
+                        kind, low + left * step, low + right * step,
+                        table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
+                    )  # fmt: skip
+                    value(table, nodes, size, at, q, q_rate)
+                    theta, radius = gap_and_tilt(at, q, y, yp, p, f, w, s, out)
+                    if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:
+                        fallen = crossing_time(
+                            t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                        )
+                        value(table, nodes, size, fallen, q, q_rate)
+                        theta, radius = gap_and_tilt(fallen, q, y, yp, p, f, w, s, out)
+                        for other in range(3):
+                            # The tilt's extremes up to the last instant, which belongs to the run.
+                            if other == THICKNESS or out[other] < current_record(record, other, tolerance)[0]:
+                                store(record, other, out, fallen, theta, radius, leg)
+                        return fallen
+                    if out[kind] < held:
+                        store(record, kind, out, at, theta, radius, leg)
+    return -1.0

@@ -1,0 +1,112 @@
+"""Imposed motion in the solver's inner loop: one block per leg, one compiled kernel.
+
+Block layout: for each varying quantity its value and slope over the leg, then the oscillators, one row
+each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2` with the phase
+`a0 + a1 tau + a2 tau^2`.
+"""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+from numba import njit
+
+from ..scene.rings import ROTOR, STATOR
+from .segments import Segment, constant_and_slope, modulo_turn
+
+ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
+OSCILLATOR_COUNT = 12
+OSCILLATORS = 13
+ROW = 9
+
+# Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
+# a fixed axis; the ring's own misalignment in its carrier, which its springs feel.
+AXIAL, TURNING, FIXED_AXIS, OWN = range(4)
+
+# Slots of the imposed state, per ring: carrier displacement and rate, own misalignment, carrier acceleration.
+Z, TILT_X, TILT_Y, Z_RATE, TILT_X_RATE, TILT_Y_RATE, OWN_X, OWN_Y, OWN_X_RATE, OWN_Y_RATE = range(10)
+Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
+PER_RING = 13
+
+
+def harmonics_of_segment(shaft, housing, rotor, stator, leg: Segment) -> np.ndarray:
+    """All harmonic motions imposed during a leg, shape (n, ROW).
+
+    A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or
+    misalignment is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
+    """
+    turning = {ROTOR: (leg.rotor_angle, shaft.speed), STATOR: (leg.stator_angle, stator.speed)}
+    rows = []
+
+    def add(ring, kind, amplitude, phase, order=0.0, frequency=0.0, direction=0.0, clock=None):
+        value, slope = constant_and_slope(amplitude, leg)
+        if value == 0.0 and slope == 0.0:
+            return
+        angle, speed = turning[ring if clock is None else clock]
+        w, w_slope = constant_and_slope(speed, leg)
+        cycles = Fraction(frequency) * leg.start
+        a0 = modulo_turn(Fraction(order) * angle) + 2 * math.pi * float(cycles % 1) + phase
+        a1, a2 = order * w + 2 * math.pi * frequency, 0.5 * order * w_slope
+        rows.append([ring, kind, value, slope, math.cos(direction), math.sin(direction), a0, a1, a2])
+
+    own = OWN if rotor.support else TURNING
+    angle = rotor.misalignment if rotor.support else rotor.runout
+    add(ROTOR, own, angle, rotor.misalignment_phase if rotor.support else rotor.runout_phase, order=1.0)
+    add(
+        STATOR,
+        OWN if stator.support else TURNING,
+        stator.misalignment,
+        stator.misalignment_direction,
+        order=1.0,
+    )
+    for whirl in shaft.whirl:
+        add(ROTOR, TURNING, whirl.angle, whirl.phase, order=whirl.ratio)
+    for runout in rotor.axial_runout:
+        add(ROTOR, AXIAL, runout.amplitude, runout.phase, order=runout.order)
+    for source, kind in [(s, AXIAL) for s in housing.axial] + [(s, FIXED_AXIS) for s in housing.angular]:
+        amplitude = source.displacement
+        if amplitude is None:
+            amplitude = -source.acceleration / (2 * math.pi * source.frequency) ** 2
+        direction = getattr(source, "direction", 0.0)
+        add(STATOR, kind, amplitude, source.phase, frequency=source.frequency, direction=direction)
+    return np.array(rows, dtype=np.float64).reshape(-1, ROW)
+
+
+@njit(cache=True)
+def imposed_state(tau, p, c):
+    """Fill the imposed state `c` (2 x PER_RING: stator, rotor) at leg time tau from the block `p`."""
+    c[:] = 0.0
+    for k in range(int(p[OSCILLATOR_COUNT])):
+        row = OSCILLATORS + ROW * k
+        base = PER_RING * int(p[row])
+        kind = int(p[row + 1])
+        a, a_rate = p[row + 2] + p[row + 3] * tau, p[row + 3]
+        phase = p[row + 6] + tau * (p[row + 7] + tau * p[row + 8])
+        w = p[row + 7] + 2.0 * tau * p[row + 8]
+        cos, sin = math.cos(phase), math.sin(phase)
+        # Second derivative of a exp(i phase): (a'' = 0, phase'' = 2 a2) along and across.
+        along, across = -a * w * w, 2.0 * (a_rate * w + a * p[row + 8])
+        if kind == AXIAL:
+            c[base + Z] += a * cos
+            c[base + Z_RATE] += a_rate * cos - a * w * sin
+            c[base + Z_ACCELERATION] += along * cos - across * sin
+        elif kind == TURNING:
+            c[base + TILT_X_ACCELERATION] += along * cos - across * sin
+            c[base + TILT_Y_ACCELERATION] += along * sin + across * cos
+            c[base + TILT_X] += a * cos
+            c[base + TILT_Y] += a * sin
+            c[base + TILT_X_RATE] += a_rate * cos - a * w * sin
+            c[base + TILT_Y_RATE] += a_rate * sin + a * w * cos
+        elif kind == FIXED_AXIS:
+            rate, acceleration = a_rate * cos - a * w * sin, along * cos - across * sin
+            c[base + TILT_X_ACCELERATION] += acceleration * p[row + 4]
+            c[base + TILT_Y_ACCELERATION] += acceleration * p[row + 5]
+            c[base + TILT_X] += a * cos * p[row + 4]
+            c[base + TILT_Y] += a * cos * p[row + 5]
+            c[base + TILT_X_RATE] += rate * p[row + 4]
+            c[base + TILT_Y_RATE] += rate * p[row + 5]
+        else:
+            c[base + OWN_X] += a * cos
+            c[base + OWN_Y] += a * sin
+            c[base + OWN_X_RATE] += a_rate * cos - a * w * sin
+            c[base + OWN_Y_RATE] += a_rate * sin + a * w * cos

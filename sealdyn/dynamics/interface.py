@@ -1,0 +1,117 @@
+"""What lies between the rings: the film of a scene, the asperities that may touch, and the borrowed numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..faces import contact
+from ..faces.geometry import (
+    COLLAPSE,
+    CONTACT_FORCE,
+    CONTACT_X,
+    CONTACT_Y,
+    DZ,
+    FACE_SIZE,
+    FLOOR,
+    FORCE,
+    GAP_STATE_SIZE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    TOUCH,
+    VISCOSITY,
+    face_parameters,
+)
+from ..films import film_module
+from ..scene.contact import contact_thresholds
+from ..scene.film import Coefficients, profile_errors
+from ..scene.scene import SceneError
+from .equilibrium import initially, settle
+from .modes import linearise
+from .segments import constant_and_slope
+
+
+class Interface:
+    """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
+    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `said`.  `observed`: kernel and block from which
+    leakage, friction and film force are reported."""
+
+    def __init__(self, scene, error: float):
+        self.scene, self._asperities = scene, None
+        for key, found, expected in profile_errors(scene.film):
+            raise SceneError(f"film.{key}", found, expected)
+        self.film = film_module(scene.film.model, scene.film.profile)
+        self.name = self.film.__name__.rsplit(".", 1)[1]
+        self.clearance, self.closing, self.equilibria, self.said = settle(scene, self.opening_force)
+        self.f = self.film.parameters(self._table(), self.clearance, error)
+        if self._borrowed() is not self.film:
+            # The opening force is linear in both pressures.
+            for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
+                self.f[slot] = self._borrowed().opening_force(scene.film, self.clearance, *ends)
+        self.observed = self.film.flow, self.f
+        self.contact = None
+        if scene.contact:
+            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact_thresholds(scene.contact)
+            self.contact = contact.parameters(scene.contact, self.f[:FACE_SIZE])
+
+    def _borrowed(self):
+        """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
+        borrows = self.name == "linear" and self.scene.film.coefficients == "radial"
+        return film_module("radial") if borrows else self.film
+
+    def _table(self):
+        """The film's table; a linear film that borrows another film's coefficients gets them here."""
+        table, source = self.scene.film, self._borrowed()
+        if source is self.film:
+            return table
+        block = source.parameters(table, self.clearance, 1e-13)
+        k, d = linearised_film(source.wrench, block, self.scene, self.clearance)
+        taken = Coefficients(
+            tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
+        )
+        return replace(table, coefficients=taken)
+
+    def opening_force(self, table, clearance, inner_pressure, outer_pressure) -> float:
+        """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
+        if self.scene.contact:
+            # The floor of rough faces is a thickness, whatever the clearance.
+            floor, touch, collapse = contact_thresholds(self.scene.contact)
+            table = replace(table, floor=floor / clearance)
+        force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
+        if not self.scene.contact:
+            return force
+        face, s = face_parameters(table, clearance), np.zeros(GAP_STATE_SIZE)
+        face[TOUCH], face[COLLAPSE] = touch, collapse
+        if self._asperities is None:
+            # Of the faces it takes the radii, and whether there is a profile, which stay.
+            self._asperities = contact.parameters(self.scene.contact, face)
+        contact.contact_load(self._asperities, face, s)
+        return force + s[CONTACT_FORCE]
+
+    def wrench(self, f, s):
+        """Film and asperities together, as the force and moments of the film."""
+        self.film.wrench(f, s)
+        if self.contact is not None:
+            contact.contact_load(self.contact, f, s)
+            for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
+                s[film] += s[rough]
+
+
+def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
+    the gap `shift` (m) wider than the clearance."""
+    s = np.zeros(GAP_STATE_SIZE)
+    s[DZ] = shift
+    clearance = clearance + shift
+    first = (lambda q: constant_and_slope(q, leg)[0]) if leg else initially
+    s[VISCOSITY] = first(scene.film.viscosity)
+    s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
+    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
+    s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
+    s[SPIN_DIFFERENCE] = w_r - w_s
+    length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
+    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))

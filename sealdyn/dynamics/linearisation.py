@@ -1,0 +1,152 @@
+"""A scene linearised about its aligned equilibrium: matrices, steady state, exact motion of a linear scene."""
+
+import math
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
+from ..scene.rings import STATOR
+from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
+from .interface import linearised_film
+from .modes import Harmonic, LinearScene, RingNumbers
+from .segments import constant_and_slope
+
+
+def axial_shift(problem, leg_index: int) -> float:
+    """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force = closing
+    force + support springs.  0, and a warning, if none is found from 0.1 % to 50 times the clearance."""
+    leg, film, s = problem.legs[leg_index], problem.scene.film, np.zeros(GAP_STATE_SIZE)
+    s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
+        constant_and_slope(q, leg)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
+    )
+    closing = problem.closing.over(leg, film)[0]
+    springs = [r.support.axial_stiffness for r in (problem.scene.stator, problem.scene.rotor) if r.support]
+    compliance = sum(1 / k if k > 0 else math.inf for k in springs)
+
+    def excess(shift):
+        s[DZ] = shift
+        problem.faces.wrench(problem.f, s)
+        return s[FORCE] - closing - shift / compliance
+
+    if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
+        return 0.0
+    grid = problem.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
+    values = [excess(x) for x in grid]
+    # The stable root nearest to the design clearance: the excess falls through zero.
+    roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
+    if not roots:
+        said = f"no equilibrium gap found for the loads from t = {leg.time:.4g} s: linear numbers are at the clearance"
+        if said not in problem.warnings:
+            problem.warnings.append(said)
+        return 0.0
+    k = min(roots, key=lambda k: abs(grid[k]))
+    return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18))
+
+
+def linear_scene(problem, leg_index: int = 0, speed: float | None = None, shift: float | None = None) -> LinearScene:
+    """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
+    leg = problem.legs[leg_index]
+    w_r = constant_and_slope(problem.scene.shaft.speed, leg)[0] if speed is None else speed
+    w_s = constant_and_slope(problem.scene.stator.speed, leg)[0]
+    stiffness, damping = linearised_film(
+        problem.faces.wrench,
+        problem.f,
+        problem.scene,
+        problem.clearance,
+        leg,
+        mean_spin=0.5 * (w_r + w_s),
+        shift=problem.axial_shift(leg_index) if shift is None else shift,
+    )
+    rings = []
+    for k, ring in enumerate((problem.scene.stator, problem.scene.rotor)):
+        support = ring.support
+        tilt_k, tilt_d = support.tilt() if support else (0.0, 0.0)
+        rings.append(
+            RingNumbers(
+                sign=1.0 if k == STATOR else -1.0,
+                floats=problem.floats[k],
+                mass=ring.mass,
+                inertia=ring.transverse_inertia,
+                polar=ring.polar_inertia,
+                axial_stiffness=support.axial_stiffness if support else 0.0,
+                axial_damping=support.axial_damping if support else 0.0,
+                tilt_stiffness=tilt_k,
+                tilt_damping=tilt_d,
+                spin=w_s if k == STATOR else w_r,
+            )
+        )
+    return LinearScene(rings, stiffness, damping)
+
+
+def harmonics(problem) -> list[Harmonic]:
+    """The imposed oscillators of the present leg as harmonics in leg time (constant amplitude and speed)."""
+    found = []
+    for ring, kind, amplitude, _, cos, sin, a0, a1, _ in problem.rows.reshape(-1, ROW):
+        phasor = amplitude * np.exp(1j * a0)
+        shape = np.zeros(3, dtype=complex)
+        if kind == AXIAL:
+            shape[0] = phasor
+        elif kind != FIXED_AXIS:
+            shape[1], shape[2] = phasor, -1j * phasor
+        else:
+            shape[1], shape[2] = phasor * cos, phasor * sin
+        none = np.zeros(3, dtype=complex)
+        found.append(Harmonic(a1, int(ring), none if kind == OWN else shape, shape if kind == OWN else none))
+    return found
+
+
+def steady_motion(problem):
+    """Linear steady state: a function of leg time giving (displacements, rates) of all floating rings' three
+    unknowns each, and the list of (harmonic, complex answer)."""
+    linear = problem.linear_scene(problem.leg_index)
+    answers = [(h, linear.response(h)) for h in problem.harmonics()]
+
+    def at(tau):
+        q, rate = np.zeros(len(linear.mass)), np.zeros(len(linear.mass))
+        for h, answer in answers:
+            turned = answer * np.exp(1j * h.frequency * tau)
+            q += turned.real
+            rate += (1j * h.frequency * turned).real
+        return q, rate
+
+    return at, answers, linear
+
+
+class ExactMotion:
+    """Exact solution of a linear scene with constant parameters, in the order of the mechanical unknowns: what is
+    forced, and what is left of any start.
+    **Source** Golub & Van Loan (2013), Matrix Computations, 9.1: exp(A t) by eigenvectors; where these nearly
+    coincide, by scaling and squaring."""
+
+    # Condition of the eigenvectors beyond which rounding shows.
+    WORST = 1e6
+
+    def __init__(self, problem):
+        _, answers, linear = problem.steady_motion()
+        kept, places = problem.kept(), [*range(problem.n), *problem.rate_places]
+        rows = np.array([*kept, *[len(linear.mass) + i for i in kept]])[np.argsort(places)]
+        self.matrix = linear.state_matrix()[np.ix_(rows, rows)]
+        self.frequencies = np.array([h.frequency for h, _ in answers])
+        both = [np.concatenate([answer, 1j * h.frequency * answer])[rows] for h, answer in answers]
+        self.answers = np.array(both).reshape(len(answers), len(rows))
+        self.values, vectors = np.linalg.eig(self.matrix)
+        self.sound = np.linalg.cond(vectors) < self.WORST
+        self.vectors, self.inverse = vectors, np.linalg.inv(vectors) if self.sound else None
+
+    def forced(self, taus) -> np.ndarray:
+        """Steady motion (m, n) at leg times."""
+        return (np.exp(1j * np.outer(taus, self.frequencies)) @ self.answers).real
+
+    def free(self, start, ages) -> np.ndarray:
+        """What becomes (m, n) of a free motion `start` (n,) after `ages` (m,)."""
+        if not self.sound:
+            return np.array([expm(self.matrix * age) @ start for age in ages])
+        return (np.exp(np.outer(ages, self.values)) @ ((self.inverse @ start)[:, None] * self.vectors.T)).real
+
+    def parts(self, start, scales) -> tuple[np.ndarray, np.ndarray]:
+        """Exponents (1/s) of the free motion `start` and of the forced one, and how large each is beside `scales`."""
+        shares = self.vectors * (self.inverse @ start) if self.sound else np.tile(start[:, None], len(start))
+        sizes = np.concatenate([shares.T, self.answers]) / scales
+        return np.concatenate([self.values, 1j * self.frequencies]), np.max(np.abs(sizes), axis=1, initial=0.0)

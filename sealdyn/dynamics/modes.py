@@ -1,0 +1,297 @@
+"""Linearised scene: matrices, eigenvalues, stability, critical speed, harmonic balance.
+
+Assembled in numpy from the ring and film coefficients alone, sharing no code with the compiled equations
+of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of every floating ring.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import eig
+from scipy.optimize import brentq
+
+from ..faces.geometry import FORCE
+
+# Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
+QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+# Below this share of the largest eigenvalue a real part is rounding: the verdict is neutral.
+NEUTRAL = 1e-9
+
+
+@dataclass(frozen=True)
+class RingNumbers:
+    """One ring: sign (+1 stator, -1 rotor), whether it floats, inertia, support and spin (SI)."""
+
+    sign: float
+    floats: bool
+    mass: float
+    inertia: float
+    polar: float
+    axial_stiffness: float
+    axial_damping: float
+    tilt_stiffness: float
+    tilt_damping: float
+    spin: float
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """One imposed harmonic, Re(amplitude exp(i frequency t)): carrier and own misalignment of one ring,
+    complex arrays (3,) in the order (z, tilt_x, tilt_y)."""
+
+    frequency: float
+    ring: int
+    carrier: np.ndarray
+    own: np.ndarray
+
+
+@dataclass(frozen=True)
+class Mode:
+    """An eigenvalue (1/s), what it moves ("axial" or "tilt"), and its whirl direction."""
+
+    value: complex
+    kind: str
+    direction: str
+
+
+def film_matrices(tilt_stiffness, tilt_damping, axial_stiffness, axial_damping, mean_spin):
+    """Stiffness and damping matrices (3, 3) of an isotropic linear film on (dz, g_x, g_y).
+    **Source** M = -[K g + D (g' - i wm g)], Green (1989), eq. 2."""
+    stiffness = np.diag([axial_stiffness, tilt_stiffness, tilt_stiffness]) - mean_spin * tilt_damping * QUARTER_TURN
+    return stiffness, np.diag([axial_damping, tilt_damping, tilt_damping])
+
+
+class LinearScene:
+    """Mass, damping and stiffness matrices of the floating rings and what drives them."""
+
+    def __init__(self, rings: list[RingNumbers], film_stiffness: np.ndarray, film_damping: np.ndarray):
+        self.rings, self.film_k, self.film_d = rings, film_stiffness, film_damping
+        self.floating, self._eigen = [k for k, ring in enumerate(rings) if ring.floats], None
+        n = 3 * len(self.floating)
+        self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
+        for a, k in enumerate(self.floating):
+            ring, at = rings[k], slice(3 * a, 3 * a + 3)
+            support_d = np.diag([ring.axial_damping, ring.tilt_damping, ring.tilt_damping])
+            support_k = np.diag([ring.axial_stiffness, ring.tilt_stiffness, ring.tilt_stiffness])
+            self.mass[at, at] = np.diag([ring.mass, ring.inertia, ring.inertia])
+            self.damping[at, at] += support_d - ring.polar * ring.spin * QUARTER_TURN
+            self.stiffness[at, at] += support_k - ring.spin * support_d @ QUARTER_TURN
+            for b, j in enumerate(self.floating):
+                to = slice(3 * b, 3 * b + 3)
+                self.damping[at, to] += ring.sign * rings[j].sign * film_damping
+                self.stiffness[at, to] += ring.sign * rings[j].sign * film_stiffness
+
+    def eigen(self) -> tuple[np.ndarray, np.ndarray]:
+        """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed."""
+        if self._eigen is None:
+            self._eigen = self._found_eigen()
+        return self._eigen
+
+    def _found_eigen(self):
+        n = len(self.mass)
+        if np.all(np.diag(self.mass) != 0.0):
+            values, vectors = np.linalg.eig(self.state_matrix())
+            return values, vectors[:n]
+        left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
+        right = np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), self.mass]])
+        values, vectors = eig(left, right)
+        finite = np.isfinite(values) & (np.abs(values) < 1e12)
+        return values[finite], vectors[:n, finite]
+
+    def modes(self) -> list[Mode]:
+        """Modes with non-negative frequency, least damped first."""
+        values, shapes = self.eigen()
+        found = []
+        for value, shape in zip(values, shapes.T, strict=True):
+            if value.imag < -1e-9 * abs(value):
+                continue
+            axial, x, y = shape[0::3], shape[1::3], shape[2::3]
+            # About the aligned film axial and angular motion decouple: a shape is one or the other.
+            kind = "axial" if np.linalg.norm(axial) > 0.02 * np.linalg.norm(shape) else "tilt"
+            if value.imag <= 1e-9 * abs(value):
+                direction = "none"
+            elif kind == "axial":
+                direction = "axial"
+            else:
+                forward, backward = np.linalg.norm(x + 1j * y), np.linalg.norm(x - 1j * y)
+                direction = "forward" if forward > backward else "backward"
+            found.append(Mode(complex(value), kind, direction))
+        return sorted(found, key=lambda mode: -mode.value.real)
+
+    def state_matrix(self) -> np.ndarray:
+        """First-order matrix (2n, 2n) on (displacements, rates).  Raises if a mass is zero."""
+        n, inverse = len(self.mass), np.linalg.inv(self.mass)
+        matrix = np.zeros((2 * n, 2 * n))
+        matrix[:n, n:] = np.eye(n)
+        matrix[n:, :n], matrix[n:, n:] = -inverse @ self.stiffness, -inverse @ self.damping
+        return matrix
+
+    def response(self, harmonic: Harmonic) -> np.ndarray:
+        """Complex displacement amplitudes (n,) answering one imposed harmonic."""
+        w = harmonic.frequency
+        force = np.zeros(len(self.mass), dtype=complex)
+        ring = self.rings[harmonic.ring]
+        if ring.floats:
+            at = 3 * self.floating.index(harmonic.ring)
+            support_d = np.diag([ring.axial_damping, ring.tilt_damping, ring.tilt_damping])
+            support_k = np.diag([ring.axial_stiffness, ring.tilt_stiffness, ring.tilt_stiffness])
+            carrier = support_k + 1j * w * support_d - ring.spin * support_d @ QUARTER_TURN
+            force[at : at + 3] = carrier @ harmonic.carrier + support_k @ harmonic.own
+        else:
+            film = self.film_k + 1j * w * self.film_d
+            for a, k in enumerate(self.floating):
+                force[3 * a : 3 * a + 3] = -self.rings[k].sign * ring.sign * film @ harmonic.carrier
+        dynamic = self.stiffness + 1j * w * self.damping - w * w * self.mass
+        return np.linalg.solve(dynamic, force)
+
+    def relative(self, harmonic: Harmonic, answer: np.ndarray) -> np.ndarray:
+        """Complex amplitude (3,) of (dz, g_x, g_y), stator minus rotor, for a response."""
+        total = np.zeros(3, dtype=complex)
+        for k, ring in enumerate(self.rings):
+            if ring.floats:
+                a = 3 * self.floating.index(k)
+                total += ring.sign * answer[a : a + 3]
+            elif k == harmonic.ring:
+                total += ring.sign * harmonic.carrier
+        return total
+
+
+def verdict(modes: list[Mode]) -> str:
+    """stable, neutral or unstable, from all modes; a scene without any (massless, undamped) just stands: stable."""
+    if not modes:
+        return "stable"
+    largest = max(abs(mode.value) for mode in modes)
+    growth = modes[0].value.real
+    if abs(growth) <= NEUTRAL * largest:
+        return "neutral"
+    return "unstable" if growth > 0 else "stable"
+
+
+def critical_speed(at_speed, low: float, high: float, points: int = 160) -> float | None:
+    """Lowest shaft speed (rad/s) in [low, high] where the largest growth rate of a tilt mode changes sign;
+    None if it does not, or only within rounding.  `at_speed(w)` gives the LinearScene at speed w."""
+
+    def growth(w):
+        return max(mode.value.real for mode in at_speed(w).modes() if mode.kind == "tilt")
+
+    def beyond_rounding(w):
+        tilt = [mode.value for mode in at_speed(w).modes() if mode.kind == "tilt"]
+        rate = max(value.real for value in tilt)
+        return rate if abs(rate) > NEUTRAL * max(map(abs, tilt)) else 0.0
+
+    speeds = np.geomspace(low, high, points)
+    previous = beyond_rounding(speeds[0])
+    for a, b in pairwise(speeds):
+        present = beyond_rounding(b)
+        if previous * present < 0:
+            return float(brentq(growth, a, b, rtol=1e-13))
+        previous = present
+    return None
+
+
+def resonance_speeds(at_speed, low: float, high: float, points: int = 120) -> list[float]:
+    """Shaft speeds (rad/s) where a tilt mode's frequency equals the shaft speed (once per turn)."""
+    found = []
+    speeds = np.geomspace(low, high, points)
+
+    def distances(w):
+        # Forward modes only: an unbalance-like forcing turns with the shaft.
+        return sorted(m.value.imag - w for m in at_speed(w).modes() if m.kind == "tilt" and m.direction == "forward")
+
+    previous = distances(speeds[0])
+    for a, b in pairwise(speeds):
+        present = distances(b)
+        if len(present) == len(previous):
+            for i, (p, q) in enumerate(zip(previous, present, strict=True)):
+                if p * q < 0:
+                    found.append(_crossing(distances, i, a, b))
+        previous = present
+    return [w for w in found if w is not None]
+
+
+def _crossing(distances, i, a, b):
+    try:
+        return float(brentq(lambda w: distances(w)[i], a, b, rtol=1e-10))
+    except (IndexError, ValueError):
+        # The mode stops oscillating inside the bracket: no crossing.
+        return None
+
+
+def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):
+    """Stiffness and damping matrices (3, 3) of any film about a gap state, on (dz, g_x, g_y).
+
+    Central differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates.  A film
+    law is analytic in the gap, so the error is rounding (about 1e-11 relative at 2 % of the clearance).
+    """
+    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+    jacobian = np.zeros((3, 6))
+    sizes = [steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]]
+    for column in range(6):
+        for k, weight in enumerate(weights):
+            moved = s.copy()
+            moved[column] += (k - 4) * sizes[column]
+            wrench(f, moved)
+            jacobian[:, column] += weight * moved[FORCE : FORCE + 3] / sizes[column]
+    # What is below the rounding of the force is nothing.
+    wrench(f, s)
+    for column in range(6):
+        noise = 1e-14 * np.array([abs(s[FORCE]), *[abs(s[FORCE]) * steps[0] / steps[1]] * 2]) / sizes[column]
+        jacobian[np.abs(jacobian[:, column]) < noise, column] = 0.0
+    return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
+
+
+def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:
+    """Largest and smallest relative misalignment (rad) and largest axial closing (m) of a linear steady state.
+
+    `answers` pairs each Harmonic with its response.  With a common `period` (s) the motion is followed over it;
+    without one the amplitudes are added: an upper bound, and 0 for the smallest.
+    """
+    relative = [(h.frequency, linear.relative(h, a)) for h, a in answers]
+    if not relative:
+        return 0.0, 0.0, 0.0
+    if period is None:
+        tilt = sum(0.5 * (abs(r[1] + 1j * r[2]) + abs(r[1] - 1j * r[2])) for _, r in relative)
+        return float(tilt), 0.0, float(sum(abs(r[0]) for _, r in relative))
+
+    def motion(t):
+        return sum((np.outer(np.exp(1j * w * t), r)).real for w, r in relative)
+
+    fastest = max(abs(w) for w, _ in relative) * period / (2 * np.pi)
+    t = np.linspace(0.0, period, 256 * max(1, round(fastest)) + 1)
+    step = t[1] - t[0]
+    found = []
+    for sign, measure in ((-1, "tilt"), (1, "tilt"), (1, "axial")):
+
+        def size(times, measure=measure):
+            x = motion(np.atleast_1d(times))
+            return x[:, 0] if measure == "axial" else x[:, 1] ** 2 + x[:, 2] ** 2
+
+        values = sign * size(t)
+        at = t[int(np.argmin(values))]
+        # A smooth extremum: close in by ever finer grids.
+        for _ in range(6):
+            near = at + step * np.linspace(-1, 1, 41)
+            at = near[int(np.argmin(sign * size(near)))]
+            step /= 15
+        found.append(float(size(at)[0]))
+        step = t[1] - t[0]
+    return float(np.sqrt(found[0])), float(np.sqrt(found[1])), max(0.0, -found[2])
+
+
+def common_period(frequencies, most: int = 64) -> float | None:
+    """Shortest common period (s) of angular frequencies (rad/s), None if they are incommensurate (no ratio of
+    whole numbers up to `most` within 1e-9)."""
+    from fractions import Fraction
+    from math import lcm
+
+    moving = sorted({abs(w) for w in frequencies if w != 0.0})
+    if not moving:
+        return None
+    base, multiple = moving[0], 1
+    for w in moving:
+        ratio = Fraction(w / base).limit_denominator(most)
+        if abs(ratio - Fraction(w / base)) > 1e-9 * ratio:
+            return None
+        multiple = lcm(multiple, ratio.denominator)
+    return 2 * np.pi / base * multiple

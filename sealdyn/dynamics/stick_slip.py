@@ -1,0 +1,242 @@
+"""When a ring on its secondary seal sticks and when it slips: found between steps, to the time.
+
+A sliding ring is captured when its sliding speed has fallen below the band (1.25 times the accuracy times the scale of
+the rates) and what it would have to hold lies inside the limit surface; a stuck ring slips when that load reaches the
+surface.
+"""
+
+import numpy as np
+
+from ..numerics.hermite import NODES, fit, value
+from ..scene.rings import RING_NAMES
+from .equations import (
+    AT_TILT_RATE,
+    AT_Z_RATE,
+    FOLLOWING,
+    LEG_AT,
+    OWN_STATE,
+    PER_SEAL,
+    RING,
+    SEAL_EXCESS,
+    SEAL_RADIUS,
+    SEAL_SPEED,
+    SEALS,
+    STUCK,
+)
+from .imposed_motion import (
+    OSCILLATOR_COUNT,
+    PER_RING,
+    ROTOR_SPEED,
+    STATOR_SPEED,
+    TILT_X,
+    TILT_X_RATE,
+    TILT_Y,
+    TILT_Y_RATE,
+    Z_RATE,
+)
+
+# A ring is captured only when what it must hold is this far inside the limit surface.
+INSIDE = 1e-9
+# ... and this far when it has only just slipped and not yet left the band: else it would chatter.
+WITHDRAWN = 1e-3
+# Each approach to standstill goes so much of the way that a constant deceleration would leave.
+NEARER, SHORTEST = 0.9, 0.2
+# Friction fades only below this share of the band, and the last approach ends above it: where a ring is captured its
+# deceleration is the sliding one, with which the motion of the last step is interpolated.
+FADES, ABOVE = 0.8, 0.9
+# Looks into each step of a stuck ring.
+LOOKS = 2
+
+
+class StickSlip:
+    """Which rings of a problem stick; finds and makes the changes.  `changes` counts them; `dropped` is the kinetic
+    energy (J) lost at captures."""
+
+    def __init__(self, problem):
+        self.problem = problem
+        rings = {0: problem.scene.stator, 1: problem.scene.rotor}
+        self.rings = [k for k in problem.layout.seals if rings[k].secondary_seal.law == "coulomb"]
+        self.stuck = dict.fromkeys(self.rings, False)
+        self.leaving = dict.fromkeys(self.rings, False)
+        self.sticks, self.slips, self.dropped = 0, 0, 0.0
+        self._yp = np.empty(problem.size)
+
+    def seen(self, k: int, tau: float, y) -> tuple[float, float]:
+        """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface."""
+        self.problem.rhs(tau, y, self._yp)
+        at = SEALS + PER_SEAL * k
+        return self.problem.w[at + SEAL_SPEED], self.problem.w[at + SEAL_EXCESS]
+
+    def start(self, tau: float, y):
+        """At the very start a ring at rest on a load that it can hold sticks."""
+        for k in self.rings:
+            speed, outside = self.seen(k, tau, y)
+            self.stuck[k] = speed < self.problem.band and outside < -INSIDE
+        self._hold()
+
+    def _hold(self):
+        """Tell the kernels which rings stick, in this leg and the next ones."""
+        for k in self.rings:
+            self.problem.p[RING * k + STUCK] = self.problem.layout.ring_block[RING * k + STUCK] = self.stuck[k]
+
+    def kept(self) -> dict:
+        """What a continued run needs."""
+        return {"stuck": {str(k): bool(v) for k, v in self.stuck.items()}, "sticks": self.sticks,
+                "slips": self.slips, "dropped": self.dropped}  # fmt: skip
+
+    def restore(self, kept: dict):
+        """Go on from `kept`."""
+        self.stuck = {int(k): v for k, v in kept["stuck"].items()}
+        self.sticks, self.slips, self.dropped = kept["sticks"], kept["slips"], kept["dropped"]
+        self._hold()
+
+    def find(self, t, ys, begin: int, end: int, advance):
+        """First change in steps [begin, end]: (step, leg time, unknowns, ring) or None.  `advance(tau, y, until)`
+        integrates."""
+        known = {}
+
+        def velocity(k, step):
+            # The end of a step is the start of the next.
+            if (k, step) not in known:
+                known[k, step] = self._velocity(k, t[step], ys[step])[0]
+            return known[k, step]
+
+        for step in range(begin, end):
+            found = None
+            for k in self.rings:
+                if self.stuck[k]:
+                    change = self._slip(k, t, ys, step, advance)
+                else:
+                    change = self._capture(k, t, ys, step, velocity(k, step), velocity(k, step + 1), advance)
+                if change and (found is None or change[0] < found[0]):
+                    found = (*change, k)
+            if found:
+                return step, *found
+        return None
+
+    def change(self, tau: float, y, k: int) -> tuple[np.ndarray, dict]:
+        """Ring k sticks or slips at leg time tau: the unknowns after it, and the event."""
+        problem = self.problem
+        name = RING_NAMES[k]
+        if self.stuck[k]:
+            self.stuck[k], self.leaving[k] = False, True
+            self.slips += 1
+            self._hold()
+            return y, {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
+        before = float(problem.energies(np.array([tau]), y[None, :])[0])
+        y = self._carried_along(k, tau, y)
+        after = float(problem.energies(np.array([tau]), y[None, :])[0])
+        self.stuck[k] = True
+        self.sticks += 1
+        self.dropped += before - after
+        self._hold()
+        return y, {"kind": "stick", "value": before - after, "text": f"the {name} sticks on its secondary seal"}
+
+    # --- a stuck ring -------------------------------------------------------------------------------
+
+    def _slip(self, k, t, ys, step, advance):
+        """When ring k, stuck at the step's start, can no longer be held."""
+        at = self._inside(t, ys, step)
+        low = t[step]
+        for x in np.linspace(0, 1, LOOKS + 1)[1:]:
+            high = t[step] + x * (t[step + 1] - t[step])
+            if self.seen(k, high, at(high))[1] > 0.0:
+                for _ in range(60):
+                    middle = 0.5 * (low + high)
+                    if self.seen(k, middle, at(middle))[1] > 0.0:
+                        high = middle
+                    else:
+                        low = middle
+                return (high, advance(t[step], ys[step], high)) if high > t[step] else (high, ys[step].copy())
+            low = high
+        return None
+
+    def _inside(self, t, ys, step):
+        """Unknowns inside a step, works as at its start."""
+        problem = self.problem
+        first, last = max(0, step - NODES), min(len(t), step + NODES + 2)
+        q, q_rate = problem.motion(ys[first:last], None)
+        table, nodes = np.zeros((problem.n, 2 * NODES)), np.zeros(2 * NODES)
+        size = fit(t[first:last], q, q_rate, step - first, last - first, table, nodes)
+        here, rate = np.empty(problem.n), np.empty(problem.n)
+
+        def at(tau):
+            value(table, nodes, size, tau, here, rate)
+            return problem.unknowns(here, rate)
+
+        return at
+
+    # --- a sliding ring -----------------------------------------------------------------------------
+
+    def _velocity(self, k, tau, y):
+        """Sliding speeds (m/s) of ring k against what it slides on, axial and along the circle about both axes;
+        their rates (m/s^2); and how far what it must hold lies outside the limit surface."""
+        problem, ring = self.problem, RING * k
+        _, outside = self.seen(k, tau, y)
+        p, w = problem.p, problem.w
+        c, x, follow = PER_RING * k, OWN_STATE + 6 * k, SEALS + PER_SEAL * k + FOLLOWING
+        z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
+        spin, radius = self._spin(k, tau), p[ring + SEAL_RADIUS]
+        v, a = np.zeros(3), np.zeros(3)
+        if z_rate >= 0:
+            v[0], a[0] = w[x + Z_RATE] - w[c + Z_RATE], self._yp[z_rate] - w[follow]
+        if tilt_rate >= 0:
+            d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
+            v[1] = radius * (w[x + TILT_X_RATE] - w[c + TILT_X_RATE] + spin * d_y)
+            v[2] = radius * (w[x + TILT_Y_RATE] - w[c + TILT_Y_RATE] - spin * d_x)
+            a[1:] = radius * (self._yp[tilt_rate : tilt_rate + 2] - w[follow + 1 : follow + 3])
+        return v, a, outside
+
+    def _spin(self, k, tau):
+        leg, at = self.problem.p[LEG_AT:], STATOR_SPEED if k == 0 else ROTOR_SPEED
+        return leg[at] + leg[at + 1] * tau
+
+    def _carried_along(self, k, tau, y):
+        """The unknowns with ring k moving as its carrier does."""
+        problem, ring, y = self.problem, RING * k, y.copy()
+        velocity, _, _ = self._velocity(k, tau, y)
+        z_rate, tilt_rate = (int(problem.p[ring + i]) for i in (AT_Z_RATE, AT_TILT_RATE))
+        if z_rate >= 0:
+            # Subtracting from itself: at rest the rate is zero, not a rounding.
+            y[z_rate] -= velocity[0]
+        if tilt_rate >= 0:
+            radius = problem.p[ring + SEAL_RADIUS]
+            y[tilt_rate : tilt_rate + 2] -= velocity[1:] / radius
+            if not self._spin(k, tau) and not problem.p[LEG_AT + OSCILLATOR_COUNT]:
+                y[tilt_rate : tilt_rate + 2] = 0.0
+        return y
+
+    def _capture(self, k, t, ys, step, a, b, advance):
+        """When ring k, of sliding speeds `a` at a step's start and `b` at its end, comes to rest within, and stays."""
+        band = self.problem.band
+        change = b - a
+        length = float(change @ change)
+        nearest = float(np.clip(-(a @ change) / length, 0.0, 1.0)) if length > 0 else 1.0
+        inside = WITHDRAWN if self.leaving[k] else INSIDE
+        self.leaving[k] = self.leaving[k] and float(np.linalg.norm(b)) < band
+        if float(np.linalg.norm(a + nearest * change)) > band + 0.5 * length**0.5:
+            return None
+        # From here each integration ends before standstill, so that the friction's direction stays smooth.
+        tau, y, part, latest = t[step], ys[step].copy(), NEARER, 2 * t[step + 1] - t[step]
+        before = (tau, y)
+        for _ in range(60):
+            v, rate, outside = self._velocity(k, tau, y)
+            speed = float(np.linalg.norm(v))
+            if speed < band:
+                return (tau, y) if outside < -inside else None
+            slowing = -float(v @ rate) / speed
+            if slowing <= 0.0:
+                # Past the slowest place: again, with a shorter stride.
+                part *= 0.5
+                if tau == t[step] or part < SHORTEST:
+                    return None
+                tau, y = before
+                v, rate, _ = self._velocity(k, tau, y)
+                speed = float(np.linalg.norm(v))
+                slowing = -float(v @ rate) / speed
+            until = tau + min(part * speed, speed - ABOVE * band) / slowing
+            if until > latest or until <= tau:
+                return None
+            before = (tau, y)
+            tau, y = until, advance(tau, y, until)
+        return None

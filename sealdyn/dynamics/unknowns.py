@@ -1,0 +1,167 @@
+"""The scene chooses its unknowns: which there are, why, where they stand in `y`, and their scales."""
+
+import math
+
+import numpy as np
+
+from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from . import equations
+from .imposed_motion import AXIAL, harmonics_of_segment
+from .segments import constant_and_slope
+
+# Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
+WORKS, MORE = 6, 3
+
+
+class Unknowns:
+    """Unknowns of a scene.
+
+    `names` of the `n` displacements, which come first in `y`; `rate_places` where their rates stand (-1: massless);
+    `n_mechanical` displacements and rates, `size` with the works; `ring_block` the constant part of the parameters;
+    `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `massless`, `linear`,
+    `constant` (no table anywhere), `extended` (contact or a secondary seal), places of `impulse` and `works`,
+    `reasons`.
+    """
+
+    def __init__(self, scene, legs, closing, linear: bool):
+        self.scene = scene
+        self.seals = [
+            k for k, ring in ((STATOR, scene.stator), (ROTOR, scene.rotor)) if ring.support and ring.secondary_seal
+        ]
+        self.extended = bool(scene.contact or self.seals)
+        # Contact and friction couple what a linear film keeps apart.
+        self.linear = linear = linear and not self.extended
+        rings = {STATOR: scene.stator, ROTOR: scene.rotor}
+        self.floats = {k: ring.support is not None for k, ring in rings.items()}
+        rows = np.vstack(
+            [harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, leg) for leg in legs]
+        )
+        starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
+        moved = [start for k, start in starts.items() if self.floats[k]]
+        tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
+        shifted = any(v for s in moved for v in (s.z, s.z_rate))
+        film = scene.film
+        loads = (film.inner_pressure, film.outer_pressure, closing.spring)
+        loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
+        others = (scene.shaft.speed, scene.stator.speed, film.viscosity, scene.rotor.runout)
+        tilts = (scene.rotor.misalignment, scene.stator.misalignment)
+        self.loaded = loaded
+        self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
+        self._choose(tilted or bool(np.any(rows[:, 1] != AXIAL)), shifted or bool(np.any(rows[:, 1] == AXIAL)), loaded)
+        self.massless = any(
+            self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
+            for k, r in rings.items()
+        )
+        if self.massless:
+            self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
+        self._place((scene.stator, scene.rotor))
+
+    def _choose(self, tilted: bool, shifted: bool, loaded: bool):
+        """Which kinds of motion the scene has, and why."""
+        arrangement = {(True, False): "FMS", (False, True): "FMR", (True, True): "FMSR"}
+        floating = " and ".join(RING_NAMES[k] for k in (STATOR, ROTOR) if self.floats[k])
+        self.reasons = [f"{arrangement[self.floats[STATOR], self.floats[ROTOR]]}: support under {floating}"]
+        self.with_tilt, self.with_axial = tilted, True
+        if not tilted:
+            self.reasons.append("aligned faces and no angular forcing: axial unknowns only")
+        elif self.linear and not (shifted or loaded):
+            self.with_axial = False
+            self.reasons.append("linear film and no axial forcing: axial motion decouples and stays at rest")
+        elif self.linear:
+            self.reasons.append("linear film: axial and angular motion decouple, both are driven")
+
+    def _place(self, rings):
+        """Places in `y`: displacements of both rings, then their rates."""
+        self.ring_block, self.names = np.zeros(equations.LEG_AT), []
+        blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
+        place = 0
+        for k, (ring, block) in enumerate(zip(rings, blocks, strict=True)):
+            block[equations.AT_Z : equations.SEAL_LINE] = -1
+            if not self.floats[k]:
+                continue
+            support, seal = ring.support, ring.secondary_seal
+            block[equations.SEAL_LINE :] = 0.0
+            if seal:
+                block[equations.SEAL_LINE], block[equations.SEAL_RADIUS] = seal.line(), seal.radius
+                block[equations.SEAL_SMOOTH] = seal.law == "regularised"
+            block[equations.FLOATS : equations.AXIAL_K] = 1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia
+            block[equations.AXIAL_K : equations.AT_Z] = support.axial_stiffness, support.axial_damping, *support.tilt()
+            if self.with_axial:
+                block[equations.AT_Z], place = place, place + 1
+                self.names.append(f"{RING_NAMES[k]}_z")
+            if self.with_tilt:
+                block[equations.AT_TILT], place = place, place + 2
+                self.names += [f"{RING_NAMES[k]}_tilt_x", f"{RING_NAMES[k]}_tilt_y"]
+        self.n = place
+        self.rate_places = np.full(self.n, -1)
+        for ring, block in zip(rings, blocks, strict=True):
+            z, tilt = int(block[equations.AT_Z]), int(block[equations.AT_TILT])
+            if z >= 0 and ring.mass > 0:
+                block[equations.AT_Z_RATE] = self.rate_places[z] = place
+                place += 1
+            if tilt >= 0 and ring.transverse_inertia > 0:
+                block[equations.AT_TILT_RATE] = place
+                self.rate_places[tilt : tilt + 2] = place, place + 1
+                place += 2
+        self.n_mechanical, self.size = place, place + WORKS + (MORE if self.extended else 0)
+        self.impulse = place if self.extended else None
+        self.works = slice(self.size - WORKS - (2 if self.extended else 0), self.size - 1)
+        self.ring_block[equations.WORKS_AT], self.ring_block[equations.EXTENDED] = self.works.start, self.extended
+
+    def algebraic(self, film_damping: np.ndarray) -> list[int]:
+        """Displacements without mass and without any damping on them: algebraic unknowns."""
+        places = []
+        for k in range(2):
+            block = self.ring_block[equations.RING * k : equations.RING * (k + 1)]
+            z, tilt = int(block[equations.AT_Z]), int(block[equations.AT_TILT])
+            if z >= 0 and self.rate_places[z] < 0 and not (block[equations.AXIAL_D] or film_damping[0, 0]):
+                places.append(z)
+            if tilt >= 0 and self.rate_places[tilt] < 0 and not (block[equations.TILT_D] or film_damping[1, 1]):
+                places += [tilt, tilt + 1]
+        return places
+
+    def scales(self, problem):
+        """Scales of the unknowns (size,): clearance, clearance / outer radius, times the shaft speed for rates, an
+        energy for the works; also that pace (rad/s) and the shortest period of interest (s)."""
+        scene = self.scene
+        length, tilt = problem.clearance, problem.clearance / scene.film.outer_radius
+        displacement = np.array([length if name.endswith("_z") else tilt for name in self.names])
+        values, _ = problem.linear_scene(0).eigen()
+        natural = float(np.max(np.abs(values.imag), initial=0.0)) or 1.0 / problem.duration
+        forced = [2 * math.pi * v.frequency for v in (*scene.housing.axial, *scene.housing.angular)]
+        pace = max(abs(constant_and_slope(scene.shaft.speed, leg)[0]) for leg in problem.legs)
+        pace = pace or max(forced, default=natural)
+        scales = np.full(self.size, self._energy(problem, length, tilt))
+        scales[: self.n] = displacement
+        for i, place in enumerate(self.rate_places):
+            if place >= 0:
+                scales[place] = displacement[i] * pace
+        if self.impulse is not None:
+            scales[self.impulse] = max(abs(problem.closing_force()), 1.0) / pace
+        return scales, pace, 2 * math.pi / max([pace, *forced, natural])
+
+    def memory(self, problem, fast_time: float) -> float:
+        """Fastest periods for which the linearised scene remembers an error, at most those of the run."""
+        speeds = {constant_and_slope(self.scene.shaft.speed, leg)[0]: k for k, leg in enumerate(problem.legs)}
+        rates = [problem.linear_scene(k).eigen()[0].real for k in speeds.values()]
+        # A massless undamped ring has no free motion: it forgets at once.
+        slowest = max(float(np.max(rate, initial=-np.inf)) for rate in rates)
+        longest = problem.duration if slowest * problem.duration > -1.0 else -1.0 / slowest
+        return longest / fast_time
+
+    def _energy(self, problem, length, tilt) -> float:
+        """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
+        clearance), so that a gentle scene is audited as sharply as a violent one."""
+        # A changing load moves the equilibrium by an unknown part of the clearance.
+        scene, amplitude = self.scene, 0.1 if self.loaded else 1e-3
+        for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, problem.legs[0]):
+            amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
+        for start in (scene.initial.stator, scene.initial.rotor):
+            for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
+                amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
+        stiffness, _ = problem.film_matrices()
+        blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
+        spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))
+        largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
+        return max(largest * min(amplitude, 1.0) ** 2, 1e-30)

@@ -1,0 +1,1 @@
+"""Geometry, roughness and contact of the two faces; not what flows between them."""

@@ -1,0 +1,193 @@
+"""Asperity contact of the faces: load, moments, friction, wear, and the energy it stores.
+
+**Source** the laws: faces/roughness.py.  Friction as a share of the load or of the touching area and wear by Archard's
+law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
+**Valid** rigid coned faces, rough at a scale far below their width; dry, and without memory.
+
+Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and
+moments are minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli
+between its radii, which faces/contact_annulus.py integrates.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..scene.contact import Contact, contact_thresholds
+from .contact_annulus import (
+    AREA,
+    AROUND,
+    ENERGY,
+    FACE_AREA,
+    LOAD,
+    NODES,
+    RADIAL,
+    SHEAR_OF_AREA,
+    SHEAR_OF_LOAD,
+    SPAN,
+    TOP,
+    WEAR_PER_LOAD,
+    annulus,
+    pressed,
+)
+from .geometry import (
+    CONTACT_AREA,
+    CONTACT_ENERGY,
+    CONTACT_FORCE,
+    CONTACT_PRESSURE,
+    CONTACT_TORQUE,
+    CONTACT_X,
+    CONTACT_Y,
+    DZ,
+    GX,
+    GY,
+    INNER_RADIUS,
+    OUTER_RADIUS,
+    PROFILE,
+    PROFILE_RADII,
+    SPIN_DIFFERENCE,
+    TILT_AT_MEAN,
+    WEAR,
+    edge_gaps,
+    node_gap,
+    smallest_gap,
+)
+from .roughness import christensen_series, gaussian_series, scaled, stored
+
+# Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
+ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
+
+
+def parameters(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
+    """The contact's block of the parameter array, float64.
+
+    `face` the leading slots of a film's block, `points` Gauss points of each panel around the circle.
+    """
+    points = points or ANGLE_POINTS[contact.law]
+    if contact.law == "christensen":
+        load = scaled(christensen_series(), contact.compressive_strength)
+        area = christensen_series()
+    else:
+        number = contact.asperity_density * contact.asperity_radius * contact.roughness
+        stiff = 4.0 / 3.0 * number * contact.modulus * math.sqrt(contact.roughness / contact.asperity_radius)
+        load, area = scaled(gaussian_series(1.5), stiff), scaled(gaussian_series(1.0), math.pi * number)
+    # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
+    radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
+    k = np.zeros(NODES + 2 * (radial + points))
+    _, top, bottom = contact_thresholds(contact)
+    k[TOP], k[SPAN] = top, top - bottom
+    k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
+    if contact.shear_strength is None:
+        k[SHEAR_OF_LOAD] = 0.1 if contact.friction_coefficient is None else contact.friction_coefficient
+    k[WEAR_PER_LOAD] = contact.stator_wear_coefficient + contact.rotor_wear_coefficient
+    k[FACE_AREA] = math.pi * (face[OUTER_RADIUS] ** 2 - face[INNER_RADIUS] ** 2)
+    k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:NODES] = load, area, stored(load, top - bottom)
+    k[RADIAL], k[AROUND], first = radial, points, NODES
+    for count in (radial, points):
+        node, weight = np.polynomial.legendre.leggauss(count)
+        k[first : first + count] = 0.5 * (1.0 + node)
+        k[first + count : first + 2 * count] = 0.5 * weight
+        first += 2 * count
+    return k
+
+
+@njit(cache=True)
+def _mean_arm(f):
+    """The mean radius where the tilt is taken there, else 0."""
+    return 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else 0.0
+
+
+@njit(cache=True)
+def _face(k, f, s, complete):
+    """Write the contact slots.  `complete` asks for friction, area, energy and wear too."""
+    s[CONTACT_FORCE] = s[CONTACT_X] = s[CONTACT_Y] = 0.0
+    if complete:
+        s[CONTACT_TORQUE] = s[CONTACT_AREA] = s[CONTACT_PRESSURE] = s[CONTACT_ENERGY] = s[WEAR] = 0.0
+    tilt = math.hypot(s[GX], s[GY])
+    if f[PROFILE] == 0.0:
+        low_i, low_o = edge_gaps(f, s[DZ], tilt)
+        low = min(low_i, low_o)
+        if low >= k[TOP]:
+            return
+        r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
+        load, arm, along, area, area_arm, energy, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
+    else:
+        low, _ = smallest_gap(f, s[DZ], tilt)
+        if low >= k[TOP]:
+            return
+        load = arm = along = area = area_arm = energy = 0.0
+        low_o = node_gap(f, 0, s[DZ], tilt)
+        for node in range(int(f[PROFILE]) - 1):
+            low_i, low_o = low_o, node_gap(f, node + 1, s[DZ], tilt)
+            if min(low_i, low_o) >= k[TOP]:
+                continue
+            r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]
+            a, b, c, d, e, g, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
+            load += a
+            arm += b
+            along += c
+            area += d
+            area_arm += e
+            energy += g
+    s[CONTACT_FORCE] = load
+    # The pressure is even about the thinnest place: its moment is along the tilt.
+    if tilt > 0.0:
+        s[CONTACT_X], s[CONTACT_Y] = along * s[GX] / tilt, along * s[GY] / tilt
+    if complete:
+        shear, spin = k[SHEAR_OF_LOAD] * arm + k[SHEAR_OF_AREA] * area_arm, s[SPIN_DIFFERENCE]
+        s[CONTACT_TORQUE] = math.copysign(shear, spin) if spin != 0.0 else 0.0
+        u = (k[TOP] - low) / k[SPAN]
+        s[CONTACT_PRESSURE] = pressed(k, LOAD, u, u**4)
+        s[CONTACT_AREA], s[CONTACT_ENERGY] = area / k[FACE_AREA], energy
+        s[WEAR] = k[WEAR_PER_LOAD] * abs(spin) * arm / k[FACE_AREA]
+
+
+@njit(cache=True)
+def contact_load(k, f, s):
+    """Contact force (N, opening) and moments (N m) on the stator, into the gap state: minus the derivatives of
+    CONTACT_ENERGY.  `k` this module's block, `f` a film's (faces), `s` the gap state."""
+    _face(k, f, s, False)
+
+
+@njit(cache=True)
+def contact_load_and_friction(k, f, s):
+    """As `press`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face in
+    contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s).
+
+    The normal pressure needs no torque on the slope of the faces: p_c is a function of h, so around any circle
+    `int p_c dh/dtheta dtheta = -[W] = 0`.
+    """
+    _face(k, f, s, True)
+
+
+@njit(cache=True)
+def wear_rates(k, f, s, out):
+    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j
+    the hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
+
+    The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over
+    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.  `k`, `f`, `s` as in `press`.
+    """
+    out[:] = 0.0
+    tilt = math.hypot(s[GX], s[GY])
+    for node in range(int(f[PROFILE]) - 1):
+        low_i, low_o = node_gap(f, node, s[DZ], tilt), node_gap(f, node + 1, s[DZ], tilt)
+        if min(low_i, low_o) >= k[TOP]:
+            continue
+        r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]
+        _, arm, _, _, _, _, outwards = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, True)
+        share = outwards / (r_o - r_i)
+        out[node] += arm - share
+        out[node + 1] += share
+
+
+def hat_areas(face) -> np.ndarray:
+    """Areas `int phi_j dA` (m^2) of the hat functions of a profile's radii, shape (radii,); with a depth that is linear
+    between them the volume worn off is the sum of depth times area.  `face` the leading slots of a film's block."""
+    count = int(face[PROFILE])
+    r = face[PROFILE_RADII : PROFILE_RADII + count]
+    areas, width = np.zeros(count), np.diff(r)
+    areas[:-1] += math.pi / 3.0 * width * (2.0 * r[:-1] + r[1:])
+    areas[1:] += math.pi / 3.0 * width * (r[:-1] + 2.0 * r[1:])
+    return areas

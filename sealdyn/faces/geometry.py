@@ -1,0 +1,122 @@
+"""The gap between the faces: axes, signs, film thickness, its smallest value, and the gap-state array.
+
+Axes (see README): zeta is the shaft axis, theta is measured from xi.  The stator faces the rotor from
+above, `gap = stator surface - rotor surface`; the tilt of a ring is a small rotation vector, and
+`g = tilt of stator - tilt of rotor`.  Film thickness of two rigid coned faces:
+
+    h(r, theta) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta))
+
+where `depth` is what faces that are not plain cones (worn ones) are wider apart, linear between the radii of a
+profile, 0 without one.  With `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted
+from there: h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..scene.film import MOST_NODES
+
+# Slots of the gap-state array `s`, which the scene fills and the film kernels read and complete.
+DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)
+MEAN_SPIN, SPIN_DIFFERENCE, VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE = range(6, 11)
+FORCE, MOMENT_X, MOMENT_Y = range(11, 14)
+FLOW_INNER, FLOW_OUTER, TORQUE, CAVITATED = range(14, 18)
+CONTACT_FORCE, CONTACT_X, CONTACT_Y = range(18, 21)
+CONTACT_TORQUE, CONTACT_AREA, CONTACT_PRESSURE, CONTACT_ENERGY, WEAR = range(21, 26)
+GAP_STATE_SIZE = 26
+
+# Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
+INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE = range(9)
+# The profile: how many radii (0: none), and room for the radii and the depths.
+PROFILE, PROFILE_RADII = 9, 10
+PROFILE_DEPTHS = PROFILE_RADII + MOST_NODES
+FACE_SIZE = PROFILE_DEPTHS + MOST_NODES
+
+
+def face_parameters(film, clearance: float) -> np.ndarray:
+    """The face part of a film's parameter block, shape (FACE_SIZE,): radii and clearance in m, coning in
+    rad, the floor of the film thickness in m, two flags, the thickness at which the faces touch and the one at
+    which the run ends (m), the profile (m); faces/contact.py moves the floor and the two thicknesses."""
+    f = np.zeros(FACE_SIZE)
+    f[:PROFILE] = (
+        film.inner_radius,
+        film.outer_radius,
+        clearance,
+        film.coning,
+        film.floor * clearance,
+        film.tilt_radius == "mean",
+        film.geometry == "planar",
+        -np.inf,
+        film.floor * clearance,
+    )
+    if film.profile is not None:
+        count = len(film.profile.radius)
+        f[PROFILE] = count
+        f[PROFILE_RADII : PROFILE_RADII + count] = film.profile.radius
+        f[PROFILE_DEPTHS : PROFILE_DEPTHS + count] = film.profile.depth
+    return f
+
+
+@njit(cache=True)
+def edge_gaps(f, dz, tilt):
+    """Smallest film thickness (m) over the circle at the inner and at the outer edge.
+
+    `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
+    **Valid** rigid faces; without a profile the minimum over the face is the smaller of the two.
+    """
+    r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
+    a_i, a_o = r_i, r_o
+    if f[TILT_AT_MEAN] != 0.0:
+        a_i = a_o = 0.5 * (r_i + r_o)
+    inner = f[CLEARANCE] + dz - a_i * tilt
+    outer = f[CLEARANCE] + dz + f[CONING] * (r_o - r_i) - a_o * tilt
+    if f[PROFILE] != 0.0:
+        inner += f[PROFILE_DEPTHS]
+        outer += f[PROFILE_DEPTHS + int(f[PROFILE]) - 1]
+    return inner, outer
+
+
+@njit(cache=True)
+def node_gap(f, node, dz, tilt):
+    """As `edge_gaps`, at a radius of the profile (counted from 0); between them it is linear in r."""
+    r_i, r = f[INNER_RADIUS], f[PROFILE_RADII + node]
+    arm = 0.5 * (r_i + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else r
+    return f[CLEARANCE] + dz + f[CONING] * (r - r_i) - arm * tilt + f[PROFILE_DEPTHS + node]
+
+
+@njit(cache=True)
+def smallest_gap(f, dz, tilt):
+    """Smallest film thickness over the face (m), and its radius (m)."""
+    if f[PROFILE] == 0.0:
+        inner, outer = edge_gaps(f, dz, tilt)
+        if inner <= outer:
+            return inner, f[INNER_RADIUS]
+        return outer, f[OUTER_RADIUS]
+    # Linear between the radii of the profile, it is smallest at one of them.
+    least, at = node_gap(f, 0, dz, tilt), 0
+    for node in range(1, int(f[PROFILE])):
+        gap = node_gap(f, node, dz, tilt)
+        if gap < least:
+            least, at = gap, node
+    return least, f[PROFILE_RADII + at]
+
+
+@njit(cache=True)
+def h_min(f, dz, g_x, g_y):
+    """Smallest film thickness over the face (m), its angle (rad, from xi) and radius (m)."""
+    least, radius = smallest_gap(f, dz, math.hypot(g_x, g_y))
+    theta = math.atan2(g_y, g_x) - 0.5 * math.pi
+    if theta < -math.pi:
+        theta += 2.0 * math.pi
+    return least, theta, radius
+
+
+@njit(cache=True)
+def regularised_thickness(h, floor):
+    """Film thickness as the film laws see it: h itself above the floor, below it a positive
+    continuation with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""
+    if h >= floor:
+        return h
+    return floor * floor / (2.0 * floor - h)

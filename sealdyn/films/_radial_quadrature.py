@@ -1,0 +1,128 @@
+"""The radial films' parameter block and their Gauss rules over the radius."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from ..faces.geometry import FACE_SIZE, face_parameters
+
+# Gauss rules offered; multiples of four fill the vector registers.
+RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
+# Angle counts offered are divisors of the longest table.
+MOST_ANGLES = 3072
+ANGLES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1536, 3072)
+
+# Block layout after the faces.
+CAVITATION, HAS_CAVITATION, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 5)
+RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
+ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
+COSINES = ANGLE_COUNTS + len(ANGLES)
+SINES = COSINES + MOST_ANGLES // 2 + 1
+BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
+
+FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@lru_cache(maxsize=16)
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss-Legendre points and weights on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(points)
+
+
+# ln of the film ratios at which the rules are tried.
+TRIED = np.linspace(0.0, 12.0, 241)
+
+
+@lru_cache(maxsize=64)
+def _rule_errors(radius_ratio: float) -> np.ndarray:
+    """Worst relative error of the radial integrals, (rules, film ratios tried), of a film ratio or its inverse and of
+    anything flatter."""
+    q = np.exp(0.25 * np.concatenate([TRIED, -TRIED]))[:, None]
+    t = (q - 1) / (q + 1)
+
+    def moments(n):
+        x, w = gauss(n)
+        u = (1 + t * x) / (1 - t * x)
+        y = 0.5 * (1 + x) * (1 - t) / (1 - t * x) * (u + 1 / q) / (q + 1 / q)
+        dy = u * (1 - t * t) / (1 - t * x) ** 2 / (q + 1 / q)
+        r = radius_ratio + (1 - radius_ratio) * y
+        weight = w * dy / u**6
+        powers = [r**k * y**j for k in (-1, 1, 2) for j in (0, 1, 2, 3)]
+        return np.stack([np.sum(weight * power, axis=1) for power in powers])
+
+    exact = moments(64)
+    worst = [np.max(np.abs(moments(n) / exact - 1), axis=0).reshape(2, -1).max(axis=0) for n in RADIAL_POINTS]
+    return np.maximum.accumulate(np.array(worst), axis=1)
+
+
+@lru_cache(maxsize=64)
+def _rules(radius_ratio: float, error: float) -> np.ndarray:
+    """The block's Gauss rules: for each, its count, the largest film ratio (or its inverse) it may serve at
+    this error, points and weights.  The limit is found by trying, so no error constant is guessed."""
+    rows = []
+    for points, errors in zip(RADIAL_POINTS, _rule_errors(radius_ratio), strict=True):
+        # Force and moments are differences of these integrals: measured up to 100 times worse.
+        serves = int(np.searchsorted(errors, max(error / 200, 3e-15)))
+        x, w = gauss(points)
+        row = np.zeros(RULE_SIZE)
+        # A rule that cannot even serve flat faces gets a limit below one.
+        row[:2] = points, math.exp(TRIED[serves - 1]) if serves else math.exp(-1.0)
+        row[2 : 2 + points] = x
+        row[2 + RADIAL_POINTS[-1] : 2 + RADIAL_POINTS[-1] + points] = w
+        rows.append(row)
+    return np.concatenate(rows)
+
+
+def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
+    """The film's block of the parameter array, shape (BLOCK_SIZE,).
+
+    `film` a Film table, `clearance` design clearance at the inner radius (m), `error` relative error
+    allowed to the quadrature of force and moments; points and angles follow it and the gap.
+    """
+    f = np.zeros(BLOCK_SIZE)
+    f[:FACE_SIZE] = face_parameters(film, clearance)
+    if film.cavitation_pressure is not None:
+        f[CAVITATION], f[HAS_CAVITATION] = film.cavitation_pressure, 1.0
+    f[ERROR] = error = min(max(error, 1e-14), 1e-2)
+    f[LOG_ERROR] = math.log(1e4 / error)
+    # Of a floored line a small part may be left: a tenth of the error is asked of its radial integrals.
+    share = 0.1 if f[HAS_CAVITATION] else 1.0
+    f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, share * error)
+    f[ANGLE_COUNTS:COSINES] = ANGLES
+    beta = 2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES
+    f[COSINES:SINES] = np.cos(beta)
+    f[SINES:] = np.sin(beta)
+    return f
+
+
+@njit(cache=True)
+def points_for(f, h_i, h_o):
+    """Index of the Gauss rule that serves the film ratio between h_i and h_o."""
+    ratio = h_o / h_i if h_o > h_i else h_i / h_o
+    for rule in range(len(RADIAL_POINTS) - 1):
+        if ratio <= f[RULES + rule * RULE_SIZE + 1]:
+            return rule
+    return len(RADIAL_POINTS) - 1
+
+
+@njit(cache=True)
+def relative_clearance(h, swing):
+    """Mean film over its swing around the circle: 1 where the faces meet, 0 for a film closed all around."""
+    if h <= swing:
+        return 0.0
+    return h / swing if swing > 0.0 else 1e9
+
+
+@njit(cache=True)
+def angle_count(f, ratio):
+    """Number of angles: the trapezoid's error falls as exp(-N eta), cosh(eta) = ratio of mean film to swing."""
+    if ratio <= 1.0:
+        # Below the floor only trial states remain: smooth is enough.
+        return MOST_ANGLES // 8
+    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9))
+    for i in range(len(ANGLES)):
+        if f[ANGLE_COUNTS + i] >= wanted:
+            return int(f[ANGLE_COUNTS + i])
+    return MOST_ANGLES

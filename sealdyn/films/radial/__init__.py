@@ -1,0 +1,1 @@
+"""The radial film: Reynolds' equation solved over the radius at every angle."""

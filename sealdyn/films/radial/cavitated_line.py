@@ -1,0 +1,218 @@
+"""One radial line of a film whose pressure is floored: where it is dry, what the wet rest carries.
+
+Along the line `p' = 12 mu Q / (r h^3)`, Q a cubic in d = r - r_i (planar: a quadratic, and no r), which turns once
+at most inside the face.  So the pressure turns twice at most and falls into three monotone pieces, each of which is
+wet, dry, or crosses the floor once.
+"""
+
+import math
+
+from numba import njit
+
+from .._radial_quadrature import FAST
+
+# A line's state: bits.
+INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8
+NOTHING_DRY = HAS_WET
+# A crossing enters force and moment by its square.
+CLOSE = 1e-9
+
+
+@njit(cache=True, fastmath=FAST, error_model="numpy")
+def _sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
+    """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
+    the same three of 1/h^3."""
+    h_g = math.sqrt(h_a * h_b)
+    root = math.sqrt(h_g / h_a)
+    t, u_a, u_s = (root - 1.0) / (root + 1.0), 1.0 / root, 1.0 / (root + 1.0 / root)
+    per_h, span = 1.0 / h_g, b - a
+    scale = span * (1.0 - t * t) * u_s * per_h**3
+    reach = 0.5 * (1.0 - t) * u_s * span
+    p_0 = p_2 = p_3 = e_0 = e_2 = e_3 = 0.0
+    for k in range(len(x_k)):
+        tx = t * x_k[k]
+        both = 1.0 / ((1.0 - tx) * (1.0 + tx))
+        back = (1.0 + tx) * both
+        u, v = (1.0 + tx) * back, (1.0 - tx) * (1.0 - tx) * both
+        d = a + reach * (1.0 + x_k[k]) * back * (u + u_a)
+        r = r_i + d
+        weight = w_k[k] * scale * back * back * v**5
+        unit = weight if planar else weight / r
+        slope = unit * (q0 + d * (q[0] + d * (q[1] + d * q[2])))
+        p_0 += slope
+        p_2 += slope * r * r
+        p_3 += slope * r**3
+        e_0 += unit
+        e_2 += unit * r * r
+        e_3 += unit * r**3
+    return p_0, p_2, p_3, e_0, e_2, e_3
+
+
+@njit(cache=True)
+def cubic(z_rate, tilt_rate, r_i, r_o, mean, planar):
+    """Coefficients of d, d^2, d^3 in `Phi = int f r dr` (planar: `int f dr`), and the d where f changes sign
+    (-1: nowhere)."""
+    if mean:
+        rate = z_rate + tilt_rate * 0.5 * (r_i + r_o)
+        return ((rate, 0.0, 0.0) if planar else (rate * r_i, 0.5 * rate, 0.0)), -1.0
+    rate = z_rate + tilt_rate * r_i
+    turn = -rate / tilt_rate if tilt_rate != 0.0 else -1.0
+    if planar:
+        return (rate, 0.5 * tilt_rate, 0.0), turn
+    return (rate * r_i, 0.5 * (rate + tilt_rate * r_i), tilt_rate / 3.0), turn
+
+
+@njit(cache=True)
+def _zero(q0, q, low, high, rising):
+    """The d in [low, high] where the cubic changes sign: Newton held inside the bracket."""
+    d = 0.5 * (low + high)
+    for _ in range(60):
+        value = q0 + d * (q[0] + d * (q[1] + d * q[2]))
+        if (value > 0.0) == rising:
+            high = d
+        else:
+            low = d
+        slope = q[0] + d * (2.0 * q[1] + d * 3.0 * q[2])
+        last, d = d, d - value / slope if slope != 0.0 else low
+        if not low < d < high:
+            d = 0.5 * (low + high)
+        if abs(d - last) <= 1e-15 * high:
+            break
+    return d
+
+
+@njit(cache=True)
+def _turns(q0, q, turn, width):
+    """Where the pressure turns: how many places, and the places d (m)."""
+    q_o = q0 + width * (q[0] + width * (q[1] + width * q[2]))
+    if not 0.0 < turn < width:
+        if q0 * q_o < 0.0:
+            return 1, _zero(q0, q, 0.0, width, q_o > 0.0), width
+        return 0, width, width
+    q_t = q0 + turn * (q[0] + turn * (q[1] + turn * q[2]))
+    first = _zero(q0, q, 0.0, turn, q_t > 0.0) if q0 * q_t < 0.0 else -1.0
+    second = _zero(q0, q, turn, width, q_o > 0.0) if q_t * q_o < 0.0 else -1.0
+    if first >= 0.0 and second >= 0.0:
+        return 2, first, second
+    if first >= 0.0 or second >= 0.0:
+        return 1, max(first, second), width
+    return 0, width, width
+
+
+@njit(cache=True)
+def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav):
+    """What of a line is dry (bits), and three numbers that change sign where that changes: at the inner edge, at
+    the outer, and the least pressure above the floor."""
+    width, per = r_o - r_i, 12.0 * mu
+    q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
+    p_0, _, _, e_0, _, _ = _sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
+    q0 = ((p_o - p_i) / per - p_0) / e_0
+    q_o = q0 + width * (q[0] + width * (q[1] + width * q[2]))
+    count, first, second = _turns(q0, q, turn, width)
+    # An edge at the floor itself is dry if the pressure falls away from it.
+    at_inner = q0 if p_i == p_cav else p_i - p_cav
+    at_outer = -q_o if p_o == p_cav else p_o - p_cav
+    low, high = min(p_i, p_o) - p_cav, max(p_i, p_o) - p_cav
+    least = max(low, high * 1e-3)
+    for k in range(count):
+        end = first if k == 0 else second
+        falls_before = (q0 < 0.0) == (k == 0)
+        if not falls_before and high > 0.0:
+            continue
+        h = h_i + (h_o - h_i) * end / width
+        rise = _sums(q0, q, r_i, planar, 0.0, end, h_i, h, x_k, w_k)[0]
+        p = p_i + per * rise - p_cav
+        low, high = min(low, p), max(high, p)
+        if falls_before:
+            least = p
+    state = 0
+    if at_inner < 0.0:
+        state |= INNER_DRY
+    if at_outer < 0.0:
+        state |= OUTER_DRY
+    if low < 0.0:
+        state |= HAS_DRY
+    if high > 0.0 or (low == 0.0 and state == 0):
+        state |= HAS_WET
+    return state, at_inner if p_i == p_cav else 1.0, at_outer if p_o == p_cav else 1.0, least
+
+
+@njit(cache=True)
+def _crossing(q0, q, line, a, b, p_a, p_b, wet_from, x_k, w_k):
+    """The d in [a, b] where the pressure (above the floor: p_a at a, p_b at b, of different sign) is zero, and
+    the integrals of p', r^2 p', r^3 p' over the wet side of it, which begins at `wet_from` = a or b."""
+    r_i, width, h_i, h_o, planar, per = line
+    wet_is_a = wet_from == a
+    dry, p_dry, p_wet = (b, p_b, p_a) if wet_is_a else (a, p_a, p_b)
+    slope_h = (h_o - h_i) / width
+    h_dry, r_dry = h_i + slope_h * dry, 1.0 if planar else r_i + dry
+    # At the dry end the pressure turns: a parabola from there is a good first guess, if it stays inside.
+    bend = per * (q[0] + dry * (2.0 * q[1] + dry * 3.0 * q[2])) / (r_dry * h_dry**3)
+    step = math.sqrt(-2.0 * p_dry / bend) if bend > 0.0 else 2.0 * width
+    if step >= b - a:
+        step = (b - a) * p_dry / (p_dry - p_wet)
+    d = dry - step if wet_is_a else dry + step
+    low, high, h_wet = a, b, h_i + slope_h * wet_from
+    s_0 = s_2 = s_3 = 0.0
+    for _ in range(60):
+        h = h_i + slope_h * d
+        if wet_is_a:
+            s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, a, d, h_wet, h, x_k, w_k)
+            p = p_a + per * s_0
+        else:
+            s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, d, b, h, h_wet, x_k, w_k)
+            p = p_b - per * s_0
+        if (p > 0.0) == wet_is_a:
+            low = d
+        else:
+            high = d
+        slope = per * (q0 + d * (q[0] + d * (q[1] + d * q[2]))) / ((1.0 if planar else r_i + d) * h**3)
+        if slope == 0.0:
+            slope = 1e-300
+        move = -p / slope
+        if abs(move) < CLOSE * width or high - low < CLOSE * width:
+            break
+        d = d + move if low < d + move < high else 0.5 * (low + high)
+    return d, per * s_0, per * s_2, per * s_3
+
+
+@njit(cache=True)
+def cavitated_line(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav):
+    """Load `int max(p - p_cav, 0) r dr` (N/rad), moment `int max(p - p_cav, 0) r^2 dr` (N m/rad) and the share
+    of the face width that is wet, for one angle.  Thickness linear from h_i to h_o (m), thickening rate
+    `z_rate + tilt_rate r` (m/s).  The load is split at the cavity's edges, so no quadrature meets a kink."""
+    width, per = r_o - r_i, 12.0 * mu
+    q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
+    p_0, p_2, p_3, e_0, e_2, e_3 = _sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
+    q0 = ((p_o - p_i) / per - p_0) / e_0
+    count, first, second = _turns(q0, q, turn, width)
+    p_i, p_o = p_i - p_cav, p_o - p_cav
+    # Nothing can be below the floor between edges that are not, unless the pressure falls and then rises.
+    if p_i >= 0.0 and p_o >= 0.0 and (count == 0 or (count == 1 and q0 > 0.0)):
+        load = 0.5 * (p_o * r_o**2 - p_i * r_i**2 - per * (p_2 + q0 * e_2))
+        return load, (p_o * r_o**3 - p_i * r_i**3 - per * (p_3 + q0 * e_3)) / 3.0, 1.0
+
+    line = (r_i, width, h_i, h_o, planar, per)
+    load = moment = wet = 0.0
+    a, p_a, h_a = 0.0, p_i, h_i
+    for piece in range(count + 1):
+        b = width if piece == count else (first if piece == 0 else second)
+        h_b = h_i + (h_o - h_i) * b / width
+        s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k)
+        p_b = p_o if piece == count else p_a + per * s_0
+        s_2, s_3, start, stop, p_start, p_stop = per * s_2, per * s_3, a, b, p_a, p_b
+        if p_a <= 0.0 and p_b <= 0.0:
+            stop = start
+        elif p_a < 0.0:
+            start, s_0, s_2, s_3 = _crossing(q0, q, line, a, b, p_a, p_b, b, x_k, w_k)
+            p_start = p_b - s_0
+        elif p_b < 0.0:
+            stop, s_0, s_2, s_3 = _crossing(q0, q, line, a, b, p_a, p_b, a, x_k, w_k)
+            p_stop = p_a + s_0
+        if stop > start:
+            r_a, r_b = r_i + start, r_i + stop
+            load += 0.5 * (p_stop * r_b**2 - p_start * r_a**2 - s_2)
+            moment += (p_stop * r_b**3 - p_start * r_a**3 - s_3) / 3.0
+            wet += (stop - start) / width
+        a, p_a, h_a = b, p_b, h_b
+    return load, moment, wet

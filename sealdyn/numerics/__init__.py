@@ -1,0 +1,1 @@
+"""Right for any function, time series or eigenproblem: interpolation, exponents, checkpoints, orders."""

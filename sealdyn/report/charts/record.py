@@ -1,0 +1,169 @@
+"""A run as charts want it: turns instead of time, series thinned without losing an extreme, words for titles."""
+
+from functools import cached_property
+
+import numpy as np
+
+from ...archive import column, read_info
+
+BLOCK = 1 << 16
+POINTS = 20_000
+
+
+class Run:
+    """One archive, read when asked, never held whole.  `rows` is fixed when it is opened, so that the
+    panels of one figure agree while the run goes on."""
+
+    def __init__(self, path):
+        self.path, self.info = path, read_info(path)
+        self.rows, self.summary, self.status = self.info["rows"], self.info["summary"], self.info["status"]
+        self.message = self.info.get("message", "")
+        self.resolved = self.info["resolved"]
+
+    def has(self, *names: str) -> bool:
+        """Whether all these series are there, with at least two rows."""
+        return self.rows > 1 and all(name in self.info["series"] for name in names)
+
+    def values(self, name: str, start: int = 0, stop: int | None = None) -> np.ndarray:
+        """Rows `start` to `stop` of a series (SI)."""
+        return column(self.path, name, slice(start, self.rows if stop is None else min(stop, self.rows)))
+
+    @cached_property
+    def turns(self) -> np.ndarray:
+        """Turns of the shaft since the first row: its angle unwrapped, the speed deciding how often it went
+        round between two rows; in blocks, since there may be millions of rows."""
+        turns, total, carry = np.zeros(self.rows), 0.0, None
+        if not self.has("shaft_angle", "shaft_speed"):
+            return turns
+        for start in range(0, self.rows, BLOCK):
+            block = [self.values(n, start, start + BLOCK) for n in ("time", "shaft_angle", "shaft_speed")]
+            if carry is not None:
+                block = [np.concatenate([[last], b]) for last, b in zip(carry, block, strict=True)]
+            time, angle, speed = block
+            expected = (speed[1:] + speed[:-1]) / 2 * np.diff(time) / (2 * np.pi)
+            seen = np.diff(angle) / (2 * np.pi)
+            grown = total + np.cumsum(np.abs(seen + np.round(expected - seen)))
+            turns[start + (carry is None) : start + (carry is None) + len(grown)] = grown
+            total, carry = (grown[-1] if len(grown) else total), [b[-1] for b in block]
+        return turns
+
+    @property
+    def turning(self) -> bool:
+        return self.rows > 1 and self.turns[-1] > 0
+
+    @cached_property
+    def progress(self) -> np.ndarray:
+        """What the x axes show: turns, or milliseconds when the shaft stands still."""
+        return self.turns if self.turning else 1e3 * (self.values("time") - self.values("time", 0, 1))
+
+    @property
+    def progress_label(self) -> str:
+        return "turns of the shaft" if self.turning else "time, ms"
+
+    def last(self, amount: float, most_rows: int = POINTS) -> int:
+        """First row of the last `amount` of turns (of everything, if the shaft stands still), at most
+        `most_rows` back."""
+        if not self.turning:
+            return max(self.rows - most_rows, 0)
+        first = int(np.searchsorted(self.progress, self.progress[-1] - amount * (1 + 1e-9)))
+        return max(first, self.rows - most_rows, 0)
+
+    def envelope(self, name: str, first: int = 0, points: int = POINTS) -> tuple[np.ndarray, np.ndarray]:
+        """Progress and values from row `first`; a long series keeps the smallest and the largest value of
+        every stretch, where they are, so no extreme is lost."""
+        if self.rows - first <= points:
+            return self.progress[first:], self.values(name, first)
+        stretch = -(-(self.rows - first) // (points // 2))
+        kept_x, kept_y = [], []
+        for start in range(first, self.rows, stretch * max(1, BLOCK // stretch)):
+            values = self.values(name, start, start + stretch * max(1, BLOCK // stretch))
+            edges = np.arange(0, len(values), stretch)
+            padded = np.concatenate([values, np.full(-len(values) % stretch, values[-1])]).reshape(-1, stretch)
+            at = np.sort(np.stack([padded.argmin(1), padded.argmax(1)], 1), 1) + edges[:, None]
+            at = np.minimum(at.ravel(), len(values) - 1)
+            kept_x.append(self.progress[start + at])
+            kept_y.append(values[at])
+        return np.concatenate(kept_x), np.concatenate(kept_y)
+
+    # -- the scene in numbers and words ------------------------------------------------------------
+
+    def film(self, name: str) -> float | None:
+        """A number of the resolved `[film]` table, None when absent or varying."""
+        value = self.resolved.get("film", {}).get(name)
+        return value if isinstance(value, int | float) else None
+
+    def housing(self, kind: str) -> list[dict]:
+        """The resolved `[[housing.axial]]` or `[[housing.angular]]` tables."""
+        return (self.resolved.get("housing") or {}).get(kind) or []
+
+    @cached_property
+    def clearance(self) -> float | None:
+        """Design clearance (m): given, or from the first row's h_min = C + dz + shape(r) - r tilt."""
+        if self.film("clearance"):
+            return self.film("clearance")
+        if not self.has("h_min", "axial_gap_change"):
+            return None
+        first = {n: self.values(n, 0, 1)[0] for n in self.info["series"]}
+        radius = first.get("h_min_radius", self.film("inner_radius") or 0.0)
+        wedge = radius * first.get("relative_misalignment", 0)
+        return first["h_min"] - first["axial_gap_change"] - float(self.shape(radius)) + wedge
+
+    def shape(self, radius):
+        """By how much (m) the aligned gap is wider than the clearance at radii: coning, and the faces' profile."""
+        profile = self.resolved.get("film", {}).get("profile")
+        depth = np.interp(radius, profile["radius"], profile["depth"]) if profile else 0.0
+        return (self.film("coning") or 0.0) * (radius - (self.film("inner_radius") or 0.0)) + depth
+
+    @property
+    def touch_at(self) -> float:
+        """Film thickness (m) at which the faces touch: where asperities meet, or zero."""
+        level = (self.summary.get("contact") or {}).get("touch_at")
+        return level if isinstance(level, int | float) else 0.0
+
+    @cached_property
+    def touches(self) -> bool:
+        """Whether any sample shows contact."""
+        return self.has("contact_force") and bool(np.nanmax(self.envelope("contact_force")[1]) > 0)
+
+    @cached_property
+    def contact_tilt(self) -> float | None:
+        """Relative misalignment (rad) at which the faces touch at the design clearance."""
+        inner, outer = self.film("inner_radius"), self.film("outer_radius")
+        if not (self.clearance and inner and outer):
+            return None
+        profile = self.resolved.get("film", {}).get("profile")
+        radii = np.array(profile["radius"] if profile else [inner, outer])
+        return float(np.min((self.clearance + self.shape(radii)) / radii))
+
+    @property
+    def question(self) -> str:
+        """The scenario's opening question, or the opening comment, or the archive's name."""
+        comment = []
+        for line in self.info.get("scenario", "").splitlines():
+            if not line.startswith("#"):
+                break
+            comment.append(line.lstrip("# ").strip())
+        words = " ".join(comment).strip()
+        if "?" in words:
+            return words[: words.index("?") + 1]
+        return words.split(". ")[0] or self.info.get("title", "")
+
+    @property
+    def description(self) -> str:
+        """Name, model and stability verdict, as far as the summary has them."""
+        model, stability = self.summary.get("model") or {}, self.summary.get("stability") or {}
+        parts = [self.info.get("title", "")]
+        if model.get("film"):
+            parts.append(f"{model['film']} film")
+        unknowns = model.get("unknowns")
+        if unknowns:
+            names = unknowns if isinstance(unknowns, list) else None
+            count = len(names) if names else unknowns
+            parts.append(f"{count} unknown{'s' * (count != 1)}" if isinstance(count, int) else str(count))
+        if model.get("solver"):
+            parts.append(f"solver {model['solver']}")
+        if stability.get("verdict"):
+            whirl = stability.get("whirl_ratio")
+            words = f", whirl ratio {whirl:.3g}" if isinstance(whirl, int | float) else ""
+            parts.append(f"linear stability: {stability['verdict']}{words}")
+        return "   ·   ".join(part for part in parts if part)

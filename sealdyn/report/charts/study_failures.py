@@ -1,0 +1,83 @@
+"""The failure gallery on one page: each failing method's error beside the survivor's, on its own decades."""
+
+import math
+import textwrap
+
+from ...archive import read_study
+from .page import look, save, sheet, shortened
+from .palette import BLACK, BLUE, GREY, PALE, VERMILLION
+
+# Decades drawn; what is smaller, or nothing at all, ends at the left edge.
+LEAST, MOST = -17, 11
+NAMES, NUMBERS = 0.235, 0.715
+
+
+def draw(path, out):
+    """One line of bars per exhibit, its name and unit to the left, what the program does by default to the right."""
+    info = read_study(path)
+    rows = info["answer"]["rows"]
+    shown = [row for row in rows if "absent" not in row]
+    waiting = [row for row in rows if "absent" in row]
+    with look():
+        height = 1.4 + 0.42 * len(shown) + 0.12 * len(waiting)
+        figure = sheet(14.5, height)
+        figure.text(0.02, 1 - 0.3 / height, "Where methods fail, by how much, and what survives", fontsize=13,
+                    weight="bold", va="center")  # fmt: skip
+        bottom = (0.6 + 0.12 * len(waiting)) / height
+        ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
+        for at, row in enumerate(shown):
+            _line(ax, row, -at)
+        _frame(figure, ax, len(shown), height)
+        if waiting:
+            words = "not there yet:  " + ";  ".join(f"{r['item']} {r['title']}, {r['absent']}" for r in waiting)
+            for k, line in enumerate(textwrap.wrap(words.replace(" (not there yet)", ""), 190)):
+                figure.text(0.02, (0.1 + 0.1 * len(waiting) - 0.17 * k) / height, line, fontsize=7.5, color=GREY)
+        return save(figure, out)
+
+
+def _frame(figure, ax, count, height):
+    ax.set(xlim=(LEAST, MOST), ylim=(-count + 0.4, 0.6), yticks=[])
+    ticks = list(range(-16, 11, 4))
+    ax.set_xticks(ticks, [f"$10^{{{t}}}$" if t else "1" for t in ticks])
+    ax.grid(axis="y", visible=False)
+    ax.spines["left"].set_visible(False)
+    ax.set_xlabel("error or cost, in the unit named")
+    top = 1 - 0.62 / height
+    left, right = NAMES + 0.003, NUMBERS + 0.012
+    figure.text(left, top, "the method that fails", color=VERMILLION, fontsize=9, weight="bold")
+    figure.text(left + 0.13, top, "the survivor", color=BLUE, fontsize=9, weight="bold")
+    figure.text(left + 0.21, top, "(a cross: no answer at all)", color=GREY, fontsize=8)
+    figure.text(right, top, "by default the program …", fontsize=9, weight="bold")
+
+
+def _line(ax, row, y):
+    ax.axhline(y - 0.5, color=PALE, lw=0.5)
+    ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", transform=ax.get_yaxis_transform(), ha="right",
+            va="center", fontsize=9, weight="bold")  # fmt: skip
+    ax.text(-0.012, y - 0.2, shortened(row.get("unit", ""), 62), transform=ax.get_yaxis_transform(), ha="right",
+            va="center", fontsize=7.5, color=GREY)  # fmt: skip
+    if "failed" in row:
+        ax.text(LEAST, y, f" the exhibit failed: {row['failed']}", color=VERMILLION, va="center")
+        return
+    _bar(ax, y + 0.2, row["failing_error"], row["failing"], VERMILLION)
+    _bar(ax, y - 0.2, row["survivor_error"], row["survivor"], BLUE)
+    words = textwrap.wrap(row["default"], 62)
+    for k, line in enumerate(words[:2]):
+        ax.text(1.023, y + 0.17 * (len(words[:2]) > 1) - 0.34 * k, line, transform=ax.get_yaxis_transform(),
+                fontsize=7.5, va="center", color=BLACK)  # fmt: skip
+
+
+def _bar(ax, y, error, words, colour):
+    """A bar to the error with its name and number; a cross where there is no answer."""
+    if error is None:
+        ax.barh(y, MOST - LEAST - 0.4, left=LEAST, height=0.34, color=colour, alpha=0.18)
+        ax.plot(MOST - 0.4, y, "x", color=colour, ms=6, mew=2, clip_on=False)
+        ax.text(LEAST + 0.2, y, words, fontsize=7.5, va="center", color=BLACK)
+        return
+    end = max(math.log10(error), LEAST + 0.25) if error > 0 else LEAST + 0.25
+    ax.barh(y, end - LEAST, left=LEAST, height=0.34, color=colour, alpha=0.4)
+    ax.plot([end, end], [y - 0.17, y + 0.17], color=colour, lw=2)
+    number = f"{error:.2g}" if error > 0 else "none"
+    # Inside a long bar, else beside it.
+    at = LEAST + 0.2 if end - LEAST > 13.5 else end + 0.25
+    ax.text(at, y, f"{number}  {words}", fontsize=7.5, va="center", color=BLACK)

@@ -1,0 +1,1 @@
+"""Scenario files: TOML in, scenes out; every input error ends here."""

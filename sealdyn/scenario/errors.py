@@ -1,0 +1,170 @@
+"""What is wrong with a scenario, in one line: file, table, key, found, expected, nearest valid spelling."""
+
+import dataclasses
+import difflib
+import types
+import typing
+from functools import cache
+from typing import Any
+
+from ..units import Quantity, QuantityError, VaryingQuantity, quoted
+
+NOTHING = object()
+
+
+class ScenarioError(Exception):
+    """A scenario that cannot be run; its text is one line.  `key` is dotted, table first."""
+
+    def __init__(self, name: str, key: str, found: str, expected: str):
+        table, _, last = key.rpartition(".")
+        where = f"[{table}] {last}" if table else f"[{last}]" if last else ""
+        line = f"{name}: {where + ': ' if where else ''}found {found}; expected {expected}"
+        super().__init__("".join(c if c.isprintable() else " " for c in line))
+        self.name, self.key, self.found, self.expected = name, key, found, expected
+
+
+@cache
+def tables(kind: type, path: str = "") -> dict[str, dict[str, Any]]:
+    """Every table a scenario may have, by dotted path, with its keys and what they hold."""
+    keys = {f.name: f.type for f in dataclasses.fields(kind)}
+    found = {path: keys}
+    for key, holds in keys.items():
+        below = table_in(holds)
+        if below:
+            found |= tables(below, f"{path}.{key}" if path else key)
+    return found
+
+
+def table_in(holds: Any) -> type | None:
+    """The table a key holds (alone, optional, in a list, or instead of a word), if it holds one."""
+    if dataclasses.is_dataclass(holds):
+        return holds
+    if typing.get_origin(holds) in (list, typing.Union, types.UnionType):
+        return next((t for t in map(table_in, typing.get_args(holds)) if t), None)
+    return None
+
+
+def is_list(holds: Any) -> bool:
+    return typing.get_origin(holds) is list
+
+
+def expected_of(key: str, holds: Any) -> str:
+    """What a key expects, in words."""
+    for part in getattr(holds, "__metadata__", ()):
+        if isinstance(part, Quantity):
+            return part.expected()
+        if isinstance(part, VaryingQuantity):
+            return part.quantity.expected()
+    words = [a for a in typing.get_args(holds) if a is not type(None)]
+    if typing.get_origin(holds) is typing.Literal:
+        return "one of " + ", ".join(f'"{w}"' for w in words)
+    if is_list(holds):
+        return f"tables [[{key}]] (double brackets) with the keys {', '.join(keys_in(words[0]))}"
+    if dataclasses.is_dataclass(holds):
+        return f"one table [{key}] with the keys {', '.join(keys_in(holds))}"
+    if words and typing.get_origin(holds) in (typing.Union, types.UnionType):
+        return " or ".join(expected_of(key, w) for w in words)
+    if typing.get_origin(holds) is typing.Annotated:
+        return expected_of(key, words[0])
+    plain = {float: "a number", int: "a whole number", bool: "true or false", str: "a string"}
+    return plain.get(holds, "a table" if typing.get_origin(holds) is dict else "something else")
+
+
+def keys_in(kind: type) -> list[str]:
+    return [f.name for f in dataclasses.fields(kind)]
+
+
+def without_indices(path: str) -> str:
+    return ".".join(part for part in path.split(".") if not part.isdigit())
+
+
+def nearest(kind: type, path: str, key: str) -> str:
+    """Where an unknown key belongs: the table that has it, or the nearest spelling here, or elsewhere."""
+    every = tables(kind)
+    here = list(every.get(without_indices(path), {}))
+    elsewhere = [f"[{table}]" for table, keys in every.items() if key in keys and table]
+    top = [table for table in every if table and table.rpartition(".")[2] == key]
+    if top:
+        above, _, last = top[0].rpartition(".")
+        return f"the table is [[{top[0]}]]" if is_list(every[above][last]) else f"the table is [{top[0]}]"
+    close = difflib.get_close_matches(key, here, 1, 0.6)
+    if elsewhere and not (close and close[0].startswith(key)):
+        return f"'{key}' belongs to {' or '.join(elsewhere[:3])}"
+    if close:
+        return f"nearest '{close[0]}'"
+    names = {k: table for table, keys in every.items() if table for k in keys}
+    close = difflib.get_close_matches(key, names, 1, 0.6)
+    if close:
+        return f"nearest '{close[0]}' in [{names[close[0]]}]"
+    return f"the keys here are {', '.join(here)}"
+
+
+def explain(name: str, kind: type, raw: dict, errors: list[dict]) -> ScenarioError:
+    """The most telling of pydantic's errors: an unknown key first, then a wrong value, then a missing key."""
+    rank = {"unexpected_keyword_argument": 0, "missing": 2}
+    told = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
+    error = min(told, key=lambda e: rank.get(e["type"], 1))
+    unknown = error["type"] == "unexpected_keyword_argument"
+    path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
+    key = ".".join(path)
+    if unknown:
+        return _unknown(name, kind, path)
+    if error["type"] == "missing" or value is NOTHING:
+        found = "no such table" if table_in(holds) else "nothing"
+        return ScenarioError(name, key, found, expected_of(key, holds))
+    cause = error.get("ctx", {}).get("error")
+    if isinstance(cause, QuantityError):
+        return ScenarioError(name, key, cause.found, cause.expected)
+    expected = _expected_here(path, holds, error)
+    words = [w for a in (holds, *typing.get_args(holds)) for w in typing.get_args(a) if isinstance(w, str)]
+    near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
+    return ScenarioError(name, key, quoted(value), expected + (f"; nearest '{near[0]}'" if near else ""))
+
+
+def _expected_here(path: list[str], holds: Any, error: dict) -> str:
+    key = without_indices(".".join(path))
+    if path[-1].isdigit():
+        return f"a table [[{key}]]"
+    if error["type"] == "string_pattern_mismatch":
+        return '"rest", "steady" or an archive "file.h5"'
+    signs = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
+    limit = "".join(f" {signs[k]} {v:g}" for k, v in error.get("ctx", {}).items() if k in signs)
+    return expected_of(key, holds) + limit
+
+
+def _unknown(name: str, kind: type, path: list[str]) -> ScenarioError:
+    table, key = ".".join(path[:-1]), path[-1]
+    what, valid = ("an unknown key", f"a key of [{table}]") if table else ("an unknown table", "a known table")
+    printable = ".".join([*path[:-1], quoted(key).strip('"')])
+    return ScenarioError(name, printable, what, f"{valid}; {nearest(kind, table, key)}")
+
+
+def _beside_the_point(raw: dict, location: tuple) -> bool:
+    """A key that holds a word or a table gets errors for both; the file's own kind is the one meant."""
+    value = raw
+    for step in location:
+        if isinstance(step, str) and step.startswith("literal["):
+            return isinstance(value, dict)
+        try:
+            value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return isinstance(step, str) and step[:1].isupper() and not isinstance(value, dict)
+    return False
+
+
+def _follow(kind: type, raw: Any, location: tuple, keep_last: bool) -> tuple[list[str], Any, Any]:
+    """Path of keys, what the last one holds and what the file has there; drops pydantic's names of types."""
+    path, holds, value = [], kind, raw
+    for n, step in enumerate(location):
+        table = table_in(holds)
+        keys = {f.name: f.type for f in dataclasses.fields(table)} if table else {}
+        if isinstance(step, int):
+            holds = typing.get_args(holds)[0] if is_list(holds) else holds
+            value = value[step] if isinstance(value, list) and step < len(value) else NOTHING
+        elif step in keys:
+            holds = keys[step]
+            value = value.get(step, NOTHING) if isinstance(value, dict) else NOTHING
+        elif not (keep_last and n == len(location) - 1):
+            continue
+        path.append(str(step))
+    return path, holds, value

@@ -1,0 +1,291 @@
+"""A scenario file becomes a scene: TOML in, dataclasses out.  All input errors end here, in one line each."""
+
+import dataclasses
+import difflib
+import math
+import re
+import tomllib
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from ..films import all_film_names
+from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.checks import check_scene, unused
+from ..scene.scene import Scene, SceneError
+from ..units import Length, QuantityError, Time, quoted
+from .errors import ScenarioError, explain, tables, without_indices
+from .overrides import override_key
+
+__all__ = [
+    "Run",
+    "Scenario",
+    "ScenarioError",
+    "json_schema",
+    "parse_scenario",
+    "read_scenario",
+    "unused_keys",
+]
+
+
+STARTS = r"^(rest|steady|.+\.h5)$"
+
+
+@dataclass(frozen=True)
+class Run:
+    """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
+
+    `turns` of the shaft (default 60) or `duration`; `samples_per_turn` (default 64; of a shaft at rest:
+    1000 in all) or `samples` in all.
+    """
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    turns: Annotated[float, Field(gt=0)] | None = None
+    duration: Time | None = None
+    samples_per_turn: Annotated[int, Field(gt=0)] | None = None
+    samples: Annotated[int, Field(gt=0)] | None = None
+    accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
+    solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
+    start: Annotated[str, Field(pattern=STARTS)] = "rest"
+
+
+@dataclass(frozen=True)
+class ScenarioFile(Scene):
+    """A scenario file: the scene, how to run it, and settings of studies (each study knows its own)."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    run: Run = field(default_factory=Run)
+    study: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A scene with its run, and the file it came from.  `given`: dotted keys that the user wrote."""
+
+    scene: Scene
+    run: Run
+    study: dict
+    text: str
+    name: str
+    path: Path | None
+    overrides: list[str]
+    question: str
+    given: frozenset[str]
+
+    def resolved(self) -> dict:
+        """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
+        tree = dataclasses.asdict(self.scene) | {"run": dataclasses.asdict(self.run), "study": self.study}
+        return _plain(tree)
+
+    def unused(self) -> list[str]:
+        """Known keys, dotted, that the user gave and that this scene does not use."""
+        return unused(self.scene, self.given)
+
+
+def read_scenario(path, overrides=()) -> Scenario:
+    """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
+    path = Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        near = difflib.get_close_matches(path.name, _neighbours(path), 3, 0.5)
+        hint = f"; nearest {', '.join(near)}" if near else ""
+        raise ScenarioError(str(path), "", "no such file", "a scenario file (TOML)" + hint) from None
+    except IsADirectoryError:
+        raise ScenarioError(str(path), "", "a folder", "a scenario file (TOML)") from None
+    except UnicodeDecodeError as error:
+        raise ScenarioError(path.name, "", f"no UTF-8 text (byte {error.start})", "a scenario file (TOML)") from None
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or str(error)
+        raise ScenarioError(quoted(str(path)), "", f"an unreadable file ({why})", "a scenario file (TOML)") from None
+    return parse_scenario(text, path.name, overrides, path)
+
+
+def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None) -> Scenario:
+    """Scenario of TOML text; `name` is what errors call it.  Raises `ScenarioError`."""
+    raw = _toml(text, name)
+    for override in overrides:
+        override_key(raw, override, name)
+    _refuse_odd_numbers(raw, name)
+    given = frozenset(_given(raw))
+    _tilt_of_tir(raw)
+    _check_run_and_study(raw, name)
+    try:
+        file = _reader().validate_python(raw)
+        _check_film_name(file.film.model)
+        check_scene(file, file.run)
+    except ValidationError as error:
+        raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
+    except SceneError as error:
+        raise ScenarioError(name, error.key, error.found, error.expected) from None
+    if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
+        raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
+    scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
+    return Scenario(
+        scene,
+        file.run,
+        file.study,
+        text,
+        name.removesuffix(".toml"),
+        path,
+        list(overrides),
+        _question(text),
+        given,
+    )
+
+
+def unused_keys(scenario: Scenario) -> list[str]:
+    """`scenario.unused()`, as a function."""
+    return scenario.unused()
+
+
+def json_schema() -> dict:
+    """JSON schema (draft 2020-12) of a scenario file, for editors."""
+    schema = _without_null(TypeAdapter(ScenarioFile).json_schema())
+    schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
+
+
+def film_choices() -> list[str]:
+    """What `film.model` takes."""
+    return ["auto", *all_film_names()]
+
+
+def _check_film_name(name: str) -> None:
+    if name not in film_choices():
+        near = difflib.get_close_matches(name, film_choices(), 1)
+        expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
+        raise SceneError("film.model", f'"{name[:40]}"', expected + (f"; nearest '{near[0]}'" if near else ""))
+
+
+@cache
+def _reader() -> TypeAdapter:
+    return TypeAdapter(ScenarioFile)
+
+
+def _neighbours(path: Path) -> list[str]:
+    try:
+        return [p.name for p in path.parent.iterdir() if p.suffix in (".toml", ".h5")]
+    except OSError:
+        return []
+
+
+def _toml(text: str, name: str) -> dict:
+    try:
+        raw = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
+    except (ValueError, RecursionError):
+        raise ScenarioError(name, "", "numbers too long or tables too deep", "a scenario file (TOML)") from None
+    if not raw:
+        raise ScenarioError(name, "", "an empty file", "the tables [shaft], [film], [rotor], [stator]")
+    return raw
+
+
+def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> None:
+    """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
+    if depth > 20:
+        raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
+    below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    for step, value in below:
+        path = f"{key}.{step}" if key else str(step)
+        if path != "study":
+            _refuse_odd_numbers(value, name, path, depth + 1)
+    if isinstance(tree, float) and not math.isfinite(tree):
+        raise ScenarioError(name, key, str(tree), "a finite number")
+    table, _, last = without_indices(key).rpartition(".")
+    if isinstance(tree, bool) and tables(ScenarioFile).get(table, {}).get(last) is not bool and key:
+        raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+
+
+def _given(tree: dict, key: str = "") -> list[str]:
+    found = []
+    for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
+        path = f"{key}.{step}" if key else str(step)
+        is_table = without_indices(path) in tables(ScenarioFile) and isinstance(value, (dict, list))
+        found += _given(value, path) if is_table and path != "study" else [path]
+    return found
+
+
+def _tilt_of_tir(raw: dict) -> None:
+    """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o)."""
+    rotor, film = _table(raw, "rotor"), _table(raw, "film")
+    if "runout" not in rotor:
+        return
+    runout = rotor["runout"]
+    entries = runout.get("value") if isinstance(runout, dict) else [runout]
+    if not isinstance(entries, list):
+        return
+    length = Length.__metadata__[0]
+    for n, entry in enumerate(entries):
+        reading = re.fullmatch(r"(.*\S)\s*\bTIR\s*", entry) if isinstance(entry, str) else None
+        if reading:
+            try:
+                entries[n] = length.read(reading[1]) / (2 * length.read(film.get("outer_radius")))
+            except (QuantityError, ZeroDivisionError):
+                # The reader below says what is wrong with either.
+                continue
+    if not isinstance(runout, dict):
+        rotor["runout"] = entries[0]
+
+
+def _table(raw: dict, key: str) -> dict:
+    """A table of the file, empty if it is none (the reader says so)."""
+    return raw[key] if isinstance(raw.get(key), dict) else {}
+
+
+def _check_run_and_study(raw: dict, name: str) -> None:
+    """What depends on several keys: how long and how often, and that studies are tables."""
+    for study, settings in _table(raw, "study").items():
+        if not isinstance(settings, dict):
+            raise ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
+    raw.setdefault("run", {})
+    run = _table(raw, "run")
+    for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
+        if one in run and other in run:
+            raise ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
+    if "duration" not in run:
+        run.setdefault("turns", 60)
+    if "samples" not in run:
+        run.setdefault("samples_per_turn", 64)
+
+
+def _turns(speed) -> bool:
+    """Whether the shaft ever turns."""
+    return any(speed.value) if isinstance(speed, PiecewiseLinear) else bool(speed)
+
+
+def _question(text: str) -> str:
+    """The comment block at the head of the file."""
+    lines = []
+    for line in text.lstrip("\ufeff").splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.lstrip("#").strip())
+    return "\n".join(lines)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, PiecewiseLinear):
+        return {"time": list(value.time), "value": list(value.value)}
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
+
+
+def _without_null(schema: Any) -> Any:
+    """TOML has no null: an absent key is absent."""
+    if isinstance(schema, list):
+        return [_without_null(s) for s in schema if s != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {k: _without_null(v) for k, v in schema.items() if (k, v) != ("default", None)}
+    only = kept.get("anyOf", [])
+    return {k: v for k, v in kept.items() if k != "anyOf"} | only[0] if len(only) == 1 else kept

@@ -1,0 +1,172 @@
+"""What a study asks of a scenario: its settings, the values of a key it goes through, and the same scenario with
+other values."""
+
+import contextlib
+import dataclasses
+import json
+import re
+import typing
+from types import UnionType
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from ..unit_names import dimension_and_factor
+from .errors import ScenarioError
+from .reader import Scenario, parse_scenario
+
+NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
+
+
+def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, Any]):
+    """Settings of study `name` (underscored): defaults, overridden by `[study.NAME]`, overridden by flags.
+    A flag "a, b, c" of a setting that is a list is read as a list.  Raises ScenarioError for unknown keys or values,
+    like any other table."""
+    known = [f.name for f in dataclasses.fields(kind)]
+    raw = {key.replace("-", "_"): value for key, value in scenario.study.get(name, {}).items()}
+    raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
+    for key in raw:
+        if key not in known:
+            import difflib
+
+            near = difflib.get_close_matches(key, known, 1)
+            hint = f"; nearest {near[0]}" if near else ""
+            expected = f"one of {', '.join(known)}{hint}" if known else "no settings"
+            raise ScenarioError(scenario.name, f"study.{name}.{key}", "an unknown key", expected)
+    try:
+        return TypeAdapter(kind).validate_python(raw)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(str(part) for part in first["loc"] if isinstance(part, str) and part in known)
+        context = first.get("ctx", {}).get("error")
+        found = getattr(context, "found", repr(first.get("input")))
+        expected = getattr(context, "expected", first["msg"])
+        raise ScenarioError(scenario.name, f"study.{name}.{key}", found, expected) from None
+
+
+def _listed(flags: dict[str, Any], kind: type) -> dict[str, Any]:
+    """The flags, words and numbers given for lists split at commas; a setting that also takes words is left alone."""
+    takes, out = typing.get_type_hints(kind), {}
+    for key, value in flags.items():
+        kinds = set(_alternatives(takes.get(key.replace("-", "_"))))
+        if kinds & {tuple, list} and str not in kinds and isinstance(value, str | int | float):
+            value = [_plain(entry.strip()) for entry in value.split(",")] if isinstance(value, str) else [value]
+        out[key] = value
+    return out
+
+
+def _alternatives(annotation):
+    """The kinds a setting may be of, lists without their contents."""
+    origin, inner = typing.get_origin(annotation), typing.get_args(annotation)
+    if origin in (typing.Union, UnionType):
+        for kind in inner:
+            yield from _alternatives(kind)
+    elif origin is typing.Annotated:
+        yield from _alternatives(inner[0])
+    else:
+        yield origin or annotation
+
+
+def _plain(words: str):
+    """A number where it is one, as a flag's single value would be."""
+    with contextlib.suppress(ValueError):
+        return json.loads(words)
+    return words
+
+
+def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
+    """The scenario with other values at dotted keys (SI numbers or strings with units).  Raises ScenarioError."""
+    more = [f"{key}={_written(value)}" for key, value in values.items()]
+    return parse_scenario(scenario.text, scenario.name, [*scenario.overrides, *more], scenario.path)
+
+
+SMOOTH = ("contact", "stator.secondary_seal", "rotor.secondary_seal")
+
+
+def _not_smooth(scene) -> list[str]:
+    tables = (scene.contact, scene.stator.secondary_seal, scene.rotor.secondary_seal)
+    return [name for name, table in zip(SMOOTH, tables, strict=True) if table]
+
+
+def without_contact(scenario: Scenario) -> tuple[Scenario, list[str]]:
+    """The scenario without its contact and secondary-seal tables, for questions about the film alone, and the names of
+    the tables that were left out.  Raises ScenarioError if one is not written as a table."""
+    names = _not_smooth(scenario.scene)
+    if not names:
+        return scenario, []
+    text = scenario.text
+    for name in names:
+        text = re.sub(rf"(?ms)^[ \t]*\[\s*{re.escape(name)}\s*\].*?(?=^[ \t]*\[|\Z)", "", text)
+    overrides = [words for words in scenario.overrides if not words.strip().startswith(tuple(f"{n}." for n in names))]
+    film_alone = parse_scenario(text, scenario.name, overrides, scenario.path)
+    if _not_smooth(film_alone.scene):
+        raise ScenarioError(scenario.name, names[0], "keys outside a table", f"a table headed [{names[0]}]")
+    return film_alone, names
+
+
+def _written(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(float(value)) if isinstance(value, int | float) else str(value)
+
+
+def axis(words: str, name: str, where: str) -> dict:
+    """`{key, unit, given, values}` of "key=from:to:count[:log]" or "key=a,b,c": `given` strings as a scenario would
+    have them, `values` the numbers in `unit` (or the words themselves, `unit` None).  A number without a unit takes
+    that of its neighbours.  Raises ScenarioError that names scenario `name` and setting `where`."""
+    key, equals, written = (part.strip() for part in words.partition("="))
+    if not (key and equals and written):
+        raise ScenarioError(name, where, repr(words), AXIS)
+    parts = written.split(":")
+    if len(parts) == 1:
+        entries = [entry.strip() for entry in written.split(",")]
+        matches = [NUMBER.fullmatch(entry) for entry in entries]
+        if not all(matches) or not _alike(matches):
+            return {"key": key, "unit": None, "given": entries, "values": entries}
+        values, unit = _in_one_unit(matches)
+    else:
+        ends = [NUMBER.fullmatch(part) for part in parts[:2]]
+        count, even_ratio = parts[2:3], parts[3:] == ["log"]
+        if not all(ends) or not (count and count[0].strip().isdecimal()) or (parts[3:] and not even_ratio):
+            raise ScenarioError(name, where, repr(words), AXIS)
+        if not _alike(ends) and ends[0][2] != ends[1][2]:
+            raise ScenarioError(name, where, repr(words), "ends in units of one kind")
+        (low, high), unit = _in_one_unit(ends)
+        if even_ratio and not low * high > 0:
+            raise ScenarioError(name, where, repr(words), "ends of one sign, not zero, for log")
+        spread = np.geomspace if even_ratio else np.linspace
+        # Twelve digits: 0.3 mrad is written so, not as 0.30000000000000004 mrad.
+        values = [float(f"{v:.12g}") for v in spread(low, high, int(count[0]))]
+    return {"key": key, "unit": unit, "given": [f"{v!r} {unit}".strip() for v in values], "values": values}
+
+
+def _is_unit(words: str) -> bool:
+    if not words:
+        return True
+    try:
+        dimension_and_factor(words)
+    except ValueError:
+        return False
+    return True
+
+
+def _alike(matches) -> bool:
+    """Whether the units written are units, and of one kind: none is converted into another's."""
+    units = [m[2] for m in matches]
+    return all(map(_is_unit, units)) and len({dimension_and_factor(unit)[0] for unit in units if unit}) < 2
+
+
+def _in_one_unit(matches) -> tuple[list[float], str]:
+    """Numbers in the last unit written; those without a unit are in it already."""
+    units = [m[2] for m in matches]
+    unit = next((u for u in reversed(units) if u), "")
+
+    def number(match):
+        own = match[2]
+        if own in ("", unit) or not (_is_unit(own) and _is_unit(unit)):
+            return float(match[1])
+        return float(match[1]) * float(dimension_and_factor(own)[1] / dimension_and_factor(unit)[1])
+
+    return [number(m) for m in matches], unit

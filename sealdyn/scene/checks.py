@@ -1,0 +1,249 @@
+"""What cannot be: valid keys that no scene can have together; and keys that this scene leaves unused."""
+
+import cmath
+import math
+
+from ..numerics.piecewise_linear import PiecewiseLinear
+from . import contact, secondary_seal
+from . import film as film_table
+from .scene import SceneError
+
+
+def check_scene(scene, run) -> None:
+    """Raises `ImpossibleScene` with the first rule that the scene breaks."""
+    _film(scene.film)
+    _profile(scene)
+    _closing(scene)
+    for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
+        _ring(name, ring)
+        check_no_step(name, ring)
+    if scene.contact:
+        for key, found, expected in contact.contact_errors(scene.contact):
+            raise SceneError(f"contact.{key}", found, expected)
+    if not (scene.stator.support or scene.rotor.support):
+        raise SceneError(
+            "rotor.support",
+            "no support on either ring",
+            "[rotor.support] or [stator.support]: the ring that floats",
+        )
+    _vibrations(scene.housing)
+    _run(scene.shaft, run)
+    if run.start == "rest":
+        _open_at_start(scene)
+
+
+def _film(film) -> None:
+    for key in ("inner_radius", "outer_radius", "clearance"):
+        value = getattr(film, key)
+        if value is not None and value <= 0:
+            raise SceneError(f"film.{key}", f"{value:g} m", "a length > 0")
+    if film.inner_radius >= film.outer_radius:
+        raise SceneError(
+            "film.inner_radius",
+            f"{film.inner_radius:g} m",
+            f"less than outer_radius = {film.outer_radius:g} m",
+        )
+    if not 0 < film.floor < 0.5:
+        raise SceneError("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
+    if film.clearance is not None and film.profile is None:
+        outer = film.clearance + film.coning * (film.outer_radius - film.inner_radius)
+        if outer <= film.floor * film.clearance:
+            raise SceneError(
+                "film.coning",
+                f"{film.coning:g} rad, a film of {outer:g} m at the outer radius",
+                "an open film",
+            )
+    _cavitation(film)
+
+
+def _profile(scene) -> None:
+    film = scene.film
+    for key, found, expected in film_table.profile_errors(film):
+        raise SceneError(f"film.{key}", found, expected)
+    if film.clearance is not None and film.profile is not None:
+        least, radius = min((h, r) for r, h in film_table.aligned_gaps(film, film.clearance))
+        if not least > _lowest(scene):
+            raise SceneError("film.profile.depth", f"a film of {least:g} m at r = {radius:g} m", "an open film")
+
+
+def _lowest(scene) -> float:
+    """Film thickness (m) at which a run ends."""
+    if scene.contact is None:
+        return scene.film.floor * scene.film.clearance
+    return contact.contact_thresholds(scene.contact)[2]
+
+
+def _cavitation(film) -> None:
+    for key in ("outer_pressure", "inner_pressure"):
+        least = min(points(getattr(film, key)))
+        if film.cavitation_pressure is not None and film.cavitation_pressure > least:
+            raise SceneError(
+                "film.cavitation_pressure",
+                f"{film.cavitation_pressure:g} Pa",
+                f"at most {key} = {least:g} Pa",
+            )
+
+
+def _closing(scene) -> None:
+    ratio, spring = scene.closing.balance_ratio, scene.closing.spring_force
+    if scene.film.clearance is None and (ratio is None or spring is None):
+        raise SceneError(
+            "film.clearance",
+            "nothing",
+            "a length, or both [closing] balance_ratio and [closing] spring_force",
+        )
+    if scene.film.clearance is not None and ratio is not None and spring is not None:
+        raise SceneError(
+            "film.clearance",
+            "clearance, balance_ratio and spring_force together",
+            "two of the three: the third follows",
+        )
+    if ratio is not None and ratio < 0:
+        raise SceneError("closing.balance_ratio", f"{ratio:g}", "a ratio >= 0")
+
+
+def _ring(name: str, ring) -> None:
+    if ring.polar_inertia > 2 * ring.transverse_inertia and not ring.unphysical_inertia:
+        raise SceneError(
+            f"{name}.polar_inertia",
+            f"{ring.polar_inertia:g} kg*m^2",
+            f"at most 2 x transverse_inertia = {2 * ring.transverse_inertia:g} kg*m^2 (a thin disk), "
+            "or unphysical_inertia = true",
+        )
+    if ring.polar_inertia > 0 and ring.transverse_inertia == 0:
+        raise SceneError(f"{name}.transverse_inertia", "0 beside a polar_inertia", "an inertia > 0")
+    support = ring.support
+    if ring.secondary_seal:
+        _secondary_seal(name, ring)
+    if support is None:
+        return
+    key = f"{name}.support"
+    by_tilt = support.tilt_stiffness is not None or support.tilt_damping is not None
+    if support.radius is not None and by_tilt:
+        raise SceneError(f"{key}.radius", "radius and tilt coefficients", "one or the other")
+    if support.radius is None and support.tilt_stiffness is None:
+        raise SceneError(f"{key}.radius", "nothing", "radius (of the ring of springs), or tilt_stiffness")
+    if support.radius is not None and support.radius <= 0:
+        raise SceneError(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
+
+
+def check_no_step(name: str, ring) -> None:
+    """A face cannot be somewhere else at once: the film, or the support's damper, would push without bound."""
+    for key in ("runout", "misalignment"):
+        value = getattr(ring, key, 0.0)
+        if not isinstance(value, PiecewiseLinear):
+            continue
+        for t0, t1, v0, v1 in zip(value.time, value.time[1:], value.value, value.value[1:], strict=False):
+            if t0 == t1 and v0 != v1:
+                found = f"a step at {t0:g} s, from {v0:g} to {v1:g} rad"
+                expected = "a ramp: a face that jumps squeezes the film without bound"
+                raise SceneError(f"{name}.{key}", found, expected)
+
+
+def _secondary_seal(name: str, ring) -> None:
+    key = f"{name}.secondary_seal"
+    for part, found, expected in secondary_seal.secondary_seal_errors(ring.secondary_seal):
+        raise SceneError(f"{key}.{part}", found, expected)
+    if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
+        raise SceneError(key, "a ring without mass or inertia", "mass and transverse_inertia > 0 to stick and slip")
+
+
+def _vibrations(housing) -> None:
+    for kind in ("axial", "angular"):
+        for n, vibration in enumerate(getattr(housing, kind)):
+            if (vibration.displacement is None) == (vibration.acceleration is None):
+                found = "neither" if vibration.displacement is None else "both"
+                raise SceneError(
+                    f"housing.{kind}.{n}.displacement", found, "exactly one of displacement and acceleration"
+                )
+
+
+def _run(shaft, run) -> None:
+    if run.duration is not None:
+        if run.duration <= 0:
+            raise SceneError("run.duration", f"{run.duration:g} s", "a time > 0")
+    elif turns_of(shaft.speed) < run.turns:
+        raise SceneError(
+            "run.turns",
+            f"{run.turns:g} turns of a shaft that makes {turns_of(shaft.speed):g}",
+            "[run] duration, or a [shaft] speed that gets there",
+        )
+
+
+def _open_at_start(scene) -> None:
+    """The flexible ring starts where [initial] says, else untilted at the clearance."""
+    film = scene.film
+    if film.clearance is None:
+        return
+    rotor, stator = _start(scene.initial.rotor), _start(scene.initial.stator)
+    if scene.rotor.support is None:
+        rotor = (0.0, cmath.rect(initially(scene.rotor.runout), scene.rotor.runout_phase))
+    if scene.stator.support is None:
+        angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
+        stator = (0.0, cmath.rect(angle, direction))
+    tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
+    thinnest, radius = min((h - tilt * r, r) for r, h in film_table.aligned_gaps(film, gap))
+    lowest = _lowest(scene)
+    if not thinnest > lowest:
+        blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
+        if (scene.rotor.support and scene.stator.support) or _given(scene.initial):
+            blame = "initial"
+        where = {film.inner_radius: "the inner radius", film.outer_radius: "the outer radius"}
+        raise SceneError(
+            blame,
+            f"a film closed at the start ({thinnest:g} m at {where.get(radius, f'r = {radius:g} m')}, "
+            f"relative misalignment {tilt:g} rad)",
+            f"more than floor x clearance = {lowest:g} m" if scene.contact is None
+            else f"more than {lowest:g} m, where all asperities are flat",
+        )  # fmt: skip
+
+
+def _start(ring) -> tuple[float, complex]:
+    return ring.z or 0.0, complex(ring.tilt_x or 0.0, ring.tilt_y or 0.0)
+
+
+def _given(initial) -> bool:
+    return any(value is not None for ring in (initial.rotor, initial.stator) for value in vars(ring).values())
+
+
+def initially(value) -> float:
+    return value.at(0.0) if isinstance(value, PiecewiseLinear) else value
+
+
+def points(value) -> tuple[float, ...]:
+    return value.value if isinstance(value, PiecewiseLinear) else (value,)
+
+
+def turns_of(speed) -> float:
+    """Turns the shaft makes in all (either way): endless unless its speed ends at zero."""
+    if points(speed)[-1] != 0:
+        return math.inf
+    if not isinstance(speed, PiecewiseLinear):
+        return 0.0
+    angle = max(0.0, speed.time[0]) * abs(speed.value[0])
+    for t0, t1 in zip(speed.time, speed.time[1:], strict=False):
+        if t1 > 0:
+            t0 = max(t0, 0.0)
+            middle = 0.5 * (t0 + t1)
+            angle += (t1 - t0) * abs(speed.at(middle))
+    return angle / (2 * math.pi)
+
+
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia")
+
+
+def unused(scene, given: set[str]) -> list[str]:
+    """Known keys that were given and that this scene does not use."""
+    leaves = []
+    for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
+        if ring.support is None:
+            leaves += [f"{name}.{key}" for key in RIGID_LEAVES] + [f"initial.{name}.", f"{name}.secondary_seal."]
+    if scene.rotor.support is None:
+        leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
+    else:
+        leaves += ["rotor.runout", "rotor.runout_phase"]
+    if scene.film.model != "linear":
+        leaves.append("film.coefficients")
+    elif scene.film.coefficients != "radial":
+        leaves += ["film.geometry", "film.cavitation_pressure"]
+    return sorted(k for k in given if any(k == u or (k + ".").startswith(u.rstrip(".") + ".") for u in leaves))

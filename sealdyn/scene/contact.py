@@ -1,0 +1,74 @@
+"""The `[contact]` table: roughness, strength, friction and wear of faces that may touch."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ..units import AsperityDensity, Length, Stress, WearCoefficient
+
+# Half height of Christensen's surface, and the reach of a Gaussian one, in rms roughnesses.
+HALF_HEIGHT, REACH = 3.0, 5.0
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The `[contact]` table.  `roughness` is the composite rms of both faces, `compressive_strength` that of the
+    softer one; shear of the touching area is `shear_strength`, or `friction_coefficient` (0.1 when neither is given)
+    times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    roughness: Length
+    law: Literal["christensen", "greenwood-williamson"] = "christensen"
+    compressive_strength: Stress | None = None
+    friction_coefficient: float | None = None
+    shear_strength: Stress | None = None
+    stator_wear_coefficient: WearCoefficient = 0.0
+    rotor_wear_coefficient: WearCoefficient = 0.0
+    asperity_density: AsperityDensity | None = None
+    asperity_radius: Length | None = None
+    modulus: Stress | None = None
+
+
+LAW_KEYS = {
+    "christensen": ("compressive_strength",),
+    "greenwood-williamson": ("asperity_density", "asperity_radius", "modulus"),
+}
+
+
+def contact_errors(contact: Contact) -> list[tuple[str, str, str]]:
+    """What cannot be in a `[contact]` table: (key, found, expected), in the order of the table."""
+    bad = []
+    wanted = ("roughness", *LAW_KEYS[contact.law])
+    for law, keys in LAW_KEYS.items():
+        if law != contact.law:
+            bad += [
+                (key, f"a value, with law = {contact.law!r}", f'nothing, or law = "{law}"')
+                for key in keys
+                if getattr(contact, key) is not None
+            ]
+    for key in wanted:
+        value = getattr(contact, key)
+        if value is None:
+            bad.append((key, "nothing", f'a value > 0: law = "{contact.law}" needs it'))
+        elif not 0.0 < value < math.inf:
+            bad.append((key, f"{value:g}", "a value > 0"))
+    if contact.friction_coefficient is not None and contact.shear_strength is not None:
+        bad.append(("shear_strength", "a value beside friction_coefficient", "one of the two"))
+    for key in ("friction_coefficient", "shear_strength", "stator_wear_coefficient", "rotor_wear_coefficient"):
+        value = getattr(contact, key)
+        if value is not None and not 0.0 <= value < math.inf:
+            bad.append((key, f"{value:g}", "a value >= 0"))
+    return bad
+
+
+def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
+    """Mean films h (m), with c = 3 rms roughnesses: (film_floor, touch, collapse).
+
+    film_floor  0.6 c: below it the smooth film law is continued (`gap.above_floor`, floor/2 at h = 0), as rough
+                faces do: E(H^3)^(1/3) at h = 0 is 0.30 c (Christensen), 0.31 c (Gaussian).
+    touch       where the first asperities meet: c; 5 rms for Gaussian heights, whose load there is 1e-7 of that at 0.
+    collapse    -c: all asperities are flattened, and the law has nothing more to say.
+    """
+    c = HALF_HEIGHT * contact.roughness
+    return 0.6 * c, c if contact.law == "christensen" else REACH * contact.roughness, -c

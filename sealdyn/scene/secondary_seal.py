@@ -1,0 +1,50 @@
+"""The secondary-seal tables: friction of the O-ring on which a ring slides."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from ..units import Force, Length, LineForce, Velocity
+
+
+@dataclass(frozen=True)
+class SecondarySeal:
+    """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` of the circle, and `line_friction`
+    (F', force per length) or `friction_force` (axial breakaway force, 2 pi R F').  `law = "regularised"` replaces
+    the sign of the sliding speed by v/sqrt(v^2 + width^2): smooth, and creeping where a real seal sticks."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    radius: Length
+    line_friction: LineForce | None = None
+    friction_force: Force | None = None
+    law: Literal["coulomb", "regularised"] = "coulomb"
+    width: Velocity | None = None
+
+    def line(self) -> float:
+        """Friction per length F' (N/m)."""
+        if self.line_friction is not None:
+            return self.line_friction
+        return self.friction_force / (2 * math.pi * self.radius)
+
+    def breakaway(self) -> tuple[float, float]:
+        """Axial force (N) and moment (N m) that make a stuck ring slide, each alone."""
+        return 2 * math.pi * self.radius * self.line(), 4 * self.radius**2 * self.line()
+
+
+def secondary_seal_errors(seal) -> list[tuple[str, str, str]]:
+    """What is wrong with a table: (key, found, expected)."""
+    out = []
+    if seal.radius <= 0:
+        out.append(("radius", f"{seal.radius:g} m", "a length > 0"))
+    given = [x is not None for x in (seal.line_friction, seal.friction_force)]
+    if sum(given) != 1:
+        found = "both" if all(given) else "neither"
+        out.append(("line_friction", found, "exactly one of line_friction and friction_force"))
+    elif (seal.line_friction if given[0] else seal.friction_force) < 0:
+        out.append(("friction_force", "a negative friction", "a friction >= 0"))
+    if seal.law == "regularised" and not (seal.width and seal.width > 0):
+        out.append(("width", "nothing", "a sliding speed > 0, over which the regularised law turns"))
+    if seal.law == "coulomb" and seal.width is not None:
+        out.append(("width", f"{seal.width:g} m/s", 'no width, or law = "regularised"'))
+    return out

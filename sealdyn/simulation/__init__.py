@@ -1,0 +1,1 @@
+"""One run: choice of film and method, trajectory, archive, certificate, summary."""

@@ -1,0 +1,170 @@
+"""How far a linear film's scene is from the next film rung, without running that one.
+
+On the states the linear film visits, the next rung's film pushes differently; that difference, as a force on the
+linearised rings, gives the difference of the motions (the defect of the lower rung, answered linearly).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba import njit
+from scipy.linalg import expm
+
+from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
+from ..films import film_module
+
+# Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
+FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
+
+
+def model_error(problem, higher: str = "radial", enough: float = math.inf) -> float | None:
+    """The larger of `model_errors`, or None."""
+    found = model_errors(problem, higher, enough)
+    return None if found is None else float(found.max())
+
+
+def model_errors(problem, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
+    """Estimated difference of a linear film's scene from that with the film rung `higher` over the run.
+
+    **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
+    `problem` a Model with a linear film and its start; looking further ends once an error exceeds `enough`.
+    Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None
+    where it cannot be estimated.
+    """
+    if problem.massless or not problem.constant or not problem.linear:
+        return None
+    _, answers, linear = problem.steady_motion()
+    matrix = linear.state_matrix()
+    slowest = float(np.max(np.linalg.eigvals(matrix).real))
+    if slowest > 0:
+        return None
+    film = film_module(higher)
+    block = film.parameters(replace(problem.scene.film, model=higher), problem.clearance, problem.accuracy / 10)
+    seen = FilmComparison(problem, linear, film, block)
+    # The steady state first: it is cheap, and on it what is left of the start no longer acts.
+    worst = _steady_error(problem, linear, seen, answers)
+    if worst.max() > enough:
+        return worst
+    step = problem.fast_time / FOLLOWED
+    longest = min(problem.duration, -6.0 / slowest if slowest < 0 else math.inf)
+    return _followed(problem, linear, seen, answers, matrix, step, min(int(longest / step) + 1, MOST), worst, enough)
+
+
+def _followed(problem, linear, seen, answers, matrix, step, count, worst, enough) -> np.ndarray:
+    """The worst of `worst` and the errors at `count` steps from the start on."""
+    n = len(linear.mass)
+    # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
+    whole = expm(matrix * step)
+    mass = np.vstack([np.zeros((n, n)), np.linalg.inv(linear.mass)])
+    pushed = 0.5 * np.linalg.solve(matrix, whole - np.eye(2 * n)) @ mass
+    places, kept = problem.rate_places, problem.kept()
+    free = np.zeros(2 * n)
+    free[kept], free[n + np.array(kept)] = problem.y0[: problem.n], problem.y0[places]
+    free -= _forced(answers, np.zeros(1), n)[0]
+    error, before = np.zeros(2 * n), np.zeros(n)
+    for first in range(0, count + 1, AT_ONCE):
+        times = step * np.arange(first, min(first + AT_ONCE, count + 1))
+        unforced = _march(whole, free, np.zeros((len(times), 2 * n)))
+        free = unforced[-1]
+        defects = seen.defects(times, _forced(answers, times, n) + unforced[:-1])
+        # Nothing pushes before the first step.
+        earlier = np.vstack([before if first else -defects[0], defects[:-1]])
+        errors = _march(whole, error, (earlier + defects) @ pushed.T)[1:]
+        error, before = errors[-1], defects[-1]
+        worst = np.maximum(worst, seen.errors(errors))
+        if worst.max() > enough:
+            break
+    return worst
+
+
+@njit(cache=True)
+def _march(matrix, start, pushes):
+    """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
+    count, n = pushes.shape
+    states = np.empty((count + 1, n))
+    states[0] = start
+    for k in range(count):
+        for i in range(n):
+            total = pushes[k, i]
+            for j in range(n):
+                total += matrix[i, j] * states[k, j]
+            states[k + 1, i] = total
+    return states
+
+
+def _forced(answers, times, n) -> np.ndarray:
+    """Linear steady displacements and rates (m, 2 n) at leg times."""
+    states = np.zeros((len(times), 2 * n))
+    for harmonic, answer in answers:
+        turned = np.exp(1j * harmonic.frequency * times)[:, None] * answer
+        states[:, :n] += turned.real
+        states[:, n:] -= harmonic.frequency * turned.imag
+    return states
+
+
+def _steady_error(problem, linear, seen, answers) -> np.ndarray:
+    """Errors over the last forcing period, by harmonics; 0 if the forcing has no common period."""
+    period = problem.period()
+    if not period:
+        return np.zeros(2)
+    n, times = len(linear.mass), np.arange(STEADY) * period / STEADY
+    spectrum = np.fft.rfft(seen.defects(times, _forced(answers, times, n)), axis=0)
+    w = 2 * math.pi / period * np.arange(len(spectrum))[:, None, None]
+    motion = np.linalg.solve(linear.stiffness + 1j * w * linear.damping - w**2 * linear.mass, spectrum[:, :, None])
+    # The highest harmonic of so many points has no sine part.
+    motion[-1] = 0.0
+    both = np.concatenate([motion, 1j * w * motion], axis=1)[:, :, 0]
+    return seen.errors(np.fft.irfft(both, STEADY, axis=0))
+
+
+@dataclass
+class FilmComparison:
+    """What the higher film makes of the states of the lower one."""
+
+    problem: object
+    linear: object
+    film: object
+    block: np.ndarray
+    gaps: np.ndarray | None = None
+    leakage: float = 0.0
+
+    def defects(self, times, states) -> np.ndarray:
+        """Forces and moments (m, n) by which the higher film pushes more than the lower one; `states` (m, 2 n)."""
+        # Kernels of fixed signature are made ready by their import.
+        from ..dynamics.kernels import Value, at_each, states_along
+
+        problem, linear, n = self.problem, self.linear, len(self.linear.mass)
+        kept, s = problem.kept(), problem.s
+        ys = np.zeros((len(times), problem.size))
+        ys[:, : problem.n], ys[:, problem.rate_places] = states[:, kept], states[:, n + np.array(kept)]
+        self.gaps = np.empty((len(times), GAP_STATE_SIZE))
+        unused = np.empty((len(times), len(problem.w))), np.empty((len(times), 3))
+        blocks = np.empty(0), False, problem.p, problem.w, s, np.ascontiguousarray(times), ys, np.zeros_like(ys)
+        states_along(Value(problem.film.wrench), problem.f, *blocks, problem.face, self.gaps, *unused)
+        more = self.gaps[:, FORCE : FORCE + 3].copy()
+        at_each(Value(self.film.flow), self.block, self.gaps)
+        more = self.gaps[:, FORCE : FORCE + 3] - more
+        self.leakage = max(self.leakage, float(np.max(np.abs(self.gaps[:, FLOW_INNER]))))
+        return np.concatenate([linear.rings[k].sign * more for k in linear.floating], axis=1)
+
+    def errors(self, moved) -> np.ndarray:
+        """Largest change of what is looked at, by displacements and rates `moved` (m, 2 n) at the states last seen:
+        film at the outer radius in clearances, leakage relative to its largest."""
+        # Kernels of fixed signature are made ready by their import.
+        from ..dynamics.kernels import Value, at_each
+
+        linear, problem, n = self.linear, self.problem, len(self.linear.mass)
+        x, v = (
+            sum(linear.rings[k].sign * part[:, 3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))
+            for part in (moved[:, :n], moved[:, n:])
+        )
+        film = (np.abs(x[:, 0]) + problem.face[1] * np.hypot(x[:, 1], x[:, 2])) / problem.clearance
+        if not self.leakage:
+            return np.array([film.max(), 0.0])
+        gaps = self.gaps.copy()
+        gaps[:, DZ : GY + 1] += x
+        gaps[:, DZ_RATE : GY_RATE + 1] += v
+        at_each(Value(self.film.flow), self.block, gaps)
+        leakage = np.abs(gaps[:, FLOW_INNER] - self.gaps[:, FLOW_INNER]) / self.leakage
+        return np.array([film.max(), leakage.max()])

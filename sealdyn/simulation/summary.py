@@ -1,0 +1,321 @@
+"""What a run amounts to: the numbers of interface.md, from the problem, the outcome and the running tallies."""
+
+import math
+
+import numpy as np
+
+from .. import closed_form
+from ..dynamics import modes
+from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
+from ..dynamics.segments import constant_and_slope
+from ..faces.geometry import TOUCH
+from ..scenario.reader import unused_keys
+from ..scene.rings import RING_NAMES, ROTOR, STATOR
+
+ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
+
+
+def model(scenario, problem, method: str, why: str) -> dict:
+    """What the scene chose: film rung, unknowns, solver, the reasons, and keys it does not use."""
+    return {
+        "film": problem.film_name,
+        "unknowns": problem.names,
+        "solver": method,
+        "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
+        "unused": unused_keys(scenario),
+    }
+
+
+def summarise(scenario, problem, outcome, tally, method, why) -> dict:
+    """The summary (interface.md, `run --json`) of a finished run, SI; no value is a NaN or infinite."""
+    problem.begin(outcome.leg)
+    linear = problem.linear_scene(outcome.leg)
+    steady, sentence = _steady(problem, outcome)
+    record = problem.records[0]
+    tilt = _linear_steady(problem, linear)
+    summary = {
+        "status": outcome.status,
+        "message": outcome.message,
+        "model": model(scenario, problem, method, why),
+        "h_min": {
+            "value": record[H],
+            "time": problem.legs[int(record[H_LEG])].time + record[H_TAU],
+            "theta": record[H_THETA],
+            "radius": record[H_RADIUS],
+            "of_clearance": record[H] / problem.clearance,
+        },
+        "relative_misalignment": {
+            "max": record[MOST],
+            "min": record[LEAST],
+            "mean": tally.mean("relative_misalignment"),
+            **steady,
+            "steady_said": sentence,
+        },
+        "leakage": _leakage(problem, tally),
+        "friction": {
+            "torque": tally.mean("friction_torque"),
+            "power": tally.mean("friction_power"),
+            "max_power": tally.largest["friction_power"] if tally.largest else math.nan,
+            "temperature_rise": _temperature_rise(problem, tally),
+        },
+        "contact": _contact(problem, tally),
+        "secondary_seal": _secondary_seal(problem),
+        "film": _film(problem, linear, tally),
+        "closing": _closing(problem),
+        "contact_margin": _contact_margin(problem, linear, tilt),
+        "closed_form": _closed_form(problem, linear, tilt),
+        "stability": stability(problem, outcome.leg, linear),
+        "energy_residual": outcome.energy_residual,
+        "warnings": [*problem.warnings, *_blown_open(problem, tally)],
+        "counts": {
+            "rhs": outcome.counts.rhs,
+            "steps": outcome.counts.steps,
+            "jacobians": outcome.counts.jacobians,
+            "restarts": outcome.counts.restarts,
+        },
+        "tolerance": outcome.tolerance,
+        "accuracy": problem.accuracy,
+        "end": {"time": problem.legs[outcome.leg].time + outcome.tau, "asked": problem.duration},
+    }
+    return _plain(summary)
+
+
+def _plain(value):
+    """JSON-ready: numpy scalars become Python's, NaN and infinity become null."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _steady(problem, outcome):
+    """Steady extremes over the last forcing period, or None with a sentence."""
+    none = {"steady_max": None, "steady_min": None}
+    if outcome.status != "ok":
+        return none, f"no steady state: the run {outcome.status}"
+    last, before = problem.records[1], problem.records[2]
+    if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):
+        if problem.period() is None:
+            return none, "no steady state: forcing frequencies are incommensurate or change with time"
+        return none, "no steady state: constant conditions last less than two forcing periods"
+    scale = problem.clearance / problem.scene.film.outer_radius
+    change = max(
+        abs(last[MOST] - before[MOST]) / scale,
+        abs(last[LEAST] - before[LEAST]) / scale,
+        abs(last[H] - before[H]) / problem.clearance,
+    )
+    if change > problem.accuracy:
+        return none, (
+            f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
+            f'(accuracy {problem.accuracy:.0e}); run longer or use run.start = "steady"'
+        )
+    return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
+
+
+def _blown_open(problem, tally) -> list[str]:
+    """A gap many times its clearance is no seal any more."""
+    widest = tally.largest["axial_gap_change"] / problem.clearance if tally.largest else 0.0
+    if widest < 10:
+        return []
+    return [f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"]
+
+
+def _contact(problem, tally):
+    """What the faces did where they touched; None without a [contact] table."""
+    if problem.contact is None:
+        return None
+    found, largest, level = problem.contact_tally, tally.largest or {}, problem.face[TOUCH]
+    closing = tally.mean("closing_force")
+    return {
+        "touches": found.count,
+        "grazing": found.grazing,
+        "gap_error": problem.gap_error(),
+        "touch_at": level,
+        "first": found.first,
+        "lowest": found.lowest,
+        "depth": None if found.lowest is None else level - found.lowest,
+        "longest": found.longest,
+        "impulse": found.impulse,
+        "force": {"mean": tally.mean("contact_force"), "max": largest.get("contact_force")},
+        "share_of_closing": tally.mean("contact_force") / closing if closing else None,
+        "torque": tally.mean("contact_torque"),
+        "max_area_fraction": largest.get("contact_area_fraction"),
+        "max_pressure": largest.get("contact_pressure"),
+        "wear_rate": tally.mean("wear_rate"),
+    }
+
+
+def _secondary_seal(problem):
+    """Friction of secondary seals: what holds them, and how often they stuck and slipped; None without one."""
+    if not problem.layout.seals:
+        return None
+    rings = {}
+    for k in problem.layout.seals:
+        force, moment = problem.seal(k).breakaway()
+        rings[RING_NAMES[k]] = {"breakaway_force": force, "breakaway_moment": moment, "law": problem.seal(k).law}
+    found = problem.sticking
+    if found is None:
+        return {"rings": rings, "sticks": None, "slips": None, "energy_dropped": None, "stuck_at_end": None}
+    return {
+        "rings": rings,
+        "sticks": found.sticks,
+        "slips": found.slips,
+        "energy_dropped": found.dropped,
+        "stuck_at_end": [RING_NAMES[k] for k, held in found.stuck.items() if held],
+    }
+
+
+def _leakage(problem, tally):
+    side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+    mean = tally.mean(side)
+    return {
+        "mean": mean,
+        "max": tally.largest[side] if tally.largest else math.nan,
+        "mean_ml_per_h": mean * ML_PER_H,
+        "mean_kg_per_h": mean * problem.scene.film.density * KG_PER_H,
+    }
+
+
+def _temperature_rise(problem, tally):
+    """Rise (K) if all friction power heats the leakage."""
+    film = problem.scene.film
+    flow = abs(tally.mean("leakage_inner" if problem.closing.outer_is_high else "leakage_outer"))
+    return tally.mean("friction_power") / (film.density * film.specific_heat * flow) if flow > 0 else math.nan
+
+
+def _film(problem, linear, tally):
+    k, d = linear.film_k, linear.film_d
+    return {
+        "clearance": problem.clearance + problem.axial_shift(problem.leg_index),
+        "axial_stiffness": k[0, 0],
+        "axial_damping": d[0, 0],
+        "tilt_stiffness": k[1, 1],
+        "tilt_damping": d[1, 1],
+        "cross_stiffness": k[1, 2],
+        "max_cavitated_fraction": tally.largest["cavitated_fraction"] if tally.largest else math.nan,
+        "equilibria": [
+            {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in problem.equilibria
+        ],
+    }
+
+
+def _closing(problem):
+    law, film = problem.closing, problem.scene.film
+    force, _ = law.over(problem.leg, film)
+    hydraulic = law.over(problem.leg, film)[0] - _first(law.spring, problem)
+    return {
+        "force": force,
+        "balance_ratio": law.balance_ratio,
+        "spring_force": force - hydraulic,
+        "duty": force / law.area,
+        "face_area": law.area,
+    }
+
+
+def _first(quantity, problem):
+    return constant_and_slope(quantity, problem.leg)[0]
+
+
+def _linear_steady(problem, linear):
+    """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
+    if problem.period() is None and len(problem.rows):
+        frequencies = [w for w in problem.rows[:, 7] if w]
+        if frequencies and (np.any(problem.rows[:, 3]) or np.any(problem.rows[:, 8])):
+            return None
+    answers = [(h, linear.response(h)) for h in problem.harmonics()]
+    return (*modes.steady_extremes(linear, answers, problem.period()), problem.period())
+
+
+def _contact_margin(problem, linear, tilt):
+    """Factor on the forcing at which linear theory closes the gap at either edge."""
+    if tilt is None or modes.verdict(linear.modes()) != "stable":
+        return math.nan
+    face, (most, _, closing, _) = problem.face, tilt
+    inner = problem.clearance + problem.axial_shift(problem.leg_index)
+    outer = inner + face[3] * (face[1] - face[0])
+    reaches = [(inner, face[0] * most + closing), (outer, face[1] * most + closing)]
+    return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
+
+
+def _closed_form(problem, linear, tilt):
+    """Steady state of the linearised film: harmonic balance for any scene; for one flexible ring also the published
+    formulas fed with the film's own coefficients."""
+    if tilt is None:
+        return {"road": "none: conditions change with time"}
+    if modes.verdict(linear.modes()) != "stable":
+        return {"road": "none: the linear steady state is not approached (not stable)"}
+    found = {"relative_max": tilt[0], "relative_min": tilt[1], "axial_closing": tilt[2],
+             "road": "harmonic balance of the film's own linearisation"}  # fmt: skip
+    if tilt[3] is None and len(problem.rows):
+        found["road"] += "; frequencies incommensurate: sum of amplitudes"
+    scene = problem.scene
+    arrangement = (problem.floats[STATOR], problem.floats[ROTOR])
+    if arrangement == (True, True) or scene.stator.speed != 0.0:
+        return found
+    ring = scene.stator if arrangement[0] else scene.rotor
+    stiffness, damping = ring.support.tilt()
+    numbers = dict(
+        speed=_first(scene.shaft.speed, problem),
+        transverse_inertia=ring.transverse_inertia,
+        polar_inertia=ring.polar_inertia,
+        support_stiffness=stiffness,
+        support_damping=damping,
+        film_stiffness=linear.film_k[1, 1],
+        film_damping=linear.film_d[1, 1],
+    )
+    if arrangement[1]:
+        found["arrangement"] = "FMR"
+        found["static_transmissibility"] = closed_form.fmr_static(**numbers)
+        found["dynamic_transmissibility"] = closed_form.fmr_dynamic(**numbers)
+        static, dynamic = (
+            _first(scene.stator.misalignment, problem),
+            _first(scene.rotor.misalignment, problem),
+        )
+    else:
+        found["arrangement"] = "FMS"
+        found["static_transmissibility"] = closed_form.fms_static(**numbers)
+        found["dynamic_transmissibility"] = closed_form.fms_dynamic(**numbers)
+        static, dynamic = _first(scene.stator.misalignment, problem), _first(scene.rotor.runout, problem)
+    most, least = closed_form.superposed(
+        found["static_transmissibility"] * abs(static), found["dynamic_transmissibility"] * abs(dynamic)
+    )
+    found["formula_max"], found["formula_min"] = float(most), float(least)
+    return found
+
+
+def stability(problem, leg_index: int, linear=None) -> dict:
+    """Linear stability with all degrees of freedom at one leg: verdict, whirl ratio of the least damped tilt mode,
+    critical speed (rad/s, None if there is none) and resonance speeds."""
+    linear = linear or problem.linear_scene(leg_index)
+    found = linear.modes()
+    speed = linear.rings[ROTOR].spin
+    tilt = [mode for mode in found if mode.kind == "tilt"]
+    least = tilt[0] if tilt else None
+    whirl = None
+    if least is not None and speed:
+        sign = -1.0 if least.direction == "backward" else 1.0
+        whirl = sign * least.value.imag / speed
+
+    def at_speed(w):
+        return problem.linear_scene(leg_index, speed=w)
+
+    critical, resonances = None, []
+    if tilt:
+        pace = max(abs(mode.value) for mode in tilt)
+        low, high = 1e-3 * pace, 1e3 * pace
+        critical = modes.critical_speed(at_speed, low, high)
+        resonances = modes.resonance_speeds(at_speed, 1e-2 * pace, 1e2 * pace)
+    return {
+        "verdict": modes.verdict(found),
+        "whirl_ratio": whirl,
+        "critical_speed": critical,
+        "resonance_speeds": resonances,
+        "growth_rate": found[0].value.real if found else None,
+        "speed": speed,
+        "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
+    }

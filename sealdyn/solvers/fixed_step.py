@@ -1,0 +1,248 @@
+"""Methods that are judged and never chosen: what rotordynamics codes and scientific libraries integrate with.
+
+Generators with the contract of solvers/methods.py.  The fixed-step ones take the tolerance as the square of a step
+over the fastest period of interest: 1e-4 is a hundred steps a period, and their second-order error follows the
+tolerance.
+"""
+
+import math
+import warnings
+
+import numpy as np
+
+from .contract import SolverFailure, failure_message
+from .methods import METHODS
+from .scipy_methods import scipy_steps
+from .sundials import FEW, cvode
+
+# Spectral radius of generalised-alpha at infinite frequency: how much it damps what the step does not resolve.
+RHO = 0.8
+# Steps handed over at once; Newton iterations with one matrix, and matrices tried for one step.
+BLOCK, ITERATIONS, MATRICES = 64, 12, 6
+# A contraction slower than this asks for a fresh matrix.
+SLOW = 0.3
+
+
+def _bdf_of_order_two(problem, leg, tau, y, method, tolerance, counts):
+    """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
+    _refuse_massless(problem, method)
+    yield from cvode(problem, leg, tau, y, method, tolerance, counts, max_order=2)
+
+
+def _scipy(problem, leg, tau, y, method, tolerance, counts):
+    """SciPy's RK45 (Dormand & Prince, 1980) and LSODA (Petzold, 1983), step by step."""
+    from scipy.integrate import LSODA, RK45
+
+    _refuse_massless(problem, method)
+    kind = RK45 if method == "rk45" else LSODA
+    steps = scipy_steps(kind, kind is LSODA, problem, leg, tau, y, method, tolerance, counts)
+    while True:
+        # LSODA warns before it gives up.
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            block = next(steps, None)
+        if block is None:
+            return
+        yield block
+
+
+# --- fixed steps ------------------------------------------------------------------------------------
+
+
+def _newmark(problem, leg, tau, y, method, tolerance, counts):
+    """Constant average acceleration.
+
+    **Source** Newmark (1959), J. Eng. Mech. 85, beta = 1/4, gamma = 1/2: the trapezoidal rule on displacements and
+    rates.  The works are integrated by the same rule.
+    """
+    system = _System(problem, method, tolerance, counts)
+    times = system.times(leg, tau)
+    rate, n = system.rates(tau, y), problem.n_mechanical
+    before = rate
+
+    def advance(t, h, y):
+        nonlocal rate, before
+        base, half = y[:n] + 0.5 * h * rate[:n], 0.5 * h
+        guess = y[:n] + h * (1.5 * rate[:n] - 0.5 * before[:n])
+        state, last = system.solve(t + h, guess, lambda x, f: x - base - half * f, half)
+        y = np.concatenate([state, y[n:] + half * (rate[n:] + last[n:])])
+        before, rate = rate, last
+        return y
+
+    yield from system.march(times, y, advance)
+
+
+def _midpoint(problem, leg, tau, y, method, tolerance, counts):
+    """Implicit midpoint rule: symplectic, keeps quadratic invariants (Hairer, Lubich & Wanner, 2006, sec. II.1.1)."""
+    system = _System(problem, method, tolerance, counts)
+    times = system.times(leg, tau)
+    rate, n = system.rates(tau, y), problem.n_mechanical
+    before = rate
+
+    def advance(t, h, y):
+        nonlocal rate, before
+        here, half = y[:n], 0.5 * h
+        guess = here + half * (2.0 * rate[:n] - before[:n])
+        middle, last = system.solve(t + half, guess, lambda x, f: x - here - half * f, half)
+        y = np.concatenate([2.0 * middle - here, y[n:] + h * last[n:]])
+        before, rate = rate, last
+        return y
+
+    yield from system.march(times, y, advance)
+
+
+def _generalised_alpha(problem, leg, tau, y, method, tolerance, counts):
+    """Generalised-alpha with spectral radius RHO.
+
+    **Source** Chung & Hulbert (1993), J. Appl. Mech. 60, 371; forces at the generalised mid-step.  The works by the
+    trapezoidal rule, which takes one evaluation more per step.
+    """
+    system = _System(problem, method, tolerance, counts)
+    times = system.times(leg, tau)
+    alpha_m, alpha_f = (2 * RHO - 1) / (RHO + 1), RHO / (RHO + 1)
+    gamma = 0.5 - alpha_m + alpha_f
+    beta = 0.25 * (0.5 + gamma) ** 2
+    n, m, at = problem.n, problem.n_mechanical, problem.rate_places
+    rate = system.rates(tau, y)
+    a = before = rate[at].copy()
+    state = np.empty(m)
+
+    def advance(t, h, y):
+        nonlocal rate, a, before
+        q, v, present = y[:n], y[at], a
+        tied = (1 - alpha_m) * 2.0 * h / (1 - alpha_f)
+
+        def between(acceleration):
+            q_next = q + h * v + h * h * ((0.5 - beta) * present + beta * acceleration)
+            v_next = v + h * ((1 - gamma) * present + gamma * acceleration)
+            return q_next, v_next
+
+        def defect(acceleration, f):
+            return (1 - alpha_m) * acceleration + alpha_m * present - f[at]
+
+        def place(acceleration):
+            q_next, v_next = between(acceleration)
+            state[:n], state[at] = (1 - alpha_f) * q_next + alpha_f * q, (1 - alpha_f) * v_next + alpha_f * v
+            return state
+
+        def matrix(full):
+            on_q, on_v = full[np.ix_(at, range(n))], full[np.ix_(at, at)]
+            return (1 - alpha_m) * np.eye(n) - (1 - alpha_f) * (h * h * beta * on_q + h * gamma * on_v)
+
+        found, _ = system.solve(t + (1 - alpha_f) * h, 2.0 * present - before, defect, tied, place, matrix)
+        q_next, v_next = between(found)
+        y_next = y.copy()
+        y_next[:n], y_next[at] = q_next, v_next
+        rate_next = system.rates(t + h, y_next)
+        y_next[m:] += 0.5 * h * (rate[m:] + rate_next[m:])
+        before, a, rate = a, found, rate_next
+        return y_next
+
+    yield from system.march(times, y, advance)
+
+
+class _System:
+    """One leg of a problem for a fixed-step implicit method: steps, evaluations, modified Newton."""
+
+    def __init__(self, problem, method, tolerance, counts):
+        _refuse_massless(problem, method)
+        self.problem, self.method, self.counts = problem, method, counts
+        self.step = min(problem.fast_time * math.sqrt(tolerance), problem.longest_step())
+        # A hundredth of the local error of a second-order method, above rounding.
+        self.small = max(1e-2 * tolerance**1.5, 1e-14)
+        self.inverse, self.tied, self.whole = None, None, None
+
+    def times(self, leg, tau):
+        """Start, step and number of the equal steps to the leg's end."""
+        span = leg.length - tau
+        count = max(1, math.ceil(span / self.step * (1 - 1e-12)))
+        return tau, span / count, count, leg.length
+
+    def rates(self, t, y):
+        """The whole right-hand side at unknowns `y`."""
+        yp = np.empty(self.problem.size)
+        self.problem.rhs(t, y, yp)
+        self.counts.rhs += 1
+        return yp
+
+    def march(self, times, y, advance):
+        """Blocks of steps."""
+        start, h, count, end = times
+        block = FEW if self.problem.sticking else BLOCK
+        ts, ys = [], []
+        for k in range(count):
+            y = advance(start + k * h, h, y)
+            ts.append(end if k + 1 == count else start + (k + 1) * h)
+            ys.append(y)
+            if len(ts) == block or k + 1 == count:
+                yield np.array(ts), np.array(ys), None
+                ts, ys = [], []
+
+    def solve(self, t, guess, defect, tied, place=None, matrix=None):
+        """Unknowns x with defect(x, f) = 0, where f is the right-hand side at place(x), and that f.
+
+        `tied` is what the matrix I - tied J depends on; the matrix is kept over steps until convergence is slow.
+        """
+        m, scales = self.problem.n_mechanical, self.problem.scales
+        scale = scales[:m] if place is None else scales[self.problem.rate_places] * self.problem.pace
+        whole = self.whole = np.zeros(self.problem.size) if self.whole is None else self.whole
+        stale = self.inverse is None or self.tied != tied
+        for trial in range(MATRICES):
+            # Back to the guess once; then Newton goes on with fresh matrices.
+            if trial < 2:
+                x = guess
+            whole[:m] = x if place is None else place(x)
+            if stale:
+                self._refresh(t, whole, tied, matrix)
+            before = math.inf
+            for _ in range(ITERATIONS):
+                f = self.rates(t, whole)
+                change = self.inverse @ defect(x, f[:m] if place is None else f)
+                x = x - change
+                whole[:m] = x if place is None else place(x)
+                size = float(np.max(np.abs(change) / scale))
+                if size <= self.small:
+                    return x, f
+                if not size < before or (size > SLOW * before and size > 1e3 * self.small):
+                    break
+                if before < math.inf and size * size <= self.small * (before - size):
+                    # What the next iterations would still change.
+                    return x, f
+                before = size
+            stale = True
+            if not np.all(np.isfinite(x)):
+                break
+        raise SolverFailure(
+            failure_message(self.method, "Newton does not converge at this step: too long for this film.", t)
+        )
+
+    def _refresh(self, t, whole, tied, matrix):
+        problem, m = self.problem, self.problem.n_mechanical
+        full = np.zeros((problem.size, problem.size))
+        problem.jacobian(t, whole.copy(), None, full)
+        self.counts.jacobians += 1
+        self.counts.rhs += m + 1
+        built = matrix(full) if matrix else np.eye(m) - tied * full[:m, :m]
+        self.inverse, self.tied = np.linalg.inv(built), tied
+
+
+def _refuse_massless(problem, method):
+    if problem.massless:
+        raise SolverFailure(f"{method} needs rates, and a massless ring has none: only the residual form (IDA)")
+
+
+def _only_with_rates(steps):
+    """A method of solvers/methods.py that says so when the scene has no rates."""
+
+    def guarded(problem, leg, tau, y, method, tolerance, counts):
+        _refuse_massless(problem, method)
+        yield from steps(problem, leg, tau, y, method, tolerance, counts)
+
+    return guarded
+
+
+CHOSEN = {
+    name: steps if name == "ida" else _only_with_rates(steps) for name, steps in METHODS.items()
+}  # fmt: skip
+REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "newmark": _newmark,
+          "generalised_alpha": _generalised_alpha, "midpoint": _midpoint}  # fmt: skip

@@ -1,0 +1,77 @@
+"""One pass of a study: settings, points on all cores, answer, archive."""
+
+import importlib
+import json
+import pkgutil
+import platform
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+from .. import __version__, studies
+from ..archive import write_study
+from ..numerics.parallel import Checkpoint, evaluate
+from ..scenario.settings import study_settings, without_contact
+
+
+def study_names() -> list[str]:
+    """Names of the studies there are, hyphenated."""
+    return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(studies.__path__) if m.name[0] != "_")
+
+
+def study_module(name: str):
+    """The study `name` (underscored): its file, or `study.py` in its folder."""
+    found = importlib.import_module(f"{studies.__name__}.{name}")
+    return importlib.import_module(f"{found.__name__}.study") if hasattr(found, "__path__") else found
+
+
+@dataclass
+class StudyContext:
+    """What a study is handed: points on all cores, and progress."""
+
+    journal: Checkpoint
+    workers: int | None
+    progress: object
+
+    def map(self, function, points: list, what: str = "points") -> list[dict]:
+        return evaluate(function, points, self.journal, self.workers, lambda n, m: self.say(n / max(m, 1)), what)
+
+    def say(self, fraction: float):
+        if self.progress:
+            self.progress(fraction, 1.0)
+
+
+def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progress=None) -> dict:
+    """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
+
+    `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
+    Raises ScenarioError, ImpossibleScene.
+    """
+    name = name.replace("-", "_")
+    module = study_module(name)
+    settings = study_settings(scenario, name, module.Settings, flags or {})
+    out = Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
+    plain = json.loads(json.dumps(asdict(settings), default=str))
+    identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain], sort_keys=True)
+    journal = Checkpoint(out.with_suffix(".partial.jsonl"), identity)
+    studied, left_out = (scenario, []) if getattr(module, "WITH_CONTACT", False) else without_contact(scenario)
+    answer = module.run(studied, settings, StudyContext(journal, workers, progress))
+    if left_out:
+        said = f"a study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out"
+        answer = {**answer, "verdict": [*answer.get("verdict", []), said]}
+    answer = {"status": "ok", "message": " ".join(answer.get("verdict", [])), "study": name, **answer}
+    libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
+        "python": platform.python_version()
+    }
+    meta = {
+        "version": __version__,
+        "libraries": libraries,
+        "name": scenario.name,
+        "question": scenario.question,
+        "overrides": list(scenario.overrides),
+        "study": name,
+        "settings": plain,
+    }
+    write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
+    journal.done()
+    return {**answer, "archive": str(out)}

@@ -1,0 +1,43 @@
+"""What exhibits share: rows, and runs of small scenes in memory."""
+
+from ....dynamics.model import Model
+from ....scene.film import Coefficients
+from ....solvers.integrate import solve
+from ....solvers.recorder import Recorder
+
+# A film that does nothing, so that a ring's own motion is known exactly.
+ZERO_FILM = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
+
+
+def row(item: int, title: str, failing: tuple, survivor: tuple, unit: str, default: str) -> dict:
+    """A row from (what it is, number or None) of the failing method and of the survivor."""
+    return {
+        "item": item,
+        "title": title,
+        "failing": failing[0],
+        "failing_error": None if failing[1] is None else float(failing[1]),
+        "survivor": survivor[0],
+        "survivor_error": None if survivor[1] is None else float(survivor[1]),
+        "unit": unit,
+        "default": default,
+    }
+
+
+def not_available(item: int, title: str, why: str) -> dict:
+    """A row for what cannot be shown yet."""
+    return row(item, title, ("", None), ("", None), "", "") | {"absent": why}
+
+
+def model_started_at(scene, duration: float, accuracy: float, **start) -> Model:
+    """A problem whose unknowns named in `start` (as in Model.names, or with `_rate`) begin there."""
+    problem = Model(scene, duration, accuracy)
+    for name, value in start.items():
+        place = problem.names.index(name.removesuffix("_rate"))
+        problem.y0[problem.rate_places[place] if name.endswith("_rate") else place] = value
+    return problem
+
+
+def integrated(problem, method: str, accuracy: float, interval: float | None = None):
+    """Outcome and recorder of a problem by one method."""
+    recorder = Recorder(problem, interval)
+    return solve(problem, method, accuracy, recorder), recorder

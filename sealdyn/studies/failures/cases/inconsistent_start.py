@@ -1,0 +1,97 @@
+"""Inconsistent start: closed faces, loads no film can carry, rates that contradict the film's equation."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ....analysis.validation import reference_scene
+from ....dynamics.model import Model
+from ....scene.scene import Closing, SceneError
+from ._common import model_started_at, not_available, row
+from .vanishing_inertia import lightened
+
+ITEM = 7
+BELOW = -2e-6
+
+
+def closed_start() -> dict:
+    """A start 2 um beyond the other face: a film taken at its mean thickness has no pole there."""
+    scene = reference_scene("FMR")
+    film, support = replace(scene.film, model="radial"), scene.rotor.support
+    wide, width = film.clearance, film.outer_radius - film.inner_radius
+    cone, middle = film.coning * width, 0.5 * (film.inner_radius + film.outer_radius)
+
+    def rates(t, y):
+        damping = 2 * np.pi * middle * film.viscosity * width**3 / (y[0] + cone / 2) ** 3
+        return [y[1], support.axial_stiffness * (wide - y[0]) - damping * y[1]]
+
+    through = solve_ivp(rates, (0.0, 0.01), [BELOW, 0.0], "LSODA", rtol=1e-6, atol=1e-12)
+    closed = max(0.0, -float(np.min(through.y[0]))) if through.success else np.nan
+    problem = model_started_at(replace(scene, film=film), 0.01, 1e-6, rotor_z=wide - BELOW)
+    try:
+        problem.check_start()
+        said, refused = "starts all the same", -BELOW
+    except SceneError:
+        said, refused = "refused with a sentence, no step taken", 0.0
+    return row(
+        ITEM, "Start inside the other face", ("film of mean thickness: a success, says LSODA", closed * 1e6),
+        (said, refused * 1e6), "overlap of the faces accepted, um",
+        "refuses a start below the film's floor and names the key, what was found and what to try",
+    )  # fmt: skip
+
+
+def no_equilibrium() -> dict:
+    """Closing force above what the converging film can ever carry: Newton on the clearance goes below zero."""
+    scene = reference_scene("FMR")
+    film = replace(scene.film, model="radial", clearance=None)
+    overloaded = replace(scene, film=film, closing=Closing(balance_ratio=1.3, spring_force=0.0))
+    opening = Model(replace(scene, film=replace(film, clearance=1e-5)), 1.0).film.opening_force
+    area = np.pi * (film.outer_radius**2 - film.inner_radius**2)
+    closing = 1.3 * area * film.outer_pressure
+
+    def excess(c):
+        return opening(film, c, 0.0, film.outer_pressure) - closing
+
+    c = 1e-5
+    for _ in range(50):
+        step = 1e-3 * c
+        moved = c - excess(c) * 2 * step / (excess(c + step) - excess(c - step))
+        if not moved > 0:
+            break
+        c = moved
+    try:
+        Model(overloaded, 1.0)
+        said, left = "assembled all the same", abs(excess(c)) / closing
+    except SceneError:
+        said, left = "refused with a sentence", 0.0
+    return row(
+        ITEM, "Loads without an equilibrium", (f"Newton leaves the film at {c * 1e6:.2g} um", abs(excess(c)) / closing),
+        (said, left), "force left unbalanced, of the closing force",
+        "searches every clearance from a thousandth to a thousand times the coning and says what could be carried",
+    )  # fmt: skip
+
+
+def contradicting_rates() -> dict:
+    """A massless ring begun with rates of zero, and with the rates that its film's equation asks for."""
+    problem = model_started_at(lightened(0.0), 0.01, 1e-6)
+    left, sizes = np.empty(problem.size), []
+    for yp in (np.zeros(problem.size), problem.start_rates(0.0, problem.y0)):
+        problem.residual(0.0, problem.y0, yp, left)
+        sizes.append(float(np.max(np.abs(left[: problem.n]))))
+    return row(
+        ITEM, "Rates at the start of a DAE", ("started with rates of zero", sizes[0]),
+        ("rates from the balance itself", sizes[1]), "unbalanced, N and N m",
+        "solves the residual for the rates before IDA takes its first step",
+    )  # fmt: skip
+
+
+def show() -> list[dict]:
+    """All three, and what awaits a film with unknowns."""
+    why = "pressure unknowns come with a film that has them (not there yet)"
+    return [
+        closed_start(),
+        no_equilibrium(),
+        contradicting_rates(),
+        not_available(ITEM, "Pressures that contradict", why),
+    ]

@@ -1,0 +1,180 @@
+"""A ramp or a step of a pressure, a viscosity, a spring or a misalignment and back: what the film does, against the
+answer it would give if everything went infinitely slowly."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...analysis.continuation import with_part
+from ...dynamics.model import Model
+from ...dynamics.modes import steady_extremes
+from ...dynamics.segments import constant_and_slope
+from ...faces.geometry import (
+    DZ,
+    FLOW_INNER,
+    FLOW_OUTER,
+    INNER_PRESSURE,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+    edge_gaps,
+)
+from ...numerics.piecewise_linear import PiecewiseLinear
+from ...scenario.reader import parse_scenario
+from ...simulation.simulate import prepare_run
+from ...solvers.integrate import solve
+from ..work_precision.errors import Sampler
+from .plan import tables_end
+from .ramp_run import RampCycle, told
+
+# Values between both ends at which the quasi-static answer is found; samples of a stage of a trip.
+VALUES, SAMPLES = 25, 150
+
+
+def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
+    """What the seal settles at, value by value (m,): relative misalignment (rad, largest over a period, linear about
+    the aligned film there), film thickness (m) and leakage of the aligned film there (m^3/s); None where no gap
+    balances the loads.
+    """
+    values = np.linspace(begin, end, VALUES)
+    problem, legs = _visited(scenario, key, values)
+    rows = [_settled(problem, k) for k in legs]
+    names = ("relative_misalignment", "h_min", "leakage")
+    return {"value": values.tolist(), **{n: [row[i] for row in rows] for i, n in enumerate(names)}}
+
+
+def _visited(scenario, key, values) -> tuple[Model, list[int]]:
+    """The scene with its own tables and behind them a staircase of values of the key, and the legs that begin there:
+    the closing force stays the law that the scene's start decides, as it does on a trip."""
+    first = tables_end(with_part(scenario.scene, key, float(values[0])))
+    times = [first + n for n in range(len(values))]
+    points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
+    stairs = PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
+    problem = Model(with_part(scenario.scene, key, stairs), times[-1] + 1e-3)
+    return problem, [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-6) for t in times]
+
+
+def _settled(problem, k) -> tuple[float | None, float | None, float | None]:
+    """Largest tilt, thinnest film and leakage at the loads of a leg's start."""
+    problem.begin(k)
+    shift, linear = problem.axial_shift(k), problem.linear_scene(k)
+    if any(said.startswith(f"no equilibrium gap found for the loads from t = {problem.leg.time:.4g} s")
+           for said in problem.warnings):  # fmt: skip
+        return None, None, None
+    harmonics = [replace(h) for h in problem.harmonics()]
+    period = _period(harmonics)
+    most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
+    flow, f = problem.observed
+    s, leg, film = problem.s, problem.leg, problem.scene.film
+    s[:] = 0.0
+    s[DZ] = shift
+    pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
+    for slot, q in ((VISCOSITY, film.viscosity), *pressures):
+        s[slot] = constant_and_slope(q, leg)[0]
+    s[SPIN_DIFFERENCE] = constant_and_slope(problem.scene.shaft.speed, leg)[0]
+    flow(f, s)
+    outside = problem.closing.outer_is_high
+    leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
+    return float(most), float(min(edge_gaps(problem.face, shift - closing, most))), float(leakage)
+
+
+def _period(harmonics):
+    turning = {abs(h.frequency) for h in harmonics if h.frequency}
+    return 2 * math.pi / turning.pop() if len(turning) == 1 else None
+
+
+def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float, float]:
+    """Growth rate (1/s) of the slowest disturbance of the scene linearised where it begins and where it ends; the time
+    (s) it takes to decay, at most 25 turns; and how long to wait until it settles: eight of these, at least ten turns,
+    at most two hundred."""
+    problem, legs = _visited(scenario, key, [begin, end, end])
+    slowest = max((v.real for k in legs[:2] for v in problem.linear_scene(k).eigen()[0]), default=-1e6)
+    speed = abs(constant_and_slope(problem.scene.shaft.speed, problem.legs[legs[0]])[0])
+    turn = 2 * math.pi / speed if speed else 1e-3
+    decay = min(-1.0 / slowest, 25 * turn) if slowest < 0 else 25 * turn
+    return float(slowest), decay, float(np.clip(8.0 * decay, 10 * turn, 200 * turn))
+
+
+class GivenTimesSink(Sampler):
+    """A sampler at given times (s)."""
+
+    def __init__(self, problem, times):
+        super().__init__(problem, 1.0)
+        self.times = times
+
+    def due(self, index):
+        leg, last = self.problem.legs[index], index + 1 == len(self.problem.legs)
+        taus = self.times - leg.time
+        end = leg.length * (1 + 1e-12)
+        return np.clip(taus[(taus >= 0) & ((taus < leg.length * (1 - 1e-12)) | (last & (taus <= end)))], 0, leg.length)
+
+
+def instants(trip: RampCycle) -> np.ndarray:
+    """When to look: along the ramps, and after them ever less often."""
+    later = np.linspace(0.0, 1.0, SAMPLES) ** 2
+    # Just before either change too.
+    early = [trip.settle * (1 - 1e-9), trip.back * (1 - 1e-9)]
+    ramps = [np.linspace(a, b, SAMPLES) for a, b in ((trip.settle, trip.top), (trip.back, trip.home))]
+    parts = [early, *ramps, trip.top + later * trip.hold, trip.home + later * trip.rest]
+    return np.unique(np.concatenate(parts))
+
+
+def load_trip(point: dict) -> dict:
+    """A ramp (or with `rate` None a step) there and back: extremes, what it settles at, and the series."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
+    trip = RampCycle(**{n: point[n] for n in names})
+    problem, method, *_ = prepare_run(trip.on(scenario))
+    sink = GivenTimesSink(problem, instants(trip))
+    outcome = solve(problem, method, problem.accuracy, sink)
+    times, film, tilt, leakage = (np.concatenate([p[i] for p in sink.parts]) for i in range(4))
+    run = told(problem, outcome, [np.zeros(1)] * 5, None, [(problem, problem.records[0])])
+    table = trip.table()
+    return {
+        "rate": trip.rate,
+        "stages": [trip.settle, trip.top, trip.back, trip.home],
+        "status": run.status,
+        "message": run.message,
+        "touched": bool(run.touched),
+        "h_min": run.lowest[0] if math.isfinite(run.lowest[0]) else None,
+        "h_min_time": run.lowest[1],
+        "relative_misalignment": run.largest[0],
+        "settled": {
+            "end": _over(times, film, tilt, leakage, trip.back - 0.1 * trip.hold, trip.back),
+            "begin": _over(times, film, tilt, leakage, trip.duration - 0.1 * trip.rest, trip.duration),
+        },
+        "leakage": float(np.max(leakage)),
+        "leakage_least": float(np.min(leakage)),
+        "time": [float(f"{t:.8g}") for t in times],
+        "value": [float(f"{table.at(t):.6g}") for t in times],
+        "film": [float(f"{v:.5g}") for v in film],
+        "tilt": [float(f"{v:.5g}") for v in tilt],
+        "flow": [float(f"{v:.5g}") for v in leakage],
+    }
+
+
+def _over(times, film, tilt, leakage, begin, end) -> dict | None:
+    """Thinnest film, largest tilt and mean leakage over a stretch of time; None if the run did not get there."""
+    # Not the end itself: there a step has already been taken.
+    kept = (times >= begin) & (times < end * (1 - 5e-10))
+    if not kept.any() or times[-1] < end * (1 - 1e-6):
+        return None
+    return {"h_min": float(film[kept].min()), "relative_misalignment": float(tilt[kept].max()),
+            "leakage": float(leakage[kept].mean())}  # fmt: skip
+
+
+def overshoot(row: dict, slow: dict) -> dict:
+    """How far the trip went beyond the range of the quasi-static answer, as a share of that range; None without one."""
+    if None in slow["h_min"]:
+        return dict.fromkeys(("h_min", "relative_misalignment", "leakage"))
+    low, high = min(slow["h_min"]), max(slow["h_min"])
+    tilt = max(slow["relative_misalignment"])
+    flow_low, flow_high = min(slow["leakage"]), max(slow["leakage"])
+    film = (low - row["h_min"]) / (high - low) if row["h_min"] is not None and high - low > 1e-6 * high else None
+    flow = max(row["leakage"] - flow_high, flow_low - row["leakage_least"])
+    return {
+        "h_min": film,
+        "relative_misalignment": row["relative_misalignment"] / tilt - 1 if tilt else None,
+        "leakage": flow / (flow_high - flow_low) if flow_high - flow_low > 1e-9 * abs(flow_high) else None,
+    }

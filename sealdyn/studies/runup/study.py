@@ -1,0 +1,185 @@
+"""Run-up: speed (or a pressure, ...) ramps up and down at several rates; what lags, what grows, what touches.
+
+Shaft speed: the order that the scene drives, tracked over the shaft's exact angle, beside linear steady theory at each
+speed; past the stability threshold the growth of a small whirl against the integral of its linear growth rate, and
+how fast one must pass to stay below touch.  Anything else: film, misalignment and leakage against the quasi-static.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...analysis.continuation import part, with_part
+from ...numerics.piecewise_linear import PiecewiseLinear
+from ...units import Angle, Time
+from .load_ramp import load_trip, memory, overshoot, quasi_static
+from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
+from .sentences import load_sentences, sentences
+from .speed_ramp import passage, short_pass
+
+WITH_CONTACT = True
+# Rates of the curve, over the rate at which linear theory just touches; how closely the touching rate is located.
+CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
+# Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.
+RAMPS = (100.0, 10.0, 1.0)
+units = {
+    "linear/speed": "rad/s", "linear/amplitude": "rad", "linear/phase": "rad", "curve/rate": "rad/s^2",
+    "curve/relative_misalignment": "rad", "curve/h_min": "m", "whirl/speed": "rad/s", "whirl/frequency": "rad/s",
+    "whirl/growth_rate": "1/s", "waterfall/up/speed": "rad/s", "waterfall/up/amplitude": "rad",
+    "waterfall/down/speed": "rad/s", "waterfall/down/amplitude": "rad",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`key` goes from `begin` to `end` (with units; SI without) and back at each of `rates` ("1000, 5000" or
+    "from:to:count[:log]", per second; for anything but the speed also "step"), `hold` there.  Defaults for the speed:
+    half the first resonance to 1.05 of the threshold, or 1.5 of the last resonance.  `disturbance`: relative tilt of
+    the whirl met at the threshold (default a thousandth of clearance/outer radius); `touch`: look for the rate that
+    just touches.  `order` followed (default 1), `window` in turns, `samples_per_turn`."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    key: str = SPEED
+    begin: float | str | None = None
+    end: float | str | None = None
+    rates: float | str | None = None
+    hold: Time | None = None
+    disturbance: Angle | None = None
+    touch: bool = True
+    order: float | None = None
+    window: int | None = None
+    samples_per_turn: int | None = None
+
+
+def run(scenario, settings, tools) -> dict:
+    """Ramps of the shaft speed, or of anything else that may change in time."""
+    checked(scenario, settings)
+    return speed_ramps(scenario, settings, tools) if settings.key == SPEED else load_ramps(scenario, settings, tools)
+
+
+# --- shaft speed ------------------------------------------------------------------------------------------
+
+
+def speed_ramps(scenario, settings, tools) -> dict:
+    """Up and down in speed at every rate, and the rate that just touches."""
+    plan = planned(scenario, settings)
+    base, mode, crossing = plan["base"], plan["mode"], plan["crossing"]
+    begin, end, order = base["begin"], base["end"], base["order"]
+    rows = tools.map(passage, [{**base, "rate": rate} for rate in plan["rates"]], "passage")
+    rows = [{"rate": rate, **row} for rate, row in zip(plan["rates"], rows, strict=True)]
+    speeds = np.linspace(begin, end, 161)
+    linear = plan["steady"].curve(speeds, order)
+    answer = {
+        "key": SPEED, "begin": begin, "end": end, "chosen": plan["chosen"], "order": order,
+        "tilting": plan["steady"].tilting, "driven": sorted(plan["steady"].orders), "touch_tilt": plan["touch_tilt"],
+        "threshold": plan["threshold"], "crossing": crossing, "resonances": plan["resonances"],
+        "disturbance": base["disturbance"], "tilt_scale": plan["tilt_scale"], "samples_per_turn": base["per_turn"],
+        "linear": {"speed": speeds.tolist(), "amplitude": np.abs(linear).tolist(),
+                   "phase": np.angle(linear).tolist(), "peak": plan["steady"].peak(begin, end, order)},
+        "whirl": _whirl(mode, plan, begin, end), "forced_tilt": plan["forced"],
+        "warnings": plan["warnings"], "rate_foretold": plan["rate_foretold"],
+    }  # fmt: skip
+    shown = next((r for r in rows if r.get("status") == "ok"), next((r for r in rows if "waterfall" in r), None))
+    answer["waterfall"] = {"rate": shown["rate"], "window": shown["window"], **shown["waterfall"]} if shown else None
+    answer["rows"] = [{k: v for k, v in row.items() if k != "waterfall"} for row in rows]
+    answer |= touching(plan, answer["rows"], settings, tools)
+    if not any("status" in row for row in rows):
+        answer["status"] = "failed"
+    return {**answer, "verdict": sentences(answer)}
+
+
+def _whirl(mode, plan, begin, end) -> dict | None:
+    """The whirl's frequency and growth rate over the speed; without a threshold of the least damped tilt mode."""
+    if mode is None:
+        return None
+    speeds = np.linspace(mode.speeds[0], mode.speeds[-1], 61)
+    kept = speeds[(speeds >= begin) & (speeds <= end)]
+    return {"speed": kept.tolist(), "frequency": mode.frequency(kept).tolist(),
+            "growth_rate": mode.growth(kept).tolist()}  # fmt: skip
+
+
+def touching(plan, rows, settings, tools) -> dict:
+    """Largest misalignment and thinnest film over the ramp rate, and the rate that just touches."""
+    done = [{k: row[k] for k in ("rate", "status", "touched", "relative_misalignment", "h_min")}
+            for row in rows if row.get("status") in ("ok", "collapsed")]  # fmt: skip
+    said = None
+    if plan["crossing"] is not None and settings.touch:
+        middle = plan["rate_foretold"]
+        rates = [float(f"{middle * share:.4g}") for share in CURVE] if middle else []
+        found = tools.map(short_pass, [{**plan["base"], "rate": rate} for rate in rates], "short passes")
+        done += [row for row in found if row.get("status") in ("ok", "collapsed")]
+        done, said = _closer(plan, done, tools)
+    done.sort(key=lambda row: row["rate"])
+    names = ("rate", "relative_misalignment", "h_min", "touched")
+    return {"curve": {n: [row[n] for row in done] for n in names}, "touch_rate": said}
+
+
+def _closer(plan, done, tools):
+    """The touching rate between the fastest that touches and the slowest that does not, by halving."""
+    for _ in range(MOST_CUTS):
+        touch = [row["rate"] for row in done if row["touched"]]
+        free = [row["rate"] for row in done if not row["touched"]]
+        if not (touch and free):
+            return done, {"value": None, "bracket": [max(touch, default=None), min(free, default=None)],
+                          "said": "every rate tried touches" if touch else "no rate tried touches"}  # fmt: skip
+        low = max(touch)
+        above = [rate for rate in free if rate > low]
+        if not above:
+            return done, {"value": None, "bracket": [low, None], "said": "the fastest rate tried touches"}
+        high = min(above)
+        if high < (1 + CLOSE) * low:
+            break
+        rate = float(f"{math.sqrt(low * high):.5g}")
+        (row,) = tools.map(short_pass, [{**plan["base"], "rate": rate}], "touching rate")
+        if row.get("status") not in ("ok", "collapsed"):
+            return done, {"value": None, "bracket": [low, high], "said": row.get("failed") or row["message"]}
+        done.append(row)
+    return done, {"value": math.sqrt(low * high), "bracket": [low, high], "said": ""}
+
+
+# --- anything else ----------------------------------------------------------------------------------------
+
+
+def load_ramps(scenario, settings, tools) -> dict:
+    """There and back at every rate, against the quasi-static answer."""
+    key, now = settings.key, part(scenario.scene, settings.key)
+    begin, end = value_of(scenario, settings, "begin"), value_of(scenario, settings, "end")
+    if begin is None:
+        begin = float(now.value[0]) if isinstance(now, PiecewiseLinear) else float(now)
+    if end is None and isinstance(now, PiecewiseLinear):
+        end = max(now.value, key=lambda v: abs(v - begin))
+    if end is None or end == begin:
+        raise wrong(scenario, "end", "nothing" if end is None else f"{end:g}, as begin", f"another value of {key}")
+    unit = unit_of(scenario, key)
+    slowest, decay, wait = memory(scenario, key, begin, end)
+    rates = rates_of(scenario, settings)
+    if rates is None:
+        rates = [float(f"{abs(end - begin) / (times * decay):.4g}") for times in RAMPS]
+        rates += [] if jumps(scenario.scene, key) else [None]
+    settle = wait + tables_end(with_part(scenario.scene, key, begin))
+    hold = wait if settings.hold is None else settings.hold
+    if None in rates and not hold:
+        raise wrong(scenario, "hold", "0 s with a step", "a time above zero: a step there and back at once is none")
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "key": key,
+            "begin": begin, "end": end, "settle": settle, "hold": hold, "rest": wait}  # fmt: skip
+    slow = quasi_static(scenario, key, begin, end)
+    rows = tools.map(load_trip, [{**base, "rate": rate} for rate in rates], "ramps")
+    rows = [{"rate": rate, **row} for rate, row in zip(rates, rows, strict=True)]
+    for row in rows:
+        row["overshoot"] = overshoot(row, slow) if "failed" not in row else None
+    answer = {
+        "key": key,
+        "begin": begin,
+        "end": end,
+        "unit": unit,
+        "rate_unit": rate_unit(unit),
+        "decay": decay,
+        "slowest": slowest,
+        "quasi_static": slow,
+        "rows": rows,
+    }
+    if not any("status" in row for row in rows):
+        answer["status"] = "failed"
+    return {**answer, "verdict": load_sentences(answer)}

@@ -1,0 +1,321 @@
+"""Ludwig & Allen's ring in time: two unknowns, mean film and amplitude, on the radial film, by IDA.
+
+**Source** Ludwig & Allen, NASA TN D-8102 (1976), whose balance of spring force and of the moment about the diameter
+through thickest and thinnest film becomes two equations for h0, h1 and their rates.
+**Valid** no inertia; planar film of constant thickness over a narrow face (face width <= 0.02 mean radius for 1e-4);
+half-Sommerfeld cavitation: an estimate.  The seat is tilted by a fixed angle, the ring turns.
+"""
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+from scipy.optimize import root
+
+from ...closed_form import ludwig_allen as closed
+from ...faces.geometry import (
+    CAVITATED,
+    DZ,
+    DZ_RATE,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    VISCOSITY,
+)
+from ...films.radial import film as radial
+from ...scene.film import Film
+from ...solvers.contract import Counts, SolverFailure, tolerance_for
+from ...solvers.methods import METHODS
+
+# Film error: below what the integrator is asked, so that it meets a smooth function.
+FILM_ERROR = 1e-10
+# Rates over speed times h0 below which a film has settled; h1/h0 that is no wedge; how far ahead
+# (of h0) a run that gave up is asked whether any rates are left.
+SETTLED, NO_WEDGE, AHEAD = 1e-8, 1e-6, 1e-3
+NO_RATES = "no squeeze of the film, however fast, gives this friction moment with this spring force"
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A seal of Ludwig & Allen's kind (SI).  The defaults have their group mu U dR^3 / F_s = 3.79e-13 m^2 and their
+    face width; what else their example had is lost."""
+
+    mean_radius: float = 0.06
+    face_width: float = closed.LUDWIG_ALLEN_FACE_WIDTH
+    viscosity: float = 5e-3
+    shaft_speed: float = 1000.0
+    group: float = closed.LUDWIG_ALLEN_GROUP
+
+    @property
+    def sliding_speed(self) -> float:
+        """U = w R (m/s)."""
+        return self.shaft_speed * self.mean_radius
+
+    @property
+    def spring_force(self) -> float:
+        """F_s (N), from the group."""
+        return self.viscosity * self.sliding_speed * self.face_width**3 / self.group
+
+    def film(self) -> Film:
+        """Planar film, tilt taken at the mean radius, ambient and cavitation pressure zero."""
+        half = 0.5 * self.face_width
+        return Film(
+            model="radial",
+            inner_radius=self.mean_radius - half,
+            outer_radius=self.mean_radius + half,
+            viscosity=self.viscosity,
+            outer_pressure=0.0,
+            inner_pressure=0.0,
+            clearance=math.sqrt(self.group),
+            geometry="planar",
+            tilt_radius="mean",
+            cavitation_pressure=0.0,
+            floor=1e-9,
+        )
+
+
+class Wedge:
+    """The radial film of a ring, as a function of h0, h1 and their rates."""
+
+    def __init__(self, ring: Ring):
+        self.ring, film = ring, ring.film()
+        self.clearance = film.clearance
+        self.f, self.s = radial.parameters(film, film.clearance, FILM_ERROR), np.zeros(GAP_STATE_SIZE)
+        self.s[MEAN_SPIN], self.s[VISCOSITY] = 0.5 * ring.shaft_speed, ring.viscosity
+
+    def __call__(self, films, rates=(0.0, 0.0)) -> tuple[float, float, float]:
+        """Force (N), sine and cosine moment (N m) for (h0, h1) in m and their rates in m/s."""
+        s, radius = self.s, self.ring.mean_radius
+        s[DZ], s[GX], s[DZ_RATE], s[GX_RATE] = films[0] - self.clearance, films[1] / radius, rates[0], rates[1] / radius
+        radial.wrench(self.f, s)
+        return float(s[FORCE]), float(s[MOMENT_Y]), float(s[MOMENT_X])
+
+    @property
+    def cavitated(self) -> float:
+        """Share of the face at the cavitation pressure, last time."""
+        return float(self.s[CAVITATED])
+
+
+def static_residuals(force_ratio: float, films, ring: Ring | None = None, wedge: Wedge | None = None) -> np.ndarray:
+    """(force / F_s - 1, sine moment / (4 R F_d / pi) - 1) of the radial film at rest at (h0, h1) in m, shape (2,)."""
+    ring = ring or Ring()
+    force, sine, _ = (wedge or Wedge(ring))(films)
+    friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
+    return np.array([force / ring.spring_force - 1.0, sine / friction - 1.0])
+
+
+def static_root(force_ratio: float, start, ring: Ring | None = None) -> tuple[float, float]:
+    """Film h0, h1 (m) that balances the radial film, from `start` = (h0, h1).
+
+    **Raises** ValueError naming hang-up if there is none.
+    """
+    ring = ring or Ring()
+    wedge = Wedge(ring)
+
+    def films(x):
+        # ln h0 and the logit of h1 / h0: no trial film is closed.
+        mean = math.exp(x[0])
+        return mean, mean / (1 + math.exp(-x[1]))
+
+    share = start[1] / start[0]
+    # In logarithms force and moment are nearly linear in these.
+    found = root(
+        lambda x: np.log1p(static_residuals(force_ratio, films(x), ring, wedge)),
+        [math.log(start[0]), math.log(share / (1 - share))],
+        tol=1e-12,
+    )
+    if not np.max(np.abs(static_residuals(force_ratio, films(found.x), ring, wedge))) < 1e-6:
+        raise ValueError(f"hang-up: no film found that balances spring and friction at F_s/F_d = {force_ratio:.4g}")
+    return films(found.x)
+
+
+def linearised(force_ratio: float, films, ring: Ring | None = None) -> np.ndarray:
+    """Eigenvalues (1/s) of the two unknowns about (h0, h1), from central differences of the radial film."""
+    wedge = Wedge(ring or Ring())
+    step, pace = 1e-4 * (films[0] - films[1]), 0.5 * (ring or Ring()).shaft_speed
+    columns = []
+    for k in range(4):
+        size = step if k < 2 else step * pace
+        move = np.eye(4)[k] * size
+        up, down = (np.array(wedge(films + m[:2], m[2:])[:2]) for m in (move, -move))
+        columns.append((up - down) / (2 * size))
+    stiffness, damping = np.array(columns[:2]).T, np.array(columns[2:]).T
+    return np.sort_complex(np.linalg.eigvals(np.linalg.solve(damping, -stiffness)))
+
+
+@dataclass
+class Settling:
+    """A run: how it ended ("settled", "hang-up", "straightened", "moving" or "failed"), a sentence, times (s), h0, h1
+    (m), their rates (m/s), the moment (N m) that the constraint carries, evaluations of the film."""
+
+    status: str
+    message: str
+    time: np.ndarray
+    mean_film: np.ndarray
+    amplitude: np.ndarray
+    rates: np.ndarray
+    carried_moment: np.ndarray
+    evaluations: int
+
+    @property
+    def films(self) -> tuple[float, float]:
+        """h0, h1 (m) at the end."""
+        return float(self.mean_film[-1]), float(self.amplitude[-1])
+
+
+class _Problem:
+    """What the integrator asks of a problem, for unknowns h0, h1 and the balance of force and one moment.
+
+    `balance` "sine" asks M_s = 4 R F_d / pi, "cosine" asks that the moment about the tilt axis vanishes.
+    """
+
+    algebraic = ()
+    sticking = None
+
+    def __init__(self, ring: Ring, force_ratio: float, films, balance: str):
+        self.ring, self.wedge, self.balance = ring, Wedge(ring), balance
+        self.friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
+        # A last, idle unknown: the integrators leave the last one uncontrolled.
+        self.scales = np.array([films[0], films[0], 1.0])
+        self.last_rates = np.zeros(2)
+        self.fast_time, self.memory = 2 * math.pi / ring.shaft_speed, 1.0
+
+    def longest_step(self):
+        return math.inf
+
+    def balances(self, films, rates):
+        """The two balances, relative."""
+        force, sine, cosine = self.wedge(films, rates)
+        moment = sine / self.friction - 1.0 if self.balance == "sine" else cosine / self.friction
+        return np.array([force / self.ring.spring_force - 1.0, moment])
+
+    def rates(self, films):
+        """Rates (m/s) that balance force and moment at these films, sought from the last ones; None if there are none
+        (then either the film is too thick for any, or a solver's trial left the physical range)."""
+        pace = films[0] * self.ring.shaft_speed
+        if not 0 < films[1] < films[0]:
+            return None
+        for start in (self.last_rates / pace, np.zeros(2)):
+            found = root(lambda x: self.balances(films, x * pace), start, tol=1e-11)
+            if np.max(np.abs(found.fun)) < 1e-8:
+                self.last_rates = found.x * pace
+                return self.last_rates
+        return None
+
+    def none_ahead(self, films) -> bool:
+        """Whether the film runs into a place where no rates balance it."""
+        rates = self.rates(films)
+        if rates is None:
+            return True
+        return self.rates(films + AHEAD * films[0] * rates / np.max(np.abs(rates))) is None
+
+    def residual(self, tau, y, yp, res):
+        # Solved for the rates: where a film is all dry the balances do not change with them, and IDA's differences,
+        # taken over a first step's tiny length, would see nothing.
+        rates = self.rates(y[:2])
+        res[:2] = np.nan if rates is None else yp[:2] - rates
+        res[2] = yp[2]
+
+    def start_rates(self, tau, y):
+        pace = y[0] * self.ring.shaft_speed
+        for guess in ((0, 0), (-0.1, -0.1), (-1, -1), (-0.3, 0.3), (0.1, 0.1), (-1, 0), (0.3, -0.3)):
+            self.last_rates = pace * np.array(guess, dtype=float)
+            rates = self.rates(y[:2])
+            if rates is not None:
+                return np.append(rates, 0.0)
+        raise SolverFailure(NO_RATES)
+
+
+def _integrate(problem: _Problem, start, duration: float, accuracy: float, ended) -> tuple:
+    """Steps of IDA until `ended(films, rates)` says so, the time is over or IDA gives up (its sentence is handed
+    back); times, unknowns, rates, verdict, sentence, evaluations."""
+    counts, y = Counts(), np.array([*start, 0.0])
+    times, films, rates, verdict, said = [0.0], [y[:2]], [], "", ""
+    try:
+        rates.append(problem.start_rates(0.0, y)[:2])
+        tolerance = tolerance_for("ida", accuracy, problem.memory)
+        for t, ys, yps in METHODS["ida"](problem, SimpleNamespace(length=duration), 0.0, y, "ida", tolerance, counts):
+            times += list(t)
+            films += list(ys[:, :2])
+            rates += list(yps[:, :2])
+            verdict = ended(films[-1], rates[-1])
+            if verdict:
+                break
+    except SolverFailure as failure:
+        said = str(failure)
+        rates = rates or [np.full(2, np.nan)]
+    return np.array(times), np.array(films), np.array(rates), verdict, said, counts.rhs
+
+
+def _run(problem: _Problem, start, duration, accuracy, ended, sentence) -> Settling:
+    times, films, rates, verdict, said, evaluations = _integrate(problem, start, duration, accuracy, ended)
+    carried = 2 if problem.balance == "sine" else 1
+    moments = [problem.wedge(film, rate)[carried] for film, rate in zip(films, rates, strict=True)]
+    status, message = sentence(verdict, said, times[-1], films[-1])
+    return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), evaluations)
+
+
+def _hung(force_ratio, why, where) -> str:
+    return (
+        f"hang-up: spring and secondary-seal friction are not balanced with F_s/F_d = {force_ratio:.4g} (a balance "
+        f"needs {closed.LEAST_FORCE_RATIO:.4f}, one that attracts {closed.LEAST_ATTRACTING_FORCE_RATIO:.4f}): {why}; "
+        f"{where}.  Less friction, more spring or a start closer to the seat."
+    )
+
+
+def quasi_static(
+    force_ratio: float, start, ring: Ring | None = None, duration: float = 0.1, accuracy: float = 1e-5
+) -> Settling:
+    """h0, h1 in time under spring force and sine moment, squeeze included, from `start` = (h0, h1) in m.
+
+    Settles on `closed_form.ludwig_allen.equilibrium` for q above 1.7132; below it the balance repels (below 1.6211
+    there is none) and the run ends as "hang-up".  So does one that starts too thick, where friction holds it open:
+    squeezing acts alike on both halves of the circle, so the sine moment is at most that of a film wet all around,
+    twice the half film's.
+    `carried_moment` is the cosine moment: nobody balances it.
+    """
+    ring = ring or Ring()
+    problem = _Problem(ring, force_ratio, start, "sine")
+
+    def ended(film, rate):
+        # No amplitude, no wedge: nothing holds the ring against its friction any more.
+        if film[1] < NO_WEDGE * film[0]:
+            return "no wedge"
+        return "settled" if np.max(np.abs(rate)) < SETTLED * ring.shaft_speed * film[0] else ""
+
+    def sentence(verdict, said, time, film):
+        where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
+        if verdict == "settled":
+            return "settled", f"settled {where}"
+        if said == NO_RATES or (said and problem.none_ahead(film)):
+            return "hang-up", _hung(force_ratio, NO_RATES, where)
+        if verdict == "no wedge":
+            return "hang-up", _hung(force_ratio, "the wedge is gone", where)
+        if force_ratio <= closed.LEAST_FORCE_RATIO:
+            return "hang-up", _hung(force_ratio, said or "the film goes on moving", where)
+        return ("failed", f"{said} ({where})") if said else ("moving", f"not settled {where}")
+
+    return _run(problem, start, duration, accuracy, ended, sentence)
+
+
+def guided(
+    force_ratio: float, start, ring: Ring | None = None, duration: float = 0.1, accuracy: float = 1e-5
+) -> Settling:
+    """A ring merely guided along the seat's direction: spring force and the moment about the tilt axis, which
+    straightens it; it does not go to Ludwig & Allen's film.  `carried_moment` is the sine moment, on the guide."""
+    problem = _Problem(ring or Ring(), force_ratio, start, "cosine")
+
+    def sentence(verdict, said, time, film):
+        where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
+        if said:
+            return "failed", f"{said} ({where})"
+        return (
+            "straightened" if film[1] < 0.1 * film[0] else "moving"
+        ), f"h1/h0 fell to {film[1] / film[0]:.3g} {where}"
+
+    return _run(problem, start, duration, accuracy, lambda *_: "", sentence)

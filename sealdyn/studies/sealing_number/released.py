@@ -1,0 +1,294 @@
+"""Ludwig & Allen's ring let go: three degrees of freedom, inertia, Coulomb friction around the secondary seal and both
+film moments.  Does it keep the film that their closed form gives it?
+
+What it must come to is worked out in `closed_form.released_ring`; here the ring of a scene is run in time and what
+becomes of it is named.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ...closed_form import ludwig_allen as closed
+from ...closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
+from ...dynamics.equilibrium import initially
+from ...dynamics.model import Model
+from ...dynamics.signals import signals
+from ...scene.contact import Contact
+from ...scene.excitation import Shaft
+from ...scene.rings import Rotor, Stator, Support
+from ...scene.scene import Closing, Initial, RingStart, Scene, SceneError
+from ...scene.secondary_seal import SecondarySeal
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+from . import quasi_static
+
+# h1/h0 below which a ring has straightened; share of the spring force, or of time, that counts; what is steady.
+STRAIGHT, COUNTS, STEADY = 0.1, 0.01, 0.02
+# h1/h0 of a start where the closed form has no film; how far apart the faces of an open start are, of its tilt.
+START_SHARE, APART = 0.5, 1.01
+SAMPLES = 32
+
+
+# --- the film to be expected ------------------------------------------------------------------------------
+
+
+def film_on(scene, clearance: float | None = None) -> tuple[float, float, complex]:
+    """h0, h1 (m) and the tilt (rad, complex, from the seat's direction) of a scene's ring on its film: its support is
+    stretched by that tilt and by h0, and the ring tilts less than its seat until friction and support just hold the
+    film.  `clearance` (m): where the support's axial spring is at rest, if known (else found from the asperities).
+    **Raises** ValueError as `film`."""
+    ring, q, support = ring_of(scene), force_ratio_of(scene), scene.rotor.support
+    seat = initially(scene.stator.misalignment)
+    found = _film_under(1.0, q, support, seat, ring)
+    axial = support.axial_stiffness / ring.spring_force
+    if axial == 0.0:
+        return found
+    rest = Model(scene, 1.0, 1e-3).clearance if clearance is None else clearance
+
+    def missing(load):
+        try:
+            return load - 1.0 - axial * (_film_under(load, q, support, seat, ring)[0] - rest)
+        except ValueError:
+            # Pressed so hard that it straightens.
+            return load - 1.0
+
+    most = 1.0 + axial * max(found[0] - rest, 0.0)
+    return _film_under(brentq(missing, 1.0, most, xtol=1e-15), q, support, seat, ring) if most > 1.0 else found
+
+
+def _film_under(load, q, support, seat, ring):
+    """`film_on` with `load` times the spring force; friction and support as they are."""
+    ring, q = replace(ring, group=ring.group / load), load * q
+    stiffness = support.tilt()[0] / (ring.mean_radius * ring.spring_force)
+
+    def seat_of(tilt):
+        """Tilt of the seat, from the direction of a ring of that tilt."""
+        mean, amplitude = film(q, stiffness * tilt, ring.group)
+        e = amplitude / mean
+        turned = (4j / (math.pi * q) - stiffness * tilt) / (1j * LEAST_MOMENT * math.sqrt((1 - e) * (1 + e)) - e)
+        return tilt + amplitude / ring.mean_radius * turned / abs(turned)
+
+    # With a stiff support only some tilts have a film; over a soft one all have, or none.
+    friction, low, high = moment_ratio(q), 0.0, seat
+    if stiffness > 0:
+        low = math.sqrt(max(LEAST_MOMENT**2 - friction**2, 0.0)) / stiffness * (1 + 1e-12)
+        high = min(math.sqrt(max(MOST_MOMENT**2 - friction**2, 0.0)) / stiffness * (1 - 1e-12), seat)
+    if low < high and abs(seat_of(high)) > seat > abs(seat_of(low)):
+        tilt = brentq(lambda x: abs(seat_of(x)) - seat, low, high, xtol=1e-14 * seat)
+        there = seat_of(tilt)
+        return *film(q, stiffness * tilt, ring.group), tilt * there.conjugate() / abs(there)
+    film(q, stiffness * seat, ring.group)
+    raise ValueError("hang-up: the film would tilt by more than the seat")
+
+
+# --- scenes -----------------------------------------------------------------------------------------------
+
+
+def ready_scene(ring: quasi_static.Ring | None = None, misalignment=2.5e-3, mass=0.5, inertia_ratio=0.5,
+                support: Support | None = None, roughness=5e-8) -> Scene:  # fmt: skip
+    """The released ring as a scene of its own (SI): misaligned seat, ring of a given transverse over polar inertia,
+    free to tilt if no `support` is given, asperities to land on; friction of F_s/F_d = 2."""
+    ring = ring or quasi_static.Ring()
+    inertia = 0.5 * mass * ring.mean_radius**2
+    rotor = Rotor(
+        mass=mass,
+        transverse_inertia=inertia,
+        polar_inertia=inertia / inertia_ratio,
+        support=support or Support(axial_stiffness=0.0, tilt_stiffness=0.0),
+        secondary_seal=SecondarySeal(radius=ring.mean_radius, line_friction=0.0),
+    )
+    bare = Scene(
+        shaft=Shaft(speed=ring.shaft_speed),
+        film=replace(ring.film(), clearance=None),
+        rotor=rotor,
+        stator=Stator(misalignment=misalignment),
+        closing=Closing(balance_ratio=1.0, spring_force=ring.spring_force),
+        contact=Contact(roughness=roughness, compressive_strength=3e8),
+    )
+    return with_force_ratio(bare, 2.0)
+
+
+def ring_of(scene) -> quasi_static.Ring:
+    """The numbers of Ludwig & Allen of a scene.  **Raises** ImpossibleScene if it is not of their kind."""
+    f, rotor = scene.film, scene.rotor
+    pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
+    seat, none = initially(scene.stator.misalignment), "nothing"
+    floor = none if f.cavitation_pressure is None else f"{f.cavitation_pressure:g} Pa"
+    wanted = (
+        (
+            "film.cavitation_pressure",
+            f.cavitation_pressure == pressures[0] == pressures[1],
+            floor,
+            "the inner and the outer pressure",
+        ),
+        ("closing.spring_force", scene.closing.spring_force is not None, none, "a spring force and a balance ratio"),
+        ("rotor.support", rotor.support is not None, none, "a flexible rotor"),
+        ("rotor.secondary_seal", rotor.secondary_seal is not None, none, "a secondary seal on the rotor"),
+        ("contact", scene.contact is not None, none, "asperities for the ring to land on"),
+        ("film.coning", f.coning == 0.0, f"{f.coning:g} rad", "flat faces"),
+        ("stator.misalignment", seat > 0.0, f"{seat:g} rad", "a misaligned seat"),
+    )
+    for key, there, found, expected in wanted:
+        if not there:
+            raise SceneError(key, found, f"{expected} (a ring of Ludwig & Allen's kind)")
+    radius, width = 0.5 * (f.inner_radius + f.outer_radius), f.outer_radius - f.inner_radius
+    viscosity, speed = initially(f.viscosity), abs(initially(scene.shaft.speed))
+    # With equal pressures whatever the balance ratio the fluid's closing is its ambient opening.
+    group = viscosity * speed * radius * width**3 / initially(scene.closing.spring_force)
+    return quasi_static.Ring(radius, width, viscosity, speed, group)
+
+
+def force_ratio_of(scene) -> float:
+    """q = F_s / F_d with the friction moment of the scene's secondary seal."""
+    ring = ring_of(scene)
+    return 4 * ring.mean_radius * ring.spring_force / (math.pi * scene.rotor.secondary_seal.breakaway()[1])
+
+
+def with_force_ratio(scene, force_ratio: float, guide: float | None = None) -> Scene:
+    """The scene with the friction of F_s / F_d; with `guide`, also on a pure tilt spring that gives K_s gamma = guide
+    R F_s at the film (or, if there is none, where the run starts)."""
+    ring, rotor = ring_of(scene), scene.rotor
+    friction = closed.friction_moment(ring.spring_force / force_ratio, ring.mean_radius)
+    radius = rotor.secondary_seal.radius
+    seal = replace(rotor.secondary_seal, line_friction=friction / (4 * radius**2), friction_force=None)
+    support = rotor.support
+    if guide is not None:
+        seat = initially(scene.stator.misalignment)
+        tilt = seat - _film_or_start(force_ratio, guide, ring)[1] / ring.mean_radius
+        if tilt <= 0:
+            raise SceneError("stator.misalignment", f"{seat:g} rad", "more than the tilt of the film")
+        stiffness = guide * ring.mean_radius * ring.spring_force / tilt
+        support = Support(axial_stiffness=0.0, tilt_stiffness=stiffness)
+    return replace(scene, rotor=replace(rotor, secondary_seal=seal, support=support))
+
+
+def _film_or_start(force_ratio, guide, ring):
+    try:
+        return film(force_ratio, guide, ring.group)
+    except ValueError:
+        return start_film(force_ratio, ring)
+
+
+def start_film(force_ratio: float, ring: quasi_static.Ring) -> tuple[float, float]:
+    """h0, h1 (m) of the closed form, or where it has none a wedge that carries the spring at h1/h0 = 1/2."""
+    if force_ratio > closed.LEAST_ATTRACTING_FORCE_RATIO:
+        return tuple(float(h) for h in closed.equilibrium(force_ratio, ring.group))
+    mean = math.sqrt(ring.group * START_SHARE) / (1 - START_SHARE**2)
+    return mean, START_SHARE * mean
+
+
+def started(scene, start="closed form", factor: float = 1.0) -> Scene:
+    """The scene with its start: "closed form" (ring following the seat at `factor` times that film), "open" (ring
+    square to its shaft and at rest there, faces just apart), or (h0, h1) in m."""
+    ring, clearance = ring_of(scene), Model(scene, 1.0, 1e-3).clearance
+    seat, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
+    if start == "open":
+        mean, tilt = APART * ring.mean_radius * seat, 0.0
+    else:
+        films = start_film(force_ratio_of(scene), ring) if start == "closed form" else start
+        mean, tilt = factor * films[0], seat - factor * films[1] / ring.mean_radius
+    at = RingStart(z=clearance - mean, tilt_x=tilt * math.cos(direction), tilt_y=tilt * math.sin(direction))
+    return replace(scene, initial=Initial(rotor=at))
+
+
+# --- in time ----------------------------------------------------------------------------------------------
+
+
+@dataclass
+class Released:
+    """What became of the ring.
+
+    `status`: "film" (steady), "straightened" (parallel to the seat and on its asperities), "rubs", "hang-up" (stuck on
+    its secondary seal, faces apart), "moving" (not settled), or the solver's "collapsed", "failed"; `message` a
+    sentence.  Over the last turns: mean, least and largest of `mean_film` h0, `amplitude` h1 and `least_film` h0 - h1
+    (m), `share` h1/h0, direction of the relative tilt from the seat's (rad) and how often it went around per turn,
+    shares of the spring force on contact and of time stuck; then `time` (s), `h0`, `h1` (m) of the run, evaluations
+    and `energy_residual`."""
+
+    status: str
+    message: str
+    mean_film: tuple[float, float, float]
+    amplitude: tuple[float, float, float]
+    least_film: tuple[float, float, float]
+    share: float
+    direction: float
+    whirl: float
+    contact_share: float
+    stuck_share: float
+    time: np.ndarray
+    h0: np.ndarray
+    h1: np.ndarray
+    evaluations: int
+    energy_residual: float
+
+
+def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, method: str | None = None) -> Released:
+    """Run the scene from its start over `turns` of the shaft and say what became of the ring in the `last` ones.
+    `accuracy` is that of a run, relative to the clearance at which asperities carry the spring."""
+    ring = ring_of(scene)
+    turn = 2 * math.pi / ring.shaft_speed
+    problem = Model(scene, turns * turn, accuracy)
+    for part in ("z", "tilt_x", "tilt_y"):
+        problem.y0[problem.names.index(f"rotor_{part}")] = getattr(scene.initial.rotor, part) or 0.0
+    problem.check_start()
+    sink = Kept(problem, turn / SAMPLES)
+    outcome = solve(problem, method or problem.solver()[0], accuracy, sink)
+    series = {name: np.concatenate([part[name] for part in sink.series]) for name in sink.series[0]}
+    return _told(problem, ring, series, outcome, last)
+
+
+class Kept(Recorder):
+    """Signals of a run, taken while it runs: whether the ring sticks is known only then."""
+
+    def __init__(self, problem, interval):
+        super().__init__(problem, interval)
+        self.series = []
+
+    def take(self, index, taus, q, q_rate):
+        self.series.append(signals(self.problem, taus, q, q_rate))
+
+
+def _told(problem, ring, series, outcome, last) -> Released:
+    time, h0 = series["time"], problem.clearance + series["axial_gap_change"]
+    g = (series["relative_tilt_x"] + 1j * series["relative_tilt_y"]) * np.exp(
+        -1j * problem.scene.stator.misalignment_direction
+    )
+    h1 = ring.mean_radius * np.abs(g)
+    end = time >= time[-1] - last * 2 * math.pi / ring.shaft_speed
+    angle = np.unwrap(np.angle(g[end]))
+    told = Released(
+        outcome.status, outcome.message, *(_spread(h[end]) for h in (h0, h1, h0 - h1)),
+        share=float(np.mean(h1[end]) / np.mean(h0[end])), direction=float(np.angle(np.mean(g[end]))),
+        whirl=float(angle[-1] - angle[0]) / (2 * math.pi * last),
+        contact_share=float(np.mean(series["contact_force"][end]) / ring.spring_force),
+        stuck_share=float(np.mean(series["rotor_seal_stuck"][end])), time=time, h0=h0, h1=h1,
+        evaluations=outcome.counts.rhs, energy_residual=outcome.energy_residual,
+    )  # fmt: skip
+    if outcome.status == "ok":
+        told.status, told.message = _fate(told, force_ratio_of(problem.scene))
+    return told
+
+
+def _spread(h) -> tuple[float, float, float]:
+    return float(np.mean(h)), float(np.min(h)), float(np.max(h))
+
+
+def _fate(told: Released, force_ratio: float) -> tuple[str, str]:
+    mean, low, high = told.mean_film
+    where = f"h0 = {mean * 1e6:.4g} um, h1/h0 = {told.share:.3g}, q = F_s/F_d = {force_ratio:.4g}"
+    if told.stuck_share > COUNTS:
+        return "hang-up", f"hang-up: the secondary seal holds the ring open ({where}); less friction or more spring"
+    if told.share < STRAIGHT and told.contact_share > COUNTS:
+        carried = f"asperities carry {100 * told.contact_share:.3g} % of the spring"
+        return "straightened", f"straightened and squeezed onto its seat: {carried} ({where})"
+    if told.contact_share > COUNTS:
+        return "rubs", f"rubs: asperities carry {100 * told.contact_share:.3g} % of the spring ({where})"
+    if high - low < STEADY * mean and told.amplitude[2] - told.amplitude[1] < STEADY * mean:
+        return "film", f"rides on a steady film: {where}"
+    return (
+        "moving",
+        f"not settled: h0 from {low * 1e6:.4g} to {high * 1e6:.4g} um, {told.whirl:+.3g} turns a turn ({where})",
+    )

@@ -1,0 +1,300 @@
+"""Stability map: growth rate over two scenario values, from eigenvalues; margins; points confirmed in time."""
+
+import difflib
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from ... import closed_form as cf
+from ...analysis.arrangements import arrangement, frozen_at_start
+from ...analysis.validation import growth_rate
+from ...dynamics import modes
+from ...dynamics.model import Model
+from ...scenario.errors import ScenarioError, tables
+from ...scenario.reader import ScenarioFile, parse_scenario
+from ...scenario.settings import axis, with_values
+from ...scene.excitation import Housing, Shaft
+from ...scene.scene import SceneError
+from .grid import INERTIA_RATIO, Grid
+
+units = {"growth_rate": "1/s", "tilt_growth_rate": "1/s"}
+# A run in time lasts until a small disturbance (1 % of the clearance) has grown by this much (e-folds), or decayed.
+GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`x` and `y`: "key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over
+    polar, transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; `confirm`: how many points beside the
+    threshold are confirmed in the time domain."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    x: str | None = None
+    y: str | None = None
+    confirm: int = 4
+
+
+def run(scenario, settings, tools) -> dict:
+    """Map, margins at the scenario's own values, and confirmed points."""
+    scene = frozen_at_start(scenario.scene)
+    wanted = (settings.x or _default_x(scene), settings.y or _default_y(scene))
+    axes = [si_axis(scenario, words, name) for name, words in zip("xy", wanted, strict=True)]
+    if axes[0]["key"] == axes[1]["key"]:
+        raise ScenarioError(scenario.name, "study.stability.y", axes[1]["key"], "another key than x has")
+    try:
+        grid = Grid(scenario, {a["key"]: np.array(a["values"]) for a in axes})
+    except SceneError as error:
+        raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
+    total, tilt = grid.rates()
+    tools.say(0.3)
+    for a in axes:
+        a["here"] = _here(scene, a["key"])
+    answer = {
+        "axes": dict(zip("xy", axes, strict=True)),
+        "growth_rate": _listed(total),
+        "tilt_growth_rate": _listed(tilt),
+        "margins": margins(scene),
+        "unconditional": unconditional(scene),
+        "confirmed": _confirmed(scenario, axes, tilt, settings.confirm, tools),
+    }
+    return answer | {"verdict": _verdict(answer, scenario, axes, total)}
+
+
+def si_axis(scenario, words: str, name: str) -> dict:
+    """An axis of the map with its values in SI and its key known to hold numbers."""
+    where = f"study.stability.{name}"
+    found = axis(words, scenario.name, where)
+    key, written = found["key"], found["values"]
+    holds, unit = _held_by(scenario, where, key)
+    if not 2 <= len(written) <= 100_000 or len(set(written)) < len(written) or not _in_order(written):
+        raise ScenarioError(scenario.name, where, f'"{words}"', "2 to 100000 different values, rising or falling")
+    ends = [_value(scenario, where, key, holds, text) for text in (found["given"][0], found["given"][-1])]
+    if key == INERTIA_RATIO and min(ends) <= 0:
+        raise ScenarioError(scenario.name, where, f'"{words}"', "values above zero")
+    # The unit is one for all: what turns the ends into SI turns every value.
+    shares = (np.array(written) - written[0]) / (written[-1] - written[0])
+    values = ends[0] + (ends[1] - ends[0]) * shares
+    return {"key": key, "unit": unit, "values": values.tolist()}
+
+
+def _in_order(values) -> bool:
+    return sorted(values) in (values, values[::-1])
+
+
+def _held_by(scenario, where, key):
+    """What a key holds, as a type, and its SI unit; refuses keys that are none."""
+    if key == INERTIA_RATIO:
+        return float, "1"
+    table, _, leaf = key.rpartition(".")
+    holds = tables(ScenarioFile).get(table, {}).get(leaf)
+    if holds is None or table in ("run", "study", ""):
+        known = [f"{t}.{k}" for t, keys in tables(ScenarioFile).items() for k in keys if t not in ("run", "")]
+        near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
+        hint = f"; nearest {near[0]}" if near else ""
+        raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
+    return holds, _unit(holds)
+
+
+def _value(scenario, where, key, holds, text) -> float:
+    try:
+        return float(TypeAdapter(holds).validate_python(_number(text)))
+    except (ValidationError, TypeError, ValueError) as error:
+        said = error.errors()[0].get("ctx", {}).get("error") if isinstance(error, ValidationError) else None
+        expected = getattr(said, "expected", f"a value of {key}")
+        raise ScenarioError(scenario.name, where, f'"{text}"', expected) from None
+
+
+def _number(text: str):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _unit(holds) -> str:
+    """SI unit of what a key holds; "1" for plain numbers."""
+    for part in getattr(holds, "__metadata__", ()):
+        return getattr(part, "unit", None) or part.quantity.unit
+    return next((u for u in map(_unit, getattr(holds, "__args__", ())) if u != "1"), "1")
+
+
+def _default_x(scene) -> str:
+    speed = abs(scene.shaft.speed) or 1000.0
+    return f"shaft.speed={speed / 10}:{15 * speed}:240"
+
+
+def _default_y(scene) -> str:
+    """The inertia ratio where a ring spins; a stator's ratio does nothing, its support's damping does."""
+    if scene.rotor.support and scene.rotor.transverse_inertia > 0:
+        return f"{INERTIA_RATIO}=0.5:4:141"
+    ring, support = ("rotor", scene.rotor.support) if scene.rotor.support else ("stator", scene.stator.support)
+    name = "axial_damping" if support.radius is not None else "tilt_damping"
+    present = getattr(support, name) or 0.0
+    return f"{ring}.support.{name}=0:{4 * present or 1.0}:141"
+
+
+def _here(scene, key: str) -> float | None:
+    """The scenario's own value of an axis."""
+    if key == INERTIA_RATIO:
+        ring = scene.rotor if scene.rotor.support else scene.stator
+        return ring.transverse_inertia / ring.polar_inertia if ring.polar_inertia else None
+    value = scene
+    for step in key.split("."):
+        value = getattr(value, step, None)
+    return float(value) if isinstance(value, int | float) else None
+
+
+def _listed(rates) -> list:
+    return [[float(v) if np.isfinite(v) else None for v in row] for row in rates]
+
+
+# --- at the scenario's own values ---------------------------------------------------------------------
+
+
+def margins(scene) -> dict:
+    """Growth rate, whirl ratio and critical speed at the scenario's own values, and how far off the threshold is."""
+    problem = Model(scene, 1.0)
+    found, speed = problem.linear_scene().modes(), scene.shaft.speed
+    tilt = [mode for mode in found if mode.kind == "tilt"]
+    critical = modes.critical_speed(lambda w: problem.linear_scene(speed=w), max(1.0, 1e-3 * abs(speed)), 1e6, 240)
+    return {
+        "verdict": modes.verdict(found),
+        "growth_rate": found[0].value.real,
+        "whirl_ratio": tilt[0].value.imag / speed if tilt and speed else None,
+        "critical_speed": critical,
+        "speed_margin": critical / abs(speed) if critical and speed else None,
+    }
+
+
+def unconditional(scene) -> dict:
+    """The inertia ratio up to which a flexible rotor is stable at every speed, `c <= 1/nu`; None for other seals."""
+    nothing = {"limit": None, "inertia_ratio": None, "holds": None}
+    if arrangement(scene) != "FMR":
+        return nothing
+    damping = scene.rotor.support.tilt()[1]
+    stiffness, film_damping = Model(scene, 1.0).film_matrices()
+    if damping + film_damping[1, 1] <= 0 or scene.rotor.support.tilt()[0] + stiffness[1, 1] <= 0:
+        return nothing
+    limit = cf.unconditional_inertia_ratio(support_damping=damping, film_damping=film_damping[1, 1])
+    ratio = _here(scene, INERTIA_RATIO)
+    return {"limit": float(limit), "inertia_ratio": ratio, "holds": bool(ratio is not None and ratio <= limit)}
+
+
+# --- in the time domain -------------------------------------------------------------------------------
+
+
+def _confirmed(scenario, axes, tilt, count, tools) -> list[dict]:
+    """Points on both sides of the threshold (of the least damped, if there is none), run in time."""
+    chosen = _beside_threshold(tilt, count)
+    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    keys = [a["key"] for a in axes]
+    points = [
+        {**base, "values": {keys[0]: axes[0]["values"][i], keys[1]: axes[1]["values"][j]}, "rate": float(tilt[j, i])}
+        for j, i in chosen
+    ]
+    rows = tools.map(confirmed, points, "confirm")
+    return [
+        {"x": p["values"][keys[0]], "y": p["values"][keys[1]], "growth_rate": p["rate"], **row}
+        for p, row in zip(points, rows, strict=True)
+    ]
+
+
+def _beside_threshold(tilt, count) -> list[tuple[int, int]]:
+    """Grid places (row, column) next to a change of sign, in pairs spread over the map."""
+    signs = np.sign(np.nan_to_num(tilt))
+    rows, columns = np.nonzero(signs[:, 1:] * signs[:, :-1] < 0)
+    if len(rows) == 0:
+        if not np.isfinite(tilt).any():
+            return []
+        order = np.argsort(np.where(np.isfinite(tilt), np.abs(tilt), np.inf), axis=None)[: min(1, count)]
+        return [tuple(int(k) for k in np.unravel_index(at, tilt.shape)) for at in order]
+    picked = np.unique(np.linspace(0, len(rows) - 1, max(1, count // 2) + 2).astype(int)[1:-1])
+    return [(int(rows[k]), int(columns[k]) + side) for k in picked for side in (0, 1)][:count]
+
+
+def confirmed(point: dict) -> dict:
+    """Growth rate of a small tilt in the time domain at one point of the map, nothing imposed."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    scene = frozen_at_start(
+        with_values(scenario, {**_scenario_keys(scenario.scene, point["values"]), "run.start": '"steady"'}).scene
+    )
+    scene = replace(
+        scene,
+        shaft=Shaft(scene.shaft.speed),
+        housing=Housing(),
+        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
+        stator=replace(scene.stator, misalignment=0.0),
+    )
+    problem, speed, rate = Model(scene, 1.0), scene.shaft.speed, point["rate"]
+    scene = frozen_at_start(scene, clearance=problem.clearance)
+    if rate == 0.0 or speed == 0.0:
+        raise ValueError("neutral, or a shaft at rest: nothing to measure")
+    length = (GROWN if rate > 0 else DECAYED) / abs(rate)
+    turns = min(max(length * abs(speed) / (2 * math.pi), FEWEST), MOST)
+    if rate > 0 and turns == FEWEST:
+        raise ValueError("grows too fast to be followed")
+    measured = growth_rate(scene, turns, problem.solver()[0])
+    return {"time_domain": measured, "turns": turns, "agrees": bool((measured > 0) == (rate > 0))}
+
+
+def _scenario_keys(scene, values: dict) -> dict:
+    """Axis values as keys of a scenario."""
+    found = {key: value for key, value in values.items() if key != INERTIA_RATIO}
+    for ring in ("stator", "rotor"):
+        if INERTIA_RATIO in values and getattr(scene, ring).support:
+            inertia = values.get(f"{ring}.transverse_inertia", getattr(scene, ring).transverse_inertia)
+            found[f"{ring}.polar_inertia"] = min(inertia / values[INERTIA_RATIO], 2 * inertia)
+    return found
+
+
+def _verdict(answer, scenario, axes, total) -> list[str]:
+    margin, limit = answer["margins"], answer["unconditional"]
+    said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g} 1/s."]
+    if margin["critical_speed"]:
+        times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
+        said.append(f"Critical speed {margin['critical_speed']:.5g} rad/s{times}.")
+    else:
+        said.append("No critical speed up to 1e6 rad/s.")
+    if limit["limit"]:
+        own = f"; its own is {limit['inertia_ratio']:.4g}" if limit["inertia_ratio"] else ""
+        said.append(f"Stable at every speed for inertia ratios c <= 1/nu = {limit['limit']:.5g}{own}.")
+    possible = np.isfinite(total)
+    share = np.mean(total[possible] < 0) if possible.any() else 0.0
+    said.append(
+        f"{100 * share:.3g} % of the map is stable ({axes[0]['key']} by {axes[1]['key']}, {total.size} points)."
+    )
+    if np.any(total == 0):
+        said.append(
+            f"{100 * np.mean(total[possible] == 0):.3g} % of it is neutral: nothing damps the least damped mode."
+        )
+    if not possible.all():
+        said.append(f"{np.sum(~possible)} points cannot be scenes{_reason(scenario, axes, possible)}")
+    good = [p for p in answer["confirmed"] if "failed" not in p]
+    if good:
+        right = sum(p["agrees"] for p in good)
+        far = max(abs(p["time_domain"] - p["growth_rate"]) for p in good)
+        said.append(f"{right} of {len(good)} points beside the threshold confirmed in the time domain "
+                    f"(growth rates within {far:.2g} 1/s).")  # fmt: skip
+    for p in answer["confirmed"]:
+        if "failed" in p:
+            said.append(f"Not confirmed at ({p['x']:.4g}, {p['y']:.4g}): {p['failed']}")
+    return said
+
+
+def _reason(scenario, axes, possible) -> str:
+    """Why the first impossible point is."""
+    j, i = np.argwhere(~possible)[0]
+    values = {axes[0]["key"]: axes[0]["values"][i], axes[1]["key"]: axes[1]["values"][j]}
+    try:
+        Model(
+            frozen_at_start(
+                with_values(scenario, {**_scenario_keys(scenario.scene, values), "run.start": '"steady"'}).scene
+            ),
+            1.0,
+        )
+    except (ScenarioError, SceneError) as error:
+        return f", for instance: {error}"
+    return "."

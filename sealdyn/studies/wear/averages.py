@@ -1,0 +1,292 @@
+"""Averaged short runs of the contact scene over worn faces: what the slow scale of wear asks for.
+
+**Valid** constant conditions with a common period (tables stay at their last value, `[initial]` is left out), and
+profiles that are the same all around: what a patch wears off is spread over the circle of both faces.  The ring follows
+its worn faces: it is moved to where they touch before each run, and its support's spring pushes less by stiffness times
+that travel.  A secondary seal that sticks is let go for that: hang-up over hours is not in it.
+"""
+
+import math
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
+from ...dynamics import equations
+from ...dynamics.contact_events import no_contact
+from ...dynamics.extrema import empty_records
+from ...dynamics.model import Model
+from ...dynamics.signals import signals
+from ...faces import contact
+from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, h_min
+from ...scene.contact import contact_thresholds
+from ...scene.film import Profile
+from ...scene.scene import Closing, Initial, SceneError
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+from .rosenbrock import Average, NoAverage
+
+# Samples of a shaft turn; those of them on which the slope is taken; step of its differences, in roughnesses.
+PER_TURN, FEW, DIFFERENCE = 64, 8, 0.01
+# Periods over which the first motion is led from the aligned faces; accuracy of the gap, in roughnesses, per unit of
+# what the averages may be wrong by.
+RAMP, FINER = 40, 0.3
+# Means that are kept of a short run.
+MEANS = ("contact_force", "film_force", "closing_force", "friction_power", "contact_area_fraction", "wear_rate",
+         "axial_gap_change")  # fmt: skip
+
+
+class ShortRunAverages:
+    """Averages of a scene over profiles at `radius` (n,), to a relative accuracy `within`, over `turns` forcing periods
+    at a time and at most `patience` times as many.  Called with the depth (n,) m worn off both faces together and a
+    motion (None: from the start) it gives an Average.
+
+    Raises ImpossibleScene for a scene without a common period, NoAverage for a run that ends.
+    """
+
+    def __init__(self, scene, radius, accuracy=1e-6, within=1e-3, turns=1, patience=40):
+        film = scene.film if scene.film.profile else replace(scene.film, profile=_level(scene.film))
+        begun = replace(scene, film=replace(film, model="auto"), initial=Initial())
+        self.scene = frozen_at_end(begun)
+        self.radius = np.asarray(radius, dtype=float)
+        self.own = np.interp(self.radius, film.profile.radius, film.profile.depth)
+        self.within, self.turns, self.patience = within, turns, patience
+        rough = scene.contact.roughness
+        probe = Model(self.scene, 1.0, accuracy)
+        # The closing force stays the law that the tables' first values decide, as it does in a run.
+        start = Model(begun, 1.0, accuracy)
+        self.accuracy = min(accuracy, FINER * within * rough / start.clearance)
+        self.clearance, self.face_area = start.clearance, start.closing.area
+        given = self.scene.closing.spring_force
+        self.closing = start.closing if given is None else replace(start.closing, spring=given)
+        self.still = not len(probe.rows)
+        self.period = probe.period()
+        if self.period is None:
+            raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
+        self.stiffness, self.shares = _supports(self.scene)
+        self.wears = np.array([scene.contact.stator_wear_coefficient, scene.contact.rotor_wear_coefficient])
+        self.difference = DIFFERENCE * rough
+        self.unstable = bool(np.max(probe.linear_scene().eigen()[0].real) > 0.0)
+
+    def __call__(self, depth, motion=None) -> Average:
+        motion = motion or self.first(depth)
+        # The ring follows what has been worn off where it touches.
+        travel = motion["travel"] - float(np.dot(motion["share"], depth - np.array(motion["depth"])))
+        problem = self.problem(depth, travel, self.turns * self.period)
+        run = self._rest if self.still else self._settle
+        seen, states, more = run(problem, motion)
+        (*nodal, volume_rate), scatter = more.pop("rates"), more.pop("scatter")
+        nodal = np.array(nodal)
+        shift = seen["axial_gap_change"]
+        total = float(nodal.sum())
+        end = {
+            "travel": travel + shift,
+            "y": more.pop("y"),
+            "depth": [float(v) for v in depth],
+            "share": (nodal / total if total > 0.0 else np.full(len(nodal), 1.0 / len(nodal))).tolist(),
+        }
+        slope = self._slope(problem, states) if total > 0.0 else None
+        row = seen | more | {"travel": travel + shift}
+        return Average(nodal, float(volume_rate), slope, scatter, end, row)
+
+    def first(self, depth) -> dict:
+        """The motion to start from: at rest, or led from aligned faces to what is imposed.  Raises NoAverage."""
+        y = []
+        if not self.still:
+            try:
+                y = ramp_to(self.scene, None, None, None, {"accuracy": self.accuracy, "ramp": RAMP}).tolist()
+            except FilmCollapsed as lost:
+                if "interrupted" in str(lost):
+                    raise KeyboardInterrupt from None
+                raise NoAverage("collapsed" if "crushed" in str(lost) else "failed", str(lost)) from None
+        n = len(self.radius)
+        return {"travel": 0.0, "y": y, "depth": [float(v) for v in depth], "share": [1.0 / n] * n}
+
+    def problem(self, depth, travel: float, duration: float) -> Model:
+        """The scene over worn faces, its ring `travel` (m) from where it began: the profile is counted from there, so
+        that the ring is near zero again, and the closing force is what the springs still give."""
+        profile = self._profile(depth, travel)
+        film = replace(self.scene.film, clearance=self.clearance, profile=profile)
+        problem = Model(replace(self.scene, film=film, closing=Closing()), duration, self.accuracy)
+        problem.closing = replace(self.closing, spring=self.closing.spring + self.stiffness * travel)
+        # What was linearised about the other closing force.
+        problem._shifts.clear()
+        problem._linear_scenes.clear()
+        problem.begin(0)
+        return problem
+
+    def _profile(self, depth, travel) -> Profile:
+        return Profile(tuple(self.radius.tolist()), tuple((self.own + depth + travel).tolist()))
+
+    # --- a scene in which nothing moves ---------------------------------------------------------------
+
+    def _rest(self, problem, motion):
+        """The balance of forces of aligned faces."""
+        still = np.zeros((1, problem.n))
+        (s,) = _states(problem, np.zeros(1), still, still)
+        closing = problem.closing_force()
+
+        def excess(shift):
+            s[DZ] = shift
+            problem.faces.wrench(problem.f, s)
+            return s[FORCE] - closing - self.stiffness * shift
+
+        shift = self._root(problem, excess)
+        q = np.array([[shift * self.shares[name] for name in problem.names]])
+        seen = self._seen(problem, np.zeros(1), q, still)
+        states = _states(problem, np.zeros(1), q, still)
+        more = {"rates": self._rates(problem, states), "scatter": None, "settled": True, "periods": 0, "y": []}
+        return seen, states, more
+
+    def _root(self, problem, excess) -> float:
+        """Where the opening force falls through the closing force, nearest to where the ring was."""
+        here, step = excess(0.0), 0.1 * self.scene.contact.roughness
+        if here == 0.0:
+            return 0.0
+        side, near = math.copysign(step, here), 0.0
+        lowest = h_min(problem.face, 0.0, 0.0, 0.0)[0]
+        while True:
+            far = near + side
+            if excess(far) * here <= 0.0:
+                return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
+            if lowest + far < contact_thresholds(self.scene.contact)[2]:
+                raise NoAverage("collapsed", "asperities crushed flat: the faces cannot carry the closing force")
+            if far > 100 * max(self.clearance, problem.face[1] * 1e-3):
+                raise NoAverage("failed", "the ring is blown open: no gap at which film and springs balance")
+            near, side = far, 1.3 * side
+
+    # --- a scene that moves ---------------------------------------------------------------------------
+
+    def _settle(self, problem, motion):
+        """Runs of whole periods, each from the last one's end, until the averages stay."""
+        y = np.zeros(problem.size)
+        y[: len(motion["y"])] = motion["y"]
+        method, past = None, []
+        for _ in range(self.patience):
+            problem.y0 = y
+            problem.records, problem.touching, problem.contacts = empty_records(), no_contact(), []
+            method = method or problem.solver()[0]
+            sink = Recorder(problem, self.period / self._samples())
+            outcome = solve(problem, method, self.accuracy, sink)
+            if outcome.status == "interrupted":
+                raise KeyboardInterrupt
+            if outcome.status != "ok":
+                raise NoAverage(outcome.status, outcome.message)
+            t, q, rate = (part[:-1] for part in sink.arrays())
+            states = _states(problem, t, q, rate)
+            past.append(self._rates(problem, states))
+            y = np.zeros(problem.size)
+            y[: problem.n_mechanical] = outcome.y[: problem.n_mechanical]
+            if _stays(past, self.within):
+                break
+        settled = _stays(past, self.within)
+        seen = self._seen(problem, t, q, rate)
+        rates, scatter = past[-1], None
+        if not settled:
+            # The later half of the windows is what there is.
+            late = np.array(past[len(past) // 2 :])
+            rates, scatter = late.mean(axis=0), 2.0 * late.std(axis=0)[:-1] / math.sqrt(len(late))
+        y = self._moved(problem, y, seen["axial_gap_change"])
+        more = {"rates": rates, "scatter": scatter, "settled": settled, "periods": len(past) * self.turns, "y": y}
+        return seen, states[:: max(1, len(states) // FEW)], more
+
+    def _samples(self) -> int:
+        """Samples of a period."""
+        turns = self.period * abs(self.scene.shaft.speed) / (2 * math.pi)
+        return PER_TURN * max(1, round(turns))
+
+    def _moved(self, problem, y, shift) -> list[float]:
+        """Mechanical unknowns with the mean shift of the gap taken out of the rings' axial displacements."""
+        y = y[: problem.n_mechanical].copy()
+        for i, name in enumerate(problem.names):
+            if name in self.shares:
+                y[i] -= shift * self.shares[name]
+        return y.tolist()
+
+    # --- from the gap to the nodes --------------------------------------------------------------------
+
+    def _nodal(self, problem, s, f=None) -> np.ndarray:
+        """Volume rate (n,) m^3/s of both faces at each node's hat, in one gap state."""
+        out = np.zeros(len(self.radius))
+        contact.wear_rates(problem.contact, problem.f if f is None else f, s, out)
+        return float(self.wears.sum()) * abs(s[SPIN_DIFFERENCE]) * out
+
+    def _rates(self, problem, states) -> np.ndarray:
+        """Means over gap states of `_nodal`, and last, by an integral of its own, the volume rate of both faces."""
+        found = np.zeros(len(self.radius) + 1)
+        for state in states:
+            s = state.copy()
+            contact.contact_load_and_friction(problem.contact, problem.f, s)
+            found[:-1] += self._nodal(problem, s)
+            found[-1] += s[WEAR] * self.face_area
+        return found / len(states)
+
+    def _slope(self, problem, states) -> np.ndarray:
+        """d nodal / d depth (n, n) m^2/s by central differences over gap states as they are, and with the ring moved so
+        that the forces balance: exact for faces at rest, near enough for those that move."""
+        n, step = len(self.radius), self.difference
+        nodal, force = np.zeros((n, n)), np.zeros(n)
+        for k, side in product(range(n), (1.0, -1.0)):
+            f = problem.f.copy()
+            f[PROFILE_DEPTHS + k] += side * step
+            for state in states:
+                s = state.copy()
+                problem.faces.wrench(f, s)
+                nodal[:, k] += side * self._nodal(problem, s, f) / (2 * step * len(states))
+                force[k] += side * s[FORCE] / (2 * step * len(states))
+        # All hats together are the ring's own motion, against the film, the asperities and its springs.
+        give = force.sum() - self.stiffness
+        return nodal - np.outer(nodal.sum(axis=1), force) / give if give else nodal
+
+    def _seen(self, problem, t, q, rate) -> dict:
+        """Means and extremes of what is looked at, over evenly spaced times of whole periods."""
+        columns = signals(problem, t, q, rate)
+        side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+        seen = {name: float(columns[name].mean()) for name in MEANS}
+        seen["leakage"] = float(columns[side].mean())
+        seen["contact_pressure"] = float(columns["contact_pressure"].max())
+        seen["h_min"] = float(columns["h_min"].min())
+        seen["relative_misalignment"] = float(columns["relative_misalignment"].max())
+        return seen
+
+
+def _level(film) -> Profile:
+    """Faces without a profile, as one."""
+    return Profile((film.inner_radius, film.outer_radius), (0.0, 0.0))
+
+
+def _supports(scene) -> tuple[float, dict[str, float]]:
+    """Stiffness (N/m) of the supports in series, and by how much each ring's axial unknown moves per change of the
+    gap."""
+    rings = {"stator_z": (scene.stator, 1.0), "rotor_z": (scene.rotor, -1.0)}
+    give = {name: (ring.support.axial_stiffness, sign) for name, (ring, sign) in rings.items() if ring.support}
+    free = [name for name, (stiffness, _) in give.items() if stiffness == 0.0]
+    if free:
+        return 0.0, {name: give[name][1] / len(free) if name in free else 0.0 for name in give}
+    series = 1.0 / sum(1.0 / stiffness for stiffness, _ in give.values())
+    return series, {name: sign * series / stiffness for name, (stiffness, sign) in give.items()}
+
+
+def _states(problem, t, q, rate) -> list[np.ndarray]:
+    """Gap states at times (m,) with displacements and rates (m, n)."""
+    states, yps = [], np.zeros(problem.size)
+    for tau, here, speed in zip(t, q, rate, strict=True):
+        yps[: problem.n] = speed
+        equations.kinematics(tau, problem.unknowns(here, speed), yps, problem.p, problem.w, problem.s)
+        states.append(problem.s.copy())
+    return states
+
+
+def _stays(past, within) -> bool:
+    """Whether the averages have settled: what is still to come, as the last changes shrink, is below `within`."""
+    if len(past) < 2:
+        return False
+    size = max(float(np.max(np.abs(past[-1]))), 1e-300)
+    last = float(np.max(np.abs(past[-1] - past[-2]))) / size
+    if len(past) == 2:
+        # Two equal averages without a third to compare by: only if they agree far better.
+        return last <= 0.1 * within
+    ratio = last / max(float(np.max(np.abs(past[-2] - past[-3]))) / size, 1e-300)
+    return (ratio < 1.0 and last * max(1.0, ratio / (1.0 - ratio)) <= within) or last <= 0.01 * within

@@ -1,0 +1,299 @@
+"""Wear: the radial profile of both faces over hours of operation, from averaged short runs of the contact scene.
+
+Each short run starts from the last one's motion and goes on until its averages stay; the profile advances by Archard's
+law, each face by its own coefficient (studies/wear/rosenbrock.py says how, and what limits a step).  Accepted steps
+go to the journal at once: a study that was interrupted goes on from the last one.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ...scenario.errors import ScenarioError
+from ...units import Time
+from .averages import ShortRunAverages
+from .rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
+
+WITH_CONTACT = True
+# Radii a profile may have; share of the closing force below which there is no contact, and below which it has faded if
+# nothing more than the accuracy is left to wear; a contact over fewer radii than FEW is coarse; one on faces tilted by
+# more than UNEVEN roughnesses at the outer radius is not even around the circle.
+MOST, TOUCH, FADED, FEW, UNEVEN = 65, 1e-6, 1e-3, 4, 0.1
+HISTORY = {
+    "time": "s", "leakage": "m^3/s", "friction_power": "W", "contact_share": "1", "contact_force": "N",
+    "closing_force": "N", "film_force": "N", "contact_area_fraction": "1", "contact_pressure": "Pa", "h_min": "m",
+    "mean_clearance": "m", "coning": "rad", "wear_rate": "m/s", "stator_volume": "m^3", "rotor_volume": "m^3",
+    "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
+}  # fmt: skip
+units = {f"history/{name}": unit for name, unit in HISTORY.items()} | {
+    "radius": "m", "profile/stator": "m", "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s",
+    "coefficients": "1/Pa",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Wear for `duration` of operation on `nodes` radii, the depth known to `accuracy` roughnesses; one step changes
+    the shape of the profile by `step` roughnesses at most.  A short run averages over `turns` forcing periods, again
+    until two such averages agree, `patience` times at most.  `even`: rates that differ by less over the face are those
+    of a profile that has run in; `run_in`: then "stop", "extrapolate" to the duration at a constant rate, or "go on".
+    """
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    duration: Time = 100 * 3600.0
+    nodes: int = 17
+    accuracy: float = 1e-2
+    step: float = 1.0
+    turns: int = 1
+    patience: int = 40
+    even: float = 1e-2
+    run_in: Literal["stop", "extrapolate", "go on"] = "stop"
+
+
+def run(scenario, settings, tools) -> dict:
+    """The history of both faces, and why it ends."""
+    wears = _coefficients(scenario)
+    _sensible(scenario, settings)
+    radius = _radii(scenario.scene.film, settings.nodes)
+    hats, rough = HatBasis(radius), scenario.scene.contact.roughness
+    # What the averages may be wrong by: a tenth of what a step may, on the depth of about a roughness.
+    runs = ShortRunAverages(scenario.scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
+                    settings.patience)  # fmt: skip
+    rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
+    answer = _answer(runs, hats, wears, rows) | {"end": end}
+    if end["kind"] == "run-in" and settings.run_in == "extrapolate":
+        answer["extrapolated"] = _extrapolated(answer, rows[-1], hats, wears, settings.duration)
+    status = end["kind"] if end["kind"] in ("collapsed", "failed") else "ok"
+    return {**answer, "status": status, "verdict": sentences(answer, settings)}
+
+
+def _coefficients(scenario) -> dict[str, float]:
+    """Wear coefficient (1/Pa) of each face.  Raises ScenarioError where there is nothing to wear."""
+    scene = scenario.scene
+    if scene.contact is None:
+        raise ScenarioError(scenario.name, "contact", "nothing", "a [contact] table: there is no wear without")
+    wears = {face: getattr(scene.contact, f"{face}_wear_coefficient") for face in ("stator", "rotor")}
+    if not any(wears.values()):
+        raise ScenarioError(
+            scenario.name, "contact.stator_wear_coefficient", "no wear coefficient on either face",
+            'one of stator_wear_coefficient and rotor_wear_coefficient, e.g. "1e-16 1/Pa"',
+        )  # fmt: skip
+    if scene.film.model == "linear":
+        raise ScenarioError(scenario.name, "film.model", '"linear"', 'a film that sees the worn faces: "auto"')
+    if scene.film.cavitation_pressure is not None:
+        raise ScenarioError(scenario.name, "film.cavitation_pressure", "a value", "nothing: worn faces have no floor")
+    return wears
+
+
+def _sensible(scenario, settings):
+    """Raises ScenarioError for settings that cannot be."""
+    for name, low, high in (("nodes", 2, MOST), ("turns", 1, 10_000), ("patience", 2, 10_000)):
+        if not low <= getattr(settings, name) <= high:
+            found, expected = getattr(settings, name), f"{low} to {high}"
+            raise ScenarioError(scenario.name, f"study.wear.{name}", str(found), expected)
+    for name, high in (("duration", np.inf), ("accuracy", 1.0), ("step", np.inf), ("even", np.inf)):
+        if not 0.0 < getattr(settings, name) <= high:
+            found, expected = getattr(settings, name), "a value > 0" + (f", at most {high:g}" if high < np.inf else "")
+            raise ScenarioError(scenario.name, f"study.wear.{name}", f"{found:g}", expected)
+
+
+def _radii(film, nodes: int) -> np.ndarray:
+    """Evenly spaced radii (n,) m, and those of a profile that is there already."""
+    even = np.linspace(film.inner_radius, film.outer_radius, nodes)
+    if not film.profile:
+        return even
+    own = np.array(film.profile.radius)
+    apart = np.min(np.abs(even[:, None] - own[None, :]), axis=1) > 0.02 * (even[1] - even[0])
+    return np.sort(np.concatenate([own, even[apart]]))[:MOST] if len(own) + apart.sum() <= MOST else own
+
+
+# --- through the hours ------------------------------------------------------------------------------------
+
+
+def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
+    """A row for each accepted step, those of an interrupted study first, and how it ended."""
+    rows, known = [], tools.journal.rows
+    while f"step:{len(rows)}" in known:
+        rows.append(known[f"step:{len(rows)}"])
+    last = rows[-1] if rows else {"time": 0.0, "depth": 0.0 * hats.radius, "volume": 0.0, "span": 0.0, "motion": None}
+    worn = WearState(last["time"], np.array(last["depth"]), last["volume"], last["span"], last["motion"])
+    going_on = bool(rows)
+    try:
+        for worn, average in advance(runs, hats, worn, settings.duration, control):  # noqa: B020
+            if not going_on:
+                rows.append(_row(worn, average, hats))
+                tools.journal.add(f"step:{len(rows) - 1}", rows[-1])
+            going_on = False
+            tools.say(worn.time / settings.duration)
+            end = _ended(rows, settings, control)
+            if end:
+                return rows, end
+    except NoAverage as stop:
+        if not rows:
+            rows.append({"time": 0.0, "depth": worn.depth.tolist(), "rate": None, "volume": 0.0, "seen": None})
+        return rows, {"kind": stop.kind, "time": worn.time, "said": f"a short run ends: {stop}"}
+    raise AssertionError("a history ends at its duration")
+
+
+def _row(worn, average, hats) -> dict:
+    rate, _ = hats.rates(average.nodal)
+    touching = int(np.sum(rate > 0.01 * rate.max()))
+    return {
+        "time": worn.time, "depth": worn.depth.tolist(), "volume": worn.volume, "span": worn.span,
+        "motion": worn.motion, "rate": rate.tolist(), "coarse": 0 < touching < FEW, "seen": average.row,
+    }  # fmt: skip
+
+
+def _ended(rows, settings, control) -> dict | None:
+    """Why the history ends here, if it does: kind, time (s) and a sentence."""
+    row = rows[-1]
+    rate, time, seen = np.array(row["rate"]), row["time"], row["seen"]
+    left = settings.duration - time
+    lift_off = seen["contact_force"] <= TOUCH * seen["closing_force"]
+    faded = seen["contact_force"] <= FADED * seen["closing_force"] and rate.max() * left < control.tolerance
+    if lift_off or (left > 0.0 and faded):
+        before = rows[-2]["time"] if len(rows) > 1 else 0.0
+        when = f"between {_hours(before)} and {_hours(time)}" if time else "from the start"
+        what = "the film carries the whole load: no contact" if lift_off else "contact has faded to nothing"
+        return {"kind": "lift-off", "time": time, "said": f"{what} {when}, and nothing wears any more"}
+    if left <= 0.0:
+        return {"kind": "duration", "time": time, "said": f"worn for the asked {_hours(time)}"}
+    if settings.run_in != "go on" and unevenness(rate) < settings.even:
+        said = (
+            f"run in after {_hours(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
+            f"{3.6e12 * rate.mean():.3g} nm/h"
+        )
+        return {"kind": "run-in", "time": time, "said": said}
+    return None
+
+
+# --- the answer -------------------------------------------------------------------------------------------
+
+
+def _answer(runs, hats, wears, rows) -> dict:
+    """Histories, profiles and the balance of volume, JSON-ready."""
+    rows = [row for row in rows if row["seen"]]
+    both = sum(wears.values())
+    depth = np.array([row["depth"] for row in rows]).reshape(-1, len(hats.radius))
+    worn = {face: k / both * depth for face, k in wears.items()}
+    slope = runs.scene.film.coning * (hats.radius - hats.radius[0])
+    gap = runs.own + slope + depth
+    history = {name: [row["seen"][name] for row in rows] for name in HISTORY if rows and name in rows[0]["seen"]}
+    history["time"] = [row["time"] for row in rows]
+    history["contact_share"] = [row["seen"]["contact_force"] / row["seen"]["closing_force"] for row in rows]
+    history["mean_clearance"] = [
+        runs.clearance + row["seen"]["travel"] + hats.volume(g) / hats.areas.sum()
+        for row, g in zip(rows, gap, strict=True)
+    ]
+    history["coning"] = [_slope(hats, g) for g in gap]
+    history["unevenness"] = [float(u) if np.isfinite(u) else None for u in (unevenness(row["rate"]) for row in rows)]
+    for face in wears:
+        history[f"{face}_volume"] = [hats.volume(d) for d in worn[face]]
+    last, tilt = rows[-1] if rows else None, max((row["seen"]["relative_misalignment"] for row in rows), default=0.0)
+    volume = hats.volume(depth[-1]) if rows else 0.0
+    return {
+        "radius": hats.radius.tolist(),
+        "coefficients": list(wears.values()),
+        "profile": {face: d.tolist() for face, d in worn.items()} | {"gap": gap.tolist()},
+        "pv": [(np.array(row["rate"]) / both).tolist() for row in rows],
+        "history": history,
+        "volume": {
+            "profiles": volume,
+            "integral": last["volume"] if last else 0.0,
+            "residual": abs(volume - last["volume"]) / volume if volume else 0.0,
+        },
+        "steps": max(len(rows) - 1, 0),
+        "not_settled": sum(not row["seen"]["settled"] for row in rows),
+        "coarse": sum(row["coarse"] for row in rows),
+        "tilt_over_roughness": tilt * float(hats.radius[-1]) / runs.scene.contact.roughness,
+        "still": runs.still,
+        "unstable": runs.unstable,
+        "period": runs.period,
+        "extrapolated": None,
+    }
+
+
+def _slope(hats, gap) -> float:
+    """Coning (rad) of the straight line nearest to a gap (n,) over the face."""
+    lines = np.stack([np.ones(len(gap)), hats.radius - hats.radius[0]])
+    return float(np.linalg.solve(lines @ hats.mass @ lines.T, lines @ hats.mass @ gap)[1])
+
+
+def _extrapolated(answer, row, hats, wears, duration) -> dict:
+    """Depths at the asked duration if the rates stay."""
+    left, both = duration - row["time"], sum(wears.values())
+    depth = np.array(row["depth"]) + left * np.array(row["rate"])
+    return {"time": duration, "from": row["time"]} | {
+        face: (k / both * depth).tolist() for face, k in wears.items()
+    }  # fmt: skip
+
+
+# --- in words ---------------------------------------------------------------------------------------------
+
+
+def sentences(answer, settings) -> list[str]:
+    """The verdict."""
+    lines, history = [answer["end"]["said"]], answer["history"]
+    if not history["time"]:
+        return lines
+    hours = _hours(history["time"][-1])
+    for face in ("stator", "rotor"):
+        depth = np.array(answer["profile"][face][-1])
+        if depth.max() > 0.0:
+            volume = 1e9 * history[f"{face}_volume"][-1]
+            lines.append(
+                f"the {face} is worn by {_length(depth.min())} to {_length(depth.max())} in {hours} ({volume:.4g} mm3)"
+            )
+    told = (("leakage", "leakage", 3.6e9, "ml/h"), ("friction_power", "friction", 1.0, "W"),
+            ("contact_share", "contact share of the closing force", 100.0, "%"),
+            ("coning", "coning of the gap", 1e6, "urad"), ("h_min", "smallest film", 1e6, "um"))  # fmt: skip
+    lines.append("from start to end: " + ", ".join(
+        f"{words} {factor * history[name][0]:.4g} to {factor * history[name][-1]:.4g} {unit}"
+        for name, words, factor, unit in told))  # fmt: skip
+    lines.append(_made(answer, settings))
+    if answer["extrapolated"]:
+        most = {face: max(answer["extrapolated"][face]) for face in ("stator", "rotor")}
+        lines.append(
+            f"extrapolated at the last rates, not computed: {_length(most['stator'])} of stator and "
+            f"{_length(most['rotor'])} of rotor at {_hours(answer['extrapolated']['time'])}"
+        )
+    if answer["not_settled"]:
+        lines.append(
+            f"at {answer['not_settled']} of {answer['steps'] + 1} profiles the averages had not settled within "
+            f"{settings.patience} x {settings.turns} periods: means over the later half are used"
+        )
+    if answer["coarse"] and len(answer["radius"]) > FEW:
+        spacing = 1e3 * float(np.max(np.diff(answer["radius"])))
+        lines.append(
+            f"at {answer['coarse']} of {answer['steps'] + 1} profiles fewer than {FEW} radii, {spacing:.3g} mm apart, "
+            "touch: raise study.wear.nodes for a finer profile"
+        )
+    if answer["tilt_over_roughness"] > UNEVEN and max(history["contact_force"]) > 0.0:
+        lines.append(f"the faces tilt by up to {answer['tilt_over_roughness']:.2g} roughnesses and touch unevenly: "
+                     "wear is spread over the circle, a face on which the patch stands wears deeper")  # fmt: skip
+    if answer["unstable"]:
+        lines.append("the aligned seal is unstable at this speed: its wear holds for the motion seen here only")
+    return lines
+
+
+def _made(answer, settings) -> str:
+    """How it was found, and how well volumes agree."""
+    how = (
+        "aligned faces without forcing: each average is a balance of forces"
+        if answer["still"]
+        else f"each average over {settings.turns} forcing period(s) of {1e3 * answer['period']:.3g} ms"
+    )
+    balance = f"; worn volume equals the integral of its rate within {answer['volume']['residual']:.1e}"
+    return f"{answer['steps']} steps; {how}" + (balance if answer["volume"]["profiles"] else "")
+
+
+def _hours(seconds) -> str:
+    if seconds >= 360.0 or seconds == 0.0:
+        return f"{seconds / 3600:.4g} h"
+    return f"{seconds:.3g} s"
+
+
+def _length(metres) -> str:
+    return f"{1e6 * metres:.4g} um" if metres >= 1e-7 else f"{1e9 * metres:.3g} nm"

@@ -1,0 +1,140 @@
+"""What the user looks at of a run, and how wrong a method has it: h_min, relative misalignment, leakage, impulse."""
+
+import math
+import time as clock
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...dynamics.extrema import LEAST, MOST, H
+from ...dynamics.signals import signals
+from ...solvers.contract import Counts, SolverFailure
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+
+OBSERVABLES = ("h_min", "relative_misalignment", "leakage", "contact_impulse")
+WHERE = ("end", "over_time", "steady")
+# A leakage below this share of what the aligned film would pass is none.
+NOTHING = 1e-12
+
+
+@dataclass
+class Observed:
+    """One run as it is looked at: status and reason, wall time (s) of the integration alone, own counts, sample times
+    (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse` (N s)
+    or None, and the scales that errors are relative to; `processor` time (s) of the same, less than
+    the wall's on a busy machine."""
+
+    status: str
+    reason: str
+    wall: float
+    counts: Counts
+    times: np.ndarray
+    series: dict
+    steady: dict | None
+    impulse: float | None
+    scales: dict = field(default_factory=dict)
+    processor: float = 0.0
+
+
+class Sampler(Recorder):
+    """Keeps what is looked at, at even times."""
+
+    def take(self, index, taus, q, q_rate):
+        problem = self.problem
+        columns = signals(problem, taus, q, q_rate)
+        side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+        self.parts.append(
+            (columns["time"], columns["h_min"], columns["relative_misalignment"], columns[side])
+        )  # fmt: skip
+
+
+class _Stopwatch:
+    """A method's steps, with the time spent inside them; ends a run that has spent too much."""
+
+    def __init__(self, steps, limit):
+        self.steps, self.limit = steps, limit
+        self.spent, self.processor, self.stopped = 0.0, 0.0, False
+
+    def __call__(self, *where):
+        steps = self.steps(*where)
+        while True:
+            begun, busy = clock.perf_counter(), clock.process_time()
+            try:
+                block = next(steps, None)
+            except np.linalg.LinAlgError as error:
+                raise SolverFailure(str(error)) from error
+            finally:
+                self.processor += clock.process_time() - busy
+                self.spent += clock.perf_counter() - begun
+            if block is None:
+                return
+            if self.spent > self.limit:
+                self.stopped = True
+                raise SolverFailure(f"stopped after {self.spent:.3g} s")
+            yield block
+
+
+def observe(problem, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
+    """Integrate a problem with a method's generator `steps` (contract of solvers/methods.py) and look at it.
+
+    `limit` (s) of integration; `samples` intervals over the run.  The gap is watched and contacts, sticking and
+    collapse are found as in any run, but the clock runs only inside the method.
+    """
+    watch, sink = _Stopwatch(steps, limit), Sampler(problem, problem.duration / samples)
+    with np.errstate(all="ignore"):
+        outcome = solve(problem, method, problem.accuracy, sink, steps=watch, tolerance=tolerance)
+    if outcome.status == "interrupted":
+        raise KeyboardInterrupt
+    status, reason = outcome.status, "" if outcome.status == "ok" else outcome.message
+    if watch.stopped:
+        status = "stopped"
+    elif status == "ok" and not np.all(np.isfinite(outcome.y)):
+        status, reason = "failed", "overflowed"
+    found = _observed(problem, status, reason, watch.spent, outcome.counts, sink, outcome.y)
+    found.processor = watch.processor
+    return found
+
+
+def _observed(problem, status, reason, wall, counts, sink, y) -> Observed:
+    columns = [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
+    record, steady = problem.records[1], None
+    if status == "ok" and math.isfinite(record[H]) and math.isfinite(record[MOST]):
+        steady = {"h_min": [record[H]], "relative_misalignment": [record[LEAST], record[MOST]]}
+        late = columns[0] >= problem.windows[1][0] * (1 - 1e-12)
+        if late.sum() > 1:
+            steady["leakage"] = [float(np.max(columns[3][late])), float(np.min(columns[3][late]))]
+    place = problem.layout.impulse
+    impulse = float(y[place]) if problem.contact is not None and place is not None else None
+    series = dict(zip(OBSERVABLES, columns[1:], strict=False))
+    scales = {"h_min": problem.clearance, "relative_misalignment": problem.clearance / problem.scene.film.outer_radius}
+    if len(columns[3]) and np.max(np.abs(columns[3])) > 0:
+        scales["leakage"] = float(np.max(np.abs(columns[3])))
+    if impulse:
+        scales["contact_impulse"] = abs(impulse)
+    return Observed(status, reason, wall, counts, columns[0], series, steady, impulse, scales)
+
+
+def errors(found: Observed, exact: Observed) -> dict:
+    """Errors of a run against another: `{where: {observable: error}}`, relative to the clearance, the clearance over
+    the outer radius, the largest leakage and the whole impulse of `exact`; an empty dict where there is nothing to
+    compare.  **Source** maximum and final-time errors as in Hairer & Wanner's work-precision diagrams."""
+    none = {where: {} for where in WHERE}
+    if found.status != "ok" or exact.status != "ok" or len(found.times) != len(exact.times):
+        return none
+    out = none
+    for name, scale in exact.scales.items():
+        if name == "contact_impulse":
+            out["end"][name] = out["over_time"][name] = abs(found.impulse - exact.impulse) / scale
+            continue
+        away = np.abs(found.series[name] - exact.series[name]) / scale
+        out["end"][name], out["over_time"][name] = float(away[-1]), float(away.max())
+        if found.steady and exact.steady and name in found.steady and name in exact.steady:
+            pairs = zip(found.steady[name], exact.steady[name], strict=True)
+            out["steady"][name] = float(max(abs(a - b) for a, b in pairs) / scale)
+    return out
+
+
+def worst(by_where: dict) -> dict:
+    """The largest error of any observable, per `where`; None where there is none."""
+    return {where: max(found.values(), default=None) for where, found in by_where.items()}

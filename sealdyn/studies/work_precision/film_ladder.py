@@ -1,0 +1,203 @@
+"""How much model a scene needs: every rung of the ladder of films, and the harmonic balance, against the highest."""
+
+import math
+import time as clock
+
+import numpy as np
+
+from ...dynamics import modes
+from ...films import film_module, film_names
+from ...scenario.settings import with_values
+from ...scene.film import Coefficients, aligned_gaps
+from ...simulation.simulate import prepare_run
+from ...solvers.collocation import collocation
+from ...solvers.contract import tolerance_for
+from ...solvers.methods import METHODS
+from .errors import errors, observe, worst
+
+JUDGE, TIGHT = 1e-11, 1e-11
+# Points over a period at which the harmonic balance is looked at.
+POINTS = 4096
+
+
+def rungs(scenario) -> list[tuple[str, dict]]:
+    """(label, overrides) from the lowest to the highest; films are found by file name."""
+    given = isinstance(scenario.scene.film.coefficients, Coefficients)
+    if given:
+        # The film is these numbers: there is nothing above them.
+        return [("linear film, coefficients as given", {"film.model": "linear"})]
+    found = []
+    for name in sorted(film_names(scenario.scene.film), key=lambda n: film_module(n).RUNG):
+        if name == "linear":
+            found += [
+                (f"linear film, {words} coefficients", {"film.model": name, "film.coefficients": source})
+                for source, words in (("green", "Green's"), ("radial", "radial film's"))
+            ]
+        else:
+            found.append((f"{name.replace('_', ' ')} film", {"film.model": name}))
+    return found
+
+
+def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> list[dict]:
+    """Rows `{label, error{where}, wall, rhs, failed}` of every rung, cheapest model first, each run with the method
+    and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run."""
+    ladder = rungs(scenario)
+    own = scenario.scene.film.model
+    if (
+        exact is not None
+        and exact.status == "ok"
+        and own not in ("linear", "auto")
+        and ladder[-1][1]["film.model"] == own
+    ):
+        highest, top = exact, ladder[-1]
+    else:
+        highest, top = _highest(scenario, ladder, samples, longest)
+    if highest is None:
+        return []
+    lowest = ladder[0]
+    out = [_balanced(scenario, lowest, highest, repeats)]
+    if top != lowest:
+        out.append(_balanced(scenario, top, highest, repeats))
+    out += [_run(scenario, rung, highest, samples, longest, repeats) for rung in ladder]
+    return [row for row in out if row]
+
+
+def _highest(scenario, ladder, samples, longest):
+    """The exact run of the highest rung that this scene can be run with, and that rung."""
+    for rung in reversed(ladder):
+        try:
+            problem, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
+            found = observe(problem, collocation, "gauss", JUDGE, 2 * longest, samples)
+            if found.status not in ("ok", "collapsed"):
+                problem, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": 1e-9, **AUTO}))
+                tolerance = tolerance_for(method, 1e-9, problem.memory)
+                found = observe(problem, METHODS[method], method, tolerance, longest, samples)
+        except ValueError:
+            # This film refuses the scene.
+            continue
+        if found.status in ("ok", "collapsed"):
+            return found, rung
+    return None, None
+
+
+AUTO = {"run.solver": "auto"}
+
+
+def _accuracy(scenario):
+    seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
+    return scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
+
+
+def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
+    """One rung in time, at the scenario's accuracy."""
+    label, overrides = rung
+    row = {"label": label, "error": {"end": None, "over_time": None, "steady": None}, "wall": None, "failed": None}
+    best = None
+    try:
+        for _ in range(max(1, repeats) + 1):
+            problem, method, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+            tolerance = tolerance_for(method, scenario.run.accuracy, problem.memory)
+            found = observe(problem, METHODS[method], method, tolerance, longest, samples)
+            best = found if best is None or found.wall < best.wall else best
+            if found.wall > 1.0 or found.status != "ok":
+                break
+    except ValueError as refused:
+        return row | {"failed": str(refused)}
+    row |= {"wall": best.wall, "rhs": best.counts.rhs, "method": method}
+    if best.status != "ok" or highest.status != "ok":
+        return row | {"failed": best.reason or f"the highest rung: {highest.reason}"}
+    # The motion for itself: a film's leakage is a formula of its own.
+    found = errors(best, highest)
+    leakage = {where: by_name.pop("leakage", None) for where, by_name in found.items()}
+    return row | {"error": worst(found), "leakage_error": leakage}
+
+
+def _balanced(scenario, rung, highest, repeats) -> dict | None:
+    """The harmonic balance of a rung's linearisation, with its own call time; None where there is no steady state."""
+    label, overrides = rung
+    problem, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+    last = len(problem.legs) - 1
+    problem.begin(last)
+    steady = highest.steady and problem.period() and not problem.layout.extended and not problem.massless
+    if not steady or modes.verdict(problem.linear_scene(last).modes()) != "stable":
+        return None
+    wall = math.inf
+    for _ in range(repeats + 1):
+        begun = clock.perf_counter()
+        found = harmonic_balance(problem, last)
+        wall = min(wall, clock.perf_counter() - begun)
+    length = highest.scales["h_min"]
+    tilt = highest.scales["relative_misalignment"]
+    off = [abs(found["h_min"] - highest.steady["h_min"][0]) / length]
+    off += [
+        abs(a - b) / tilt
+        for a, b in zip(found["relative_misalignment"], highest.steady["relative_misalignment"], strict=True)
+    ]
+    whose = "Green's" if "green" in overrides.values() else label.partition(" film")[0] + " film's"
+    whose = "given" if "as given" in label else whose
+    return {
+        "label": f"harmonic balance, {whose} coefficients",
+        "error": {"end": None, "over_time": None, "steady": float(max(off))},
+        "wall": wall,
+        "failed": None,
+    }
+
+
+def harmonic_balance(problem, leg_index: int) -> dict:
+    """Linear steady extremes over one period of a leg: `h_min` (m) and the least and most relative misalignment (rad).
+
+    **Source** the answers of modes.LinearScene to every imposed harmonic, superposed.
+    **Valid** small motion; constant conditions; a stable scene."""
+    linear = problem.linear_scene(leg_index)
+    relative = [(h.frequency, linear.relative(h, linear.response(h))) for h in problem.harmonics()]
+    t = np.linspace(0.0, problem.period(), POINTS + 1)
+    motion = np.zeros((3, len(t)))
+    for frequency, amplitude in relative:
+        motion += (amplitude[:, None] * np.exp(1j * frequency * t)).real
+    tilt = np.hypot(motion[1], motion[2])
+    shift = problem.axial_shift(leg_index) + motion[0]
+    thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(problem.scene.film, problem.clearance))
+    return {
+        "h_min": float(thinnest),
+        "relative_misalignment": [float(tilt.min()), float(tilt.max())],
+    }
+
+
+def verdict(answer: dict, least_time) -> list[str]:
+    """How much model and how much solver: sentences."""
+    where = "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
+    rows = [row for row in answer["models"] if row["error"][where] is not None]
+    if not rows:
+        return ["no rung of the ladder ended: nothing to say about models"]
+    words = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}[where]
+    lines, before = [], None
+    for error in (1e-2, 1e-4):
+        enough = [row for row in rows if row["error"][where] <= error]
+        if not enough:
+            best = min(rows, key=lambda row: row["error"][where])
+            lines.append(f"no rung below {error:.0e} {words}; the best, {best['label']}: {_said(best, where)}")
+            continue
+        wall, name = least_time(error)
+        solver = "" if wall is None else f"{name} at that error, {wall * 1e3:.3g} ms"
+        if enough[0] is before:
+            lines[-1] += f"; for {error:.0e} the same" + (f", {solver}" if solver else "")
+            continue
+        line = f"this scene needs, for {error:.0e} {words}: {enough[0]['label']} ({_said(enough[0], where)})"
+        in_time = next((row for row in enough if "balance" not in row["label"]), None)
+        if in_time is not None and solver:
+            line += f"; in time {in_time['label']}, {solver}" if in_time is not enough[0] else f"; {solver}"
+        lines.append(line)
+        before = enough[0]
+    linear = [row for row in rows if row["label"].startswith("linear") and row["error"][where] > 0]
+    if linear and len(rows) > len(linear):
+        best = min(linear, key=lambda row: row["error"][where])
+        wrong = best["error"][where]
+        of_use = f"with it, errors below {wrong / 10:.0e} are wasted" if wrong < 0.1 else "no use here"
+        lines.append(f"{best['label']} is wrong by {wrong:.1e} whatever the solver: {of_use}")
+    return lines
+
+
+def _said(row, where):
+    leakage = (row.get("leakage_error") or {}).get(where)
+    more = "" if not leakage else f", its leakage {leakage:.1e}"
+    return f"error of the motion {row['error'][where]:.1e}{more}; {row['wall'] * 1e3:.3g} ms"

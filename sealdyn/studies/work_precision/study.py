@@ -1,0 +1,299 @@
+"""Work and precision: the error of what the user looks at against what it costs, method by method and model by model.
+
+How much solver does this scene need: every method over a range of tolerances against a judge that is none of them.
+How much model: every rung of the ladder of films, and the harmonic balance, against the highest rung.
+"""
+
+import json
+import math
+import os
+import platform
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from importlib.metadata import version
+
+from ...scenario.reader import parse_scenario
+from ...scenario.settings import with_values
+from ...simulation.simulate import prepare_run
+from ...solvers.collocation import collocation
+from ...solvers.fixed_step import REFERENCE_METHODS
+from . import film_ladder
+from .errors import WHERE, errors, observe, worst
+from .ranking import curve, mark_slow_runs, rank_methods, time_at
+
+WITH_CONTACT = True
+
+NAMES = {
+    "adams": "CVODE Adams", "bdf": "CVODE BDF", "bdf2": "CVODE BDF order 2", "ida": "IDA", "dop853": "SciPy DOP853",
+    "rk45": "SciPy RK45", "lsoda": "SciPy LSODA", "radau": "SciPy Radau", "newmark": "Newmark",
+    "generalised_alpha": "generalised-alpha", "midpoint": "implicit midpoint", "expm": "matrix exponential",
+    "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
+}  # fmt: skip
+units = {f"methods/{name}/wall": "s" for name in NAMES}
+FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm")
+SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
+# Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
+TIGHT, JUDGE = 1e-11, 1e-11
+ASKED = (1e-3, 1e-6, 1e-9)
+# A wall time below this is measured again.
+BRIEF = 0.3
+# Clocks on a busy machine do not tell less than this apart.
+LIKE = 1.15
+BUSY = 1.1
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`tolerances` so many, evenly from `loosest` to `tightest`; `repeats` of a run, of which the fastest counts;
+    `longest` seconds of a run, `slowest` times the fastest run of that error: beyond, a cross; `samples` intervals at
+    which errors are taken; `methods` to judge (empty: all); `judging` seconds the reference may take; `where` the
+    verdict looks: "end", "over_time" or "steady"; `models`: also compare the rungs of the ladder."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    tolerances: int = 10
+    loosest: float = 1e-2
+    tightest: float = 1e-11
+    repeats: int = 3
+    longest: float = 60.0
+    slowest: float = 100.0
+    samples: int = 400
+    methods: tuple[str, ...] = ()
+    judging: float = 120.0
+    where: str = "over_time"
+    models: bool = True
+
+
+def run(scenario, settings, tools) -> dict:
+    """Methods, their judge, models, and who is fastest at which accuracy."""
+    point = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    problem = ready(scenario)
+    chosen = [m for m in (*FAST, *SLOW) if not settings.methods or m in settings.methods]
+    chosen = [m for m in chosen if m != "expm" or (problem.linear and problem.constant)]
+    judging = {"samples": settings.samples, "limit": settings.judging}
+    exact, band, judges = reference(json.dumps({**point, **judging}))
+    tools.say(0.1)
+    shared = {**point, "tolerances": tolerances(settings), "repeats": settings.repeats, "judging": judging}
+    # One at a time: runs beside each other would disturb each other's clocks.
+    alone = replace(tools, workers=1, progress=None) if hasattr(tools, "workers") else tools
+    first = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in FAST]
+    rows = alone.map(judge, first, "methods")
+    tools.say(0.4)
+    shared |= {"front": front(rows, settings.where), "slowest": settings.slowest, "where": settings.where}
+    later = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in SLOW]
+    rows += alone.map(judge, later, "methods")
+    tools.say(0.8)
+    methods = dict(zip([m for g in (FAST, SLOW) for m in chosen if m in g], rows, strict=True))
+    methods = {name: row for name, row in methods.items() if "failed" not in row}
+    mark_slow_runs(methods, settings.where, settings.slowest)
+    rungs = []
+    if settings.models:
+        rungs = film_ladder.compare(scenario, settings.samples, settings.longest, settings.repeats, exact)
+    answer = {
+        "where": settings.where,
+        "scene": {"turns": _turns(problem), "duration": problem.duration, "method": problem.solver()[0]},
+        "judges": judges,
+        "judge_error": band,
+        "methods": methods,
+        "models": rungs,
+        "machine": {**machine(), "busy": busy(methods)},
+        "names": {name: NAMES[name] for name in methods},
+    }
+    answer["fastest"] = [rank_methods(answer, error) for error in ASKED]
+    return {**answer, "verdict": verdict(answer, settings)}
+
+
+def ready(scenario):
+    """A fresh problem whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
+    fades over a band that follows the accuracy, so there the scenario's own is kept."""
+    seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
+    accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
+    problem, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
+    return problem
+
+
+def tolerances(settings) -> list[float]:
+    """From the loosest to the tightest, evenly in the exponent."""
+    if settings.tolerances == 1:
+        return [settings.loosest]
+    ratio = math.log10(settings.tightest / settings.loosest) / (settings.tolerances - 1)
+    return [float(f"{settings.loosest * 10 ** (ratio * k):.4g}") for k in range(settings.tolerances)]
+
+
+@lru_cache(maxsize=2)
+def reference(point: str):
+    """The exact run, how far a second judge is from it (`{where: error}` or None), and the names of both.
+
+    Judges in order: collocation at Gauss or at Radau nodes, whichever suits the scene, then the matrix exponential or
+    DOP853 at 1e-13 where they can, then the other nodes."""
+    asked = json.loads(point)
+    scenario = parse_scenario(asked["text"], asked["name"], asked["overrides"])
+    problem = ready(scenario)
+    stiff = problem.solver()[0] == "bdf"
+    own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
+    if problem.linear and problem.constant and not problem.massless:
+        others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
+    elif stiff or problem.massless:
+        others = []
+    else:
+        others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
+    trials = [
+        (own[0], collocation, JUDGE),
+        *others,
+        (own[1], collocation, JUDGE),
+        ("dop853", REFERENCE_METHODS["dop853"], 1e-12),
+    ]
+    good = []
+    for name, steps, tolerance in trials:
+        found = observe(ready(scenario), steps, name, tolerance, asked["limit"], asked["samples"])
+        if found.status in ("ok", "collapsed") and name not in [n for n, _ in good]:
+            good.append((name, found))
+        if len(good) == 2:
+            break
+    if not good:
+        return found, None, {"exact": None, "second": None, "reason": found.reason}
+    exact = good[0][1]
+    band = worst(errors(good[1][1], exact)) if len(good) > 1 else None
+    second = NAMES[good[1][0]] if len(good) > 1 else None
+    return exact, band, {"exact": NAMES[good[0][0]], "second": second, "reason": exact.reason, "method": good[0][0],
+                         "status": exact.status}  # fmt: skip
+
+
+def judge(point: dict) -> dict:
+    """One method over all tolerances: columns of wall time, counts, errors, status and reason."""
+    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
+    shared = {key: point[key] for key in ("text", "name", "overrides")}
+    exact, _, judges = reference(json.dumps({**shared, **point["judging"]}))
+    method, rows = point["method"], []
+    # What is compiled is loaded before the clock starts.
+    observe(ready(scenario), REFERENCE_METHODS[method], method, 1e-2, 0.05, point["judging"]["samples"])
+    for tolerance in point["tolerances"]:
+        limit, expected = _allowed(point, rows, tolerance)
+        rows.append({**_measured(scenario, method, tolerance, point, exact, limit), "expected": expected})
+        if rows[-1]["status"] == "stopped":
+            # Tighter ones take longer still.
+            break
+    # Again, one round after the other: a busy moment of the machine must not hit all runs of one tolerance.
+    for _ in range(point["repeats"] - 1):
+        for row in rows:
+            if row["status"] == "ok" and row["wall"] < BRIEF:
+                again = _run(scenario, method, row["tolerance"], point, point["limit"])
+                row["wall"], row["processor"] = min(row["wall"], again.wall), min(row["processor"], again.processor)
+    if judges.get("method") == method:
+        for row in rows:
+            row["errors"] = {where: {} for where in WHERE}
+    names = sorted({name for row in rows for found in row["errors"].values() for name in found})
+    return {
+        "tolerance": [row["tolerance"] for row in rows],
+        "wall": [row["wall"] for row in rows],
+        "processor": [row["processor"] for row in rows],
+        "rhs": [row["rhs"] for row in rows],
+        "status": [row["status"] for row in rows],
+        "reason": [row["reason"] for row in rows],
+        "expected": [row["expected"] for row in rows],
+        "error": {where: [max(row["errors"][where].values(), default=None) for row in rows] for where in WHERE},
+        "observables": {
+            where: {name: [row["errors"][where].get(name) for row in rows] for name in names} for where in WHERE
+        },
+    }
+
+
+def _run(scenario, method, tolerance, point, limit):
+    return observe(ready(scenario), REFERENCE_METHODS[method], method, tolerance, limit, point["judging"]["samples"])
+
+
+def _measured(scenario, method, tolerance, point, exact, limit) -> dict:
+    found = _run(scenario, method, tolerance, point, limit)
+    reason = found.reason.split("  Try")[0]
+    if found.status == "stopped" and limit < point["limit"]:
+        reason = f"more than {point['slowest']:g} times the fastest of the error it would reach"
+    row = {"tolerance": tolerance, "wall": found.wall, "rhs": found.counts.rhs, "status": found.status}
+    return {**row, "processor": found.processor, "reason": reason, "errors": errors(found, exact)}
+
+
+def front(rows, where: str) -> list[tuple[float, float]]:
+    """(error, wall time) of every run of these methods that ended."""
+    return [pair for row in rows if "failed" not in row for pair in curve(row, where)]
+
+
+def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
+    """Seconds that a run may take, and the error it can be expected to reach: errors go as the tolerance does."""
+    known = [row for row in rows if row["status"] == "ok" and row["errors"][point.get("where", "end")]]
+    if not known or not point.get("front"):
+        return point["limit"], None
+    last = known[-1]
+    expected = max(last["errors"][point["where"]].values()) * tolerance / last["tolerance"]
+    least = time_at(point["front"], max(expected, 1e-16)) or max(wall for _, wall in point["front"])
+    return min(point["limit"], point["slowest"] * least), expected
+
+
+def verdict(answer: dict, settings) -> list[str]:
+    """Who is fastest, what failed, how much model and how much solver."""
+    words = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}[settings.where]
+    lines = []
+    for row in answer["fastest"]:
+        if row["method"] is None:
+            lines.append(f"error {row['error']:.0e} {words}: no verdict, {row['why']}")
+            continue
+        line = f"error {row['error']:.0e} {words}: {NAMES[row['method']]} is fastest, {row['wall'] * 1e3:.3g} ms"
+        if row["next"]:
+            close = row["factor_next"] < LIKE
+            line += ", " + ("hardly" if close else f"{row['factor_next']:.2g} times")
+            line += f" faster than {NAMES[row['next']]}"
+        if row["factor_dop853"] and "dop853" not in (row["method"], row["next"]):
+            line += f", {row['factor_dop853']:.2g} times faster than SciPy DOP853"
+        if row["not_asked"]:
+            line += f" (not asked tightly enough: {', '.join(NAMES[name] for name in row['not_asked'])})"
+        lines.append(line)
+    lines.append(_crosses(answer["methods"]))
+    if answer["models"]:
+        lines += film_ladder.verdict(answer, lambda e: _least_time(answer["methods"], settings, e))
+    band = (answer["judge_error"] or {}).get(settings.where)
+    judges = answer["judges"]
+    if judges["exact"] is None:
+        lines.append(f"no judge ended, so there are no errors: {judges['reason']}")
+    elif band is not None:
+        lines.append(f"judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}")
+    else:
+        lines.append(f"judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}")
+    strained = answer["machine"]["busy"]
+    if strained > BUSY:
+        lines.append(f"the machine was busy: wall times are {strained:.2g} times the processor's, factors no surer")
+    return [line for line in lines if line]
+
+
+def _least_time(methods, settings, error):
+    found = [(time_at(curve(row, settings.where), error), name) for name, row in methods.items()]
+    return min(((wall, NAMES[name]) for wall, name in found if wall is not None), default=(None, None))
+
+
+def _crosses(methods) -> str:
+    said = []
+    for status, word in (("collapsed", "the film collapsed"), ("failed", "gave up"), ("stopped", "stopped for time"),
+                         ("slow", "too slow")):  # fmt: skip
+        names = [NAMES[name] for name, row in methods.items() if status in row["status"]]
+        if names:
+            said.append(f"{word}: {', '.join(names)}")
+    return f"crosses ({'; '.join(said)})" if said else ""
+
+
+def _turns(problem) -> float:
+    return float(abs(problem.pace) * problem.duration / (2 * math.pi))
+
+
+def busy(methods) -> float:
+    """Wall over processor time of all runs together: 1 on a machine that does nothing else."""
+    spent = [sum(sum(row[clock]) for row in methods.values()) for clock in ("wall", "processor")]
+    return spent[0] / spent[1] if spent[1] > 0 else 1.0
+
+
+def machine() -> dict:
+    """Processor, cores and versions: what a wall time means."""
+    name = platform.processor() or platform.machine()
+    try:
+        with open("/proc/cpuinfo") as lines:
+            name = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), name)
+    except OSError:
+        pass
+    libraries = {library: version(library) for library in ("numpy", "scipy", "scikit-sundae", "numba")}
+    return {"processor": name, "cores": os.cpu_count(), "python": platform.python_version(), **libraries}
