@@ -166,7 +166,7 @@ def test_a_run_goes_on_from_its_trial(monkeypatch):
 @pytest.mark.parametrize("name,accuracy", [("larger", 1e-7), ("fmsr", 1e-5), ("fms", 1e-6)])
 def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypatch):
     """A trial that believes anything: the run's own steps tell, before what they lead to is handed over."""
-    monkeypatch.setattr("sealdyn.simulation.certificate.TOLD", 1e-9)
+    monkeypatch.setattr("sealdyn.simulation.certificate.TRIAL_SAFETY", 1e-9)
     monkeypatch.setattr("sealdyn.simulation.certificate.ENERGY", 1e9)
     monkeypatch.setattr("sealdyn.simulation.certificate.LOOSER", 300.0)
     problem, times = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy), []

@@ -12,6 +12,7 @@ import pytest
 from sealdyn.archive import ArchiveWriter, Series
 from sealdyn.report.charts import record
 from sealdyn.report.charts.record import Run
+from sealdyn.studies._runner import study_module
 
 KINDS = ["overview", "orbit", "film", "spectrum", "poincare"]
 FILM = {"inner_radius": 0.032, "outer_radius": 0.04, "clearance": 1e-5, "coning": 3e-3}
@@ -281,7 +282,7 @@ def test_the_reach_of_an_orbit_holds_every_row(tmp_path):
 
 
 def test_importing_the_charts_room_does_not_import_matplotlib():
-    code = "import sys, json, sealdyn.charts; print(json.dumps('matplotlib' in sys.modules))"
+    code = "import sys, json, sealdyn.report.charts; print(json.dumps('matplotlib' in sys.modules))"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert json.loads(said.stdout) is False
 
@@ -324,7 +325,7 @@ def test_study_charts_are_legible(tmp_path, figures, study, name, overrides, set
     from sealdyn import read_scenario
     from sealdyn.archive import write_study
 
-    module = importlib.import_module(f"sealdyn.studies.{study}")
+    module = study_module(study)
     chart = importlib.import_module(f"sealdyn.report.charts.study_{study}")
     scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / f"{name}.toml", overrides)
     answer = module.run(scenario, module.Settings(**settings), Tools())

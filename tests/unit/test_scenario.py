@@ -265,7 +265,7 @@ def test_schema_knows_every_table_and_forbids_others():
 
 
 def test_reading_is_fast():
-    code = f"import sealdyn.scenario as s; s.read_scenario({str(SHIPPED[0])!r})"
+    code = f"import sealdyn.scenario.reader as s; s.read_scenario({str(SHIPPED[0])!r})"
     subprocess.run([sys.executable, "-c", code], check=True)
     start = time.perf_counter()
     for _ in range(20):

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "sealdyn"
-TOUCH = "from sealdyn.gap import edge_gaps; print(edge_gaps.__name__)"
+TOUCH = "from sealdyn.faces.geometry import edge_gaps; print(edge_gaps.__name__)"
 
 
 def python(code, folder):
@@ -25,7 +25,7 @@ def test_changed_constant_drops_every_kernel(tmp_path):
     kept.write_bytes(b"kernel")
     python(TOUCH, tmp_path)
     assert kept.exists()
-    gap = copy / "gap.py"
+    gap = copy / "faces/geometry.py"
     gap.write_text(gap.read_text().replace("GAP_STATE_SIZE = 26", "GAP_STATE_SIZE = 27"))
     python(TOUCH, tmp_path)
     assert not kept.exists()
