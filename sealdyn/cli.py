@@ -201,21 +201,21 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .report.text import resolved_lines
     from .scene.scene import SceneError
     from .simulation.simulate import prepare_run
-    from .simulation.summary import model
+    from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
     try:
-        problem, method, why, *_ = prepare_run(scenario)
+        run, method, why, *_ = prepare_run(scenario)
     except (SceneError, ArchiveError) as error:
         raise Stop("invalid", f"{file}: {error}") from None
     found = {
         "status": "ok",
         "message": "the scene is possible",
         "scene": scenario.resolved(),
-        "model": model(scenario, problem, method, why),
-        "clearance": problem.clearance,
-        "equilibria": [vars(e) for e in problem.equilibria],
-        "design_rules": followability(problem),
+        "model": model_chosen(scenario, run, method, why),
+        "clearance": run.model.clearance,
+        "equilibria": [vars(e) for e in run.model.interface.equilibria],
+        "design_rules": followability(run.model),
     }
     if as_json:
         print(json.dumps(found))

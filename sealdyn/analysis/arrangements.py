@@ -90,11 +90,11 @@ class Arrangement:
 
     def __init__(self, scene: Scene, name: str):
         self.name, self.scene = name, with_single_flexible_ring(scene, name.upper())
-        self.problem = Model(self.scene, 1.0)
+        self.model = Model(self.scene)
         self.stator_speed = scene.stator.speed
 
     def linear(self, speed: float) -> modes.LinearScene:
-        return self.problem.linear_scene(speed=float(speed))
+        return self.model.linear_scene(speed=float(speed))
 
     def relative_tilts(self, speed: float) -> tuple[complex, complex]:
         """Static and dynamic relative tilt (stator minus rotor) per unit forcing, in its frame, by harmonic balance."""
@@ -161,7 +161,7 @@ class Arrangement:
 
 def seals_of(scenario) -> dict[str, Arrangement]:
     """Both arrangements of the scenario's seal, nothing imposed, clearance kept."""
-    clearance = Model(frozen_at_start(scenario.scene), 1.0).clearance
+    clearance = Model(frozen_at_start(scenario.scene)).clearance
     scene = frozen_at_start(scenario.scene, clearance=clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[]))
     quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))

@@ -7,11 +7,13 @@ import numpy as np
 
 from ..dynamics.interface import Interface
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..numerics import time_series
 from ..numerics.lyapunov import two_trajectories
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scenario.reader import parse_scenario
 from ..scene.scene import Closing
+from ..solvers.contract import Cause, Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 from .poincare_map import SAMPLES, PeriodMap
@@ -53,7 +55,11 @@ def frozen_at_end(scene):
 
 
 class FilmCollapsed(RuntimeError):
-    """The film did not survive the way to a point."""
+    """The film did not survive the way to a point: the sentence, and the cause where it is known."""
+
+    def __init__(self, message: str, cause: Cause | None = None):
+        super().__init__(message)
+        self.cause = cause
 
 
 def ramp_to(scene, key, last, x, point):
@@ -71,12 +77,12 @@ def ramp_to(scene, key, last, x, point):
         span *= 2 * scene.shaft.speed / (scene.shaft.speed + last)
     for k, start in starts.items():
         moving = with_part(moving, k, PiecewiseLinear((0.0, span), (start, part(scene, k))))
-    problem = Model(moving, span, point["accuracy"])
+    run = RunState(Model(moving, point["accuracy"]), span)
     if x is not None:
-        problem.y0[: stroboscope.size] = x
-    outcome = solve(problem, stroboscope.method, point["accuracy"], Recorder(problem))
-    if outcome.status != "ok":
-        raise FilmCollapsed(outcome.message)
+        run.y0[: stroboscope.size] = x
+    outcome = solve(run, stroboscope.method, point["accuracy"], Recorder())
+    if outcome.status != Status.OK:
+        raise FilmCollapsed(outcome.message, outcome.cause)
     return outcome.y[: stroboscope.size]
 
 
@@ -112,8 +118,8 @@ def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
         x = turns.last
         if turns.status != "ok":
             raise FilmCollapsed(turns.message)
-    problem = stroboscope.problem
-    scale = problem.clearance / problem.face[1]
+    model = stroboscope.model
+    scale = model.clearance / model.face[1]
     exponent = neighbours(scene, x, point["exponent_turns"], point["accuracy"])
     size = max(scale, float(np.ptp(turns.section.real)), float(np.ptp(turns.section.imag)))
     period = time_series.period_of(turns.section[len(turns.section) // 2 :], size)
@@ -127,7 +133,7 @@ def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
         "distinct": points,
         "contacts": turns.contacts / point["keep"],
         "contact_share": float(turns.touching.mean()),
-        "contact_force": float(turns.contact_force.mean() / problem.closing_force()),
+        "contact_force": float(turns.contact_force.mean() / model.closing_force()),
         "impulse": turns.impulse,
         "contact_power": float(turns.contact_power.mean()),
         "exponent": exponent.value,

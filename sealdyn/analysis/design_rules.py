@@ -7,14 +7,14 @@ import math
 
 import numpy as np
 
-from ..dynamics.segments import constant_and_slope
+from ..dynamics.intervals import constant_and_slope
 from ..scene.rings import RING_NAMES
 
 # Looks at one turn of the runout, and turns looked at when an order is no integer.
 POINTS, TURNS = 2000, 20
 
 
-def followability(problem) -> list[dict]:
+def followability(model) -> list[dict]:
     """Whether the spring keeps a flexible ring on a partner that runs out axially (hang-up).
 
     The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its
@@ -24,14 +24,14 @@ def followability(problem) -> list[dict]:
     Returns one dict for the ring that floats, or none: `ring`, `available` (spring, N), `needed` (N), `friction`,
     `inertia` (N), `holds`, `said`.
     """
-    scene = problem.scene
-    floating = [k for k, floats in problem.floats.items() if floats]
+    scene = model.scene
+    floating = [k for k, floats in model.unknowns.floats.items() if floats]
     if len(floating) != 1 or not scene.rotor.axial_runout or scene.closing.spring_force is None:
         return []
     k = floating[0]
     ring = (scene.stator, scene.rotor)[k]
-    spring = constant_and_slope(scene.closing.spring_force, problem.legs[0])[0]
-    speed = constant_and_slope(scene.shaft.speed, problem.legs[0])[0]
+    spring = constant_and_slope(scene.closing.spring_force, model.start)[0]
+    speed = constant_and_slope(scene.shaft.speed, model.start)[0]
     friction = ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0
     whole = all(float(r.order).is_integer() for r in scene.rotor.axial_runout)
     phi = np.linspace(0, 2 * math.pi * (1 if whole else TURNS), POINTS * (1 if whole else TURNS))

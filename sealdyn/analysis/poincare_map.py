@@ -12,9 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..scene.scene import SceneError
-from ..solvers.contract import Counts, SolverFailure, tolerance_for
+from ..simulation.method_selection import choose_method
+from ..solvers.contract import Counts, SolverFailure, Status, tolerance_for
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
 from ..solvers.recorder import Recorder
@@ -58,27 +60,26 @@ class PeriodMap:
 
     def __init__(self, scene, accuracy: float = 1e-6, method: str | None = None):
         self.scene, self.accuracy = scene, accuracy
-        probe = Model(scene, 1.0, accuracy)
-        period = probe.period()
-        if period is None or not probe.constant:
+        model = Model(scene, accuracy)
+        period = RunState(model, 1.0).period()
+        if period is None or not model.unknowns.constant:
             raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
         self.period = float(period)
-        self.problem = Model(scene, self.period, accuracy)
-        self.method = method or self.problem.solver()[0]
-        self.size = self.problem.n if self.problem.massless else self.problem.n_mechanical
-        self.scales = self.problem.scales[: self.size]
+        self.model, self.one_period = model, RunState(model, self.period)
+        self.method = method or choose_method(self.one_period)[0]
+        self.size = model.unknowns.n if model.unknowns.massless else model.unknowns.n_mechanical
+        self.scales = model.scales[: self.size]
         self.turns_per_period = self.period * abs(scene.shaft.speed) / (2 * math.pi)
 
     def step(self, x) -> np.ndarray:
         """The unknowns (n,) one period later."""
-        problem = self.problem
-        if problem.sticking:
+        run = self.one_period
+        if run.stick_slip:
             raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "smooth" for exponents')
-        leg = problem.begin(0)
-        y = np.zeros(problem.size)
+        y = np.zeros(run.model.unknowns.size)
         y[: self.size] = x
-        tolerance = tolerance_for(self.method, self.accuracy, problem.memory)
-        for _, block, _ in METHODS[self.method](problem, leg, 0.0, y, self.method, tolerance, Counts()):
+        tolerance = tolerance_for(self.method, self.accuracy, run.memory)
+        for _, block, _ in METHODS[self.method](run.segment(0), 0.0, y, self.method, tolerance, Counts()):
             last = block[-1]
         return last[: self.size].copy()
 
@@ -89,40 +90,39 @@ class PeriodMap:
             count = min(PIECE, periods - done)
             parts.append(self._piece(x, count))
             x, done = parts[-1].last, done + count
-            if parts[-1].status != "ok":
+            if parts[-1].status != Status.OK:
                 break
         return joined(parts)
 
     def _piece(self, x, periods: int) -> PeriodSamples:
-        problem = Model(self.scene, periods * self.period, self.accuracy)
-        problem.y0[: self.size] = x
-        sink, begun = Recorder(problem, self.period / SAMPLES), clock.perf_counter()
-        outcome = solve(problem, self.method, self.accuracy, sink)
+        run = RunState(self.model, periods * self.period)
+        run.y0[: self.size] = x
+        sink, begun = Recorder(self.period / SAMPLES), clock.perf_counter()
+        outcome = solve(run, self.method, self.accuracy, sink)
         t, q, rate = sink.arrays()
         whole = min(periods, int(t[-1] / self.period * (1 + 1e-9))) * SAMPLES
         touched = []
-        problem.tell_contacts(touched.extend, end=(outcome.tau, outcome.y))
-        end = problem.legs[outcome.leg].time + outcome.tau
+        run.contacts.tell(touched.extend, end=(outcome.tau, outcome.y))
+        end = run.end_time(outcome.segment, outcome.tau)
         share = touching(touched, self.period * np.arange(whole // SAMPLES + 1), end)
-        impulse = float(outcome.y[problem.layout.impulse]) if problem.layout.extended else 0.0
+        impulse = float(outcome.y[run.model.unknowns.impulse]) if run.model.unknowns.extended else 0.0
         spent = clock.perf_counter() - begun
         return PeriodSamples(
-            **self.looked_at(t[:whole], q[:whole], rate[:whole], problem), touching=share,
+            **self.looked_at(t[:whole], q[:whole], rate[:whole], run), touching=share,
             contacts=sum(e["kind"] == "contact" for e in touched), impulse=impulse / periods,
             last=outcome.y[: self.size].copy(), status=outcome.status, message=outcome.message,
             evaluations=outcome.counts.rhs / periods, wall_time=spent / periods,
         )  # fmt: skip
 
-    def looked_at(self, t, q, rate, problem=None) -> dict:
+    def looked_at(self, t, q, rate, run=None) -> dict:
         """What is kept of a motion sampled SAMPLES times a period: displacements and rates (m, n)."""
-        problem = problem or self.problem
-        starts = np.array([leg.time for leg in problem.legs])
+        run = run or self.one_period
+        starts = np.array([leg.time for leg in run.intervals])
         legs = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
         parts = []
         for k in np.unique(legs):
-            problem.begin(int(k))
             inside = legs == k
-            parts.append(signals(problem, t[inside] - starts[k], q[inside], rate[inside]))
+            parts.append(signals(run.segment(int(k)), t[inside] - starts[k], q[inside], rate[inside]))
         names = parts[0] if parts else ()
         seen = {name: np.concatenate([p[name] for p in parts]).reshape(-1, SAMPLES) for name in names}
         if not seen:
@@ -130,7 +130,7 @@ class PeriodMap:
                 ("tilt", "ring", "h_min", "contact_force", "friction_power", "contact_power"), np.empty((0, SAMPLES))
             )
         tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
-        ring = "stator" if problem.floats[0] else "rotor"
+        ring = "stator" if run.model.unknowns.floats[0] else "rotor"
         torque = seen.get("contact_torque", np.zeros(tilt.shape))
         spin = self.scene.shaft.speed - self.scene.stator.speed
         return {
@@ -144,30 +144,30 @@ class PeriodMap:
         SAMPLES times, in `samples` as (displacements, rates)."""
         from scipy.integrate import DOP853
 
-        problem, n, k = self.problem, self.size, q.shape[1]
-        if problem.massless or problem.sticking:
+        run, n, k = self.one_period, self.size, q.shape[1]
+        if run.model.unknowns.massless or run.stick_slip:
             raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
-        problem.begin(0)
-        y, yp, scales = np.zeros(problem.size), np.zeros(problem.size), self.scales
+        segment = run.segment(0)
+        y, yp, scales = np.zeros(segment.size), np.zeros(segment.size), self.scales
 
         def rate(tau, z):
             out = np.empty_like(z)
             y[:n] = z[:n]
-            problem.rhs(tau, y, yp)
+            segment.rhs(tau, y, yp)
             out[:n] = yp[:n]
             vectors, moved = z[n:].reshape(k, n), out[n:].reshape(k, n)
             for v, dv in zip(vectors, moved, strict=True):
                 # A tangent grows as it goes: the step keeps its length.
                 size = ACROSS / max(float(np.linalg.norm(v)), 1e-30)
                 y[:n] = z[:n] + size * scales * v
-                problem.rhs(tau, y, yp)
+                segment.rhs(tau, y, yp)
                 dv[:] = yp[:n]
                 y[:n] = z[:n] - size * scales * v
-                problem.rhs(tau, y, yp)
+                segment.rhs(tau, y, yp)
                 dv[:] = (dv - yp[:n]) / (2 * size * scales)
             return out
 
-        tolerance = tolerance_for("dop853", self.accuracy, problem.memory)
+        tolerance = tolerance_for("dop853", self.accuracy, run.memory)
         relative = np.concatenate([np.full(n, max(tolerance, 2.3e-14)), np.full(k * n, TANGENT)])
         absolute = np.concatenate([tolerance * scales, np.full(k * n, TANGENT)])
         solver = DOP853(rate, 0.0, np.concatenate([x, q.T.ravel()]), self.period, rtol=relative, atol=absolute)
@@ -179,7 +179,7 @@ class PeriodMap:
             last = int(np.searchsorted(due, solver.t, side="left"))
             if samples is not None and last > done:
                 seen = solver.dense_output()(due[done:last])[:n].T
-                samples.append((seen[:, : problem.n], seen[:, problem.rate_places]))
+                samples.append((seen[:, : segment.n], seen[:, segment.rate_places]))
                 done = last
         return solver.y[:n].copy(), solver.y[n:].reshape(k, n).T.copy()
 

@@ -6,14 +6,15 @@ the unit circle.  The derivative comes from fourth-order central differences of 
 **Valid** constant conditions and commensurate forcing; a scene without forcing has its rest state as orbit.
 """
 
-from dataclasses import dataclass, replace
-from fractions import Fraction
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..dynamics.extrema import H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.model import Model
-from ..solvers.contract import Counts, SolverFailure
+from ..dynamics.run_state import RunState
+from ..simulation.method_selection import choose_method
+from ..solvers.contract import Counts, SolverFailure, Status
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
 from ..solvers.recorder import Recorder
@@ -56,33 +57,33 @@ class Shooter:
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
         self.scene, self.accuracy, self.tight = scene, accuracy, tight
-        probe = Model(scene, 1.0, accuracy)
+        probe = RunState(Model(scene, accuracy))
         period = probe.period()
-        if period is None or not probe.constant:
+        if period is None or not probe.model.unknowns.constant:
             raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
-        if probe.sticking:
+        if probe.stick_slip:
             raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
         self.period = float(turns * period)
-        self.problem = Model(scene, self.period, accuracy)
+        self.model = probe.model
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
-        method, _ = self.problem.solver()
+        method, _ = choose_method(RunState(self.model, self.period))
         self.method = {"adams": "dop853", "bdf": "radau"}.get(method, method)
-        n = self.problem.n if self.problem.massless else self.problem.n_mechanical
-        self.size, self.scales = n, self.problem.scales[:n]
+        unknowns = self.model.unknowns
+        n = unknowns.n if unknowns.massless else unknowns.n_mechanical
+        self.size, self.scales = n, self.model.scales[:n]
         self.flows = 0
 
     def flow(self, start: np.ndarray) -> np.ndarray:
         """The unknowns one period later."""
-        problem = self.problem
-        leg = replace(problem.begin(0), span=Fraction(self.period))
-        y = np.zeros(problem.size)
+        segment = RunState(self.model, self.period).segment(0).until(self.period)
+        y = np.zeros(segment.size)
         y[: self.size] = start
         self.flows += 1
         tolerance = self.tight if self.method != "ida" else max(self.tight, 1e-11)
         counts = Counts()
-        for _, block, _ in METHODS[self.method](problem, leg, 0.0, y, self.method, tolerance, counts):
+        for _, block, _ in METHODS[self.method](segment, 0.0, y, self.method, tolerance, counts):
             last = block[-1]
-            if counts.rhs > CRAWLING * max(1.0, self.period / problem.fast_time):
+            if counts.rhs > CRAWLING * max(1.0, self.period / segment.shortest_period):
                 raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
         return last[: self.size].copy()
 
@@ -100,8 +101,7 @@ class Shooter:
 
     def guess(self) -> np.ndarray:
         """The linear steady state at the start of the period."""
-        self.problem.begin(0)
-        return self.problem.steady_start()[: self.size]
+        return RunState(self.model, self.period).steady_start()[: self.size]
 
     def find(self, guess=None, monodromy=None, target: float = 1e-11, most: int = 12) -> Orbit:
         """Newton from `guess` (default: the linear steady state).  A `monodromy` handed in is used unchanged as
@@ -143,22 +143,22 @@ class Shooter:
 
     def extremes(self, start: np.ndarray, per_period: int | None = None) -> dict:
         """Located extremes over one period: h_min with place and time, relative misalignment."""
-        problem = Model(self.scene, self.period, self.accuracy)
-        problem.y0[: self.size] = start
-        recorder = Recorder(problem, self.period / per_period if per_period else None)
-        method = "ida" if problem.massless else problem.solver()[0]
-        outcome = solve(problem, method, self.accuracy, recorder)
-        record = problem.records[0]
+        run = RunState(self.model, self.period)
+        run.y0[: self.size] = start
+        recorder = Recorder(self.period / per_period if per_period else None)
+        method = "ida" if run.model.unknowns.massless else choose_method(run)[0]
+        outcome = solve(run, method, self.accuracy, recorder)
+        record = run.extrema.records[0]
         found = {
             "h_min": {
                 "value": float(record[H]),
                 "time": float(record[H_TAU]),
                 "theta": float(record[H_THETA]),
                 "radius": float(record[H_RADIUS]),
-                "of_clearance": float(record[H] / problem.clearance),
+                "of_clearance": float(record[H] / run.model.clearance),
             },
             "relative_misalignment": {"max": float(record[MOST]), "min": float(record[LEAST])},
-            "collapsed": outcome.status == "collapsed",
+            "collapsed": outcome.status == Status.COLLAPSED,
         }
         if per_period:
             found["times"], found["displacements"], found["rates"] = recorder.arrays()

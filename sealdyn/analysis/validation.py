@@ -12,6 +12,7 @@ import numpy as np
 from .. import closed_form as cf
 from ..dynamics import modes
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..scene.excitation import Shaft
 from ..scene.film import Film
 from ..scene.rings import Rotor, Stator, Support
@@ -76,12 +77,12 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
     pairs = ((unit, 0.0), (0.0, unit), (unit, unit))
     algebra, time_domain = [], []
     for fixed, turning in pairs:
-        problem = _ready(reference_scene(arrangement, c, fixed, turning), turns=80)
-        linear = problem.linear_scene()
-        answers = [(h, linear.response(h)) for h in problem.harmonics()]
-        algebra.append(modes.steady_extremes(linear, answers, problem.period())[0] / unit)
-        solve(problem, "adams", ACCURACY, Recorder(problem))
-        time_domain.append(problem.records[1, 4] / unit)
+        run = _ready(reference_scene(arrangement, c, fixed, turning), turns=80)
+        linear = run.model.linear_scene()
+        answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
+        algebra.append(modes.steady_extremes(linear, answers, run.period())[0] / unit)
+        solve(run, "adams", ACCURACY, Recorder())
+        time_domain.append(run.extrema.records[1, 4] / unit)
     roads[0].append(sum(roads[0]))
     rows = [roads[0], algebra, time_domain]
     radius_ratio = seal["inner_radius"] / seal["outer_radius"]
@@ -96,13 +97,13 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
     return {name: tuple(row[i] for row in rows) for i, name in enumerate(names)}
 
 
-def _ready(scene, turns: float) -> Model:
+def _ready(scene, turns: float) -> RunState:
     duration = 2 * math.pi * turns / scene.shaft.speed
-    problem = Model(scene, duration, ACCURACY)
-    period = problem.period()
+    run = RunState(Model(scene, ACCURACY), duration)
+    period = run.period()
     if period:
-        problem.windows[1:] = [[duration - period, duration], [duration - 2 * period, duration - period]]
-    return problem
+        run.extrema.windows[1:] = [[duration - period, duration], [duration - 2 * period, duration - period]]
+    return run
 
 
 def growth_rate(scene, turns: float = 200.0, method: str = "adams", accuracy: float = ACCURACY) -> float:
@@ -110,13 +111,13 @@ def growth_rate(scene, turns: float = 200.0, method: str = "adams", accuracy: fl
     of a run, when all but the least damped mode has died out."""
     small = 1e-2 * scene.film.clearance / scene.film.outer_radius
     start = Initial(rotor=RingStart(tilt_x=small), stator=RingStart(tilt_x=small))
-    problem = _ready(replace(scene, initial=start), turns)
-    at = next(i for i, name in enumerate(problem.names) if name.endswith("tilt_x"))
-    problem.y0[at] = small
-    recorder = Recorder(problem, interval=problem.duration / (16 * turns))
-    solve(problem, method, accuracy, recorder)
+    run = _ready(replace(scene, initial=start), turns)
+    at = next(i for i, name in enumerate(run.model.unknowns.names) if name.endswith("tilt_x"))
+    run.y0[at] = small
+    recorder = Recorder(interval=run.duration / (16 * turns))
+    solve(run, method, accuracy, recorder)
     t, q, _ = recorder.arrays()
-    late = t > 0.25 * problem.duration
+    late = t > 0.25 * run.duration
     return float(np.polyfit(t[late], np.log(np.hypot(q[late, at], q[late, at + 1])), 1)[0])
 
 
@@ -128,8 +129,8 @@ def _critical_speeds(arrangement: str, c: float):
     numbers = cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
     numbers.pop("speed")
     formula = (cf.fmr_critical_speed if arrangement == "FMR" else cf.fms_critical_speed)(**numbers)
-    problem = _ready(reference_scene(arrangement, c), 1)
-    eigen = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 100.0, 1e6)
+    run = _ready(reference_scene(arrangement, c), 1)
+    eigen = modes.critical_speed(lambda w: run.model.linear_scene(speed=w), 100.0, 1e6)
     if eigen is None:
         # No threshold to bisect for: far above any speed of use the disturbance must still die out.
         still = all(growth_rate(reference_scene(arrangement, c, speed=w), 40) < 0 for w in (1e4, 3e4))

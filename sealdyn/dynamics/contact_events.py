@@ -63,7 +63,7 @@ def contact_event(row, level: float) -> dict:
             "radius": float(row[DEPTH_RADIUS]), "impulse": float(row[IMPULSE]), "depth": float(depth)}  # fmt: skip
 
 
-def no_contact() -> np.ndarray:
+def _no_contact() -> np.ndarray:
     """No contact yet."""
     return np.zeros(STATE)
 
@@ -172,3 +172,51 @@ def locate_contacts(
                     found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
         state[SINKING] = height[points - 1] <= height[points - 2]
     return found
+
+
+class ContactEvents:
+    """An observer of contacts: `summary` of those so far (ContactSummary), those not yet told, and one that goes on.
+    It follows the tracker of extremes, whose bound on each step's film tells where nothing can touch."""
+
+    def __init__(self, model, extrema):
+        self.model, self.extrema, self.summary = model, extrema, ContactSummary()
+        self.open, self.waiting, self.segment = _no_contact(), [], None
+
+    def begin(self, segment, tau, y):
+        self.segment = segment
+
+    def accept(self, block):
+        """Locate the contacts in a block of steps."""
+        if self.model.contact is None:
+            return
+        segment, (q, q_rate) = self.segment, block.motion
+        rows = np.empty((64 * (block.end - block.begin) + 64, ROW))
+        found = locate_contacts(
+            block.t, q, q_rate, segment.impulses(block.ys), len(block.t), block.begin, block.end, self.extrema.reach,
+            segment.p, self.model.f, np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, segment.time,
+            segment.pace, self.model.gap_error(), self.open, rows,
+        )  # fmt: skip
+        self.waiting.extend(rows[:found])
+
+    def tell(self, log, end: tuple | None = None):
+        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time,
+        unknowns) of a run also one that goes on, without a lift-off."""
+        rows, self.waiting = self.waiting, []
+        if end and self.open[OPEN]:
+            row = self.open[:ROW].copy()
+            row[KIND], row[LIFTED] = 1.0, np.nan
+            row[IMPULSE] = end[1][self.model.unknowns.impulse] - row[IMPULSE]
+            self.summary.longest = max(self.summary.longest, float(end[0] - row[TOUCHED]))
+            rows.append(row)
+        if rows:
+            self.summary.add(rows)
+            log([contact_event(row, self.model.face[TOUCH]) for row in rows])
+
+    def state(self) -> dict:
+        """What a continued run needs."""
+        return {"touching": self.open, "contacts": vars(self.summary)}
+
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.open[:] = state["touching"]
+        self.summary = ContactSummary(**state["contacts"])

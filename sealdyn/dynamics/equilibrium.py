@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
-from .segments import Segment, constant_and_slope
+from .intervals import Interval, constant_and_slope
 
 POINTS = 600
 WIDEST = 1e3  # the search runs from the reference clearance over and under this factor
@@ -39,7 +39,7 @@ class ClosingForce:
         high, low = (outer, inner) if self.outer_is_high else (inner, outer)
         return self.area * (self.balance_ratio * high + (1 - self.balance_ratio) * low) + spring
 
-    def over(self, leg: Segment, film) -> tuple[float, float]:
+    def over(self, leg: Interval, film) -> tuple[float, float]:
         """Closing force (N) and its slope (N/s) over a leg."""
         inner, outer = (
             constant_and_slope(film.inner_pressure, leg),

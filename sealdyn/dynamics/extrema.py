@@ -10,9 +10,10 @@ import math
 import numpy as np
 from numba import njit
 
-from ..faces.geometry import COLLAPSE, DZ, GX, GY
+from ..faces.geometry import COLLAPSE, DZ, GX, GY, INNER_RADIUS, OUTER_RADIUS
 from ..faces.geometry import h_min as smallest
 from ..numerics.hermite import NODES, fit, value
+from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 
 # One record per window: value, leg time, angle, radius of h_min; value and time of the largest and of the
@@ -129,9 +130,7 @@ def store(record, kind, out, at, theta, radius, leg):
 
 
 @njit(cache=True)
-def track_extrema(
-    t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach
-):
+def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach):
     """Update the records over steps [begin, end]; returns the leg time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
@@ -193,3 +192,59 @@ def track_extrema(
                     if out[kind] < held:
                         store(record, kind, out, at, theta, radius, leg)
     return -1.0
+
+
+class ExtremaTracker:
+    """An observer of the gap: `records` (WINDOWS, RECORD) of extremes in the `windows` [[from, to], ...] (s): the whole
+    run, its last forcing period and the one before.  `reach` (m,) bounds the film of each step last seen from below
+    (m).
+
+    A film that reaches its floor ends the run.
+    """
+
+    def __init__(self, model, duration: float):
+        self.model, self.records = model, empty_records()
+        self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
+        self.segment = self.reach = None
+
+    def begin(self, segment, tau, y):
+        self.segment = segment
+
+    def accept(self, block):
+        """Update the records over a block of steps; a Stop where the film collapses."""
+        segment, model = self.segment, self.model
+        windows = np.array(self.windows) - segment.time
+        tolerance = 0.02 * model.accuracy * np.array([model.clearance, model.clearance / model.face[OUTER_RADIUS]])
+        q, q_rate = block.motion
+        self.reach = np.empty(len(block.t))
+        fallen = _track(
+            block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, model.f, np.zeros(segment.size),
+            np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records, tolerance, segment.pace,
+            self.reach,
+        )  # fmt: skip
+        return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
+
+    def state(self) -> list:
+        """What a continued run needs."""
+        return self.records.ravel()
+
+    def restore(self, state):
+        """Go on from `state`."""
+        self.records[:] = np.array(state, dtype=float).reshape(self.records.shape)
+
+    def _cause(self) -> Cause:
+        return Cause.FILM_COLLAPSED if self.model.contact is None else Cause.ASPERITIES_CRUSHED
+
+    def _collapse_message(self, tau: float) -> str:
+        """When, where, and what to try."""
+        record, face = self.records[0], self.model.face
+        limit = "floor" if self.model.contact is None else "all flat at"
+        at = "at the {} radius".format("inner" if record[H_RADIUS] == face[INNER_RADIUS] else "outer")
+        if record[H_RADIUS] not in face[[INNER_RADIUS, OUTER_RADIUS]]:
+            at = "at the radius"
+        return (
+            f"{self._cause()} at t = {self.segment.time + tau:.6g} s: thickness {record[H] * 1e6:.3g} um "
+            f"({limit} {face[COLLAPSE] * 1e6:.3g} um) {at} {record[H_RADIUS] * 1e3:.4g} mm, "
+            f"theta = {math.degrees(record[H_THETA]):.1f} deg.  Try less misalignment or runout, "
+            'more coning or clearance, a stiffer or more damped support, run.start = "steady".'
+        )

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from ..scene.rings import ROTOR, STATOR
-from .segments import Segment, constant_and_slope, modulo_turn
+from .intervals import Interval, constant_and_slope, modulo_turn
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
 OSCILLATOR_COUNT = 12
@@ -29,7 +29,7 @@ Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
 PER_RING = 13
 
 
-def harmonics_of_segment(shaft, housing, rotor, stator, leg: Segment) -> np.ndarray:
+def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.ndarray:
     """All harmonic motions imposed during a leg, shape (n, ROW).
 
     A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or

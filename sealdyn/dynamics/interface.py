@@ -30,13 +30,13 @@ from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, profile_errors
 from ..scene.scene import SceneError
 from .equilibrium import initially, settle
+from .intervals import constant_and_slope
 from .modes import linearise
-from .segments import constant_and_slope
 
 
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
-    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `said`.  `observed`: kernel and block from which
+    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `observed`: kernel and block from which
     leakage, friction and film force are reported."""
 
     def __init__(self, scene, error: float):
@@ -45,7 +45,7 @@ class Interface:
             raise SceneError(f"film.{key}", found, expected)
         self.film = film_module(scene.film.model, scene.film.profile)
         self.name = self.film.__name__.rsplit(".", 1)[1]
-        self.clearance, self.closing, self.equilibria, self.said = settle(scene, self.opening_force)
+        self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.

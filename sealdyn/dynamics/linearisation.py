@@ -10,63 +10,59 @@ from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PR
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import linearised_film
+from .intervals import constant_and_slope
 from .modes import Harmonic, LinearScene, RingNumbers
-from .segments import constant_and_slope
 
 
-def axial_shift(problem, leg_index: int) -> float:
-    """How far (m) the loads at a leg's start move the aligned gap from its design clearance: opening force = closing
-    force + support springs.  0, and a warning, if none is found from 0.1 % to 50 times the clearance."""
-    leg, film, s = problem.legs[leg_index], problem.scene.film, np.zeros(GAP_STATE_SIZE)
+def axial_shift(model, interval) -> tuple[float, bool]:
+    """How far (m) the loads at an interval's start move the aligned gap from its design clearance: opening force =
+    closing force + support springs.  (0, False) if none is found from 0.1 % to 50 times the clearance."""
+    film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
     s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
-        constant_and_slope(q, leg)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
+        constant_and_slope(q, interval)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
     )
-    closing = problem.closing.over(leg, film)[0]
-    springs = [r.support.axial_stiffness for r in (problem.scene.stator, problem.scene.rotor) if r.support]
+    closing = model.closing.over(interval, film)[0]
+    springs = [r.support.axial_stiffness for r in (model.scene.stator, model.scene.rotor) if r.support]
     compliance = sum(1 / k if k > 0 else math.inf for k in springs)
 
     def excess(shift):
         s[DZ] = shift
-        problem.faces.wrench(problem.f, s)
+        model.interface.wrench(model.f, s)
         return s[FORCE] - closing - shift / compliance
 
     if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
-        return 0.0
-    grid = problem.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
+        return 0.0, True
+    grid = model.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
     values = [excess(x) for x in grid]
     # The stable root nearest to the design clearance: the excess falls through zero.
     roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
     if not roots:
-        said = f"no equilibrium gap found for the loads from t = {leg.time:.4g} s: linear numbers are at the clearance"
-        if said not in problem.warnings:
-            problem.warnings.append(said)
-        return 0.0
+        return 0.0, False
     k = min(roots, key=lambda k: abs(grid[k]))
-    return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18))
+    return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18)), True
 
 
-def linear_scene(problem, leg_index: int = 0, speed: float | None = None, shift: float | None = None) -> LinearScene:
-    """The linearised scene at a leg's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
-    leg = problem.legs[leg_index]
-    w_r = constant_and_slope(problem.scene.shaft.speed, leg)[0] if speed is None else speed
-    w_s = constant_and_slope(problem.scene.stator.speed, leg)[0]
+def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
+    """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
+    w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
+    w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     stiffness, damping = linearised_film(
-        problem.faces.wrench,
-        problem.f,
-        problem.scene,
-        problem.clearance,
-        leg,
+        model.interface.wrench,
+        model.f,
+        model.scene,
+        model.clearance,
+        interval,
         mean_spin=0.5 * (w_r + w_s),
-        shift=problem.axial_shift(leg_index) if shift is None else shift,
+        shift=model.axial_shift(interval) if shift is None else shift,
     )
     rings = []
-    for k, ring in enumerate((problem.scene.stator, problem.scene.rotor)):
+    for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
         support = ring.support
         tilt_k, tilt_d = support.tilt() if support else (0.0, 0.0)
         rings.append(
             RingNumbers(
                 sign=1.0 if k == STATOR else -1.0,
-                floats=problem.floats[k],
+                floats=model.unknowns.floats[k],
                 mass=ring.mass,
                 inertia=ring.transverse_inertia,
                 polar=ring.polar_inertia,
@@ -80,10 +76,10 @@ def linear_scene(problem, leg_index: int = 0, speed: float | None = None, shift:
     return LinearScene(rings, stiffness, damping)
 
 
-def harmonics(problem) -> list[Harmonic]:
-    """The imposed oscillators of the present leg as harmonics in leg time (constant amplitude and speed)."""
+def harmonics(segment) -> list[Harmonic]:
+    """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed)."""
     found = []
-    for ring, kind, amplitude, _, cos, sin, a0, a1, _ in problem.rows.reshape(-1, ROW):
+    for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)
         shape = np.zeros(3, dtype=complex)
         if kind == AXIAL:
@@ -97,11 +93,11 @@ def harmonics(problem) -> list[Harmonic]:
     return found
 
 
-def steady_motion(problem):
-    """Linear steady state: a function of leg time giving (displacements, rates) of all floating rings' three
+def steady_motion(segment):
+    """Linear steady state: a function of segment time giving (displacements, rates) of all floating rings' three
     unknowns each, and the list of (harmonic, complex answer)."""
-    linear = problem.linear_scene(problem.leg_index)
-    answers = [(h, linear.response(h)) for h in problem.harmonics()]
+    linear = segment.model.linear_scene(segment.interval)
+    answers = [(h, linear.response(h)) for h in harmonics(segment)]
 
     def at(tau):
         q, rate = np.zeros(len(linear.mass)), np.zeros(len(linear.mass))
@@ -123,9 +119,9 @@ class ExactMotion:
     # Condition of the eigenvectors beyond which rounding shows.
     WORST = 1e6
 
-    def __init__(self, problem):
-        _, answers, linear = problem.steady_motion()
-        kept, places = problem.kept(), [*range(problem.n), *problem.rate_places]
+    def __init__(self, segment):
+        _, answers, linear = steady_motion(segment)
+        kept, places = segment.model.unknowns.among_three(), [*range(segment.n), *segment.rate_places]
         rows = np.array([*kept, *[len(linear.mass) + i for i in kept]])[np.argsort(places)]
         self.matrix = linear.state_matrix()[np.ix_(rows, rows)]
         self.frequencies = np.array([h.frequency for h, _ in answers])
@@ -136,7 +132,7 @@ class ExactMotion:
         self.vectors, self.inverse = vectors, np.linalg.inv(vectors) if self.sound else None
 
     def forced(self, taus) -> np.ndarray:
-        """Steady motion (m, n) at leg times."""
+        """Steady motion (m, n) at segment times."""
         return (np.exp(1j * np.outer(taus, self.frequencies)) @ self.answers).real
 
     def free(self, start, ages) -> np.ndarray:

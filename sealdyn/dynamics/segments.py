@@ -1,122 +1,192 @@
-"""Time cut into legs, on each of which every imposed quantity is linear in time.
+"""The equations over one stretch of time on which everything imposed is linear."""
 
-A leg starts at a break point (a kink or step of a table) or after `LONGEST` turns.  Within a leg the
-clock `tau` starts at zero, a table is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with
-`a0` reduced modulo one turn in exact arithmetic: a phase after a million turns is as exact as the first.
-"""
-
+import copy
 import math
-from dataclasses import dataclass
-from decimal import Decimal, getcontext
-from fractions import Fraction
-from itertools import pairwise
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+import numpy as np
 
-LONGEST = 2000  # turns; then the clock is set anew
+from ..faces import contact
+from ..faces.geometry import GAP_STATE_SIZE
+from . import equations, linearisation
+from .imposed_motion import harmonics_of_segment
+from .intervals import Interval, constant_and_slope
+from .modes import common_period
 
-# 2 pi to 60 digits (mathematical constant).
-TURN = Decimal("6.28318530717958647692528676655900576839433879875021164194988918")
-getcontext().prec = max(getcontext().prec, 60)
+# Steps per shortest period while a ring sticks: its load is looked at twice in each.
+PER_PERIOD = 32
 
 
-@dataclass(frozen=True)
 class Segment:
-    """One stretch of time: exact start and span (s), and the exact angle turned before it, of the shaft and of the
-    stator's carrier (rad)."""
+    """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
-    start: Fraction
-    span: Fraction
-    rotor_angle: Fraction
-    stator_angle: Fraction
+    `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
+    all), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace` (rad/s) the fastest of them;
+    `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
+    """
 
-    @property
-    def length(self) -> float:
-        """Length of the leg (s)."""
-        return float(self.span)
+    def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
+        unknowns = model.unknowns
+        self.model, self.interval, self.index, self.last = model, interval, index, last
+        self.time, self.length, self.stuck = interval.time, interval.length, dict(stuck or {})
+        self.n, self.n_mechanical, self.size = unknowns.n, unknowns.n_mechanical, unknowns.size
+        self.rate_places, self.works, self.scales = unknowns.rate_places, unknowns.works, model.scales
+        self.massless, self.algebraic = unknowns.massless, model.algebraic
+        self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
+        self.may_change = bool(unknowns.coulomb_rings)
+        self.p, self.rows = self._parameters()
+        self.pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
+        self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
+        self._bind()
 
-    @property
-    def time(self) -> float:
-        """Start of the leg (s)."""
-        return float(self.start)
+    def _parameters(self):
+        """Parameters: tables as value and slope, phases reduced modulo one turn; and the imposed harmonics."""
+        scene, interval = self.model.scene, self.interval
+        film = scene.film
+        varying = (scene.shaft.speed, scene.stator.speed, film.viscosity, film.inner_pressure, film.outer_pressure)
+        pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
+        rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
+        head = np.array([x for pair in pairs for x in pair] + [len(rows)])
+        p = np.concatenate([self.model.unknowns.ring_block, head, rows.ravel()])
+        for k, held in self.stuck.items():
+            p[equations.RING * k + equations.STUCK] = held
+        return p, rows
 
+    def _bind(self):
+        """Right-hand side and residual as plain functions over this segment's arrays."""
+        p, w, s, f = self.p, self.w, self.s, self.model.f
+        kinematics, rates, balance = equations.kinematics, equations.rates, equations.residual
+        wrench, load, both = self.model.interface.film.wrench, contact.contact_load, equations.touching_rates
+        work, block = np.zeros(self.size), self.model.contact
 
-def constant_and_slope(quantity, leg: Segment) -> tuple[float, float]:
-    """Value and slope over one leg of a number or a `Table` (which has no kink inside the leg)."""
-    if not isinstance(quantity, PiecewiseLinear):
-        return float(quantity), 0.0
-    t0, t1 = leg.time, leg.time + leg.length
-    # Ask just inside, so that a step at either end counts on the right side.
-    inside = t0 + 0.5 * (t1 - t0)
-    middle, early = quantity.at(inside), quantity.at(t0 + 0.25 * (t1 - t0))
-    slope = (middle - early) / (0.25 * (t1 - t0))
-    return middle - slope * (inside - t0), slope
+        def rhs(tau, y, yp):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            rates(tau, y, p, w, s, yp)
 
+        def residual(tau, y, yp, res):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            balance(tau, y, yp, p, w, s, work, res)
 
-def modulo_turn(angle: Fraction) -> float:
-    """An exact angle (rad) modulo one turn, as a float within 1e-16."""
-    exact = Decimal(angle.numerator) / Decimal(angle.denominator)
-    return float(exact % TURN)
+        def touching_rhs(tau, y, yp):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            both(tau, y, p, w, s, yp, block, f)
 
+        def touching_residual(tau, y, yp, res):
+            kinematics(tau, y, yp, p, w, s)
+            wrench(f, s)
+            load(block, f, s)
+            balance(tau, y, yp, p, w, s, work, res)
 
-def angle_turned(speed, leg: Segment) -> Fraction:
-    """Exact integral of the speed (rad/s, number or table) over a leg."""
-    w, slope = constant_and_slope(speed, leg)
-    return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
+        # A scene without contact pays nothing for it.
+        self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
 
+    def until(self, tau: float) -> "Segment":
+        """The same segment, ending at tau (s)."""
+        short = copy.copy(self)
+        short.length = float(tau)
+        return short
 
-def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> list[Segment]:
-    """Legs from 0 to `duration` (s).  `quantities` are all imposed numbers and tables, speeds included."""
-    breaks = {0.0, duration}
-    for quantity in quantities:
-        if isinstance(quantity, PiecewiseLinear):
-            breaks |= {t for t in quantity.time if 0.0 < t < duration}
-    legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
-    points = sorted(breaks)
-    for begin, end in pairwise(points):
-        whole = Segment(Fraction(begin), Fraction(end) - Fraction(begin), rotor_angle, stator_angle)
-        fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
-        pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))
-        for k in range(pieces):
-            leg = Segment(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
-            legs.append(leg)
-            rotor_angle += angle_turned(rotor_speed, leg)
-            stator_angle += angle_turned(stator_speed, leg)
-    return legs
+    # --- what solvers ask ---------------------------------------------------------------------------
 
+    def jacobian(self, tau, y, yp, jac):
+        """d y'/d y (size, size) by forward differences over the mechanical unknowns; works feed nothing back."""
+        base, moved = np.empty(self.size), y.copy()
+        self.rhs(tau, y, base)
+        jac[:, :] = 0.0
+        column = np.empty(self.size)
+        for j in range(self.n_mechanical):
+            step = 1e-7 * max(abs(y[j]), self.scales[j])
+            moved[j] = y[j] + step
+            self.rhs(tau, moved, column)
+            jac[:, j] = (column - base) / step
+            moved[j] = y[j]
 
-def _fastest(speed, leg: Segment) -> float:
-    w, slope = constant_and_slope(speed, leg)
-    return max(abs(w), abs(w + slope * leg.length))
+    def start_rates(self, tau, y) -> np.ndarray:
+        """Consistent derivatives at y: Newton on the residual, whose rows are linear in them but for a floor."""
+        yp, res = np.zeros(self.size), np.empty(self.size)
+        if not self.massless:
+            self.rhs(tau, y, yp)
+            return yp
+        light = [i for i in range(self.n) if self.rate_places[i] < 0 and i not in self.algebraic]
+        scale = self.scales[: self.n] * self.reference_rate
+        for _ in range(4):
+            self.residual(tau, y, yp, res)
+            jac = np.zeros((len(light), len(light)))
+            for b, j in enumerate(light):
+                moved, shifted = yp.copy(), np.empty(self.size)
+                moved[j] += scale[j]
+                self.residual(tau, y, moved, shifted)
+                jac[:, b] = (shifted[light] - res[light]) / scale[j]
+            yp[light] -= np.linalg.solve(jac, res[light])
+        self.residual(tau, y, yp, res)
+        others = [i for i in range(self.size) if i not in light and i not in self.algebraic]
+        yp[others] -= res[others]
+        return yp
 
+    def longest_step(self) -> float:
+        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do, else any."""
+        return self.shortest_period / PER_PERIOD if any(self.stuck.values()) else math.inf
 
-def time_of_angle(speed, angle: float) -> float:
-    """Time (s) at which the shaft has turned through `angle` (rad), speed a number or table.
-    Raises ValueError if it never does."""
-    if not isinstance(speed, PiecewiseLinear):
-        if speed == 0.0:
-            raise ValueError("the shaft does not turn")
-        return angle / abs(speed)
-    t, left = 0.0, angle
-    for end in [b for b in _with_reversals(speed) if b > 0.0] + [math.inf]:
-        w0 = abs(speed.at(t))
-        if end == math.inf:
-            if w0 == 0.0:
-                raise ValueError("the shaft stops before it has turned so far")
-            return t + left / w0
-        middle = abs(speed.at(0.5 * (t + end)))
-        turned_here, slope = middle * (end - t), 2 * (middle - w0) / (end - t)
-        if turned_here >= left:
-            # w0 x + slope x^2 / 2 = left, in the form that does not cancel.
-            return t + 2 * left / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * left, 0.0)))
-        t, left = end, left - turned_here
-    raise AssertionError
+    def exact_motion(self):
+        """Exact solution of a linear scene (linearisation.py)."""
+        return linearisation.ExactMotion(self)
 
+    # --- stored steps -------------------------------------------------------------------------------
 
-def _with_reversals(speed: PiecewiseLinear) -> list[float]:
-    """Break points of a speed table, and the times in between at which the shaft reverses."""
-    times = set(speed.breaks())
-    for (t0, w0), (t1, w1) in pairwise(zip(speed.time, speed.value, strict=True)):
-        if w0 * w1 < 0.0 and t1 > t0:
-            times.add(t0 + (t1 - t0) * w0 / (w0 - w1))
-    return sorted(times)
+    def motion(self, ys, yps):
+        """Displacements (m, n) and their rates (m, n) of stored steps."""
+        rate = np.empty((len(ys), self.n))
+        for i, place in enumerate(self.rate_places):
+            rate[:, i] = ys[:, place] if place >= 0 else yps[:, i]
+        return np.ascontiguousarray(ys[:, : self.n]), rate
+
+    def derivatives(self, taus, ys) -> np.ndarray:
+        """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
+        # A kernel of fixed signature is made ready by its import.
+        from .kernels import Value, rates_along
+
+        model, out = self.model, np.zeros((len(taus), self.size))
+        block = np.empty(0) if model.contact is None else model.contact
+        rates_along(Value(model.interface.film.wrench), model.f, block, self.p, self.w, self.s, taus, ys, out)
+        return out
+
+    def impulses(self, ys) -> np.ndarray:
+        """Impulse of contact (N s) so far at stored steps."""
+        place = self.model.unknowns.impulse
+        return np.zeros(len(ys)) if place is None else np.ascontiguousarray(ys[:, place])
+
+    def energies(self, taus, ys) -> np.ndarray:
+        """Kinetic and spring energy (J) at stored steps."""
+        out = np.empty(len(taus))
+        equations.energies(taus, ys, np.zeros(self.size), self.p, self.w, self.s, out)
+        return out
+
+    def gap_state(self, tau, y) -> np.ndarray:
+        """Gap state `s` (faces/geometry.py) at one time and unknowns, kinematics only."""
+        equations.kinematics(tau, y, np.zeros(self.size), self.p, self.w, self.s)
+        return self.s
+
+    # --- forcing ------------------------------------------------------------------------------------
+
+    def period(self) -> float | None:
+        """Common period (s) of the forcing; one shaft turn if nothing moves but the shaft, 0.0 if nothing moves at all
+        (any time is a period); None if the frequencies are incommensurate or change."""
+        if np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
+            return None
+        speed, slope = constant_and_slope(self.model.scene.shaft.speed, self.interval)
+        if slope:
+            return None
+        moving = [w for w in self.rows[:, 7] if w != 0.0]
+        if not moving and not speed:
+            return 0.0
+        return common_period([*moving, speed] if speed else moving)
+
+    def harmonics(self) -> list:
+        """The imposed oscillators as harmonics in segment time."""
+        return linearisation.harmonics(self)
+
+    def steady_motion(self):
+        """Linear steady state (linearisation.py)."""
+        return linearisation.steady_motion(self)

@@ -25,7 +25,7 @@ from ..faces.geometry import (
 )
 from ..scene.rings import RING_NAMES
 from . import equations
-from .segments import constant_and_slope, modulo_turn
+from .intervals import constant_and_slope, modulo_turn
 
 # What contact adds.
 CONTACT_SIGNALS = {
@@ -40,33 +40,34 @@ CONTACT_SIGNALS = {
 PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
 
 
-def signals(problem, taus, q, q_rate) -> dict[str, np.ndarray]:
-    """Named series (m,) at leg times of the problem's present leg; `q`, `q_rate` (m, n) displacements and rates.
+def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
+    """Named series (m,) at times of a segment; `q`, `q_rate` (m, n) displacements and rates.
     SI; leakage counts from high to low pressure."""
     # Kernels of fixed signature are made ready by their import.
     from .kernels import Value, states_along
 
     m, taus = len(taus), np.ascontiguousarray(taus, dtype=float)
     gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, equations.SCRATCH)), np.empty((m, 3))
-    ys, yps = np.zeros((m, problem.size)), np.zeros((m, problem.size))
-    massive = problem.rate_places >= 0
-    ys[:, : problem.n], yps[:, : problem.n] = q, q_rate
-    ys[:, problem.rate_places[massive]] = q_rate[:, massive]
-    (flow, f), contact = problem.observed, np.empty(0) if problem.contact is None else problem.contact
-    blocks = contact, bool(problem.layout.seals), problem.p, problem.w, problem.s
-    states_along(Value(flow), f, *blocks, taus, ys, yps, problem.face, gap, scratch, low)
-    return _columns(problem, taus, gap, scratch, low)
+    model = segment.model
+    ys, yps = np.zeros((m, segment.size)), np.zeros((m, segment.size))
+    massive = segment.rate_places >= 0
+    ys[:, : segment.n], yps[:, : segment.n] = q, q_rate
+    ys[:, segment.rate_places[massive]] = q_rate[:, massive]
+    (flow, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
+    blocks = contact, bool(model.unknowns.seals), segment.p, segment.w, segment.s
+    states_along(Value(flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
+    return _columns(segment, taus, gap, scratch, low)
 
 
-def _columns(problem, taus, gap, scratch, low):
-    leg, columns = problem.leg, {}
-    speed, slope = constant_and_slope(problem.scene.shaft.speed, leg)
+def _columns(segment, taus, gap, scratch, low):
+    model, leg, columns = segment.model, segment.interval, {}
+    speed, slope = constant_and_slope(model.scene.shaft.speed, leg)
     columns["time"] = leg.time + taus
     columns["shaft_angle"] = np.mod(modulo_turn(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi)
     columns["shaft_speed"] = speed + slope * taus
     for k, name in enumerate(RING_NAMES):
         at = equations.OWN_STATE + 6 * k
-        for i, part in enumerate(PARTS[: 6 if problem.floats[k] else 3]):
+        for i, part in enumerate(PARTS[: 6 if model.unknowns.floats[k] else 3]):
             columns[f"{name}_{part}"] = scratch[:, at + i]
     g = gap[:, GX] + 1j * gap[:, GY]
     columns["relative_tilt_x"], columns["relative_tilt_y"] = gap[:, GX], gap[:, GY]
@@ -75,23 +76,23 @@ def _columns(problem, taus, gap, scratch, low):
     columns["h_min"], columns["h_min_angle"], columns["h_min_radius"] = low.T
     columns["film_force"] = gap[:, FORCE]
     columns["film_moment_x"], columns["film_moment_y"] = gap[:, MOMENT_X], gap[:, MOMENT_Y]
-    closing = problem.closing.over(leg, problem.scene.film)
+    closing = model.closing.over(leg, model.scene.film)
     columns["closing_force"] = closing[0] + closing[1] * taus
     # Flow in +r runs from high to low pressure when the inside is sealed.
-    sign = -1.0 if problem.closing.outer_is_high else 1.0
+    sign = -1.0 if model.closing.outer_is_high else 1.0
     columns["leakage_inner"] = sign * gap[:, FLOW_INNER]
     columns["leakage_outer"] = sign * gap[:, FLOW_OUTER]
     torque = gap[:, TORQUE] + gap[:, CONTACT_TORQUE]
     columns["friction_torque"], columns["friction_power"] = torque, torque * gap[:, SPIN_DIFFERENCE]
     columns["cavitated_fraction"] = gap[:, CAVITATED]
-    if problem.contact is not None:
+    if model.contact is not None:
         for name, slot in CONTACT_SIGNALS.items():
             columns[name] = gap[:, slot]
-    for k in problem.layout.seals:
+    for k in model.unknowns.seals:
         at = equations.SEALS + equations.PER_SEAL * k
         names = ("seal_friction", "seal_moment_x", "seal_moment_y", "seal_sliding_speed")
         for i, name in enumerate(names):
             columns[f"{RING_NAMES[k]}_{name}"] = scratch[:, at + i]
-        stuck = problem.p[equations.RING * k + equations.STUCK]
+        stuck = segment.p[equations.RING * k + equations.STUCK]
         columns[f"{RING_NAMES[k]}_seal_stuck"] = np.full(len(taus), stuck)
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}

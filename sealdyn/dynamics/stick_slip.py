@@ -9,6 +9,7 @@ import numpy as np
 
 from ..numerics.hermite import NODES, fit, value
 from ..scene.rings import RING_NAMES
+from ..solvers.contract import Change
 from .equations import (
     AT_TILT_RATE,
     AT_Z_RATE,
@@ -21,7 +22,6 @@ from .equations import (
     SEAL_RADIUS,
     SEAL_SPEED,
     SEALS,
-    STUCK,
 )
 from .imposed_motion import (
     OSCILLATOR_COUNT,
@@ -49,50 +49,51 @@ LOOKS = 2
 
 
 class StickSlip:
-    """Which rings of a problem stick; finds and makes the changes.  `changes` counts them; `dropped` is the kinetic
-    energy (J) lost at captures."""
+    """Which rings stick (`stuck` {ring: bool}); finds and makes the changes: `sticks`, `slips` counts them, `dropped`
+    is
+    the kinetic energy (J) lost at captures."""
 
-    def __init__(self, problem):
-        self.problem = problem
-        rings = {0: problem.scene.stator, 1: problem.scene.rotor}
-        self.rings = [k for k in problem.layout.seals if rings[k].secondary_seal.law == "coulomb"]
+    def __init__(self, model):
+        self.model, self.rings, self.segment = model, model.unknowns.coulomb_rings, None
         self.stuck = dict.fromkeys(self.rings, False)
         self.leaving = dict.fromkeys(self.rings, False)
         self.sticks, self.slips, self.dropped = 0, 0, 0.0
-        self._yp = np.empty(problem.size)
+        self._yp = np.empty(model.unknowns.size)
 
-    def seen(self, k: int, tau: float, y) -> tuple[float, float]:
+    def begin(self, segment, tau, y):
+        self.segment = segment
+
+    def sliding_state(self, k: int, tau: float, y) -> tuple[float, float]:
         """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface."""
-        self.problem.rhs(tau, y, self._yp)
+        self.segment.rhs(tau, y, self._yp)
         at = SEALS + PER_SEAL * k
-        return self.problem.w[at + SEAL_SPEED], self.problem.w[at + SEAL_EXCESS]
+        return self.segment.w[at + SEAL_SPEED], self.segment.w[at + SEAL_EXCESS]
 
-    def start(self, tau: float, y):
-        """At the very start a ring at rest on a load that it can hold sticks."""
+    def start(self, segment, tau: float, y) -> dict:
+        """The rings that stick at the very start: those at rest on a load that they can hold."""
+        self.begin(segment, tau, y)
         for k in self.rings:
-            speed, outside = self.seen(k, tau, y)
-            self.stuck[k] = speed < self.problem.band and outside < -INSIDE
-        self._hold()
+            speed, outside = self.sliding_state(k, tau, y)
+            self.stuck[k] = bool(speed < self.model.capture_speed and outside < -INSIDE)
+        return dict(self.stuck)
 
-    def _hold(self):
-        """Tell the kernels which rings stick, in this leg and the next ones."""
-        for k in self.rings:
-            self.problem.p[RING * k + STUCK] = self.problem.layout.ring_block[RING * k + STUCK] = self.stuck[k]
-
-    def kept(self) -> dict:
+    def state(self) -> dict:
         """What a continued run needs."""
         return {"stuck": {str(k): bool(v) for k, v in self.stuck.items()}, "sticks": self.sticks,
                 "slips": self.slips, "dropped": self.dropped}  # fmt: skip
 
-    def restore(self, kept: dict):
-        """Go on from `kept`."""
-        self.stuck = {int(k): v for k, v in kept["stuck"].items()}
-        self.sticks, self.slips, self.dropped = kept["sticks"], kept["slips"], kept["dropped"]
-        self._hold()
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.stuck = {int(k): v for k, v in state["stuck"].items()}
+        self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
-    def find(self, t, ys, begin: int, end: int, advance):
-        """First change in steps [begin, end]: (step, leg time, unknowns, ring) or None.  `advance(tau, y, until)`
-        integrates."""
+    def accept(self, block, advance) -> Change | None:
+        """The first change in a block of steps.  `advance(tau, y, until)` integrates."""
+        found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
+        return self._transition(*found) if found else None
+
+    def _next_transition(self, t, ys, begin: int, end: int, advance):
+        """First change in steps [begin, end]: (step, time, unknowns, ring) or None."""
         known = {}
 
         def velocity(k, step):
@@ -114,23 +115,21 @@ class StickSlip:
                 return step, *found
         return None
 
-    def change(self, tau: float, y, k: int) -> tuple[np.ndarray, dict]:
-        """Ring k sticks or slips at leg time tau: the unknowns after it, and the event."""
-        problem = self.problem
-        name = RING_NAMES[k]
+    def _transition(self, step: int, tau: float, y, k: int) -> Change:
+        """Ring k sticks or slips at time tau."""
+        name, tau = RING_NAMES[k], float(tau)
         if self.stuck[k]:
             self.stuck[k], self.leaving[k] = False, True
             self.slips += 1
-            self._hold()
-            return y, {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
-        before = float(problem.energies(np.array([tau]), y[None, :])[0])
-        y = self._carried_along(k, tau, y)
-        after = float(problem.energies(np.array([tau]), y[None, :])[0])
+            event = {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
+            return Change(step, tau, y, y, dict(self.stuck), event)
+        after = self._carried_along(k, tau, y)
+        lost = -float(np.diff(self.segment.energies(np.array([tau, tau]), np.vstack([y, after])))[0])
         self.stuck[k] = True
         self.sticks += 1
-        self.dropped += before - after
-        self._hold()
-        return y, {"kind": "stick", "value": before - after, "text": f"the {name} sticks on its secondary seal"}
+        self.dropped += lost
+        event = {"kind": "stick", "value": lost, "text": f"the {name} sticks on its secondary seal"}
+        return Change(step, tau, y, after, dict(self.stuck), event)
 
     # --- a stuck ring -------------------------------------------------------------------------------
 
@@ -140,10 +139,10 @@ class StickSlip:
         low = t[step]
         for x in np.linspace(0, 1, LOOKS + 1)[1:]:
             high = t[step] + x * (t[step + 1] - t[step])
-            if self.seen(k, high, at(high))[1] > 0.0:
+            if self.sliding_state(k, high, at(high))[1] > 0.0:
                 for _ in range(60):
                     middle = 0.5 * (low + high)
-                    if self.seen(k, middle, at(middle))[1] > 0.0:
+                    if self.sliding_state(k, middle, at(middle))[1] > 0.0:
                         high = middle
                     else:
                         low = middle
@@ -153,16 +152,16 @@ class StickSlip:
 
     def _inside(self, t, ys, step):
         """Unknowns inside a step, works as at its start."""
-        problem = self.problem
+        segment = self.segment
         first, last = max(0, step - NODES), min(len(t), step + NODES + 2)
-        q, q_rate = problem.motion(ys[first:last], None)
-        table, nodes = np.zeros((problem.n, 2 * NODES)), np.zeros(2 * NODES)
+        q, q_rate = segment.motion(ys[first:last], None)
+        table, nodes = np.zeros((segment.n, 2 * NODES)), np.zeros(2 * NODES)
         size = fit(t[first:last], q, q_rate, step - first, last - first, table, nodes)
-        here, rate = np.empty(problem.n), np.empty(problem.n)
+        here, rate = np.empty(segment.n), np.empty(segment.n)
 
         def at(tau):
             value(table, nodes, size, tau, here, rate)
-            return problem.unknowns(here, rate)
+            return self.model.vector(here, rate)
 
         return at
 
@@ -171,9 +170,9 @@ class StickSlip:
     def _velocity(self, k, tau, y):
         """Sliding speeds (m/s) of ring k against what it slides on, axial and along the circle about both axes;
         their rates (m/s^2); and how far what it must hold lies outside the limit surface."""
-        problem, ring = self.problem, RING * k
-        _, outside = self.seen(k, tau, y)
-        p, w = problem.p, problem.w
+        segment, ring = self.segment, RING * k
+        _, outside = self.sliding_state(k, tau, y)
+        p, w = segment.p, segment.w
         c, x, follow = PER_RING * k, OWN_STATE + 6 * k, SEALS + PER_SEAL * k + FOLLOWING
         z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
         spin, radius = self._spin(k, tau), p[ring + SEAL_RADIUS]
@@ -188,27 +187,27 @@ class StickSlip:
         return v, a, outside
 
     def _spin(self, k, tau):
-        leg, at = self.problem.p[LEG_AT:], STATOR_SPEED if k == 0 else ROTOR_SPEED
+        leg, at = self.segment.p[LEG_AT:], STATOR_SPEED if k == 0 else ROTOR_SPEED
         return leg[at] + leg[at + 1] * tau
 
     def _carried_along(self, k, tau, y):
         """The unknowns with ring k moving as its carrier does."""
-        problem, ring, y = self.problem, RING * k, y.copy()
+        segment, ring, y = self.segment, RING * k, y.copy()
         velocity, _, _ = self._velocity(k, tau, y)
-        z_rate, tilt_rate = (int(problem.p[ring + i]) for i in (AT_Z_RATE, AT_TILT_RATE))
+        z_rate, tilt_rate = (int(segment.p[ring + i]) for i in (AT_Z_RATE, AT_TILT_RATE))
         if z_rate >= 0:
             # Subtracting from itself: at rest the rate is zero, not a rounding.
             y[z_rate] -= velocity[0]
         if tilt_rate >= 0:
-            radius = problem.p[ring + SEAL_RADIUS]
+            radius = segment.p[ring + SEAL_RADIUS]
             y[tilt_rate : tilt_rate + 2] -= velocity[1:] / radius
-            if not self._spin(k, tau) and not problem.p[LEG_AT + OSCILLATOR_COUNT]:
+            if not self._spin(k, tau) and not segment.p[LEG_AT + OSCILLATOR_COUNT]:
                 y[tilt_rate : tilt_rate + 2] = 0.0
         return y
 
     def _capture(self, k, t, ys, step, a, b, advance):
         """When ring k, of sliding speeds `a` at a step's start and `b` at its end, comes to rest within, and stays."""
-        band = self.problem.band
+        band = self.model.capture_speed
         change = b - a
         length = float(change @ change)
         nearest = float(np.clip(-(a @ change) / length, 0.0, 1.0)) if length > 0 else 1.0

@@ -8,7 +8,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from . import equations
 from .imposed_motion import AXIAL, harmonics_of_segment
-from .segments import constant_and_slope
+from .intervals import largest_value
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
 WORKS, MORE = 6, 3
@@ -24,19 +24,17 @@ class Unknowns:
     `reasons`.
     """
 
-    def __init__(self, scene, legs, closing, linear: bool):
+    def __init__(self, scene, closing, linear: bool):
         self.scene = scene
         self.seals = [
             k for k, ring in ((STATOR, scene.stator), (ROTOR, scene.rotor)) if ring.support and ring.secondary_seal
         ]
+        self.coulomb_rings = [k for k in self.seals if self.seal(k).law == "coulomb"]
         self.extended = bool(scene.contact or self.seals)
         # Contact and friction couple what a linear film keeps apart.
         self.linear = linear = linear and not self.extended
         rings = {STATOR: scene.stator, ROTOR: scene.rotor}
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
-        rows = np.vstack(
-            [harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, leg) for leg in legs]
-        )
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
         moved = [start for k, start in starts.items() if self.floats[k]]
         tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
@@ -48,7 +46,7 @@ class Unknowns:
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
-        self._choose(tilted or bool(np.any(rows[:, 1] != AXIAL)), shifted or bool(np.any(rows[:, 1] == AXIAL)), loaded)
+        self._choose(tilted or _tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
         self.massless = any(
             self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
             for k, r in rings.items()
@@ -56,6 +54,15 @@ class Unknowns:
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         self._place((scene.stator, scene.rotor))
+
+    def seal(self, k: int):
+        """Secondary seal of ring k (0 stator, 1 rotor), or None."""
+        return (self.scene.stator, self.scene.rotor)[k].secondary_seal
+
+    def among_three(self) -> list[int]:
+        """Places of the displacements among three per floating ring."""
+        parts = [i for i in range(3) if (i == 0 and self.with_axial) or (i > 0 and self.with_tilt)]
+        return [3 * a + i for a in range(sum(self.floats.values())) for i in parts]
 
     def _choose(self, tilted: bool, shifted: bool, loaded: bool):
         """Which kinds of motion the scene has, and why."""
@@ -121,47 +128,56 @@ class Unknowns:
                 places += [tilt, tilt + 1]
         return places
 
-    def scales(self, problem):
-        """Scales of the unknowns (size,): clearance, clearance / outer radius, times the shaft speed for rates, an
-        energy for the works; also that pace (rad/s) and the shortest period of interest (s)."""
+    def scales(self, model):
+        """Scales of the unknowns (size,): clearance, clearance / outer radius, times the reference rate for rates, an
+        energy for the works; also that rate (rad/s) and the shortest period of interest (s)."""
         scene = self.scene
-        length, tilt = problem.clearance, problem.clearance / scene.film.outer_radius
+        length, tilt = model.clearance, model.clearance / scene.film.outer_radius
         displacement = np.array([length if name.endswith("_z") else tilt for name in self.names])
-        values, _ = problem.linear_scene(0).eigen()
-        natural = float(np.max(np.abs(values.imag), initial=0.0)) or 1.0 / problem.duration
+        values, _ = model.linear_scene().eigen()
+        slowest = float(np.max(np.abs(values), initial=0.0)) or 1.0
+        natural = float(np.max(np.abs(values.imag), initial=0.0)) or slowest
         forced = [2 * math.pi * v.frequency for v in (*scene.housing.axial, *scene.housing.angular)]
-        pace = max(abs(constant_and_slope(scene.shaft.speed, leg)[0]) for leg in problem.legs)
-        pace = pace or max(forced, default=natural)
-        scales = np.full(self.size, self._energy(problem, length, tilt))
+        rate = largest_value(scene.shaft.speed) or max(forced, default=natural)
+        scales = np.full(self.size, self._energy(model, length, tilt))
         scales[: self.n] = displacement
         for i, place in enumerate(self.rate_places):
             if place >= 0:
-                scales[place] = displacement[i] * pace
+                scales[place] = displacement[i] * rate
         if self.impulse is not None:
-            scales[self.impulse] = max(abs(problem.closing_force()), 1.0) / pace
-        return scales, pace, 2 * math.pi / max([pace, *forced, natural])
+            scales[self.impulse] = max(abs(model.closing_force()), 1.0) / rate
+        return scales, rate, 2 * math.pi / max([rate, *forced, natural])
 
-    def memory(self, problem, fast_time: float) -> float:
-        """Fastest periods for which the linearised scene remembers an error, at most those of the run."""
-        speeds = {constant_and_slope(self.scene.shaft.speed, leg)[0]: k for k, leg in enumerate(problem.legs)}
-        rates = [problem.linear_scene(k).eigen()[0].real for k in speeds.values()]
-        # A massless undamped ring has no free motion: it forgets at once.
-        slowest = max(float(np.max(rate, initial=-np.inf)) for rate in rates)
-        longest = problem.duration if slowest * problem.duration > -1.0 else -1.0 / slowest
-        return longest / fast_time
-
-    def _energy(self, problem, length, tilt) -> float:
+    def _energy(self, model, length, tilt) -> float:
         """Energy of the motion to be expected: stiffness times the square of what is imposed (at most of the
         clearance), so that a gentle scene is audited as sharply as a violent one."""
         # A changing load moves the equilibrium by an unknown part of the clearance.
         scene, amplitude = self.scene, 0.1 if self.loaded else 1e-3
-        for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, problem.legs[0]):
+        for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, model.start):
             amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
         for start in (scene.initial.stator, scene.initial.rotor):
             for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
                 amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
-        stiffness, _ = problem.film_matrices()
+        stiffness, _ = model.film_matrices()
         blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
         spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))
         largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
         return max(largest * min(amplitude, 1.0) ** 2, 1e-30)
+
+
+def _tilt_is_imposed(scene) -> bool:
+    """Whether anything but its own start ever tilts a ring."""
+    rotor, stator = scene.rotor, scene.stator
+    tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
+    tilts += [whirl.angle for whirl in scene.shaft.whirl]
+    return any(largest_value(tilt) for tilt in tilts) or any(_moves(shaken) for shaken in scene.housing.angular)
+
+
+def _axial_motion_is_imposed(scene) -> bool:
+    """Whether anything but its own start ever moves a ring axially."""
+    runouts = any(runout.amplitude for runout in scene.rotor.axial_runout)
+    return runouts or any(_moves(shaken) for shaken in scene.housing.axial)
+
+
+def _moves(shaken) -> bool:
+    return bool(shaken.displacement or shaken.acceleration)

@@ -18,49 +18,52 @@ from ..films import film_module
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 
 
-def model_error(problem, higher: str = "radial", enough: float = math.inf) -> float | None:
+def model_error(run, higher: str = "radial", enough: float = math.inf) -> float | None:
     """The larger of `model_errors`, or None."""
-    found = model_errors(problem, higher, enough)
+    found = model_errors(run, higher, enough)
     return None if found is None else float(found.max())
 
 
-def model_errors(problem, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
+def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
     """Estimated difference of a linear film's scene from that with the film rung `higher` over the run.
 
     **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
-    `problem` a Model with a linear film and its start; looking further ends once an error exceeds `enough`.
+    `run` a RunState with a linear film and its start; looking further ends once an error exceeds `enough`.
     Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None
     where it cannot be estimated.
     """
-    if problem.massless or not problem.constant or not problem.linear:
+    model, unknowns = run.model, run.model.unknowns
+    if unknowns.massless or not unknowns.constant or not unknowns.linear:
         return None
-    _, answers, linear = problem.steady_motion()
+    segment = run.segment(0)
+    _, answers, linear = segment.steady_motion()
     matrix = linear.state_matrix()
     slowest = float(np.max(np.linalg.eigvals(matrix).real))
     if slowest > 0:
         return None
     film = film_module(higher)
-    block = film.parameters(replace(problem.scene.film, model=higher), problem.clearance, problem.accuracy / 10)
-    seen = FilmComparison(problem, linear, film, block)
+    block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)
+    seen = FilmComparison(segment, linear, film, block)
     # The steady state first: it is cheap, and on it what is left of the start no longer acts.
-    worst = _steady_error(problem, linear, seen, answers)
+    worst = _steady_error(run.period(), linear, seen, answers)
     if worst.max() > enough:
         return worst
-    step = problem.fast_time / FOLLOWED
-    longest = min(problem.duration, -6.0 / slowest if slowest < 0 else math.inf)
-    return _followed(problem, linear, seen, answers, matrix, step, min(int(longest / step) + 1, MOST), worst, enough)
+    step = model.shortest_period / FOLLOWED
+    longest = min(run.duration, -6.0 / slowest if slowest < 0 else math.inf)
+    return _followed(run, linear, seen, answers, matrix, step, min(int(longest / step) + 1, MOST), worst, enough)
 
 
-def _followed(problem, linear, seen, answers, matrix, step, count, worst, enough) -> np.ndarray:
+def _followed(run, linear, seen, answers, matrix, step, count, worst, enough) -> np.ndarray:
     """The worst of `worst` and the errors at `count` steps from the start on."""
     n = len(linear.mass)
     # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
     whole = expm(matrix * step)
     mass = np.vstack([np.zeros((n, n)), np.linalg.inv(linear.mass)])
     pushed = 0.5 * np.linalg.solve(matrix, whole - np.eye(2 * n)) @ mass
-    places, kept = problem.rate_places, problem.kept()
+    unknowns = run.model.unknowns
+    places, kept = unknowns.rate_places, unknowns.among_three()
     free = np.zeros(2 * n)
-    free[kept], free[n + np.array(kept)] = problem.y0[: problem.n], problem.y0[places]
+    free[kept], free[n + np.array(kept)] = run.y0[: unknowns.n], run.y0[places]
     free -= _forced(answers, np.zeros(1), n)[0]
     error, before = np.zeros(2 * n), np.zeros(n)
     for first in range(0, count + 1, AT_ONCE):
@@ -103,9 +106,8 @@ def _forced(answers, times, n) -> np.ndarray:
     return states
 
 
-def _steady_error(problem, linear, seen, answers) -> np.ndarray:
-    """Errors over the last forcing period, by harmonics; 0 if the forcing has no common period."""
-    period = problem.period()
+def _steady_error(period, linear, seen, answers) -> np.ndarray:
+    """Errors over a forcing `period` (s), by harmonics; 0 if the forcing has no common period."""
     if not period:
         return np.zeros(2)
     n, times = len(linear.mass), np.arange(STEADY) * period / STEADY
@@ -122,7 +124,7 @@ def _steady_error(problem, linear, seen, answers) -> np.ndarray:
 class FilmComparison:
     """What the higher film makes of the states of the lower one."""
 
-    problem: object
+    segment: object
     linear: object
     film: object
     block: np.ndarray
@@ -134,14 +136,15 @@ class FilmComparison:
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each, states_along
 
-        problem, linear, n = self.problem, self.linear, len(self.linear.mass)
-        kept, s = problem.kept(), problem.s
-        ys = np.zeros((len(times), problem.size))
-        ys[:, : problem.n], ys[:, problem.rate_places] = states[:, kept], states[:, n + np.array(kept)]
+        segment, linear, n = self.segment, self.linear, len(self.linear.mass)
+        model, kept = segment.model, segment.model.unknowns.among_three()
+        ys = np.zeros((len(times), segment.size))
+        ys[:, : segment.n], ys[:, segment.rate_places] = states[:, kept], states[:, n + np.array(kept)]
         self.gaps = np.empty((len(times), GAP_STATE_SIZE))
-        unused = np.empty((len(times), len(problem.w))), np.empty((len(times), 3))
-        blocks = np.empty(0), False, problem.p, problem.w, s, np.ascontiguousarray(times), ys, np.zeros_like(ys)
-        states_along(Value(problem.film.wrench), problem.f, *blocks, problem.face, self.gaps, *unused)
+        unused = np.empty((len(times), len(segment.w))), np.empty((len(times), 3))
+        scratch = segment.p, segment.w, segment.s
+        blocks = np.empty(0), False, *scratch, np.ascontiguousarray(times), ys, np.zeros_like(ys)
+        states_along(Value(model.interface.film.wrench), model.f, *blocks, model.face, self.gaps, *unused)
         more = self.gaps[:, FORCE : FORCE + 3].copy()
         at_each(Value(self.film.flow), self.block, self.gaps)
         more = self.gaps[:, FORCE : FORCE + 3] - more
@@ -154,12 +157,12 @@ class FilmComparison:
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each
 
-        linear, problem, n = self.linear, self.problem, len(self.linear.mass)
+        linear, model, n = self.linear, self.segment.model, len(self.linear.mass)
         x, v = (
             sum(linear.rings[k].sign * part[:, 3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))
             for part in (moved[:, :n], moved[:, n:])
         )
-        film = (np.abs(x[:, 0]) + problem.face[1] * np.hypot(x[:, 1], x[:, 2])) / problem.clearance
+        film = (np.abs(x[:, 0]) + model.face[1] * np.hypot(x[:, 1], x[:, 2])) / model.clearance
         if not self.leakage:
             return np.array([film.max(), 0.0])
         gaps = self.gaps.copy()

@@ -1,36 +1,44 @@
-"""The lowest film rung that keeps the asked accuracy."""
+"""The lowest film model that keeps the asked accuracy."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from .film_error import model_error
 
 
-def select_film(scene, duration: float, accuracy: float, start) -> tuple[Model, float | None]:
-    """The scene as a problem on the lowest film rung that keeps the accuracy, and the estimated error of a chosen
-    linear film; `start(problem)` sets its unknowns.
+def select_film(
+    scene, duration: float, accuracy: float, start: Callable[[RunState], None]
+) -> tuple[RunState, float | None]:
+    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a chosen linear
+    film; `start(run)` sets its unknowns.
 
     Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
-    below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises ImpossibleScene.
+    below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
     """
     film = scene.film
+
+    def started(model: Model) -> RunState:
+        run = RunState(model, duration)
+        start(run)
+        return run
+
     if film.model != "auto" or film.profile is not None:
-        problem = Model(scene, duration, accuracy)
-        start(problem)
+        run = started(Model(scene, accuracy))
         if film.model == "auto":
-            problem.reasons.append("film auto: the profiled film; the faces have a profile, others know cones only")
-        return problem, model_error(problem) if problem.film_name == "linear" else None
-    radial = Model(replace(scene, film=replace(film, model="radial")), duration, accuracy)
-    start(radial)
+            run.reasons.append("film auto: the profiled film; the faces have a profile, others know cones only")
+        return run, model_error(run) if run.model.interface.name == "linear" else None
+    radial = started(Model(replace(scene, film=replace(film, model="radial")), accuracy))
     why = _why_not_linear(scene, radial)
     if why is None:
-        linear = Model(replace(scene, film=replace(film, model="linear", coefficients="radial")), duration, accuracy)
-        start(linear)
+        simpler = replace(scene, film=replace(film, model="linear", coefficients="radial"))
+        linear = started(Model(simpler, accuracy, observed=radial.model.observed))
         error = model_error(linear, enough=0.5 * accuracy)
         if error is not None and error < 0.5 * accuracy:
-            linear.observed = radial.observed
-            said = f"film auto: the linear film, with the radial film's coefficients, is within {error:.1e} of it"
-            linear.reasons.append(said)
+            linear.reasons.append(
+                f"film auto: the linear film, with the radial film's coefficients, is within {error:.1e} of it"
+            )
             return linear, error
         why = (
             "the linear film's error cannot be estimated"
@@ -41,16 +49,17 @@ def select_film(scene, duration: float, accuracy: float, start) -> tuple[Model, 
     return radial, None
 
 
-def _why_not_linear(scene, radial: Model) -> str | None:
+def _why_not_linear(scene, radial: RunState) -> str | None:
     """What rules the linear film out before anything is tried, or None."""
-    if scene.contact or radial.layout.seals:
+    unknowns = radial.model.unknowns
+    if scene.contact or unknowns.seals:
         return "contact or friction is no place for a linear film"
     if scene.film.cavitation_pressure is not None:
         return "the pressure has a floor"
-    if not radial.constant or radial.massless:
+    if not unknowns.constant or unknowns.massless:
         return "conditions change, or a ring has no mass"
     # A tilt ratio t leaves errors of t^2: no estimate is needed to see that far.
-    ratio = 1.0 - radial.start_film() / radial.clearance
-    if ratio * ratio > 100.0 * radial.accuracy:
+    ratio = 1.0 - radial.start_film() / radial.model.clearance
+    if ratio * ratio > 100.0 * radial.model.accuracy:
         return f"the film starts {abs(ratio):.2g} off the clearance, and a linear film errs by about the square"
     return None

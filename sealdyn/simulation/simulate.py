@@ -7,7 +7,6 @@ import platform
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
-from fractions import Fraction
 from importlib.metadata import version
 from pathlib import Path
 
@@ -15,16 +14,18 @@ import numpy as np
 
 from .. import __version__, archive
 from ..archive import ArchiveWriter, Series, partial_path
-from ..dynamics.segments import time_of_angle
-from ..dynamics.signals import signals
+from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
+from ..dynamics.intervals import time_of_angle
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..solvers.contract import attainable
-from ..solvers.energy_audit import Audit
+from ..solvers.contract import Status, attainable
+from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
 from .certificate import TrialRun, certify, choose_tolerance, error_estimator
 from .film_selection import select_film
+from .method_selection import check_method, choose_method
+from .sinks import ArchiveSink, Tally, TallySink
 from .summary import summarise
 
 SERIES = {
@@ -74,10 +75,6 @@ PARTS = {
 }
 
 
-# Single events kept in an archive; a seal that rubs for hours has more, which are counted.
-MOST_EVENTS = 20_000
-
-
 @dataclass(frozen=True)
 class Result:
     """What a run leaves: status, a sentence, the summary of interface.md as a dict, and where the archive is."""
@@ -86,123 +83,6 @@ class Result:
     message: str
     summary: dict
     archive: Path
-
-
-@dataclass
-class Tally:
-    """Running means and maxima of the sampled series; kept in the archive to go on from."""
-
-    rows: int = 0
-    sums: dict = None
-    largest: dict = None
-
-    NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
-             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change", "closing_force", "contact_force",
-             "contact_torque", "contact_area_fraction", "contact_pressure", "wear_rate")  # fmt: skip
-
-    def add(self, columns):
-        names = [name for name in self.NAMES if name in columns]
-        self.sums = self.sums or dict.fromkeys(names, 0.0)
-        self.largest = self.largest or dict.fromkeys(names, -math.inf)
-        self.rows += len(columns["time"])
-        for name in self.sums:
-            self.sums[name] += float(columns[name].sum())
-            self.largest[name] = max(self.largest[name], float(columns[name].max()))
-
-    def mean(self, name: str) -> float:
-        return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
-
-
-class ArchiveSink:
-    """Takes what the solver has integrated: signals into the archive, restart data beside them."""
-
-    def __init__(self, problem, writer, dt, count, tally, progress, stop):
-        self.problem, self.writer, self.dt, self.count = problem, writer, dt, count
-        self.tally, self.progress, self.stop = tally, progress, stop
-        self.audit = self.errors = None
-        self.waiting = None
-        self.logged, self.pending = 0, []
-
-    def due(self, index: int) -> np.ndarray:
-        """Leg times of the samples in leg `index`, counted from the nearest sample so that they stay exact."""
-        leg = self.problem.legs[index]
-        first = max(0, math.ceil(leg.time / self.dt - 1e-9))
-        # The offset of the first sample is taken in exact arithmetic.
-        offset = float(Fraction(self.dt) * first - leg.start)
-        last = index + 1 == len(self.problem.legs)
-        end = leg.length
-        number = math.floor((end - offset) / self.dt + 1e-9) + 1
-        taus = offset + self.dt * np.arange(max(number, 0))
-        # A sample at a leg's end belongs to the next leg, whose parameters it shows; the run's last stays.
-        keep = (taus >= -1e-12 * end) & ((taus < end * (1 - 1e-12)) | last)
-        return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
-
-    def take(self, index, taus, q, q_rate):
-        columns = signals(self.problem, taus, q, q_rate)
-        self.tally.add(columns)
-        if self.waiting is None:
-            self.waiting = columns
-        else:
-            self.waiting = {k: np.concatenate([self.waiting[k], columns[k]]) for k in columns}
-
-    def event(self, index, tau, event):
-        self.log([{**event, "time": self.problem.legs[index].time + tau}])
-
-    def log(self, events):
-        """Keep events until the next flush; beyond the most that an archive keeps they are only counted."""
-        kept = events[: max(MOST_EVENTS - self.logged, 0)]
-        self.logged += len(kept)
-        self.pending += kept
-
-    def state(self, index, tau, y):
-        self.flush(index, tau, y)
-        if self.progress:
-            leg = self.problem.legs[index]
-            self.progress(leg.time + tau, self.problem.duration)
-        if self.stop and self.stop():
-            raise KeyboardInterrupt
-
-    def flush(self, index, tau, y):
-        """Rows, what happened, and the state to go on from: all three belong together."""
-        if self.waiting is None:
-            return
-        problem = self.problem
-        problem.tell_contacts(self.log)
-        self.write_events()
-        state = {
-            "leg": index,
-            "tau": tau,
-            "y": np.asarray(y),
-            "records": problem.records.ravel(),
-            "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
-            "audit": self.audit.kept(),
-            "errors": self.errors and self.errors.kept(),
-            "modes": problem.kept_modes() | {"logged": self.logged},
-            "names": problem.names,
-        }
-        self.writer.append(self.waiting, state)
-        self.waiting = None
-
-    def write_events(self):
-        if self.pending:
-            self.writer.events(self.pending)
-        self.pending = []
-
-
-class TallySink(ArchiveSink):
-    """Takes the same samples, and keeps their means and maxima only."""
-
-    def __init__(self, problem, dt, count):
-        super().__init__(problem, None, dt, count, Tally(), None, None)
-
-    def take(self, index, taus, q, q_rate):
-        self.tally.add(signals(self.problem, taus, q, q_rate))
-
-    def log(self, events):
-        pass
-
-    def flush(self, index, tau, y):
-        pass
 
 
 def sampling(scenario) -> tuple[float, float, int]:
@@ -245,39 +125,39 @@ def simulate(
     """
     begun = clock.perf_counter()
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
-    problem, method, why, interval, count, by_model = prepare_run(scenario)
+    run, method, why, interval, count, by_model = prepare_run(scenario)
     writer = ArchiveWriter(
         out,
         scenario_text=scenario.text,
         resolved=scenario.resolved(),
         meta=_meta(scenario, method),
-        series=_series(problem),
+        series=_series(run.model),
         resume=resume,
         expected_rows=count,
     )
-    sink = ArchiveSink(problem, writer, interval, count, Tally(), progress, stop)
-    audit = Audit(problem)
-    sink.audit, sink.errors = audit, error_estimator(problem, method)
-    restart = _resumed(problem, writer, sink, audit) if resume and writer.rows else None
-    trial = choose_tolerance(problem, method)
+    sink = ArchiveSink(run, writer, interval, count, Tally(), progress, stop)
+    audit = EnergyAudit()
+    sink.audit, sink.errors = audit, error_estimator(run, method)
+    restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
+    trial = choose_tolerance(run, method)
     outcome = solve(
-        problem, method, problem.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_tried(trial)
+        run, method, run.model.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_tried(trial)
     )
-    sink.flush(outcome.leg, outcome.tau, outcome.y)
-    if outcome.status != "interrupted":
+    sink.flush(outcome.segment, outcome.tau, outcome.y)
+    if outcome.status != Status.INTERRUPTED:
         # What an interrupted run has not written yet it will meet again.
-        problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
+        run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
         sink.write_events()
-    summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
-    summary["certificate"] = certificate(problem, method, outcome, sink.errors, by_model)
+    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial))
+    summary["certificate"] = certificate(run, method, outcome, sink.errors, by_model)
     summary["wall_time"] = clock.perf_counter() - begun
-    path = partial_path(out) if outcome.status == "interrupted" else out
+    path = partial_path(out) if outcome.status == Status.INTERRUPTED else out
     summary["archive"] = str(path)
-    if outcome.status != "interrupted":
-        writer.events(_events(problem, outcome))
-    path = writer.finish(outcome.status, outcome.message, json.loads(json.dumps(summary)))
+    if outcome.status != Status.INTERRUPTED:
+        writer.events(_events(run, outcome))
+    path = writer.finish(str(outcome.status), outcome.message, json.loads(json.dumps(summary)))
     summary["archive"] = str(path)
-    return Result(outcome.status, outcome.message, summary, path)
+    return Result(str(outcome.status), outcome.message, summary, path)
 
 
 def _tried(trial: TrialRun | None) -> dict:
@@ -289,12 +169,12 @@ def _reasons(why: str, trial: TrialRun | None) -> str:
     return f"{why}; {trial.said}" if trial else why
 
 
-def certificate(problem, method, outcome, errors, by_model) -> dict:
+def certificate(run, method, outcome, errors, by_model) -> dict:
     """How wrong the run is estimated to be (simulation/certificate.py), as part of the summary."""
-    if outcome.status != "ok":
-        return {"asked": problem.accuracy, "estimated": None, "solver": None, "model": None,
+    if outcome.status != Status.OK:
+        return {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None,
                 "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
-    found = certify(problem, method, errors, by_model)
+    found = certify(run, method, errors, by_model)
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "said": found.said}  # fmt: skip
 
@@ -302,110 +182,100 @@ def certificate(problem, method, outcome, errors, by_model) -> dict:
 def simulate_in_memory(scenario) -> dict:
     """A run without an archive: the summary of interface.md.  Raises ImpossibleScene or ArchiveError."""
     begun = clock.perf_counter()
-    problem, method, why, interval, count, _ = prepare_run(scenario)
-    sink, trial = TallySink(problem, interval, count), choose_tolerance(problem, method)
-    outcome = solve(problem, method, problem.accuracy, sink, errors=error_estimator(problem, method), **_tried(trial))
-    problem.tell_contacts(sink.log, end=(problem.legs[outcome.leg].time + outcome.tau, outcome.y))
-    summary = summarise(scenario, problem, outcome, sink.tally, method, _reasons(why, trial))
+    run, method, why, interval, count, _ = prepare_run(scenario)
+    sink, trial = TallySink(run, interval, count), choose_tolerance(run, method)
+    outcome = solve(run, method, run.model.accuracy, sink, errors=error_estimator(run, method), **_tried(trial))
+    run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
+    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial))
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 
 def prepare_run(scenario):
-    """A scenario made ready: problem (started and with its windows), method, why, sample interval (s), count, and a
+    """A scenario made ready: run (RunState with its start and windows), method, why, sample interval (s), count, and a
     linear film's estimated error.
-    Raises ImpossibleScene or ArchiveError."""
+    Raises SceneError or ArchiveError."""
     duration, interval, count = sampling(scenario)
     accuracy = scenario.run.accuracy
-    problem, by_model = select_film(scenario.scene, duration, accuracy, lambda p: _start(p, scenario))
-    method, why = problem.solver()
+    run, by_model = select_film(scenario.scene, duration, accuracy, lambda run: _start(run, scenario))
+    run.check_loads()
+    method, why = choose_method(run)
     if scenario.run.solver != "auto":
         method, why = scenario.run.solver, "asked for"
-    _check_method(problem, method)
-    best = attainable(method, problem.memory)
+    check_method(run.model, method)
+    best = attainable(method, run.memory)
     if best > accuracy:
-        problem.warnings.append(
-            f"accuracy: errors add up over {problem.memory:.3g} periods; {method} keeps {best:.1e} at best"
-        )
-    _set_windows(problem)
-    fastest = problem.fastest_forcing()
+        run.warnings.append(f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best")
+    _set_windows(run)
+    fastest = run.fastest_forcing()
     if fastest * interval > math.pi:
-        problem.warnings.append(
+        run.warnings.append(
             f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
             f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
         )
-    return problem, method, why, interval, count, by_model
+    return run, method, why, interval, count, by_model
 
 
-def _start(problem, scenario):
+def _start(run, scenario):
     """Initial unknowns: rest, the linear steady state, an archive's last state, and what [initial] gives."""
+    unknowns = run.model.unknowns
     if scenario.run.start == "steady":
-        problem.y0 = problem.steady_start()
+        run.y0 = run.steady_start()
     elif scenario.run.start != "rest":
         state = archive.last_state(scenario.run.start)
         if not state:
             raise archive.ArchiveError(f"{scenario.run.start}: holds no last state to start from")
-        rates = problem.n + np.arange(problem.n_mechanical - problem.n)
-        if list(state["names"]) != problem.names or len(state["y"]) != problem.size:
+        rates = unknowns.n + np.arange(unknowns.n_mechanical - unknowns.n)
+        if list(state["names"]) != unknowns.names or len(state["y"]) != unknowns.size:
             raise SceneError(
                 "run.start",
                 f"{scenario.run.start} with unknowns {', '.join(state['names'])}",
-                f"an archive with the unknowns {', '.join(problem.names)}",
+                f"an archive with the unknowns {', '.join(unknowns.names)}",
             )
-        problem.y0[: problem.n] = state["y"][: problem.n]
-        problem.y0[rates] = state["y"][rates]
+        run.y0[: unknowns.n] = state["y"][: unknowns.n]
+        run.y0[rates] = state["y"][rates]
     for k, ring in ((0, scenario.scene.initial.stator), (1, scenario.scene.initial.rotor)):
         for part in PARTS:
             given = getattr(ring, part)
             base = f"{RING_NAMES[k]}_{part.removesuffix('_rate')}"
-            if given is None or base not in problem.names:
+            if given is None or base not in unknowns.names:
                 continue
-            place = problem.names.index(base)
-            place = problem.rate_places[place] if part.endswith("_rate") else place
+            place = unknowns.names.index(base)
+            place = unknowns.rate_places[place] if part.endswith("_rate") else place
             if place >= 0:
-                problem.y0[place] = given
-    problem.check_start()
+                run.y0[place] = given
+    run.check_start()
 
 
-def _check_method(problem, method):
-    if problem.massless and method != "ida":
-        raise SceneError("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
-    if method == "expm" and not (problem.linear and problem.constant):
-        what = "a nonlinear film, contact or friction" if not problem.linear else "parameters that change with time"
-        raise SceneError("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')
-
-
-def _set_windows(problem):
+def _set_windows(run):
     """The last two forcing periods, for the steady state."""
-    problem.begin(len(problem.legs) - 1)
-    period, end = problem.period(), problem.duration
-    constant_from = problem.leg.time if len(problem.legs) > 1 and not problem.constant else 0.0
+    period, end, last = run.period(-1), run.duration, run.intervals[-1]
+    constant_from = last.time if len(run.intervals) > 1 and not run.model.unknowns.constant else 0.0
     if period and end - 2 * period >= constant_from - 1e-9 * end:
-        problem.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
-    problem.begin(0)
+        run.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
 
 
-def _resumed(problem, writer, sink, audit):
+def _resumed(run, writer, sink, audit):
     state = writer.state
-    problem.records[:] = np.array(state["records"], dtype=float).reshape(problem.records.shape)
+    run.extrema.restore(state["records"])
     tally = state["tally"]
     sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
     audit.restore(state["audit"])
     if sink.errors and state.get("errors"):
         sink.errors.restore(state["errors"])
-    problem.restore_modes(state["modes"])
+    run.restore_modes(state["modes"])
     sink.logged = int(state["modes"]["logged"])
     return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
 
 
-def _series(problem) -> dict[str, Series]:
+def _series(model) -> dict[str, Series]:
     series = {}
     for k, name in enumerate(RING_NAMES):
-        for part in list(PARTS)[: 6 if problem.floats[k] else 3]:
+        for part in list(PARTS)[: 6 if model.unknowns.floats[k] else 3]:
             units, long_name = PARTS[part]
             series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
-    if problem.contact is not None:
+    if model.contact is not None:
         series |= CONTACT_SERIES
-    for k in problem.layout.seals:
+    for k in model.unknowns.seals:
         for part, (units, long_name) in SEAL_SERIES.items():
             series[f"{RING_NAMES[k]}_{part}"] = Series(units, long_name.format(RING_NAMES[k]))
     return {**series, **SERIES}
@@ -424,15 +294,15 @@ def _meta(scenario, method) -> dict:
     }
 
 
-def _events(problem, outcome) -> list[dict]:
-    record = problem.records[0]
+def _events(run, outcome) -> list[dict]:
+    record = run.extrema.records[0]
     events = []
-    if math.isfinite(record[0]):
-        at = problem.legs[int(record[8])].time + record[1]
-        kind = "collapse" if outcome.status == "collapsed" else "film_minimum"
-        events.append({"kind": kind, "time": at, "value": record[0], "text": outcome.message,
-                       "theta": record[2], "radius": record[3]})  # fmt: skip
-    if outcome.status == "failed":
-        at = problem.legs[outcome.leg].time + outcome.tau
+    if math.isfinite(record[H]):
+        at = run.end_time(int(record[H_LEG]), record[H_TAU])
+        kind = "collapse" if outcome.status == Status.COLLAPSED else "film_minimum"
+        events.append({"kind": kind, "time": at, "value": record[H], "text": outcome.message,
+                       "theta": record[H_THETA], "radius": record[H_RADIUS]})  # fmt: skip
+    if outcome.status == Status.FAILED:
+        at = run.end_time(outcome.segment, outcome.tau)
         events.append({"kind": "failure", "time": at, "value": math.nan, "text": outcome.message})
     return events

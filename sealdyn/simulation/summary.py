@@ -1,4 +1,4 @@
-"""What a run amounts to: the numbers of interface.md, from the problem, the outcome and the running tallies."""
+"""What a run amounts to: the numbers of interface.md, from the run, the outcome and the running tallies."""
 
 import math
 
@@ -7,42 +7,43 @@ import numpy as np
 from .. import closed_form
 from ..dynamics import modes
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
-from ..dynamics.segments import constant_and_slope
+from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import TOUCH
 from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..solvers.contract import Status
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
-def model(scenario, problem, method: str, why: str) -> dict:
+def model_chosen(scenario, run, method: str, why: str) -> dict:
     """What the scene chose: film rung, unknowns, solver, the reasons, and keys it does not use."""
     return {
-        "film": problem.film_name,
-        "unknowns": problem.names,
+        "film": run.model.interface.name,
+        "unknowns": run.model.unknowns.names,
         "solver": method,
-        "reasons": [*problem.reasons, f"solver: {why}", problem.closing_said],
+        "reasons": [*run.reasons, f"solver: {why}", run.model.interface.message],
         "unused": unused_keys(scenario),
     }
 
 
-def summarise(scenario, problem, outcome, tally, method, why) -> dict:
+def summarise(scenario, run, outcome, tally, method, why) -> dict:
     """The summary (interface.md, `run --json`) of a finished run, SI; no value is a NaN or infinite."""
-    problem.begin(outcome.leg)
-    linear = problem.linear_scene(outcome.leg)
-    steady, sentence = _steady(problem, outcome)
-    record = problem.records[0]
-    tilt = _linear_steady(problem, linear)
+    model, segment = run.model, run.segment(outcome.segment)
+    linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
+    steady, sentence = _steady(run, outcome, period)
+    record = run.extrema.records[0]
+    tilt = _linear_steady(segment, linear, period)
     summary = {
         "status": outcome.status,
         "message": outcome.message,
-        "model": model(scenario, problem, method, why),
+        "model": model_chosen(scenario, run, method, why),
         "h_min": {
             "value": record[H],
-            "time": problem.legs[int(record[H_LEG])].time + record[H_TAU],
+            "time": run.end_time(int(record[H_LEG]), record[H_TAU]),
             "theta": record[H_THETA],
             "radius": record[H_RADIUS],
-            "of_clearance": record[H] / problem.clearance,
+            "of_clearance": record[H] / model.clearance,
         },
         "relative_misalignment": {
             "max": record[MOST],
@@ -51,22 +52,22 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
             **steady,
             "steady_said": sentence,
         },
-        "leakage": _leakage(problem, tally),
+        "leakage": _leakage(model, tally),
         "friction": {
             "torque": tally.mean("friction_torque"),
             "power": tally.mean("friction_power"),
             "max_power": tally.largest["friction_power"] if tally.largest else math.nan,
-            "temperature_rise": _temperature_rise(problem, tally),
+            "temperature_rise": _temperature_rise(model, tally),
         },
-        "contact": _contact(problem, tally),
-        "secondary_seal": _secondary_seal(problem),
-        "film": _film(problem, linear, tally),
-        "closing": _closing(problem),
-        "contact_margin": _contact_margin(problem, linear, tilt),
-        "closed_form": _closed_form(problem, linear, tilt),
-        "stability": stability(problem, outcome.leg, linear),
+        "contact": _contact(run, tally),
+        "secondary_seal": _secondary_seal(run),
+        "film": _film(segment, linear, tally),
+        "closing": _closing(segment),
+        "contact_margin": _contact_margin(segment, linear, tilt),
+        "closed_form": _closed_form(segment, linear, tilt),
+        "stability": stability(model, segment.interval, linear),
         "energy_residual": outcome.energy_residual,
-        "warnings": [*problem.warnings, *_blown_open(problem, tally)],
+        "warnings": [*run.warnings, *_blown_open(model, tally)],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -74,8 +75,8 @@ def summarise(scenario, problem, outcome, tally, method, why) -> dict:
             "restarts": outcome.counts.restarts,
         },
         "tolerance": outcome.tolerance,
-        "accuracy": problem.accuracy,
-        "end": {"time": problem.legs[outcome.leg].time + outcome.tau, "asked": problem.duration},
+        "accuracy": model.accuracy,
+        "end": {"time": run.end_time(outcome.segment, outcome.tau), "asked": run.duration},
     }
     return _plain(summary)
 
@@ -93,48 +94,50 @@ def _plain(value):
     return value
 
 
-def _steady(problem, outcome):
+def _steady(run, outcome, period):
     """Steady extremes over the last forcing period, or None with a sentence."""
     none = {"steady_max": None, "steady_min": None}
-    if outcome.status != "ok":
+    if outcome.status != Status.OK:
         return none, f"no steady state: the run {outcome.status}"
-    last, before = problem.records[1], problem.records[2]
+    last, before = run.extrema.records[1], run.extrema.records[2]
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):
-        if problem.period() is None:
+        if period is None:
             return none, "no steady state: forcing frequencies are incommensurate or change with time"
         return none, "no steady state: constant conditions last less than two forcing periods"
-    scale = problem.clearance / problem.scene.film.outer_radius
+    model = run.model
+    scale = model.clearance / model.scene.film.outer_radius
     change = max(
         abs(last[MOST] - before[MOST]) / scale,
         abs(last[LEAST] - before[LEAST]) / scale,
-        abs(last[H] - before[H]) / problem.clearance,
+        abs(last[H] - before[H]) / model.clearance,
     )
-    if change > problem.accuracy:
+    if change > model.accuracy:
         return none, (
             f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
-            f'(accuracy {problem.accuracy:.0e}); run longer or use run.start = "steady"'
+            f'(accuracy {model.accuracy:.0e}); run longer or use run.start = "steady"'
         )
     return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
 
 
-def _blown_open(problem, tally) -> list[str]:
+def _blown_open(model, tally) -> list[str]:
     """A gap many times its clearance is no seal any more."""
-    widest = tally.largest["axial_gap_change"] / problem.clearance if tally.largest else 0.0
+    widest = tally.largest["axial_gap_change"] / model.clearance if tally.largest else 0.0
     if widest < 10:
         return []
     return [f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"]
 
 
-def _contact(problem, tally):
+def _contact(run, tally):
     """What the faces did where they touched; None without a [contact] table."""
-    if problem.contact is None:
+    model = run.model
+    if model.contact is None:
         return None
-    found, largest, level = problem.contact_tally, tally.largest or {}, problem.face[TOUCH]
+    found, largest, level = run.contacts.summary, tally.largest or {}, model.face[TOUCH]
     closing = tally.mean("closing_force")
     return {
         "touches": found.count,
         "grazing": found.grazing,
-        "gap_error": problem.gap_error(),
+        "gap_error": model.gap_error(),
         "touch_at": level,
         "first": found.first,
         "lowest": found.lowest,
@@ -150,15 +153,16 @@ def _contact(problem, tally):
     }
 
 
-def _secondary_seal(problem):
+def _secondary_seal(run):
     """Friction of secondary seals: what holds them, and how often they stuck and slipped; None without one."""
-    if not problem.layout.seals:
+    unknowns = run.model.unknowns
+    if not unknowns.seals:
         return None
     rings = {}
-    for k in problem.layout.seals:
-        force, moment = problem.seal(k).breakaway()
-        rings[RING_NAMES[k]] = {"breakaway_force": force, "breakaway_moment": moment, "law": problem.seal(k).law}
-    found = problem.sticking
+    for k in unknowns.seals:
+        force, moment = unknowns.seal(k).breakaway()
+        rings[RING_NAMES[k]] = {"breakaway_force": force, "breakaway_moment": moment, "law": unknowns.seal(k).law}
+    found = run.stick_slip
     if found is None:
         return {"rings": rings, "sticks": None, "slips": None, "energy_dropped": None, "stuck_at_end": None}
     return {
@@ -170,28 +174,28 @@ def _secondary_seal(problem):
     }
 
 
-def _leakage(problem, tally):
-    side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+def _leakage(model, tally):
+    side = "leakage_inner" if model.closing.outer_is_high else "leakage_outer"
     mean = tally.mean(side)
     return {
         "mean": mean,
         "max": tally.largest[side] if tally.largest else math.nan,
         "mean_ml_per_h": mean * ML_PER_H,
-        "mean_kg_per_h": mean * problem.scene.film.density * KG_PER_H,
+        "mean_kg_per_h": mean * model.scene.film.density * KG_PER_H,
     }
 
 
-def _temperature_rise(problem, tally):
+def _temperature_rise(model, tally):
     """Rise (K) if all friction power heats the leakage."""
-    film = problem.scene.film
-    flow = abs(tally.mean("leakage_inner" if problem.closing.outer_is_high else "leakage_outer"))
+    film = model.scene.film
+    flow = abs(tally.mean("leakage_inner" if model.closing.outer_is_high else "leakage_outer"))
     return tally.mean("friction_power") / (film.density * film.specific_heat * flow) if flow > 0 else math.nan
 
 
-def _film(problem, linear, tally):
-    k, d = linear.film_k, linear.film_d
+def _film(segment, linear, tally):
+    model, k, d = segment.model, linear.film_k, linear.film_d
     return {
-        "clearance": problem.clearance + problem.axial_shift(problem.leg_index),
+        "clearance": model.clearance + model.axial_shift(segment.interval),
         "axial_stiffness": k[0, 0],
         "axial_damping": d[0, 0],
         "tilt_stiffness": k[1, 1],
@@ -199,15 +203,15 @@ def _film(problem, linear, tally):
         "cross_stiffness": k[1, 2],
         "max_cavitated_fraction": tally.largest["cavitated_fraction"] if tally.largest else math.nan,
         "equilibria": [
-            {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in problem.equilibria
+            {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
         ],
     }
 
 
-def _closing(problem):
-    law, film = problem.closing, problem.scene.film
-    force, _ = law.over(problem.leg, film)
-    hydraulic = law.over(problem.leg, film)[0] - _first(law.spring, problem)
+def _closing(segment):
+    law, film = segment.model.closing, segment.model.scene.film
+    force, _ = law.over(segment.interval, film)
+    hydraulic = force - _first(law.spring, segment)
     return {
         "force": force,
         "balance_ratio": law.balance_ratio,
@@ -217,32 +221,34 @@ def _closing(problem):
     }
 
 
-def _first(quantity, problem):
-    return constant_and_slope(quantity, problem.leg)[0]
+def _first(quantity, segment):
+    return constant_and_slope(quantity, segment.interval)[0]
 
 
-def _linear_steady(problem, linear):
+def _linear_steady(segment, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
-    if problem.period() is None and len(problem.rows):
-        frequencies = [w for w in problem.rows[:, 7] if w]
-        if frequencies and (np.any(problem.rows[:, 3]) or np.any(problem.rows[:, 8])):
+    rows = segment.rows
+    if period is None and len(rows):
+        frequencies = [w for w in rows[:, 7] if w]
+        if frequencies and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
             return None
-    answers = [(h, linear.response(h)) for h in problem.harmonics()]
-    return (*modes.steady_extremes(linear, answers, problem.period()), problem.period())
+    answers = [(h, linear.response(h)) for h in segment.harmonics()]
+    return (*modes.steady_extremes(linear, answers, period), period)
 
 
-def _contact_margin(problem, linear, tilt):
+def _contact_margin(segment, linear, tilt):
     """Factor on the forcing at which linear theory closes the gap at either edge."""
     if tilt is None or modes.verdict(linear.modes()) != "stable":
         return math.nan
-    face, (most, _, closing, _) = problem.face, tilt
-    inner = problem.clearance + problem.axial_shift(problem.leg_index)
+    model = segment.model
+    face, (most, _, closing, _) = model.face, tilt
+    inner = model.clearance + model.axial_shift(segment.interval)
     outer = inner + face[3] * (face[1] - face[0])
     reaches = [(inner, face[0] * most + closing), (outer, face[1] * most + closing)]
     return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
 
 
-def _closed_form(problem, linear, tilt):
+def _closed_form(segment, linear, tilt):
     """Steady state of the linearised film: harmonic balance for any scene; for one flexible ring also the published
     formulas fed with the film's own coefficients."""
     if tilt is None:
@@ -251,16 +257,16 @@ def _closed_form(problem, linear, tilt):
         return {"road": "none: the linear steady state is not approached (not stable)"}
     found = {"relative_max": tilt[0], "relative_min": tilt[1], "axial_closing": tilt[2],
              "road": "harmonic balance of the film's own linearisation"}  # fmt: skip
-    if tilt[3] is None and len(problem.rows):
+    if tilt[3] is None and len(segment.rows):
         found["road"] += "; frequencies incommensurate: sum of amplitudes"
-    scene = problem.scene
-    arrangement = (problem.floats[STATOR], problem.floats[ROTOR])
+    scene, floats = segment.model.scene, segment.model.unknowns.floats
+    arrangement = (floats[STATOR], floats[ROTOR])
     if arrangement == (True, True) or scene.stator.speed != 0.0:
         return found
     ring = scene.stator if arrangement[0] else scene.rotor
     stiffness, damping = ring.support.tilt()
     numbers = dict(
-        speed=_first(scene.shaft.speed, problem),
+        speed=_first(scene.shaft.speed, segment),
         transverse_inertia=ring.transverse_inertia,
         polar_inertia=ring.polar_inertia,
         support_stiffness=stiffness,
@@ -273,14 +279,14 @@ def _closed_form(problem, linear, tilt):
         found["static_transmissibility"] = closed_form.fmr_static(**numbers)
         found["dynamic_transmissibility"] = closed_form.fmr_dynamic(**numbers)
         static, dynamic = (
-            _first(scene.stator.misalignment, problem),
-            _first(scene.rotor.misalignment, problem),
+            _first(scene.stator.misalignment, segment),
+            _first(scene.rotor.misalignment, segment),
         )
     else:
         found["arrangement"] = "FMS"
         found["static_transmissibility"] = closed_form.fms_static(**numbers)
         found["dynamic_transmissibility"] = closed_form.fms_dynamic(**numbers)
-        static, dynamic = _first(scene.stator.misalignment, problem), _first(scene.rotor.runout, problem)
+        static, dynamic = _first(scene.stator.misalignment, segment), _first(scene.rotor.runout, segment)
     most, least = closed_form.superposed(
         found["static_transmissibility"] * abs(static), found["dynamic_transmissibility"] * abs(dynamic)
     )
@@ -288,10 +294,11 @@ def _closed_form(problem, linear, tilt):
     return found
 
 
-def stability(problem, leg_index: int, linear=None) -> dict:
-    """Linear stability with all degrees of freedom at one leg: verdict, whirl ratio of the least damped tilt mode,
+def stability(model, interval=None, linear=None) -> dict:
+    """Linear stability with all degrees of freedom at an interval's start: verdict, whirl ratio of the least damped
+    tilt mode,
     critical speed (rad/s, None if there is none) and resonance speeds."""
-    linear = linear or problem.linear_scene(leg_index)
+    linear = linear or model.linear_scene(interval)
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     tilt = [mode for mode in found if mode.kind == "tilt"]
@@ -302,7 +309,7 @@ def stability(problem, leg_index: int, linear=None) -> dict:
         whirl = sign * least.value.imag / speed
 
     def at_speed(w):
-        return problem.linear_scene(leg_index, speed=w)
+        return model.linear_scene(interval, speed=w)
 
     critical, resonances = None, []
     if tilt:

@@ -47,28 +47,28 @@ def rule(stages: int, radau: bool):
     return c, matrix, b, error, _carried(c, np.array([0.0, 1.0]))
 
 
-def collocation(problem, leg, tau, y, method, tolerance, counts):
-    """Steps of a leg, with the contract of solvers/methods.py; `method` "gauss" or "radau_nodes".
+def collocation(segment, tau, y, method, tolerance, counts):
+    """Steps of a segment, with the contract of contract.py; `method` "gauss" or "radau_nodes".
 
     `tolerance` bounds the embedded error estimate, which is of far lower order than the method: the error itself is
     orders smaller.  A massless ring is integrated through its consistent derivatives.
     """
     radau = method != "gauss"
     c, a, b, error, ends = rule(RADAU if radau else GAUSS, radau)
-    rhs, n = _rates(problem, counts), problem.n_mechanical
-    scale, largest = problem.scales[:n], min(problem.fast_time / PER_PERIOD, problem.longest_step())
-    if not len(problem.rows):
+    rhs, n = _rates(segment, counts), segment.n_mechanical
+    scale, largest = segment.scales[:n], min(segment.shortest_period / PER_PERIOD, segment.longest_step())
+    if not len(segment.rows):
         # Nothing is imposed: what creeps for many periods need not be followed by each of them.
-        largest = max(largest, leg.length / MOST)
+        largest = max(largest, segment.length / MOST)
     order = len(c) + 1
-    h = min(1e-3 * problem.fast_time / PER_PERIOD, leg.length - tau)
+    h = min(1e-3 * segment.shortest_period / PER_PERIOD, segment.length - tau)
     f, stages, inverse, jac, built = rhs(tau, y), None, None, None, None
-    while tau < leg.length:
-        h = leg.length - tau if tau + 1.0001 * h >= leg.length else h
-        if h < SHORTEST * max(leg.length, 1e-300) and tau + h < leg.length:
-            raise SolverFailure(f"collocation gave up {tau:.6g} s into this leg: its step vanished")
+    while tau < segment.length:
+        h = segment.length - tau if tau + 1.0001 * h >= segment.length else h
+        if h < SHORTEST * max(segment.length, 1e-300) and tau + h < segment.length:
+            raise SolverFailure(f"collocation gave up {tau:.6g} s into this segment: its step vanished")
         if jac is None:
-            jac = _jacobian(rhs, tau, y, f, problem)
+            jac = _jacobian(rhs, tau, y, f, segment)
             built = None
         if built != h:
             inverse, built = np.linalg.inv(np.eye(n * len(c)) - h * np.kron(a, jac)), h
@@ -90,7 +90,7 @@ def collocation(problem, leg, tau, y, method, tolerance, counts):
         if size > 1.0:
             h, stages = factor * h, None
             continue
-        tau = leg.length if h == leg.length - tau else tau + h
+        tau = segment.length if h == segment.length - tau else tau + h
         y, f = there, f_there
         yield np.array([tau]), y[None, :].copy(), f[None, :].copy()
         following = min(largest, factor * h)
@@ -103,32 +103,32 @@ def collocation(problem, leg, tau, y, method, tolerance, counts):
         counts.jacobians += jac is None
 
 
-def _rates(problem, counts):
+def _rates(segment, counts):
     """The right-hand side; a massless ring's from its consistent derivatives."""
-    if problem.massless:
-        if len(problem.algebraic):
+    if segment.massless:
+        if len(segment.algebraic):
             raise SolverFailure("collocation needs derivatives, and an undamped massless ring has none")
 
         def consistent(t, y):
             counts.rhs += 1
-            return problem.start_rates(t, y)
+            return segment.start_rates(t, y)
 
         return consistent
 
     def plain(t, y):
         counts.rhs += 1
-        yp = np.empty(problem.size)
-        problem.rhs(t, y, yp)
+        yp = np.empty(segment.size)
+        segment.rhs(t, y, yp)
         return yp
 
     return plain
 
 
-def _jacobian(rhs, t, y, f, problem):
-    n = problem.n_mechanical
+def _jacobian(rhs, t, y, f, segment):
+    n = segment.n_mechanical
     jac, moved = np.empty((n, n)), y.copy()
     for j in range(n):
-        step = 1e-7 * max(abs(y[j]), problem.scales[j])
+        step = 1e-7 * max(abs(y[j]), segment.scales[j])
         moved[j] = y[j] + step
         jac[:, j] = (rhs(t, moved)[:n] - f[:n]) / step
         moved[j] = y[j]

@@ -1,10 +1,17 @@
-"""What every method shares: tolerances, counts, and how one gives up.
+"""What every method and every observer shares: tolerances, counts, how a run ends.
 
-A method is a generator over one leg of a problem: it yields blocks `(times (m,), unknowns (m, size), derivatives or
-None)` of accepted steps, in leg time, the first after the start, the last at the leg's end.
+A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over one segment: it yields blocks `(times
+(m,), unknowns (m, size), derivatives or None)` of accepted steps, in the segment's time, the first after the start
+`tau`, `y`, the last at the segment's end.  A segment offers `n` displacements (first in the unknowns), `n_mechanical`,
+`size`, `length`, `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start_rates`, `scales`, `longest_step`,
+`shortest_period`, `massless`, `algebraic`, and `may_change`: whether its equations may, at any step.
+
+An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
+returns None or a Stop, Change or Retry; `state()` and `restore(state)` for a run that is continued.
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -21,6 +28,56 @@ SAFETY = {
     "expm": (1.0, 0.0),
 }
 TIGHTEST = 3e-14
+
+
+class Status(StrEnum):
+    """How a run ended."""
+
+    OK = "ok"
+    INACCURATE = "inaccurate"
+    COLLAPSED = "collapsed"
+    FAILED = "failed"
+    INTERRUPTED = "interrupted"
+    INVALID = "invalid"
+
+
+class Cause(StrEnum):
+    """Why a run ended where it did; its value is the beginning of the message."""
+
+    DONE = "done"
+    FILM_COLLAPSED = "film collapsed"
+    ASPERITIES_CRUSHED = "asperities crushed flat"
+    METHOD_GAVE_UP = "the method gave up"
+    INTERRUPTED = "interrupted by the user"
+
+
+@dataclass(frozen=True)
+class Stop:
+    """An observer ends the run at `time` (s, of the segment)."""
+
+    time: float
+    cause: Cause
+    message: str
+
+
+@dataclass(frozen=True)
+class Change:
+    """The equations change at `time` (s, of the segment), after step `step`: unknowns `before` and `after`, the new
+    `modes` of the segment, and the `event` to log."""
+
+    step: int
+    time: float
+    before: np.ndarray
+    after: np.ndarray
+    modes: dict
+    event: dict
+
+
+@dataclass(frozen=True)
+class Retry:
+    """The steps shown last are too inexact: again from the last good one, with this `tolerance`."""
+
+    tolerance: float
 
 
 class SolverFailure(RuntimeError):
@@ -53,9 +110,9 @@ def attainable(method: str, memory: float) -> float:
     return TIGHTEST * max(damped, per_period * memory)
 
 
-def absolute_tolerances(problem, tolerance) -> np.ndarray:
+def absolute_tolerances(segment, tolerance) -> np.ndarray:
     """Absolute tolerances (size,) of the unknowns: the tolerance times their scales."""
-    absolute = tolerance * problem.scales
+    absolute = tolerance * segment.scales
     # The sum of absolute powers has kinks and only normalises the audit: no error control on it.
     absolute[-1] = 1e30
     return absolute
@@ -64,6 +121,6 @@ def absolute_tolerances(problem, tolerance) -> np.ndarray:
 def failure_message(method, message, tau) -> str:
     """Why and where a method gave up, and what to try."""
     return (
-        f"{method} gave up {tau:.6g} s into this leg: {message}  "
+        f"{method} gave up {tau:.6g} s into this segment: {message}  "
         "Try a looser run.accuracy, another run.solver, or look whether the film is closing there."
     )

@@ -5,52 +5,57 @@ import numpy as np
 from ..numerics.hermite import integrals
 
 
-class Audit:
-    """Energy balance: largest |dE - sum of works| over the sum of integrals of |power|, at every step.
+class EnergyAudit:
+    """An observer of the energy balance: largest |dE - sum of works| over the sum of integrals of |power|, at every
+    step.
 
-    Works are those among the unknowns, or better, where the powers at the steps are known and steps are short, their
-    integrals: of the errors that a multistep method makes in works, nothing forgets.
+    Works are those among the unknowns; or better (`from_powers`), where steps are short, the integrals of the powers at
+    the steps: of the errors that a multistep method makes in works, nothing forgets.
     """
 
-    def __init__(self, problem):
-        self.problem, self.worst, self.moved, self.done = problem, 0.0, 0.0, 0.0
+    def __init__(self, from_powers: bool = False):
+        self.from_powers, self.segment = from_powers, None
+        self.worst, self.moved, self.done = 0.0, 0.0, 0.0
         self.energy0 = self.works0 = self.last = None
 
-    def begin(self, tau, y):
-        """A leg begins; the first fixes the zero of energy and works.  At a step of an imposed motion the
+    def begin(self, segment, tau, y):
+        """A segment begins; the first fixes the zero of energy and works.  At a step of an imposed motion the
         spring energy jumps (its end is moved in no time): that work is booked here."""
-        energy = float(self.problem.energies(np.array([tau]), y[None, :])[0])
+        self.segment = segment
+        energy = float(segment.energies(np.array([tau]), y[None, :])[0])
         if self.energy0 is None:
-            self.energy0, self.works0 = energy, y[self.problem.works].sum()
+            self.energy0, self.works0 = energy, y[segment.works].sum()
         else:
             self.energy0 += energy - self.last
         self.last = energy
 
-    def take(self, t, ys, begin, end, powers=None):
-        """Check the steps (begin, end] of the running leg; `powers` (m, works) at all of them, or None."""
+    def accept(self, block):
+        """Check the steps of a block."""
+        begin, end, t, ys = block.begin, block.whole, block.t, block.ys
         if end <= begin:
             return
-        energies = self.problem.energies(t[begin + 1 : end + 1], ys[begin + 1 : end + 1])
-        if powers is None:
-            works = ys[begin + 1 : end + 1, self.problem.works].sum(axis=1) - self.works0
+        works_at = self.segment.works
+        energies = self.segment.energies(t[begin + 1 : end + 1], ys[begin + 1 : end + 1])
+        if not self.from_powers:
+            works = ys[begin + 1 : end + 1, works_at].sum(axis=1) - self.works0
         else:
-            total = np.ascontiguousarray(powers.sum(axis=1)[:, None])
+            total = np.ascontiguousarray(block.slopes[:, works_at].sum(axis=1)[:, None])
             works = self.done + np.cumsum(integrals(t, total, begin, end)[:, 0])
             self.done = float(works[-1])
         defects = np.abs(energies - self.energy0 - works)
         self.worst = max(self.worst, float(defects.max()))
         self.last, self.moved = float(energies[-1]), float(ys[end, -1])
 
-    def kept(self) -> dict:
+    def state(self) -> dict:
         """What a continued run needs."""
         return {"worst": self.worst, "moved": self.moved, "energy0": self.energy0, "works0": self.works0,
                 "last": self.last, "done": self.done}  # fmt: skip
 
-    def restore(self, kept: dict):
-        """Go on from `kept`."""
-        self.worst, self.moved, self.last = kept["worst"], kept["moved"], kept["last"]
-        self.energy0, self.works0 = kept["energy0"], kept["works0"]
-        self.done = kept.get("done", 0.0)
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.worst, self.moved, self.last = state["worst"], state["moved"], state["last"]
+        self.energy0, self.works0 = state["energy0"], state["works0"]
+        self.done = state.get("done", 0.0)
 
     def residual(self) -> float:
         """The one number; 0 when nothing is exchanged."""

@@ -23,19 +23,19 @@ BLOCK, ITERATIONS, MATRICES = 64, 12, 6
 SLOW = 0.3
 
 
-def _bdf_of_order_two(problem, leg, tau, y, method, tolerance, counts):
+def _bdf_of_order_two(segment, tau, y, method, tolerance, counts):
     """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
-    _refuse_massless(problem, method)
-    yield from cvode(problem, leg, tau, y, method, tolerance, counts, max_order=2)
+    _refuse_massless(segment, method)
+    yield from cvode(segment, tau, y, method, tolerance, counts, max_order=2)
 
 
-def _scipy(problem, leg, tau, y, method, tolerance, counts):
+def _scipy(segment, tau, y, method, tolerance, counts):
     """SciPy's RK45 (Dormand & Prince, 1980) and LSODA (Petzold, 1983), step by step."""
     from scipy.integrate import LSODA, RK45
 
-    _refuse_massless(problem, method)
+    _refuse_massless(segment, method)
     kind = RK45 if method == "rk45" else LSODA
-    steps = scipy_steps(kind, kind is LSODA, problem, leg, tau, y, method, tolerance, counts)
+    steps = scipy_steps(kind, kind is LSODA, segment, tau, y, method, tolerance, counts)
     while True:
         # LSODA warns before it gives up.
         with warnings.catch_warnings():
@@ -49,15 +49,15 @@ def _scipy(problem, leg, tau, y, method, tolerance, counts):
 # --- fixed steps ------------------------------------------------------------------------------------
 
 
-def _newmark(problem, leg, tau, y, method, tolerance, counts):
+def _newmark(segment, tau, y, method, tolerance, counts):
     """Constant average acceleration.
 
     **Source** Newmark (1959), J. Eng. Mech. 85, beta = 1/4, gamma = 1/2: the trapezoidal rule on displacements and
     rates.  The works are integrated by the same rule.
     """
-    system = _System(problem, method, tolerance, counts)
-    times = system.times(leg, tau)
-    rate, n = system.rates(tau, y), problem.n_mechanical
+    system = _System(segment, method, tolerance, counts)
+    times = system.times(tau)
+    rate, n = system.rates(tau, y), segment.n_mechanical
     before = rate
 
     def advance(t, h, y):
@@ -72,11 +72,11 @@ def _newmark(problem, leg, tau, y, method, tolerance, counts):
     yield from system.march(times, y, advance)
 
 
-def _midpoint(problem, leg, tau, y, method, tolerance, counts):
+def _midpoint(segment, tau, y, method, tolerance, counts):
     """Implicit midpoint rule: symplectic, keeps quadratic invariants (Hairer, Lubich & Wanner, 2006, sec. II.1.1)."""
-    system = _System(problem, method, tolerance, counts)
-    times = system.times(leg, tau)
-    rate, n = system.rates(tau, y), problem.n_mechanical
+    system = _System(segment, method, tolerance, counts)
+    times = system.times(tau)
+    rate, n = system.rates(tau, y), segment.n_mechanical
     before = rate
 
     def advance(t, h, y):
@@ -91,18 +91,18 @@ def _midpoint(problem, leg, tau, y, method, tolerance, counts):
     yield from system.march(times, y, advance)
 
 
-def _generalised_alpha(problem, leg, tau, y, method, tolerance, counts):
+def _generalised_alpha(segment, tau, y, method, tolerance, counts):
     """Generalised-alpha with spectral radius RHO.
 
     **Source** Chung & Hulbert (1993), J. Appl. Mech. 60, 371; forces at the generalised mid-step.  The works by the
     trapezoidal rule, which takes one evaluation more per step.
     """
-    system = _System(problem, method, tolerance, counts)
-    times = system.times(leg, tau)
+    system = _System(segment, method, tolerance, counts)
+    times = system.times(tau)
     alpha_m, alpha_f = (2 * RHO - 1) / (RHO + 1), RHO / (RHO + 1)
     gamma = 0.5 - alpha_m + alpha_f
     beta = 0.25 * (0.5 + gamma) ** 2
-    n, m, at = problem.n, problem.n_mechanical, problem.rate_places
+    n, m, at = segment.n, segment.n_mechanical, segment.rate_places
     rate = system.rates(tau, y)
     a = before = rate[at].copy()
     state = np.empty(m)
@@ -142,33 +142,33 @@ def _generalised_alpha(problem, leg, tau, y, method, tolerance, counts):
 
 
 class _System:
-    """One leg of a problem for a fixed-step implicit method: steps, evaluations, modified Newton."""
+    """One segment for a fixed-step implicit method: steps, evaluations, modified Newton."""
 
-    def __init__(self, problem, method, tolerance, counts):
-        _refuse_massless(problem, method)
-        self.problem, self.method, self.counts = problem, method, counts
-        self.step = min(problem.fast_time * math.sqrt(tolerance), problem.longest_step())
+    def __init__(self, segment, method, tolerance, counts):
+        _refuse_massless(segment, method)
+        self.segment, self.method, self.counts = segment, method, counts
+        self.step = min(segment.shortest_period * math.sqrt(tolerance), segment.longest_step())
         # A hundredth of the local error of a second-order method, above rounding.
         self.small = max(1e-2 * tolerance**1.5, 1e-14)
         self.inverse, self.tied, self.whole = None, None, None
 
-    def times(self, leg, tau):
-        """Start, step and number of the equal steps to the leg's end."""
-        span = leg.length - tau
+    def times(self, tau):
+        """Start, step and number of the equal steps to the segment's end."""
+        span = self.segment.length - tau
         count = max(1, math.ceil(span / self.step * (1 - 1e-12)))
-        return tau, span / count, count, leg.length
+        return tau, span / count, count, self.segment.length
 
     def rates(self, t, y):
         """The whole right-hand side at unknowns `y`."""
-        yp = np.empty(self.problem.size)
-        self.problem.rhs(t, y, yp)
+        yp = np.empty(self.segment.size)
+        self.segment.rhs(t, y, yp)
         self.counts.rhs += 1
         return yp
 
     def march(self, times, y, advance):
         """Blocks of steps."""
         start, h, count, end = times
-        block = FEW if self.problem.sticking else BLOCK
+        block = FEW if self.segment.may_change else BLOCK
         ts, ys = [], []
         for k in range(count):
             y = advance(start + k * h, h, y)
@@ -183,9 +183,9 @@ class _System:
 
         `tied` is what the matrix I - tied J depends on; the matrix is kept over steps until convergence is slow.
         """
-        m, scales = self.problem.n_mechanical, self.problem.scales
-        scale = scales[:m] if place is None else scales[self.problem.rate_places] * self.problem.pace
-        whole = self.whole = np.zeros(self.problem.size) if self.whole is None else self.whole
+        m, scales = self.segment.n_mechanical, self.segment.scales
+        scale = scales[:m] if place is None else scales[self.segment.rate_places] * self.segment.reference_rate
+        whole = self.whole = np.zeros(self.segment.size) if self.whole is None else self.whole
         stale = self.inverse is None or self.tied != tied
         for trial in range(MATRICES):
             # Back to the guess once; then Newton goes on with fresh matrices.
@@ -217,26 +217,26 @@ class _System:
         )
 
     def _refresh(self, t, whole, tied, matrix):
-        problem, m = self.problem, self.problem.n_mechanical
-        full = np.zeros((problem.size, problem.size))
-        problem.jacobian(t, whole.copy(), None, full)
+        segment, m = self.segment, self.segment.n_mechanical
+        full = np.zeros((segment.size, segment.size))
+        segment.jacobian(t, whole.copy(), None, full)
         self.counts.jacobians += 1
         self.counts.rhs += m + 1
         built = matrix(full) if matrix else np.eye(m) - tied * full[:m, :m]
         self.inverse, self.tied = np.linalg.inv(built), tied
 
 
-def _refuse_massless(problem, method):
-    if problem.massless:
+def _refuse_massless(segment, method):
+    if segment.massless:
         raise SolverFailure(f"{method} needs rates, and a massless ring has none: only the residual form (IDA)")
 
 
 def _only_with_rates(steps):
     """A method of solvers/methods.py that says so when the scene has no rates."""
 
-    def guarded(problem, leg, tau, y, method, tolerance, counts):
-        _refuse_massless(problem, method)
-        yield from steps(problem, leg, tau, y, method, tolerance, counts)
+    def guarded(segment, tau, y, method, tolerance, counts):
+        _refuse_massless(segment, method)
+        yield from steps(segment, tau, y, method, tolerance, counts)
 
     return guarded
 

@@ -12,39 +12,53 @@ import numpy as np
 from numba import njit
 
 from ..numerics.hermite import integrals
+from .contract import Retry
+
+# By how much a tolerance is sharpened when errors grow too large.
+SHARPER = 10.0
 
 
 class GlobalErrorEstimate:
-    """Estimated error of the displacements so far, carried along a run of constant conditions; every ring has mass.
-    `worst` is the largest of any displacement at any step, relative to its scale; beyond `allowed` a run had better use
-    a sharper tolerance, down to `least`."""
+    """An observer of the error of the displacements so far, carried along a run of constant conditions; every ring has
+    mass.  `worst` is the largest of any displacement at any step, relative to its scale; beyond `allowed` a run had
+    better use a sharper tolerance than its own `tolerance`, down to `least`."""
 
-    def __init__(self, problem, allowed: float = math.inf, least: float = 0.0):
-        self.problem, self.motion, self.allowed, self.least = problem, problem.exact_motion(), allowed, least
+    def __init__(self, segment, allowed: float = math.inf, least: float = 0.0):
+        self.segment, self.motion, self.allowed, self.least = segment, segment.exact_motion(), allowed, least
+        self.tolerance = least
         self.worst, self.modal = 0.0, np.zeros(len(self.motion.values), dtype=complex)
         self.sound = self.motion.sound
         if self.sound:
-            self.shapes = self.motion.vectors[: problem.n] / problem.scales[: problem.n, None]
+            self.shapes = self.motion.vectors[: segment.n] / segment.scales[: segment.n, None]
 
-    def take(self, t, ys, accelerations, begin, end):
-        """Steps (begin, end] of `t` (m,), `ys` (m, size) with their accelerations (m, n); the others are neighbours."""
-        if end <= begin or not self.sound:
-            return
-        n, places = self.problem.n, self.problem.rate_places
-        left = np.diff(ys[begin : end + 1, : self.problem.n_mechanical], axis=0)
+    def begin(self, segment, tau, y):
+        pass
+
+    def accept(self, block):
+        """The errors of a block's steps; a Retry where they pass what is allowed and a sharper tolerance is left."""
+        if block.whole <= block.begin or not self.sound:
+            return None
+        before, t, ys, begin, end = self.state(), block.t, block.ys, block.begin, block.end
+        n, places = self.segment.n, self.segment.rate_places
+        left = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
         left[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
-        left[:, places] -= integrals(t, accelerations, begin, end)
+        left[:, places] -= integrals(t, block.accelerations, begin, end)
         found = np.empty((end - begin, len(self.modal)), dtype=complex)
         _answer(self.motion.values, np.diff(t[begin : end + 1]), left @ self.motion.inverse.T, self.modal, found)
         self.worst = max(self.worst, float(np.max(np.abs((found @ self.shapes.T).real))))
+        if self.worst > self.allowed and self.tolerance > self.least:
+            self.restore(before)
+            self.tolerance = max(self.tolerance / SHARPER, self.least)
+            return Retry(self.tolerance)
+        return None
 
-    def kept(self) -> dict:
+    def state(self) -> dict:
         """What a continued run needs."""
         return {"worst": self.worst, "real": self.modal.real.tolist(), "imag": self.modal.imag.tolist()}
 
-    def restore(self, kept: dict):
-        """Go on from `kept`."""
-        self.worst, self.modal = kept["worst"], np.array(kept["real"]) + 1j * np.array(kept["imag"])
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.worst, self.modal = state["worst"], np.array(state["real"]) + 1j * np.array(state["imag"])
 
 
 @njit(cache=True)

@@ -1,41 +1,36 @@
-"""Integrate any problem with any method into any sink.
+"""Integrate any run with any method, past any observers, into any sink.
 
-A problem offers `n` displacements first in its unknowns, `legs` (each with `length`), `begin(k)`,
-`rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `start_rates`, `jacobian`, `scales`, `motion`, `energies`,
-`derivatives`, `watch`, `y0`, `memory`, `works` (where they stand), `impulses`, `longest_step`,
-and `sticking`: None, or what finds and makes changes of the equations between steps.
+A run offers `segment(index) -> Segment` for each of its `intervals`, `y0`, `memory`, `last`, and its observers:
+`stick_slip` (None, or what finds changes of the equations between steps), `extrema` and `contacts`.
 A sink takes what has been integrated.  Nothing here knows of seals or files.
 """
 
 import time as clock
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..numerics.hermite import sample
-from .contract import Counts, SolverFailure, tolerance_for
-from .energy_audit import Audit
+from .block import OVERLAP, Block
+from .contract import Cause, Change, Counts, Retry, SolverFailure, Status, Stop, tolerance_for
+from .energy_audit import EnergyAudit
 from .methods import METHODS
 from .sundials import BLOCK, FEW
 
-# Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
-OVERLAP = 4
+# A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
-# By how much a tolerance is sharpened when errors grow too large.
-SHARPER = 10.0
 
 
 @dataclass
 class Outcome:
-    """How a run ended: status, a sentence, counts, wall time (s), last leg, leg time and unknowns."""
+    """How a run ended: status, cause, a sentence, counts, wall time (s), the last segment's index, time in it and
+    unknowns there."""
 
-    status: str
+    status: Status
+    cause: Cause
     message: str
     counts: Counts
     wall_time: float
-    leg: int
+    segment: int
     tau: float
     y: np.ndarray
     tolerance: float
@@ -43,68 +38,123 @@ class Outcome:
 
 
 def solve(
-    problem, method: str, accuracy: float, sink, *, audit=None, errors=None, resume=None, steps=None, tolerance=None
+    run, method: str, accuracy: float, sink, *, audit=None, errors=None, resume=None, steps=None, tolerance=None
 ) -> Outcome:
-    """Integrate a problem leg by leg, chunk by chunk, into a sink.
+    """Integrate a run segment by segment, chunk by chunk, into a sink.
 
-    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an Audit to go on with; `errors` a
-    StepErrors that is shown every step, or None; `resume` = (leg, tau, y) continues.  Another method comes as `steps`,
-    a generator with the contract of solvers/methods.py, called `method`, with its own `tolerance`.
-    The sink offers `due(leg_index) -> leg times of output`, `take(leg_index, times, q, q_rate)`,
-    `state(leg_index, tau, y)`, `event(leg_index, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
+    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with;
+    `errors` a GlobalErrorEstimate that is shown every step, or None; `resume` = (segment, tau, y) continues.  Another
+    method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own `tolerance`.
+    The sink offers `due(segment) -> segment times of output`, `take(segment, times, q, q_rate)`,
+    `state(segment, tau, y)`, `event(segment, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
     Returns an Outcome; a failed run is a result.
     """
-    begun = clock.perf_counter()
-    steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, problem.memory)
-    counts, audit = Counts(), audit or Audit(problem)
-    first, tau, y = resume if resume else (0, 0.0, problem.y0.copy())
-    status, message, index = "ok", "done", first
-
-    def method_over(leg, tau, y):
-        return steps(problem, leg, tau, y, method, tolerance, counts)
-
-    def sharper():
-        """Whether there is a sharper tolerance to go on with, which then is the run's."""
-        nonlocal tolerance
-        found = tolerance > errors.least
-        tolerance = max(tolerance / SHARPER, errors.least)
-        return found
-
+    begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()
+    steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, run.memory)
+    observers = [*([errors] if errors else []), run.extrema, run.contacts, audit]
+    audit.from_powers = errors is not None
+    if errors:
+        errors.tolerance = tolerance
+    index, tau, y = resume if resume else (0, 0.0, run.y0.copy())
+    status, cause, message = Status.OK, Cause.DONE, str(Cause.DONE)
+    segment = run.segment(index)
+    if run.stick_slip and not resume:
+        segment = run.segment(index, run.stick_slip.start(segment, tau, y))
     try:
-        for index in range(first, len(problem.legs)):
-            leg = problem.begin(index)
-            if problem.sticking and index == first and not resume:
-                problem.sticking.start(tau, y)
-            while True:
-                counts.restarts += 1
-                tau, y, collapse = _run_leg(
-                    problem, index, leg, tau, y, method_over, sink, audit, errors, sharper, counts
-                )
-                if collapse or tau >= leg.length:
-                    break
-            if collapse:
-                status, message = "collapsed", collapse
+        while True:
+            counts.restarts += 1
+            found = _integrate(run, segment, tau, y, (steps, method, tolerance, counts), observers, sink)
+            index, tau, y = run.last
+            if isinstance(found, Stop):
+                status, cause, message = Status.COLLAPSED, found.cause, found.message
                 break
-            if index + 1 < len(problem.legs):
-                tau = 0.0
+            if isinstance(found, Retry):
+                tolerance = found.tolerance
+            elif isinstance(found, Change):
+                segment, y = run.segment(index, found.modes), found.after
+                sink.event(segment, tau, found.event)
+            elif segment.last:
+                break
+            if tau >= segment.length:
+                if segment.last:
+                    break
+                segment, tau = run.segment(index + 1), 0.0
     except SolverFailure as failure:
-        status, message, tau, y = "failed", str(failure), *problem.last
+        status, cause, message = Status.FAILED, Cause.METHOD_GAVE_UP, str(failure)
     except KeyboardInterrupt:
-        status, message, tau, y = "interrupted", "interrupted by the user", *problem.last
-    return Outcome(status, message, counts, clock.perf_counter() - begun, index, tau, y, tolerance, audit.residual())
+        status, cause, message = Status.INTERRUPTED, Cause.INTERRUPTED, str(Cause.INTERRUPTED)
+    index, tau, y = run.last if status in (Status.FAILED, Status.INTERRUPTED) else (segment.index, tau, y)
+    spent = clock.perf_counter() - begun
+    return Outcome(status, cause, message, counts, spent, index, tau, y, tolerance, audit.residual())
 
 
-def _advance(problem, leg, method_over, tau, y, until):
+def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Retry | None:
+    """Integrate a segment from `tau`, to its end (None) or to what an observer finds; `run.last` says how far."""
+    steps, method, tolerance, counts = how
+
+    def method_over(segment, tau, y):
+        return steps(segment, tau, y, method, tolerance, counts)
+
+    sticking, change = run.stick_slip, None
+    for observer in (*observers, *([sticking] if sticking else [])):
+        observer.begin(segment, tau, y)
+    t, ys = np.array([tau]), y[None, :].copy()
+    yps = segment.start_rates(tau, y)[None, :] if segment.massless else np.zeros_like(ys)
+    due = sink.due(segment)
+    done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
+    watched = looked = 0
+    run.last = (segment.index, tau, y)
+    for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else BLOCK):
+        counts.steps += len(block_t)
+        t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
+        yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
+        if sticking:
+            # It cuts the steps before anybody else sees them.
+            change = sticking.accept(
+                Block(segment, t, ys, yps, looked, len(t) - 1),
+                lambda tau, y, until: _advanced(method_over, segment, tau, y, until),
+            )
+            if change:
+                t, ys = np.append(t[: change.step + 1], change.time), np.vstack([ys[: change.step + 1], change.before])
+                yps, failed = np.zeros_like(ys), []
+            looked = len(t) - 1
+        count = len(t)
+        last_block = t[-1] >= segment.length or bool(failed) or change is not None
+        # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
+        upto = count - 1 if last_block else count - 1 - OVERLAP
+        if upto > watched:
+            block, stop = Block(segment, t, ys, yps, watched, upto), None
+            for observer in observers:
+                found = observer.accept(block)
+                if isinstance(found, Retry):
+                    return found
+                if isinstance(found, Stop):
+                    block, stop = block.cut(found.time), found
+            done = _hand_over(block, due, done, sink)
+            if stop:
+                run.last = (segment.index, stop.time, _end_of(block))
+                return stop
+            run.last = (segment.index, float(t[upto]), ys[upto].copy())
+            sink.state(segment, *run.last[1:])
+        if change:
+            return change
+        # Keep neighbours to the left of what comes next.
+        keep = max(0, upto - OVERLAP)
+        t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep
+    return None
+
+
+def _advanced(method_over, segment, tau, y, until):
     """Unknowns at `until`, integrated from tau."""
-    if until - tau <= CRUMB * max(abs(until), leg.length):
+    if until - tau <= CRUMB * max(abs(until), segment.length):
         # Too short for any solver's first step: nothing moves in it.
         return y.copy()
-    for _, ys, _ in method_over(replace(leg, span=Fraction(until)), tau, y):
+    for _, ys, _ in method_over(segment.until(until), tau, y):
         last = ys[-1]
     return last.copy()
 
 
-def _blocks(steps, least):
+def _gathered(steps, least):
     """Steps gathered into blocks of at least `least`, so that what follows is done on arrays; a solver that gives
     up hands over what it has before it says so."""
     waiting, count = [], 0
@@ -129,93 +179,22 @@ def _joined(waiting):
     return t, y, yp
 
 
-def _run_leg(problem, index, leg, tau, y, method_over, sink, audit, errors, sharper, counts):
-    """Integrate one leg, or up to a change of its equations or of the tolerance; returns the last leg time, unknowns,
-    and the sentence of a collapse (or "")."""
-    sticking = problem.sticking
-    steps, change = method_over(leg, tau, y), None
-    t, ys = np.array([tau]), y[None, :].copy()
-    yps = problem.start_rates(tau, y)[None, :] if problem.massless else np.zeros_like(ys)
-    audit.begin(tau, y)
-    due = sink.due(index)
-    done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
-    watched = looked = 0
-    problem.last = (tau, y)
-    for block_t, block_y, block_yp, *failed in _blocks(steps, BLOCK if sticking is None else FEW):
-        counts.steps += len(block_t)
-        t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
-        yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
-        if sticking:
-            change = sticking.find(t, ys, looked, len(t) - 1, partial(_advance, problem, leg, method_over))
-            if change:
-                step, at, there, ring = change
-                t, ys = np.append(t[: step + 1], at), np.vstack([ys[: step + 1], there])
-                yps, failed = np.zeros_like(ys), []
-            looked = len(t) - 1
-        count = len(t)
-        last_block = t[-1] >= leg.length or bool(failed) or change is not None
-        # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
-        upto = count - 1 if last_block else count - 1 - OVERLAP
-        if upto > watched:
-            q, q_rate = problem.motion(ys, yps)
-            # A massless ring has none.
-            slopes = None if problem.massless else problem.derivatives(t, ys)
-            accelerations = None if slopes is None else np.ascontiguousarray(slopes[:, problem.rate_places])
-            if errors is not None:
-                before = errors.kept()
-                errors.take(t, ys, accelerations, watched, upto)
-                if errors.worst > errors.allowed and sharper():
-                    errors.restore(before)
-                    return *problem.last, ""
-            fallen = problem.watch(index, t, q, q_rate, problem.impulses(ys), count, watched, upto)
-            checked = upto if fallen < 0 else int(np.searchsorted(t, fallen)) - 1
-            audit.take(t, ys, watched, checked, slopes[:, problem.works] if errors is not None else None)
-            motion = t, q, q_rate, accelerations
-            done = _hand_over(index, motion, watched, upto, due, done, fallen, sink)
-            if fallen >= 0:
-                here, rate = _at(motion, watched, upto, np.array([fallen]))
-                end = ys[int(np.searchsorted(t, fallen))].copy()
-                end[: problem.n_mechanical] = problem.unknowns(here[0], rate[0])[: problem.n_mechanical]
-                return fallen, end, problem.collapse_sentence(index, fallen)
-            problem.last = (float(t[upto]), ys[upto].copy())
-            sink.state(index, *problem.last)
-        if change:
-            tau, y = float(t[-1]), ys[-1].copy()
-            y, event = sticking.change(tau, y, ring)
-            sink.event(index, tau, event)
-            return tau, y, ""
-        # Keep neighbours to the left of what comes next.
-        keep = max(0, upto - OVERLAP)
-        t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep
-    return float(t[-1]), ys[-1].copy(), ""
+def _end_of(block) -> np.ndarray:
+    """Unknowns where a block has been cut; works are those of the next step."""
+    y, segment = block.ys[block.end].copy(), block.segment
+    q, q_rate = block.at(np.array([block.until]))
+    there = segment.model.vector(q[0], q_rate[0])
+    y[: segment.n_mechanical] = there[: segment.n_mechanical]
+    return y
 
 
-def _at(motion, begin, end, times):
-    """Displacements and rates at `times` inside steps [begin, end] of a `motion`: times, displacements, rates and
-    accelerations at steps.
-
-    Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
-    magnify their error by one over the step.
-    """
-    first, last = max(0, begin - OVERLAP), min(len(motion[0]), end + OVERLAP + 1)
-    t, q, q_rate, acceleration = (None if part is None else part[first:last] for part in motion)
-    count = last - first
-    out, slope = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
-    sample(t, q, q_rate, count, begin - first, end - first, times, out, slope)
-    if acceleration is None:
-        return out, slope
-    rate = np.empty_like(out)
-    sample(t, q_rate, acceleration, count, begin - first, end - first, times, rate, slope)
-    return out, rate
-
-
-def _hand_over(index, motion, begin, end, due, done, fallen, sink) -> int:
-    """Output due in steps [begin, end], or up to a collapse and at it; returns how many are done."""
-    until = fallen if fallen >= 0 else motion[0][end]
+def _hand_over(block, due, done, sink) -> int:
+    """Output due in a block, and at its cut; returns how many are done."""
+    until = block.t[block.end] if block.until is None else block.until
     last = int(np.searchsorted(due, until, side="right"))
     times = due[done:last]
-    if fallen >= 0 and not (len(times) and times[-1] == fallen):
-        times = np.append(times, fallen)
+    if block.until is not None and not (len(times) and times[-1] == until):
+        times = np.append(times, until)
     if len(times):
-        sink.take(index, times, *_at(motion, begin, end, times))
+        sink.take(block.segment, times, *block.at(times))
     return last

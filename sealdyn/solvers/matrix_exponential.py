@@ -3,7 +3,7 @@
 import numpy as np
 
 # What lies between exact steps is interpolated (numerics/hermite.py); that error is at most this share of the
-# tolerance.  For exp(x) through six steps of x radians it is BY x^12 at most, or WORST; at a leg's ends, where all
+# tolerance.  For exp(x) through six steps of x radians it is BY x^12 at most, or WORST; at a segment's ends, where all
 # neighbours are on one side, 2000 times as much: there the steps are half as long.
 BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
 # Steps at once: while their length changes fast, and as long as it would not change by much; at the ends; points of the
@@ -11,22 +11,22 @@ BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
 CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5
 
 
-def expm(problem, leg, tau, y, method, tolerance, counts):
+def expm(segment, tau, y, method, tolerance, counts):
     """Exact steps of a linear scene, as long as what moves in it allows; the works by Gauss quadrature on them."""
-    motion, n, fresh = problem.exact_motion(), problem.n_mechanical, True
+    motion, n, fresh = segment.exact_motion(), segment.n_mechanical, True
     points, weights = np.polynomial.legendre.leggauss(POINTS)
-    while tau < leg.length:
+    while tau < segment.length:
         free = y[:n] - motion.forced([tau])[0]
-        step, count = _exact_step(*motion.parts(free, problem.scales[:n]), tolerance)
-        widths = _widths(leg.length - tau, step, AT_ENDS if fresh else count, fresh)
+        step, count = _exact_step(*motion.parts(free, segment.scales[:n]), tolerance)
+        widths = _widths(segment.length - tau, step, AT_ENDS if fresh else count, fresh)
         times, fresh = tau + np.cumsum(widths), False
-        if leg.length - times[-1] < 0.5 * widths[-1]:
-            times[-1] = leg.length
+        if segment.length - times[-1] < 0.5 * widths[-1]:
+            times[-1] = segment.length
         inside = (times[:, None] - 0.5 * widths[:, None] * (1.0 - points)).ravel()
         at, count = np.concatenate([times, inside]), len(times)
-        states = np.zeros((len(at), problem.size))
+        states = np.zeros((len(at), segment.size))
         states[:, :n] = motion.forced(at) + motion.free(free, at - tau)
-        powers = problem.derivatives(inside, states[count:])[:, n:].reshape(count, POINTS, -1)
+        powers = segment.derivatives(inside, states[count:])[:, n:].reshape(count, POINTS, -1)
         counts.rhs += len(inside)
         states[:count, n:] = y[n:] + np.cumsum(0.5 * widths[:, None] * (weights @ powers), axis=0)
         tau, y = float(times[-1]), states[count - 1].copy()

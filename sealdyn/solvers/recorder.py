@@ -6,27 +6,27 @@ import numpy as np
 class Recorder:
     """A sink that keeps displacements in memory, every `interval` seconds; none without an interval."""
 
-    def __init__(self, problem, interval: float | None = None):
-        self.problem, self.interval, self.parts = problem, interval, []
+    def __init__(self, interval: float | None = None):
+        self.interval, self.parts = interval, []
 
-    def due(self, index):
-        leg = self.problem.legs[index]
+    def due(self, segment):
+        """Segment times of output."""
         if self.interval is None:
             return np.empty(0)
-        first = max(0, int(np.ceil(leg.time / self.interval - 1e-9)))
-        taus = (first + np.arange(int(leg.length / self.interval) + 2)) * self.interval - leg.time
-        end = leg.length * (1 + 1e-12)
-        last = index + 1 == len(self.problem.legs)
-        return np.clip(taus[(taus >= 0) & ((taus < leg.length * (1 - 1e-12)) | last) & (taus <= end)], 0, leg.length)
+        first, length = max(0, int(np.ceil(segment.time / self.interval - 1e-9))), segment.length
+        taus = (first + np.arange(int(length / self.interval) + 2)) * self.interval - segment.time
+        inside = (taus >= 0) & ((taus < length * (1 - 1e-12)) | segment.last) & (taus <= length * (1 + 1e-12))
+        return np.clip(taus[inside], 0, length)
 
-    def take(self, index, taus, q, q_rate):
-        self.parts.append((self.problem.legs[index].time + taus, q, q_rate))
+    def take(self, segment, taus, q, q_rate):
+        """Displacements and rates (m, n) at segment times (m,)."""
+        self.parts.append((segment.time + taus, q, q_rate))
 
-    def state(self, index, tau, y):
-        pass
+    def state(self, segment, tau, y):
+        """What has been reached."""
 
-    def event(self, index, tau, event):
-        pass
+    def event(self, segment, tau, event):
+        """What has happened."""
 
     def arrays(self):
         """Times (m,), displacements (m, n), rates (m, n)."""

@@ -5,17 +5,17 @@ import numpy as np
 from .contract import SolverFailure, absolute_tolerances, failure_message
 
 
-def dop853_or_radau(problem, leg, tau, y, method, tolerance, counts):
+def dop853_or_radau(segment, tau, y, method, tolerance, counts):
     """Steps of SciPy's DOP853 or Radau."""
     from scipy.integrate import DOP853, Radau
 
     kind = DOP853 if method == "dop853" else Radau
-    yield from scipy_steps(kind, kind is Radau, problem, leg, tau, y, method, tolerance, counts)
+    yield from scipy_steps(kind, kind is Radau, segment, tau, y, method, tolerance, counts)
 
 
-def scipy_steps(kind, implicit, problem, leg, tau, y, method, tolerance, counts):
-    """Steps of one of SciPy's solvers (the class `kind`); an `implicit` one is given the problem's Jacobian."""
-    inner = problem.rhs
+def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
+    """Steps of one of SciPy's solvers (the class `kind`); an `implicit` one is given the segment's Jacobian."""
+    inner = segment.rhs
 
     def counted(t, y):
         counts.rhs += 1
@@ -25,17 +25,19 @@ def scipy_steps(kind, implicit, problem, leg, tau, y, method, tolerance, counts)
 
     def differences(t, y):
         # SciPy's own steps of the tolerance times 1e-8 drown beside a clearance.
-        matrix = np.empty((problem.size, problem.size))
+        matrix = np.empty((segment.size, segment.size))
         counts.jacobians += 1
-        counts.rhs += problem.n_mechanical
-        problem.jacobian(t, np.array(y), None, matrix)
+        counts.rhs += segment.n_mechanical
+        segment.jacobian(t, np.array(y), None, matrix)
         return matrix
 
     options = {"jac": differences} if implicit else {}
     # SciPy's own floor on rtol is 100 eps; the absolute part carries the accuracy below it.  Its norm is an average:
     # the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
-    relative, absolute = max(tolerance, 2.3e-14), absolute_tolerances(problem, tolerance)
-    solver = kind(counted, tau, y, leg.length, rtol=relative, atol=absolute, max_step=problem.longest_step(), **options)
+    relative, absolute = max(tolerance, 2.3e-14), absolute_tolerances(segment, tolerance)
+    solver = kind(
+        counted, tau, y, segment.length, rtol=relative, atol=absolute, max_step=segment.longest_step(), **options
+    )
     while solver.status == "running":
         # A trial stage may fly off and overflow; the error norm then refuses the step.
         with np.errstate(all="ignore"):

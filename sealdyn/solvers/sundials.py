@@ -11,29 +11,29 @@ BLOCK, FIRST_CHUNK, STEPS_PER_CHUNK, BUDGET = 192, 20.0, 3000, 400.0
 FEW = 12
 
 
-def _longest(problem):
+def _longest(segment):
     """Longest step as SUNDIALS wants it: 0 means any."""
-    longest = problem.longest_step()
+    longest = segment.longest_step()
     return longest if np.isfinite(longest) else 0.0
 
 
-def _in_chunks(solver, problem, leg, tau, y, yp, method, counts, allow):
-    """Steps of a SUNDIALS solver over a leg, many at a time.
+def _in_chunks(solver, segment, tau, y, yp, method, counts, allow):
+    """Steps of a SUNDIALS solver over a segment, many at a time.
 
     `solve` over two times returns every step at half the cost of asking for them one by one, but cannot be
     stopped: so a chunk may cost so many evaluations only (`allow`), else it is walked again step by step.
     The integrator restarts at each chunk, some thirty short steps in thousands.
     """
-    span, end = FIRST_CHUNK * problem.fast_time, leg.length
-    if problem.sticking:
+    span, end = FIRST_CHUNK * segment.shortest_period, segment.length
+    if segment.may_change:
         # Equations that may change at any step are not integrated far ahead.
         yield from _one_by_one(solver, end, tau, y, yp, method, FEW)
         return
     while tau < end:
-        # No crumb at the end of a leg: its steps would drown in rounding.
+        # No crumb at the end of a segment: its steps would drown in rounding.
         stop = end if tau + 1.2 * span >= end else tau + span
         before = counts.rhs
-        allow(int(BUDGET * (stop - tau) / problem.fast_time) + 2000)
+        allow(int(BUDGET * (stop - tau) / segment.shortest_period) + 2000)
         try:
             result = (
                 solver.solve(np.array([tau, stop]), y) if yp is None else solver.solve(np.array([tau, stop]), y, yp)
@@ -92,11 +92,11 @@ def _counting(counts):
     return check, allow
 
 
-def cvode(problem, leg, tau, y, method, tolerance, counts, **options):
+def cvode(segment, tau, y, method, tolerance, counts, **options):
     """Steps of CVODE, Adams if so called, else BDF; `options` of its own, such as `max_order`."""
     from sksundae.cvode import CVODE
 
-    rhs, jacobian = problem.rhs, problem.jacobian
+    rhs, jacobian = segment.rhs, segment.jacobian
     check, allow = _counting(counts)
 
     def counted(t, y, yp):
@@ -105,34 +105,34 @@ def cvode(problem, leg, tau, y, method, tolerance, counts, **options):
 
     def counted_jacobian(t, y, yp, jac):
         counts.jacobians += 1
-        counts.rhs += problem.n_mechanical
+        counts.rhs += segment.n_mechanical
         jacobian(t, y, yp, jac)
 
     solver = CVODE(
         counted,
         method="Adams" if method == "adams" else "BDF",
         rtol=tolerance,
-        atol=absolute_tolerances(problem, tolerance),
+        atol=absolute_tolerances(segment, tolerance),
         jacfn=counted_jacobian,
-        max_step=_longest(problem),
+        max_step=_longest(segment),
         max_num_steps=1_000_000,
         **options,
     )
-    yield from _in_chunks(solver, problem, leg, tau, y, None, method, counts, allow)
+    yield from _in_chunks(solver, segment, tau, y, None, method, counts, allow)
 
 
-def ida(problem, leg, tau, y, method, tolerance, counts):
+def ida(segment, tau, y, method, tolerance, counts):
     """Steps of IDA, on the residual form."""
     from sksundae.ida import IDA
 
-    inner = problem.residual
+    inner = segment.residual
     check, allow = _counting(counts)
 
     def counted(t, y, yp, res):
         check()
         inner(t, y, yp, res)
 
-    options = {"algebraic_idx": problem.algebraic} if len(problem.algebraic) else {}
-    solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(problem, tolerance), max_num_steps=1_000_000,
-                 max_step=_longest(problem), **options)  # fmt: skip
-    yield from _in_chunks(solver, problem, leg, tau, y, problem.start_rates(tau, y), method, counts, allow)
+    options = {"algebraic_idx": segment.algebraic} if len(segment.algebraic) else {}
+    solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(segment, tolerance), max_num_steps=1_000_000,
+                 max_step=_longest(segment), **options)  # fmt: skip
+    yield from _in_chunks(solver, segment, tau, y, segment.start_rates(tau, y), method, counts, allow)

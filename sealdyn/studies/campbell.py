@@ -36,19 +36,19 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
     scene = frozen_at_start(scenario.scene)
-    problem, own = Model(scene, 1.0), abs(scene.shaft.speed)
+    model, own = Model(scene), abs(scene.shaft.speed)
     top = settings.speed_to if settings.speed_to is not None else 6 * own or 6000.0
     speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
 
     def pencil(w):
-        linear = problem.linear_scene(speed=float(w))
+        linear = model.linear_scene(speed=float(w))
         n = len(linear.mass)
         zero, one = np.zeros((n, n)), np.eye(n)
         left = np.block([[zero, one], [-linear.stiffness, -linear.damping]])
         return left, np.block([[one, zero], [zero, linear.mass]])
 
     values, shapes = follow(pencil, speeds, tools.say)
-    count = len(problem.linear_scene().mass)
+    count = len(model.linear_scene().mass)
     modes = described(values, shapes[:, :, :count], speeds)
     more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
     lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)

@@ -73,41 +73,41 @@ class State:
 def run(scenario, settings, tools) -> dict:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
-    problem, speed = Model(scene, 1.0, 1e-10), scene.shaft.speed
-    stiffness, damping = matrices(problem, State())
+    model, speed = Model(scene, 1e-10), scene.shaft.speed
+    stiffness, damping = matrices(model, State())
     answer = {
         "order": list(ORDER),
-        "film": problem.film_name,
+        "film": model.interface.name,
         "stiffness": stiffness.tolist(),
         "damping": damping.tolist(),
         "stiffness_units": STIFFNESS_UNITS,
         "damping_units": DAMPING_UNITS,
-        "at": _at(problem, State(), speed),
-        "tilted": _tilted(problem, settings, speed),
-        "against_speed": _against_speed(problem, settings, speed),
-        "against_clearance": _against_clearance(scene, problem, settings),
-        "against_tilt": _against_tilt(problem, settings),
+        "at": _at(model, State(), speed),
+        "tilted": _tilted(model, settings, speed),
+        "against_speed": _against_speed(model, settings, speed),
+        "against_clearance": _against_clearance(scene, model, settings),
+        "against_tilt": _against_tilt(model, settings),
     }
     return answer | {"verdict": _verdict(answer)}
 
 
-def matrices(problem: Model, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+def matrices(model: Model, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
     lose per displacement and per rate of (dz, g_x, g_y).  Raises ValueError where the faces touch."""
-    s = gap_state(problem, state, speed)
-    thinnest = smallest_gap(problem.face, state.dz, abs(state.tilt))[0]
-    if thinnest <= problem.face[4]:
+    s = gap_state(model, state, speed)
+    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
+    if thinnest <= model.face[4]:
         raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
     # Eight differences reach four steps to either side: stay clear of the other face.
-    length = STEP * min(problem.clearance, thinnest)
-    tilt = length / problem.face[1]
+    length = STEP * min(model.clearance, thinnest)
+    tilt = length / model.face[1]
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(problem.film.wrench, problem.f, s, (length, tilt, length * pace, tilt * pace))
+    return linearise(model.interface.film.wrench, model.f, s, (length, tilt, length * pace, tilt * pace))
 
 
-def gap_state(problem: Model, state: State, speed: float | None = None) -> np.ndarray:
+def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
     """The gap-state array of a state at a shaft speed (rad/s)."""
-    scene, s = problem.scene, np.zeros(GAP_STATE_SIZE)
+    scene, s = model.scene, np.zeros(GAP_STATE_SIZE)
     w_r, w_s = scene.shaft.speed if speed is None else speed, scene.stator.speed
     s[DZ], s[GX], s[GY] = state.dz, state.tilt.real, state.tilt.imag
     turning = 1j * state.whirl * state.tilt
@@ -118,23 +118,23 @@ def gap_state(problem: Model, state: State, speed: float | None = None) -> np.nd
     return s
 
 
-def opened(problem: Model, tilt: complex, whirl: float) -> float:
+def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
-    scene = problem.scene
+    scene = model.scene
     stiffness = [ring.support.axial_stiffness for ring in (scene.stator, scene.rotor) if ring.support]
     # Two supports carry the same force: in series.
     support = 1 / sum(1 / k for k in stiffness) if all(stiffness) else 0.0
-    leg = problem.leg
-    closing = problem.closing.over(leg, scene.film)[0]
+    leg = model.start
+    closing = model.closing.over(leg, scene.film)[0]
 
     def excess(dz):
-        s = gap_state(problem, State(dz, tilt, whirl))
-        problem.film.wrench(problem.f, s)
+        s = gap_state(model, State(dz, tilt, whirl))
+        model.interface.film.wrench(model.f, s)
         return s[FORCE] - closing - support * dz
 
-    thinnest = smallest_gap(problem.face, 0.0, abs(tilt))[0]
+    thinnest = smallest_gap(model.face, 0.0, abs(tilt))[0]
     # From faces that all but touch upwards.
-    low, reach = 1.01 * problem.face[4] - thinnest, problem.clearance
+    low, reach = 1.01 * model.face[4] - thinnest, model.clearance
     high = max(low, 0.0)
     while excess(high) > 0 and high < 100 * reach:
         low, high = high, high + 0.25 * reach
@@ -143,11 +143,11 @@ def opened(problem: Model, tilt: complex, whirl: float) -> float:
     return float(brentq(excess, low, high, xtol=1e-9 * reach))
 
 
-def steady_tilt(problem: Model) -> tuple[complex, float, str]:
+def steady_tilt(model: Model) -> tuple[complex, float, str]:
     """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
-    linear = problem.linear_scene()
+    linear = model.linear_scene()
     parts: dict[float, complex] = {}
-    for harmonic in problem.harmonics():
+    for harmonic in model.segment().harmonics():
         g = linear.relative(harmonic, linear.response(harmonic))
         # Re(g e^{iwt}) is a forward and a backward circle.
         w = harmonic.frequency
@@ -163,28 +163,28 @@ def steady_tilt(problem: Model) -> tuple[complex, float, str]:
     return 0.0, 0.0, "no forcing tilts this scene: aligned"
 
 
-def _tilted(problem, settings, speed) -> dict:
+def _tilted(model, settings, speed) -> dict:
     if settings.tilt is not None:
         tilt, whirl, said = cmath.rect(settings.tilt, settings.tilt_direction), 0.0, "mean tilt given"
     else:
-        tilt, whirl, said = steady_tilt(problem)
+        tilt, whirl, said = steady_tilt(model)
     try:
-        state = State(opened(problem, tilt, whirl), tilt, whirl)
-        stiffness, damping = matrices(problem, state)
+        state = State(opened(model, tilt, whirl), tilt, whirl)
+        stiffness, damping = matrices(model, state)
     except ValueError as reason:
         return {"stiffness": None, "damping": None, "at": None, "said": f"{said}: {reason}"}
     return {
         "stiffness": stiffness.tolist(),
         "damping": damping.tolist(),
-        "at": _at(problem, state, speed),
+        "at": _at(model, state, speed),
         "said": said,
     }
 
 
-def _at(problem, state: State, speed) -> dict:
-    thinnest = smallest_gap(problem.face, state.dz, abs(state.tilt))[0]
+def _at(model, state: State, speed) -> dict:
+    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
     return {
-        "clearance": problem.clearance,
+        "clearance": model.clearance,
         "axial_opening": state.dz,
         "tilt_x": state.tilt.real,
         "tilt_y": state.tilt.imag,
@@ -212,32 +212,32 @@ def _columns(name, values, rows) -> dict:
     }
 
 
-def _against_speed(problem, settings, speed) -> dict:
+def _against_speed(model, settings, speed) -> dict:
     top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
     speeds = np.linspace(0.0, top, max(2, settings.points))
-    return _columns("speed", speeds, [_row(matrices(problem, State(), w)) for w in speeds])
+    return _columns("speed", speeds, [_row(matrices(model, State(), w)) for w in speeds])
 
 
-def _against_clearance(scene, problem, settings) -> dict:
-    low = settings.clearance_from or 0.3 * problem.clearance
-    high = settings.clearance_to or 3 * problem.clearance
+def _against_clearance(scene, model, settings) -> dict:
+    low = settings.clearance_from or 0.3 * model.clearance
+    high = settings.clearance_to or 3 * model.clearance
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(_row(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1.0, 1e-10), State())))
+            rows.append(_row(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1e-10), State())))
         except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)
 
 
-def _against_tilt(problem, settings) -> dict:
+def _against_tilt(model, settings) -> dict:
     """About a standing tilt up to nearly touching, the faces opening as they tilt."""
-    touch = min(h / r for r, h in aligned_gaps(problem.scene.film, problem.clearance))
+    touch = min(h / r for r, h in aligned_gaps(model.scene.film, model.clearance))
     tilts, rows, opening = np.linspace(0.0, 0.95 * touch, max(2, settings.points)), [], []
     for tilt in tilts:
         try:
-            dz = opened(problem, complex(tilt), 0.0)
-            rows.append(_row(matrices(problem, State(dz, complex(tilt), 0.0))))
+            dz = opened(model, complex(tilt), 0.0)
+            rows.append(_row(matrices(model, State(dz, complex(tilt), 0.0))))
             opening.append(dz)
         except ValueError as error:
             rows.append({"failed": str(error)})

@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from ..analysis.shooting import NoOrbit, Shooter
 from ..dynamics import modes
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..scenario.reader import parse_scenario
 from ..scenario.settings import with_values
 
@@ -114,14 +115,14 @@ def linear_onset(scene, key: str) -> tuple[float, float]:
     Raises NoOrbit if the linear response does not depend on the key."""
 
     def excess(value):
-        problem = Model(scene(value), 1.0, 1e-6)
-        linear = problem.linear_scene()
-        answers = [(h, linear.response(h)) for h in problem.harmonics()]
-        most, _, closing = modes.steady_extremes(linear, answers, problem.period())
-        inner, outer = problem.clearance, problem.clearance + problem.face[3] * (problem.face[1] - problem.face[0])
-        inner_left = inner - closing - problem.face[0] * most
-        outer_left = outer - closing - problem.face[1] * most
-        return min(inner_left, outer_left) / problem.clearance, problem.face[0 if inner_left <= outer_left else 1]
+        model = Model(scene(value), 1e-6)
+        linear = model.linear_scene()
+        answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
+        most, _, closing = modes.steady_extremes(linear, answers, RunState(model, 1.0).period())
+        inner, outer = model.clearance, model.clearance + model.face[3] * (model.face[1] - model.face[0])
+        inner_left = inner - closing - model.face[0] * most
+        outer_left = outer - closing - model.face[1] * most
+        return min(inner_left, outer_left) / model.clearance, model.face[0 if inner_left <= outer_left else 1]
 
     high = 1e-6
     while excess(high)[0] > 0:
@@ -150,19 +151,19 @@ class Follower:
         orbit = shooter.find(guess, self.monodromy, target=target, most=25)
         self.monodromy, self.start = orbit.monodromy, orbit.start
         self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
-        low, problem = orbit.extremes["h_min"], shooter.problem
-        axial = self._mean_axial(problem, orbit)
+        low, model = orbit.extremes["h_min"], shooter.model
+        axial = self._mean_axial(model, orbit)
         self.path.append(
             {
                 "forcing": value,
                 "h_min": low["value"],
                 "radius": low["radius"],
                 "tilt": orbit.extremes["relative_misalignment"]["max"],
-                "clearance": problem.clearance,
+                "clearance": model.clearance,
                 "axial": axial,
             }
         )
-        return low["value"] / problem.clearance - self.margin
+        return low["value"] / model.clearance - self.margin
 
     def _guess(self, value, shooter):
         """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
@@ -182,10 +183,12 @@ class Follower:
         return linear + total
 
     @staticmethod
-    def _mean_axial(problem, orbit):
+    def _mean_axial(model, orbit):
         """Axial opening of the gap (m) at the start of the orbit: how far the seal has lifted."""
         places = [
-            (i, 1.0 if name == "stator_z" else -1.0) for i, name in enumerate(problem.names) if name.endswith("_z")
+            (i, 1.0 if name == "stator_z" else -1.0)
+            for i, name in enumerate(model.unknowns.names)
+            if name.endswith("_z")
         ]
         return float(sum(sign * orbit.start[i] for i, sign in places))
 

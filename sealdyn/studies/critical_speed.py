@@ -16,7 +16,7 @@ from ..analysis.whirl import (
     bounded_or_not,
     branch,
     contact_tilt_aligned,
-    free_problem,
+    free_model,
     growth_rate,
     tipping_disturbance,
 )
@@ -53,31 +53,31 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """The threshold by three roads, and the whirl beyond it."""
     scene = scenario.scene
-    problem = free_problem(scene, initially(scene.shaft.speed))
-    pace = max((abs(mode.value) for mode in problem.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
-    eigenvalue = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
-    formula, why = by_formula(problem)
+    model = free_model(scene, initially(scene.shaft.speed))
+    pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
+    eigenvalue = modes.critical_speed(lambda w: model.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
+    formula, why = by_formula(model)
     base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
-    base |= {"method": "ida" if problem.massless else settings.method, "accuracy": settings.accuracy}
+    base |= {"method": "ida" if model.unknowns.massless else settings.method, "accuracy": settings.accuracy}
     base |= {"turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
-    answer |= in_time(problem, eigenvalue, base, tools, pace)
-    answer["nonlinear"] = beyond(problem, scene, eigenvalue, base, settings, tools)
+    answer |= in_time(model, eigenvalue, base, tools, pace)
+    answer["nonlinear"] = beyond(model, scene, eigenvalue, base, settings, tools)
     return {**answer, "verdict": sentences(answer)}
 
 
-def by_formula(problem) -> tuple[float | None, str]:
+def by_formula(model) -> tuple[float | None, str]:
     """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
-    scene = problem.scene
-    if problem.floats[STATOR] and problem.floats[ROTOR]:
+    scene = model.scene
+    if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
         return None, "both rings float: no published formula"
     if scene.stator.speed != 0.0:
         return None, "the stator turns: no published formula"
-    kind, ring = ("fmr", scene.rotor) if problem.floats[ROTOR] else ("fms", scene.stator)
+    kind, ring = ("fmr", scene.rotor) if model.unknowns.floats[ROTOR] else ("fms", scene.stator)
     if ring.transverse_inertia == 0.0:
         return None, "a ring without inertia has no threshold"
     stiffness, damping = ring.support.tilt()
-    film_k, film_d = problem.film_matrices()
+    film_k, film_d = model.film_matrices()
     try:
         speed = getattr(closed_form, f"{kind}_critical_speed")(
             transverse_inertia=ring.transverse_inertia,
@@ -98,7 +98,7 @@ def growth(point: dict) -> dict:
     return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
 
 
-def in_time(problem, eigenvalue, base, tools, pace) -> dict:
+def in_time(model, eigenvalue, base, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
     if eigenvalue is None:
         speeds = [factor * pace for factor in (0.3, 1.0, 3.0, 10.0)]
@@ -171,15 +171,15 @@ def fate(point: dict) -> dict:
     return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
 
 
-def beyond(problem, scene, threshold, base, settings, tools) -> dict | None:
+def beyond(model, scene, threshold, base, settings, tools) -> dict | None:
     """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
     if not settings.beyond:
         return None
-    if problem.linear:
+    if model.unknowns.linear:
         return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
     if threshold is None:
         return {"verdict": "no threshold, so no whirl branches off", "tipping": []}
-    at_threshold = free_problem(scene, threshold)
+    at_threshold = free_model(scene, threshold)
     family = branch(at_threshold, threshold)
     if not family:
         return {"verdict": "no family of circular whirls was found at the threshold", "tipping": []}

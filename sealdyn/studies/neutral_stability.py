@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..analysis.whirl import free_problem, growth_rate, unforced
+from ..analysis.whirl import free_model, growth_rate, unforced
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..scenario.reader import parse_scenario
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
@@ -50,7 +51,7 @@ def run(scenario, settings, tools) -> dict:
         why = "" if speed else "no critical speed: nothing is neutral to be kept"
     except (SceneError, ValueError, np.linalg.LinAlgError) as error:
         why = str(error)
-    if speed and free_problem(linear, speed).massless:
+    if speed and free_model(linear, speed).unknowns.massless:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
     damping, resolved = [], None
     if speed:
@@ -97,10 +98,10 @@ def scene_of(point):
 def damped(point: dict) -> dict:
     """Growth per turn that a method gives the neutral whirl, and right-hand sides per turn."""
     speed, turns, method = point["speed"], point["turns"], point["method"]
-    problem, whirling = exhibit.neutral_problem(scene_of(point)[1], speed, turns)
-    held = tolerance(method, point["accuracy"], problem.memory)
+    run, whirling = exhibit.neutral_run(scene_of(point)[1], speed, turns)
+    held = tolerance(method, point["accuracy"], run.memory)
     try:
-        rate, calls = exhibit.growth(problem, whirling, method, held, MOST_CALLS)
+        rate, calls = exhibit.growth(run, whirling, method, held, MOST_CALLS)
     except (SolverFailure, TimeoutError) as failure:
         return {"growth": None, "cost": None, "reason": str(failure), "tolerance": held}
     return {"growth": rate * 2 * math.pi / speed, "cost": calls / turns, "reason": None, "tolerance": held}
@@ -111,8 +112,8 @@ def resolution(point: dict) -> dict:
     threshold under the same accuracy and turns (1/s)."""
     speed, (_, linear) = point["speed"], scene_of(point)
     found = growth_rate(linear, speed * (1 + EDGE), STUDY_TURNS, DEFAULT, STUDY_ACCURACY)
-    problem, whirling = exhibit.neutral_problem(linear, speed, STUDY_TURNS, found["accuracy"])
-    own, _ = exhibit.growth(problem, whirling, DEFAULT, tolerance(DEFAULT, found["accuracy"], problem.memory))
+    run, whirling = exhibit.neutral_run(linear, speed, STUDY_TURNS, found["accuracy"])
+    own, _ = exhibit.growth(run, whirling, DEFAULT, tolerance(DEFAULT, found["accuracy"], run.memory))
     return {"rate": abs(found["rate"]), "uncertainty": found["uncertainty"], "numerical_damping": abs(own),
             "accuracy": found["accuracy"], "method": DEFAULT, "turns": STUDY_TURNS, "decided": found["decided"],
             "ratio": abs(found["rate"]) / max(abs(own), 1e-300)}  # fmt: skip
@@ -150,31 +151,31 @@ def drifted(point: dict) -> dict:
     """
     scene, name = free_ring(scene_of(point)[0])
     turn = 2 * math.pi / abs(scene.shaft.speed)
-    problem = Model(scene, point["turns"] * turn, point["accuracy"])
+    run = RunState(Model(scene, point["accuracy"]), point["turns"] * turn)
     ring, side = getattr(scene, name), ROTOR if name == "rotor" else STATOR
     spin = scene.shaft.speed if side == ROTOR else (scene.stator.speed or 0.0)
     inertia, gyro, stiffness = ring.transverse_inertia, ring.polar_inertia * spin, ring.support.tilt()[0]
     roots = np.roots([-inertia, gyro, stiffness])
-    x = problem.names.index(f"{name}_tilt_x")
-    rate_x = problem.rate_places[x]
-    forward, backward, size = max(roots.real), min(roots.real), 0.1 * problem.clearance / problem.face[1]
-    problem.y0[x], problem.y0[rate_x + 1] = 2 * size, size * (1.5 * forward + 0.5 * backward)
+    x = run.model.unknowns.names.index(f"{name}_tilt_x")
+    rate_x = run.model.unknowns.rate_places[x]
+    forward, backward, size = max(roots.real), min(roots.real), 0.1 * run.model.clearance / run.model.face[1]
+    run.y0[x], run.y0[rate_x + 1] = 2 * size, size * (1.5 * forward + 0.5 * backward)
 
     def invariants(y):
         g, v = y[:, x] + 1j * y[:, x + 1], y[:, rate_x] + 1j * y[:, rate_x + 1]
         energy = 0.5 * inertia * np.abs(v) ** 2 + 0.5 * stiffness * np.abs(g) ** 2
         return energy, inertia * (np.conj(g) * v).imag - 0.5 * gyro * np.abs(g) ** 2
 
-    (start,), (turning,) = invariants(problem.y0[None, :])
+    (start,), (turning,) = invariants(run.y0[None, :])
     scale = abs(turning)
     counts, method = Counts(), point["method"]
-    held = tolerance(method, point["accuracy"], problem.memory)
-    best = attainable("dop853" if method == "rk45" else method, problem.memory)
+    held = tolerance(method, point["accuracy"], run.memory)
+    best = attainable("dop853" if method == "rk45" else method, run.memory)
     nothing = {"energy": None, "momentum": None, "cost": None, "tolerance": held, "attainable": best}
     try:
-        tau, y = 0.0, problem.y0
-        for k in range(len(problem.legs)):
-            for _, ys, _ in REFERENCE_METHODS[method](problem, problem.begin(k), tau, y, method, held, counts):
+        tau, y = 0.0, run.y0
+        for k in range(len(run.intervals)):
+            for _, ys, _ in REFERENCE_METHODS[method](run.segment(k), tau, y, method, held, counts):
                 y = ys[-1]
                 if counts.rhs > MOST_CALLS and point["turns"] < 1000:
                     return {**nothing, "reason": f"more than {MOST_CALLS} right-hand sides"}

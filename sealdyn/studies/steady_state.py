@@ -9,8 +9,11 @@ from ..analysis.shooting import NoOrbit, Shooter
 from ..dynamics import modes
 from ..dynamics.equilibrium import initially
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..scenario.reader import parse_scenario
 from ..scenario.settings import with_values
+from ..simulation.method_selection import choose_method
+from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 
@@ -46,11 +49,13 @@ def run(scenario, settings, tools) -> dict:
                 "verdict": [str(reason)]}  # fmt: skip
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)
-    linear = shooter.problem.linear_scene()
-    answers = [(h, linear.response(h)) for h in shooter.problem.harmonics()]
+    linear = shooter.model.linear_scene()
+    answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
     most, least, _ = modes.steady_extremes(linear, answers, shooter.period)
-    critical = modes.critical_speed(lambda w: shooter.problem.linear_scene(speed=w), 10.0, 1e6)
-    rows = _near_threshold(scenario, settings, critical, tools) if critical and not shooter.problem.massless else []
+    critical = modes.critical_speed(lambda w: shooter.model.linear_scene(speed=w), 10.0, 1e6)
+    rows = (
+        _near_threshold(scenario, settings, critical, tools) if critical and not shooter.model.unknowns.massless else []
+    )
     extremes = orbit.extremes
     answer = {
         "period": orbit.period,
@@ -61,8 +66,8 @@ def run(scenario, settings, tools) -> dict:
         "h_min": extremes["h_min"],
         "relative_misalignment": extremes["relative_misalignment"],
         "linear": {"relative_max": most, "relative_min": least, "verdict": modes.verdict(linear.modes())},
-        "unknowns": shooter.problem.names,
-        "start": {name: float(x) for name, x in zip(shooter.problem.names, orbit.start, strict=False)},
+        "unknowns": shooter.model.unknowns.names,
+        "start": {name: float(x) for name, x in zip(shooter.model.unknowns.names, orbit.start, strict=False)},
         "orbit": _waves(shooter, waves),
         "near_threshold": rows,
         "critical_speed": critical,
@@ -71,12 +76,10 @@ def run(scenario, settings, tools) -> dict:
 
 
 def _waves(shooter, waves) -> dict:
-    """Relative tilt and h_min over one period, from the problem's own signals."""
+    """Relative tilt and h_min over one period, from the run's own signals."""
     from ..dynamics.signals import signals
 
-    problem = shooter.problem
-    problem.begin(0)
-    columns = signals(problem, waves["times"], waves["displacements"], waves["rates"])
+    columns = signals(shooter.model.segment(), waves["times"], waves["displacements"], waves["rates"])
     names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min", "shaft_angle")
     return {name: [float(x) for x in columns[name]] for name in names}
 
@@ -131,13 +134,15 @@ def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> int | None:
     """Periods until a transient from rest stays within the accuracy of the orbit."""
     chunk, start = 32, 0
     while start < longest:
-        problem = Model(scene, shooter.period * (start + chunk), accuracy)
-        recorder = Recorder(problem, shooter.period)
-        outcome = solve(problem, "adams", accuracy, recorder)
+        run = RunState(Model(scene, accuracy), shooter.period * (start + chunk))
+        recorder = Recorder(shooter.period)
+        outcome = solve(run, "adams", accuracy, recorder)
         _, q, _ = recorder.arrays()
-        if outcome.status == "collapsed":
+        if outcome.status == Status.COLLAPSED:
             return None
-        away = np.max(np.abs(q - orbit.start[: problem.n]) / problem.scales[: problem.n], axis=1)
+        away = np.max(
+            np.abs(q - orbit.start[: run.model.unknowns.n]) / run.model.scales[: run.model.unknowns.n], axis=1
+        )
         late = np.nonzero(away > accuracy)[0]
         if len(late) == 0 or late[-1] + 1 < len(away):
             return int(late[-1] + 1) if len(late) else 0
@@ -150,17 +155,17 @@ def _time_domain(scenario, reason: str) -> dict:
     scene = scenario.scene
     speed = abs(initially(scene.shaft.speed)) or 1.0
     turns = 200
-    problem = Model(scene, turns * 2 * math.pi / speed, scenario.run.accuracy)
-    half = 0.5 * problem.duration
-    problem.windows[1:] = [[half, problem.duration], [half, problem.duration]]
-    outcome = solve(problem, problem.solver()[0], scenario.run.accuracy, Recorder(problem))
-    record = problem.records[1]
+    run = RunState(Model(scene, scenario.run.accuracy), turns * 2 * math.pi / speed)
+    half = 0.5 * run.duration
+    run.extrema.windows[1:] = [[half, run.duration], [half, run.duration]]
+    outcome = solve(run, choose_method(run)[0], scenario.run.accuracy, Recorder())
+    record = run.extrema.records[1]
     return {
         "period": None,
         "multipliers": None,
         "stable": None,
-        "status": {"ok": "ok"}.get(outcome.status, outcome.status),
-        "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / problem.clearance)},
+        "status": str(outcome.status),
+        "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / run.model.clearance)},
         "relative_misalignment": {"max": float(record[4]), "min": float(record[6])},
         "near_threshold": [],
         "orbit": None,

@@ -20,10 +20,13 @@ from ..analysis.arrangements import SEALS, Arrangement, arrangement, frozen_at_s
 from ..dynamics import modes
 from ..dynamics.extrema import MOST
 from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..scenario.reader import parse_scenario
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import Scene
+from ..simulation.method_selection import choose_method
+from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 from ..units import Speed
@@ -230,17 +233,17 @@ def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tupl
     speed = scene.shaft.speed
     # A turn of the shaft seen from the stator: over it the two frequencies are orthogonal and meet once.
     turn = 2 * math.pi / abs(speed - scene.stator.speed)
-    problem = Model(scene, turns * turn, accuracy)
-    problem.windows[1] = [problem.duration - turn, problem.duration]
-    recorder = Recorder(problem, turn / PER_TURN)
-    outcome = solve(problem, problem.solver()[0], accuracy, recorder)
-    if outcome.status != "ok":
+    run = RunState(Model(scene, accuracy), turns * turn)
+    run.extrema.windows[1] = [run.duration - turn, run.duration]
+    recorder = Recorder(turn / PER_TURN)
+    outcome = solve(run, choose_method(run)[0], accuracy, recorder)
+    if outcome.status != Status.OK:
         raise ValueError(outcome.message)
     t, q, rate = (a[-PER_TURN:] for a in recorder.arrays())
-    seen = signals(problem, t, q, rate)
+    seen = signals(run.segment(0), t, q, rate)
     tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
     static, dynamic = (np.mean(tilt * np.exp(-1j * w * t)) / amplitude for w in (scene.stator.speed, speed))
-    largest = problem.records[1, MOST] / amplitude
+    largest = run.extrema.records[1, MOST] / amplitude
     return tuple(float(v) for v in (abs(static), abs(dynamic), largest, *phases(speed, static, dynamic)))
 
 

@@ -41,7 +41,7 @@ def film_kernel(scene):
     print("film kernel (us a call, dispatch from Python included), by film accuracy and tilt")
     for error in (1e-5, 1e-7, 1e-9, 1e-11):
         f = radial.parameters(scene.film, scene.film.clearance, error)
-        problem = Model(scene, 1.0, 1e-6)
+        problem = Model(scene, 1e-6)
         s = problem.s
         row = []
         for tilt in (0.01, 0.3, 0.8, 1.1, 1.2):

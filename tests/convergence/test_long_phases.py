@@ -19,7 +19,7 @@ from sealdyn.dynamics.imposed_motion import (
     harmonics_of_segment,
     imposed_state,
 )
-from sealdyn.dynamics.segments import split_at_breaks
+from sealdyn.dynamics.intervals import split_at_breaks
 from sealdyn.scene.excitation import AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import ROTOR, STATOR, AxialRunout, Rotor, Stator
 

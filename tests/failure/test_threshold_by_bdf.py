@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scenes import INERTIA, SUPPORT, fmr
 
-from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_problem, growth_rate, least_damped
+from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, growth_rate, least_damped
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
 from sealdyn.solvers.contract import Counts
 from sealdyn.solvers.methods import METHODS
@@ -33,7 +33,7 @@ def exact(speed):
 
 def rate_by_bdf(speed, tolerance):
     """Growth rate (1/s) of a tenth of the contact tilt over 200 turns of CVODE BDF at a bare solver tolerance."""
-    problem = free_problem(fmr("linear", 3.0), speed, TURNS * 2 * math.pi / speed)
+    problem = free_model(fmr("linear", 3.0), speed, TURNS * 2 * math.pi / speed)
     whirling = RotatingWave(problem)
     frequency, shape = least_damped(problem, speed)
     start = whirling.state(0.1 * contact_tilt_aligned(problem) * shape, frequency)

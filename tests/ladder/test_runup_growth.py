@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from sealdyn.analysis.whirl import free_problem
+from sealdyn.analysis.whirl import free_model
 from sealdyn.analysis.whirl.mode_over_speed import along
 from sealdyn.dynamics import modes
 from sealdyn.numerics.order_tracking import centres, tracked
@@ -70,7 +70,7 @@ def scenario(name="runup_past_threshold", *overrides, model="linear"):
 
 def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     """The trip past the threshold and back, and the mode along it."""
-    problem = free_problem(asked.scene, 1000.0)
+    problem = free_model(asked.scene, 1000.0)
     crossing = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4)
     mode = along(problem, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
@@ -102,7 +102,7 @@ def oracle(ring, trip, times, start):
 
 
 def test_thresholds_are_those_of_the_complex_ring():
-    problem = free_problem(scenario().scene, 1000.0)
+    problem = free_model(scenario().scene, 1000.0)
     assert modes.critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4) == pytest.approx(
         threshold(stator), rel=1e-9
     )
@@ -163,7 +163,7 @@ def test_what_forcing_adds_goes_with_its_square():
 
 def test_the_factor_of_one_ring_is_a_square_root():
     """(2 lambda + D/I)**(-1/2) of the flexible stator, whose damping does not change with the speed."""
-    problem = free_problem(scenario().scene, 1000.0)
+    problem = free_model(scenario().scene, 1000.0)
     mode = along(problem, 4000.0, 8000.0, 5890.0)
     speeds = np.linspace(4000.0, 8000.0, 9)
     d = (SUPPORT_D + FILM_D) / INERTIA

@@ -11,7 +11,7 @@ import sealdyn
 from sealdyn.analysis import continuation
 from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from sealdyn.analysis.shooting import Shooter
-from sealdyn.analysis.whirl import RotatingWave, free_problem, least_damped
+from sealdyn.analysis.whirl import RotatingWave, free_model, least_damped
 from sealdyn.analysis.whirl.rubbing import settles
 from sealdyn.numerics import time_series
 from sealdyn.report.charts import study_rub
@@ -123,7 +123,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
     assert found["contact_share"] == 1.0
     low, high = found["amplitude"]
     assert high - low < 1e-5 * high
-    problem = free_problem(scene, speed)
+    problem = free_model(scene, speed)
     whirling, shape = RotatingWave(problem), least_damped(problem, speed)[1]
     q = high * shape
     q[problem.names.index("stator_z")] = 0.5 * high * problem.face[0]

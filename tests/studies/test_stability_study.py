@@ -41,7 +41,7 @@ def one_by_one(scenario, values) -> tuple[float, float]:
             if getattr(scenario.scene, ring).support:
                 values[f"{ring}.polar_inertia"] = getattr(scenario.scene, ring).transverse_inertia / c
     changed = with_values(scenario, {**values, "run.start": '"steady"'})
-    modes = Model(frozen_at_start(changed.scene), 1.0).linear_scene().modes()
+    modes = Model(frozen_at_start(changed.scene)).linear_scene().modes()
     return modes[0].value.real, max(m.value.real for m in modes if m.kind == "tilt")
 
 

@@ -70,7 +70,7 @@ def test_greens_table_1_follows_from_either_scenario(tmp_path, file, ring, c):
 def test_crossovers_solve_greens_formulas(tmp_path):
     """K_s 400 N m, D_s 0.24 N m s, K_f 5791 N m, D_f 4.082 N m s of the paper's Fig. 8, c = 1/2."""
     seal = read_scenario(SCENARIOS / "fmr_reference.toml", ["film.model=linear"])
-    k, d = (m[1, 1] for m in Model(seal.scene, 1.0).film_matrices())
+    k, d = (m[1, 1] for m in Model(seal.scene).film_matrices())
     assert (k, d) == (pytest.approx(5791, rel=1e-4), pytest.approx(4.082, rel=1e-3))
     inertia, polar, k_s, d_s = 8e-4, 16e-4, 400.0, 0.24
 
@@ -205,6 +205,6 @@ def test_held_scene_keeps_its_clearance_when_the_balance_gave_it():
     from sealdyn.scenario.reader import parse_scenario
 
     scene = parse_scenario(text + "[closing]\nbalance_ratio = 0.78\nspring_force = 0\n", "x").scene
-    clearance = Model(scene, 1.0).clearance
-    assert Model(frozen_at_start(scene, 50.0, clearance), 1.0).clearance == clearance
+    clearance = Model(scene).clearance
+    assert Model(frozen_at_start(scene, 50.0, clearance)).clearance == clearance
     assert replace(frozen_at_start(scene), shaft=scene.shaft) == scene

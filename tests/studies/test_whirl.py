@@ -7,7 +7,7 @@ import pytest
 from scenes import fmr, fms, fmsr
 from scipy.integrate import solve_ivp
 
-from sealdyn.analysis.whirl import RotatingWave, branch, contact_tilt_aligned, free_problem
+from sealdyn.analysis.whirl import RotatingWave, branch, contact_tilt_aligned, free_model
 from sealdyn.dynamics.modes import critical_speed
 
 SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
@@ -16,9 +16,9 @@ SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
 @pytest.fixture(scope="module", params=SEALS)
 def family(request):
     scene = SEALS[request.param]
-    problem = free_problem(scene, 1000.0)
+    problem = free_model(scene, 1000.0)
     threshold = critical_speed(lambda w: problem.linear_scene(speed=w), 1e2, 1e5)
-    problem = free_problem(scene, threshold, accuracy=1e-10)
+    problem = free_model(scene, threshold, accuracy=1e-10)
     return request.param, scene, threshold, problem, branch(problem, threshold)
 
 
@@ -46,7 +46,7 @@ def test_ends_at_contact(family):
 def test_another_integrator_stays_on_the_whirl(family, place):
     _, scene, _, _, whirls = family
     whirl = whirls[place]
-    problem = free_problem(scene, whirl.speed, accuracy=1e-10)
+    problem = free_model(scene, whirl.speed, accuracy=1e-10)
     turns = 3
     end = turns * 2 * math.pi / whirl.frequency
 
@@ -65,7 +65,7 @@ def test_departs_at_the_growth_rate_stated(family):
     """A nudge of a thousandth grows or dies as the linearisation in the turning frame says, not as at rest."""
     _, scene, _, _, whirls = family
     whirl = whirls[30]
-    problem = free_problem(scene, whirl.speed, accuracy=1e-10)
+    problem = free_model(scene, whirl.speed, accuracy=1e-10)
     whirling = RotatingWave(problem)
 
     def rhs(t, y):

@@ -23,7 +23,7 @@ from sealdyn.dynamics.imposed_motion import (
     harmonics_of_segment,
     imposed_state,
 )
-from sealdyn.dynamics.segments import constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
+from sealdyn.dynamics.intervals import constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import STATOR, AxialRunout, Rotor, Stator

@@ -1,7 +1,7 @@
 """Whirl of the aligned seal free of forcing: as a relative equilibrium (rotating_wave.py), and in the time domain
 (time_domain.py)."""
 
-from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_problem, least_damped, unforced
+from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped, unforced
 from .time_domain import bounded_or_not, followed, growth_rate, tipping_disturbance
 
 __all__ = [
@@ -11,7 +11,7 @@ __all__ = [
     "branch",
     "contact_tilt_aligned",
     "followed",
-    "free_problem",
+    "free_model",
     "growth_rate",
     "least_damped",
     "tipping_disturbance",

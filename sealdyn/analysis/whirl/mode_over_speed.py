@@ -63,17 +63,17 @@ class ModeOverSpeed:
         return self._factor(high) - self._factor(low)
 
 
-def along(problem, low: float, high: float, at: float, leg: int = 0) -> ModeOverSpeed:
+def along(model, low: float, high: float, at: float, interval=None) -> ModeOverSpeed:
     """The tilt mode that is least damped at the speed `at` (rad/s), over speeds from low to high.
     Raises ValueError for a scene with a massless ring."""
-    if not np.all(np.diag(problem.linear_scene(leg).mass) > 0):
+    if not np.all(np.diag(model.linear_scene(interval).mass) > 0):
         raise ValueError("a massless ring has no rates to follow its whirl by")
     speeds = np.linspace(low, high, POINTS)
     begin = int(np.argmin(np.abs(speeds - at)))
     values, vectors, lefts = [None] * POINTS, [None] * POINTS, [None] * POINTS
 
     def take(k, near):
-        every = _turning(problem.linear_scene(leg, speed=float(speeds[k])))
+        every = _turning(model.linear_scene(interval, speed=float(speeds[k])))
         n = int(np.argmax(every[0].real)) if near is None else int(np.argmin(np.abs(every[0] - near)))
         values[k], vectors[k], lefts[k] = every[0][n], every[1][n], every[2][n]
 
@@ -105,9 +105,9 @@ def _turning(linear):
     return [np.array(part) for part in zip(*found, strict=True)]
 
 
-def modal_disturbance(problem, mode: ModeOverSpeed, speed: float, amplitude: float) -> np.ndarray:
+def modal_disturbance(model, mode: ModeOverSpeed, speed: float, amplitude: float) -> np.ndarray:
     """Change of the unknowns (size,) that adds a whirl of this mode with the relative tilt `amplitude` (rad)."""
     k = int(np.argmin(np.abs(mode.speeds - speed)))
-    vector, value, kept = mode.vectors[k], mode.values[k], problem.kept()
+    vector, value, kept = mode.vectors[k], mode.values[k], model.unknowns.among_three()
     # Twice: half of a real part turns the other way, and adds nothing to x + i y.
-    return 2 * amplitude * problem.unknowns(vector[kept].real, (value * vector[kept]).real)
+    return 2 * amplitude * model.vector(vector[kept].real, (value * vector[kept]).real)

@@ -64,24 +64,24 @@ def unforced(scene, speed: float):
     )
 
 
-def free_problem(scene, speed: float, duration: float = 1.0, accuracy: float = 1e-8) -> Model:
+def free_model(scene, speed: float, accuracy: float = 1e-8) -> Model:
     """Model of the unforced scene at a speed (rad/s), its film evaluated to `accuracy`."""
-    return Model(unforced(scene, speed), duration, accuracy)
+    return Model(unforced(scene, speed), accuracy)
 
 
 class RotatingWave:
-    """Circular whirls of one free problem, its unknowns and scales at hand."""
+    """Circular whirls of one free model, its unknowns and scales at hand."""
 
-    def __init__(self, problem: Model):
-        self.problem, self.n = problem, problem.n
-        self.places = problem.rate_places
-        names = problem.names
+    def __init__(self, model: Model):
+        self.model, self.segment, self.n = model, model.segment(), model.unknowns.n
+        self.places = model.unknowns.rate_places
+        names = model.unknowns.names
         self.tilts = [i for i, name in enumerate(names) if name.endswith("tilt_x")]
         self.signs = [1.0 if names[i].startswith("stator") else -1.0 for i in self.tilts]
         self.axial = [i for i, name in enumerate(names) if name.endswith("_z")]
         self.axial_signs = [1.0 if names[i].startswith("stator") else -1.0 for i in self.axial]
-        self.scales = problem.scales[: self.n]
-        self.pace = problem.pace
+        self.scales = model.scales[: self.n]
+        self.pace = model.reference_rate
 
     def turned(self, q) -> np.ndarray:
         """Displacements turned by a quarter in the tilt planes, zero along the axis."""
@@ -92,7 +92,7 @@ class RotatingWave:
 
     def state(self, q, frequency) -> np.ndarray:
         """Unknowns of a circular whirl: rates are the tilts turned by a quarter, times the frequency (rad/s)."""
-        return self.problem.unknowns(q, frequency * self.turned(q))
+        return self.model.vector(q, frequency * self.turned(q))
 
     def relative(self, q):
         """Relative tilt g_x + i g_y (rad), stator minus rotor, of displacements (n,) or (n, m)."""
@@ -104,12 +104,12 @@ class RotatingWave:
 
     def least_film(self, q) -> float:
         """Smallest film thickness over the face (m)."""
-        return float(smallest_gap(self.problem.face, self.opening(q), abs(self.relative(q)))[0])
+        return float(smallest_gap(self.model.face, self.opening(q), abs(self.relative(q)))[0])
 
     def _accelerations(self, y, speed):
-        self.problem.p[SPEED_AT] = speed
-        yp = np.empty(self.problem.size)
-        self.problem.rhs(0.0, y, yp)
+        self.segment.p[SPEED_AT] = speed
+        yp = np.empty(self.segment.size)
+        self.segment.rhs(0.0, y, yp)
         return yp
 
     def _unbalance(self, x, amplitude):
@@ -137,7 +137,7 @@ class RotatingWave:
 
     def _growth(self, y, frequency, speed) -> float:
         """Largest growth rate (1/s) of disturbances in the turning frame, the neutral one of phase left out."""
-        m, scales = self.problem.n_mechanical, self.problem.scales
+        m, scales = self.model.unknowns.n_mechanical, self.model.scales
         matrix = np.empty((m, m))
         for j in range(m):
             step, sides = STEP * scales[j], []
@@ -156,14 +156,14 @@ class RotatingWave:
     def onset(self, speed: float):
         """Guess at zero amplitude: shape (relative tilt 1) and frequency of the least damped tilt mode at the
         threshold `speed` (rad/s)."""
-        frequency, shape = least_damped(self.problem, speed)
+        frequency, shape = least_damped(self.model, speed)
         return np.array(shape), frequency, speed
 
 
-def least_damped(problem: Model, speed: float):
+def least_damped(model: Model, speed: float):
     """Whirl frequency (rad/s, positive forward) and shape of the least damped tilt mode at a speed (rad/s): the
     displacements (n,) of a circular whirl whose relative tilt is 1 along xi."""
-    linear = problem.linear_scene(speed=speed)
+    linear = model.linear_scene(speed=speed)
     values, shapes = linear.eigen()
     tilting = [k for k in range(len(values)) if np.linalg.norm(shapes[0::3, k]) < 0.02 * np.linalg.norm(shapes[:, k])]
     k = max(tilting, key=lambda i: values[i].real)
@@ -174,21 +174,21 @@ def least_damped(problem: Model, speed: float):
     whirl, frequency = (forward, value.imag) if ahead else (backward, -value.imag)
     signs = [linear.rings[r].sign for r in linear.floating]
     whirl = whirl / sum(s * w for s, w in zip(signs, whirl, strict=True))
-    q = np.zeros(problem.n)
-    for a, i in enumerate(i for i, name in enumerate(problem.names) if name.endswith("tilt_x")):
+    q = np.zeros(model.unknowns.n)
+    for a, i in enumerate(i for i, name in enumerate(model.unknowns.names) if name.endswith("tilt_x")):
         q[i], q[i + 1] = whirl[a].real, whirl[a].imag
     return float(frequency), q
 
 
-def branch(problem: Model, threshold: float, steps: int = 48) -> list[Whirl]:
+def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
     """Circular whirls from the threshold speed (rad/s) up to contact, by continuation in the amplitude.
 
     The last one has its film at the floor, unless the family ends before (a fold in the amplitude).
     """
-    whirling = RotatingWave(problem)
+    whirling = RotatingWave(model)
     shape, frequency, speed = whirling.onset(threshold)
-    floor = problem.face[4]
-    touching = contact_tilt_aligned(problem)
+    floor = model.face[4]
+    touching = contact_tilt_aligned(model)
     found, amplitude, step = [], 0.0, touching / steps
     while len(found) < 6 * steps and step > 1e-4 * touching:
         guess = _ahead(found, amplitude + step) if found else (shape * step, frequency, speed)
@@ -203,10 +203,10 @@ def branch(problem: Model, threshold: float, steps: int = 48) -> list[Whirl]:
     return found
 
 
-def contact_tilt_aligned(problem: Model) -> float:
+def contact_tilt_aligned(model: Model) -> float:
     """Relative tilt (rad) at which the faces touch without axial opening."""
-    face = problem.face
-    beyond = 2 * (problem.clearance / face[0] + abs(face[3]))
+    face = model.face
+    beyond = 2 * (model.clearance / face[0] + abs(face[3]))
     return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0], 0.0, beyond))
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..poincare_map import PIECE, PeriodMap
-from .rotating_wave import RotatingWave, contact_tilt_aligned, free_problem, least_damped, unforced
+from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped, unforced
 
 # Start as a share of the tilt of contact; amplitudes that change less from piece to piece have settled.
 SMALL, STEADY = 0.02, 1e-3
@@ -18,9 +18,9 @@ def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> di
     `amplitude` (least and largest relative tilt, rad), `whirl_ratio`, `contact_share` of the time, `contact_force` over
     the closing force, `contact_power` and `friction_power` (W) over the last turns; `first_contact` and `turns`.
     """
-    problem = free_problem(scene, speed)
-    unit, whirling = contact_tilt_aligned(problem), RotatingWave(problem)
-    frequency, shape = least_damped(problem, speed)
+    model = free_model(scene, speed)
+    unit, whirling = contact_tilt_aligned(model), RotatingWave(model)
+    frequency, shape = least_damped(model, speed)
     stroboscope = PeriodMap(unforced(scene, speed), accuracy)
     x = whirling.state(SMALL * unit * shape, frequency)[: stroboscope.size]
     row = {"speed": float(speed), "fate": "unsettled", "first_contact": None, "from": SMALL * unit}
@@ -65,7 +65,7 @@ def _late(turns, stroboscope, speed) -> dict:
         "amplitude": [float(np.abs(tilt).min()), float(np.abs(tilt).max())],
         "whirl_ratio": float(per_sample / stroboscope.turns_per_period * np.sign(speed)),
         "contact_share": float(turns.touching[half].mean()),
-        "contact_force": float(turns.contact_force[half].mean() / stroboscope.problem.closing_force()),
+        "contact_force": float(turns.contact_force[half].mean() / stroboscope.model.closing_force()),
         "contact_power": float(turns.contact_power[half].mean()),
         "friction_power": float(turns.friction_power[half].mean()),
         "h_min": float(turns.lowest[half].min()),

@@ -4,10 +4,11 @@ import math
 
 import numpy as np
 
-from ...solvers.contract import attainable
+from ...dynamics.run_state import RunState
+from ...solvers.contract import Status, attainable
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
-from .rotating_wave import RotatingWave, contact_tilt_aligned, free_problem, least_damped
+from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
 
 # Amplitude of a small disturbance over the tilt of contact: its square is lost in the growth rate.
 SMALL = 3e-4
@@ -19,10 +20,10 @@ class Until(Recorder):
     """Records displacements, and ends the run once the relative tilt falls below `least` (rad)."""
 
     def __init__(self, whirling, interval, least=0.0):
-        super().__init__(whirling.problem, interval)
+        super().__init__(interval)
         self.whirling, self.least = whirling, least
 
-    def state(self, index, tau, y):
+    def state(self, segment, tau, y):
         if abs(self.whirling.relative(y[: self.whirling.n])) < self.least:
             raise KeyboardInterrupt
 
@@ -30,18 +31,19 @@ class Until(Recorder):
 def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=math.inf):
     """Relative tilt in time from a start `(q, frequency)`, or the least damped mode at relative tilt `start` (rad);
     ends when it falls below `least` (rad), kept at least every `interval` (s).
-    Returns (outcome, times (m,), relative tilt (m,) complex, problem)."""
+    Returns (outcome, times (m,), relative tilt (m,) complex, run)."""
     turn = 2 * math.pi / abs(speed)
-    problem = free_problem(scene, speed, turns * turn, accuracy)
-    whirling = RotatingWave(problem)
+    run = RunState(free_model(scene, speed, accuracy), turns * turn)
+    model = run.model
+    whirling = RotatingWave(model)
     if isinstance(start, float):
-        frequency, shape = least_damped(problem, speed)
+        frequency, shape = least_damped(model, speed)
         start = (start * shape, frequency)
-    problem.y0 = whirling.state(*start)
+    run.y0 = whirling.state(*start)
     sink = Until(whirling, min(turn / PER_TURN, interval), least)
-    outcome = solve(problem, method, accuracy, sink)
+    outcome = solve(run, method, accuracy, sink)
     t, q, _ = sink.arrays()
-    return outcome, t, whirling.relative(q.T), problem
+    return outcome, t, whirling.relative(q.T), run
 
 
 def fitted(t, tilt) -> tuple[float, float]:
@@ -62,21 +64,21 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
     lets pass, whichever is more; `uncertainty` adds the fit's
     spread; `decided` whether the rate is three times that; `eigenvalue` the linear rate, for comparison only.
     """
-    problem = free_problem(scene, speed)
-    values = [m.value.real for m in problem.linear_scene().modes() if m.kind == "tilt"]
-    start = SMALL * contact_tilt_aligned(problem)
+    model = free_model(scene, speed)
+    values = [m.value.real for m in model.linear_scene().modes() if m.kind == "tilt"]
+    start = SMALL * contact_tilt_aligned(model)
     # Some forty samples of a disturbance that dies within a turn.
     interval = 0.2 / max(abs(max(values)), 1e-300)
 
     def rate_at(accuracy):
-        _, t, tilt, problem = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
+        _, t, tilt, run = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
         # A disturbance that sinks into the tolerance, or is no longer small, says nothing more.
         fit = (np.abs(tilt) > 1e-3 * start) & (np.abs(tilt) < 10 * start)
         upto = len(t) if fit.all() else max(int(np.argmin(fit)), 16)
         t, tilt = t[:upto], tilt[:upto]
-        scale = problem.clearance / problem.face[1]
+        scale = run.model.clearance / run.model.face[1]
         allowed = accuracy * scale / np.min(np.abs(tilt)) / (0.75 * t[-1])
-        return *fitted(t, tilt), allowed, attainable(method, problem.memory)
+        return *fitted(t, tilt), allowed, attainable(method, run.memory)
 
     rate, *_ = rate_at(accuracy)
     while True:
@@ -103,13 +105,13 @@ def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns:
 
     `disturbance`, `whirl`: relative tilts (rad); `frequency` of that whirl (rad/s); `apart` its uncertainty (rad).
     """
-    unit = contact_tilt_aligned(free_problem(scene, speed))
+    unit = contact_tilt_aligned(free_model(scene, speed))
     low, high, runs = 0.0, 0.985 * unit, {}
 
     def tips(amplitude):
         outcome, t, tilt, _ = followed(scene, speed, most_turns, "adams", accuracy, amplitude, 0.3 * amplitude)
         runs[amplitude] = (t, tilt)
-        return outcome.status == "collapsed"
+        return outcome.status == Status.COLLAPSED
 
     if not tips(high):
         return {"disturbance": None, "whirl": None, "said": "no whirl short of contact tips it"}
@@ -136,18 +138,18 @@ def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: 
 
     `start` "small" (a tenth of contact) or "large" (displacements `shape`, turning at `frequency`).
     """
-    problem = free_problem(scene, speed)
-    unit = contact_tilt_aligned(problem)
-    linear = max(m.value.real for m in problem.linear_scene().modes() if m.kind == "tilt")
+    model = free_model(scene, speed)
+    unit = contact_tilt_aligned(model)
+    linear = max(m.value.real for m in model.linear_scene().modes() if m.kind == "tilt")
     turns = min(most, int(9 / abs(linear) * abs(speed) / (2 * math.pi)) + 50)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit
     outcome, t, tilt, _ = followed(scene, speed, turns, "adams", accuracy, begin, least)
     size = np.abs(tilt)
     row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * abs(speed) / (2 * math.pi))}
-    if outcome.status == "collapsed":
+    if outcome.status == Status.COLLAPSED:
         return {"fate": "contact", **row}
-    if outcome.status == "interrupted":
+    if outcome.status == Status.INTERRUPTED:
         return {"fate": "decays", **row}
     late = size[t > 0.9 * t[-1]]
     if np.ptp(late) < 1e-3 * late[-1]:

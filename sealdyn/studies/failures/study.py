@@ -58,10 +58,10 @@ def shown(point: dict) -> dict:
 def chosen_for(scenario) -> dict:
     """Method, why, and warnings that the program has for the scenario before it runs."""
     try:
-        problem, method, why, *_ = prepare_run(scenario)
+        run, method, why, *_ = prepare_run(scenario)
     except SceneError as error:
         return {"refused": str(error)}
-    return {"film": problem.film_name, "method": method, "why": why, "warnings": list(problem.warnings)}
+    return {"film": run.model.interface.name, "method": method, "why": why, "warnings": list(run.warnings)}
 
 
 def sentences(answer) -> list[str]:

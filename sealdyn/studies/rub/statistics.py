@@ -66,12 +66,12 @@ def averages(series, exponent, period) -> dict:
 
 def noise_floors(stroboscope) -> dict:
     """What a run of finite accuracy and sampling cannot tell apart even on a periodic motion."""
-    problem, error = stroboscope.problem, 100 * stroboscope.accuracy
-    film, tilt = error * problem.clearance, error * problem.clearance / problem.face[1]
+    model, error = stroboscope.model, 100 * stroboscope.accuracy
+    film, tilt = error * model.clearance, error * model.clearance / model.face[1]
     return (
         {f"h_min_{n}": film for n in ("mean", "std", "median", "q05", "q95")}
         | {f"section_{n}": tilt for n in ("x_mean", "y_mean", "x_std", "y_std")}
-        | {"contact_share": 1e-3, "impulse": error * problem.closing_force() * stroboscope.period, "exponent": 1e-3}
+        | {"contact_share": 1e-3, "impulse": error * model.closing_force() * stroboscope.period, "exponent": 1e-3}
     )
 
 
@@ -80,7 +80,7 @@ def divergence(scene, x, point) -> dict:
     radius) each turn, and after how many they have nothing in common."""
     runs = [PeriodMap(scene, point["accuracy"] / f, "adams") for f in (1.0, TIGHTER)]
     sections = [s.run(x, min(point["turns"], 200)).section for s in runs]
-    scale = runs[0].problem.clearance / runs[0].problem.face[1]
+    scale = runs[0].model.clearance / runs[0].model.face[1]
     m = min(map(len, sections))
     apart = np.abs(sections[0][:m] - sections[1][:m]) / scale
     spread = time_series.spread(sections[1]) / scale

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...analysis.continuation import frozen_at_end, part, sweep_branch
-from ...analysis.whirl import free_problem
+from ...analysis.whirl import free_model
 from ...analysis.whirl.rubbing import settles
 from ...dynamics import modes
 from ...dynamics.equilibrium import initially
@@ -129,9 +129,9 @@ def _judged(base, rows, settings, scenario, tools) -> dict:
 
 def _whirled(base, scenario, settings, tools) -> dict:
     """Where a small whirl of the unforced seal settles."""
-    problem = free_problem(frozen_at_end(scenario.scene), initially(scenario.scene.shaft.speed))
-    pace = max((abs(mode.value) for mode in problem.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
-    critical = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
+    model = free_model(frozen_at_end(scenario.scene), initially(scenario.scene.shaft.speed))
+    pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
+    critical = modes.critical_speed(lambda w: model.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
     if critical is None and not settings.whirl_speeds:
         return {"critical_speed": None, "rows": []}
     speeds = list(settings.whirl_speeds) or [float(f"{f * critical:.6g}") for f in ABOVE]

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from ...analysis.continuation import with_part
+from ...dynamics.intervals import constant_and_slope
 from ...dynamics.model import Model
 from ...dynamics.modes import steady_extremes
-from ...dynamics.segments import constant_and_slope
+from ...dynamics.run_state import RunState
 from ...faces.geometry import (
     DZ,
     FLOW_INNER,
     FLOW_OUTER,
+    GAP_STATE_SIZE,
     INNER_PRESSURE,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
@@ -38,45 +40,44 @@ def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
     balances the loads.
     """
     values = np.linspace(begin, end, VALUES)
-    problem, legs = _visited(scenario, key, values)
-    rows = [_settled(problem, k) for k in legs]
+    run, starts = _visited(scenario, key, values)
+    rows = [_settled(run.segment(k)) for k in starts]
     names = ("relative_misalignment", "h_min", "leakage")
     return {"value": values.tolist(), **{n: [row[i] for row in rows] for i, n in enumerate(names)}}
 
 
-def _visited(scenario, key, values) -> tuple[Model, list[int]]:
-    """The scene with its own tables and behind them a staircase of values of the key, and the legs that begin there:
+def _visited(scenario, key, values) -> tuple[RunState, list[int]]:
+    """The scene with its own tables and behind them a staircase of values of the key, and the segments that begin
+    there:
     the closing force stays the law that the scene's start decides, as it does on a trip."""
     first = tables_end(with_part(scenario.scene, key, float(values[0])))
     times = [first + n for n in range(len(values))]
     points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
     stairs = PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
-    problem = Model(with_part(scenario.scene, key, stairs), times[-1] + 1e-3)
-    return problem, [next(k for k, leg in enumerate(problem.legs) if leg.time >= t - 1e-6) for t in times]
+    run = RunState(Model(with_part(scenario.scene, key, stairs)), times[-1] + 1e-3)
+    return run, [next(k for k, part in enumerate(run.intervals) if part.time >= t - 1e-6) for t in times]
 
 
-def _settled(problem, k) -> tuple[float | None, float | None, float | None]:
-    """Largest tilt, thinnest film and leakage at the loads of a leg's start."""
-    problem.begin(k)
-    shift, linear = problem.axial_shift(k), problem.linear_scene(k)
-    if any(said.startswith(f"no equilibrium gap found for the loads from t = {problem.leg.time:.4g} s")
-           for said in problem.warnings):  # fmt: skip
+def _settled(segment) -> tuple[float | None, float | None, float | None]:
+    """Largest tilt, thinnest film and leakage at the loads of a segment's start."""
+    model, interval = segment.model, segment.interval
+    if not model.loads_are_balanced(interval):
         return None, None, None
-    harmonics = [replace(h) for h in problem.harmonics()]
+    shift, linear = model.axial_shift(interval), model.linear_scene(interval)
+    harmonics = [replace(h) for h in segment.harmonics()]
     period = _period(harmonics)
     most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
-    flow, f = problem.observed
-    s, leg, film = problem.s, problem.leg, problem.scene.film
-    s[:] = 0.0
+    flow, f = model.observed
+    s, film = np.zeros(GAP_STATE_SIZE), model.scene.film
     s[DZ] = shift
     pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
     for slot, q in ((VISCOSITY, film.viscosity), *pressures):
-        s[slot] = constant_and_slope(q, leg)[0]
-    s[SPIN_DIFFERENCE] = constant_and_slope(problem.scene.shaft.speed, leg)[0]
+        s[slot] = constant_and_slope(q, interval)[0]
+    s[SPIN_DIFFERENCE] = model.speed_at(interval)
     flow(f, s)
-    outside = problem.closing.outer_is_high
+    outside = model.closing.outer_is_high
     leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
-    return float(most), float(min(edge_gaps(problem.face, shift - closing, most))), float(leakage)
+    return float(most), float(min(edge_gaps(model.face, shift - closing, most))), float(leakage)
 
 
 def _period(harmonics):
@@ -88,9 +89,11 @@ def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float, 
     """Growth rate (1/s) of the slowest disturbance of the scene linearised where it begins and where it ends; the time
     (s) it takes to decay, at most 25 turns; and how long to wait until it settles: eight of these, at least ten turns,
     at most two hundred."""
-    problem, legs = _visited(scenario, key, [begin, end, end])
-    slowest = max((v.real for k in legs[:2] for v in problem.linear_scene(k).eigen()[0]), default=-1e6)
-    speed = abs(constant_and_slope(problem.scene.shaft.speed, problem.legs[legs[0]])[0])
+    run, starts = _visited(scenario, key, [begin, end, end])
+    slowest = max(
+        (v.real for k in starts[:2] for v in run.model.linear_scene(run.intervals[k]).eigen()[0]), default=-1e6
+    )
+    speed = abs(run.model.speed_at(run.intervals[starts[0]]))
     turn = 2 * math.pi / speed if speed else 1e-3
     decay = min(-1.0 / slowest, 25 * turn) if slowest < 0 else 25 * turn
     return float(slowest), decay, float(np.clip(8.0 * decay, 10 * turn, 200 * turn))
@@ -99,15 +102,14 @@ def memory(scenario, key: str, begin: float, end: float) -> tuple[float, float, 
 class GivenTimesSink(Sampler):
     """A sampler at given times (s)."""
 
-    def __init__(self, problem, times):
-        super().__init__(problem, 1.0)
+    def __init__(self, times):
+        super().__init__(1.0)
         self.times = times
 
-    def due(self, index):
-        leg, last = self.problem.legs[index], index + 1 == len(self.problem.legs)
-        taus = self.times - leg.time
-        end = leg.length * (1 + 1e-12)
-        return np.clip(taus[(taus >= 0) & ((taus < leg.length * (1 - 1e-12)) | (last & (taus <= end)))], 0, leg.length)
+    def due(self, segment):
+        taus, length = self.times - segment.time, segment.length
+        inside = (taus < length * (1 - 1e-12)) | (segment.last & (taus <= length * (1 + 1e-12)))
+        return np.clip(taus[(taus >= 0) & inside], 0, length)
 
 
 def instants(trip: RampCycle) -> np.ndarray:
@@ -125,21 +127,21 @@ def load_trip(point: dict) -> dict:
     scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
     trip = RampCycle(**{n: point[n] for n in names})
-    problem, method, *_ = prepare_run(trip.on(scenario))
-    sink = GivenTimesSink(problem, instants(trip))
-    outcome = solve(problem, method, problem.accuracy, sink)
+    run, method, *_ = prepare_run(trip.on(scenario))
+    sink = GivenTimesSink(instants(trip))
+    outcome = solve(run, method, run.model.accuracy, sink)
     times, film, tilt, leakage = (np.concatenate([p[i] for p in sink.parts]) for i in range(4))
-    run = told(problem, outcome, [np.zeros(1)] * 5, None, [(problem, problem.records[0])])
+    passed = told(run, outcome, [np.zeros(1)] * 5, None, [(run, run.extrema.records[0])])
     table = trip.table()
     return {
         "rate": trip.rate,
         "stages": [trip.settle, trip.top, trip.back, trip.home],
-        "status": run.status,
-        "message": run.message,
-        "touched": bool(run.touched),
-        "h_min": run.lowest[0] if math.isfinite(run.lowest[0]) else None,
-        "h_min_time": run.lowest[1],
-        "relative_misalignment": run.largest[0],
+        "status": passed.status,
+        "message": passed.message,
+        "touched": bool(passed.touched),
+        "h_min": passed.lowest[0] if math.isfinite(passed.lowest[0]) else None,
+        "h_min_time": passed.lowest[1],
+        "relative_misalignment": passed.largest[0],
         "settled": {
             "end": _over(times, film, tilt, leakage, trip.back - 0.1 * trip.hold, trip.back),
             "begin": _over(times, film, tilt, leakage, trip.duration - 0.1 * trip.rest, trip.duration),

@@ -6,7 +6,7 @@ from typing import get_args, get_type_hints
 import numpy as np
 
 from ...analysis.continuation import frozen_at_end, part, with_part
-from ...analysis.whirl import free_problem
+from ...analysis.whirl import free_model
 from ...dynamics import modes
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
@@ -127,7 +127,7 @@ def planned(scenario, settings) -> dict:
     """From where to where, how fast, what is followed: everything the runs are handed."""
     steady = Steady(scenario.scene)
     own = _own_speed(scenario.scene)
-    free = free_problem(frozen_at_end(scenario.scene), own)
+    free = free_model(frozen_at_end(scenario.scene), own)
     pace = max((abs(mode.value) for mode in free.linear_scene().modes()), default=own)
 
     def at_speed(w):
@@ -270,7 +270,7 @@ def _per_turn(scene, settings, begin) -> tuple[int, list[str]]:
 def _tilted(scenario, steady, crossing) -> list[str]:
     """Overrides that give an undriven scene its tilts as unknowns, by a tilt of nothing, where a whirl is to be met."""
     overrides = list(scenario.overrides)
-    if crossing is None or steady.orders or steady.problem.layout.with_tilt:
+    if crossing is None or steady.orders or steady.model.unknowns.with_tilt:
         return overrides
     ring = "stator" if scenario.scene.stator.support else "rotor"
     return [*overrides, f"initial.{ring}.tilt_x=1e-18"]

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...analysis.whirl.mode_over_speed import modal_disturbance
-from ...dynamics import equations
 from ...dynamics.extrema import H_LEG, H_TAU, MOST, MOST_LEG, MOST_TAU, H
-from ...dynamics.model import Model
-from ...dynamics.segments import constant_and_slope
+from ...dynamics.intervals import constant_and_slope
+from ...dynamics.run_state import RunState
 from ...faces.geometry import COLLAPSE, DZ, GX, GY, TOUCH
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.settings import with_values
 from ...simulation.simulate import prepare_run
+from ...solvers.contract import Status
 from ...solvers.integrate import solve
 
 
@@ -92,43 +92,40 @@ class EvenAngleSink:
     """A sink that keeps the relative tilt and the axial gap evenly over the shaft's angle: sample k at k/`per_turn` of
     a turn.  Of a shaft at rest nothing."""
 
-    def __init__(self, problem, per_turn: int):
-        self.problem, self.per_turn, self.parts = problem, per_turn, []
-        self.y, self.yp = np.zeros(problem.size), np.zeros(problem.size)
+    def __init__(self, per_turn: int):
+        self.per_turn, self.parts = per_turn, []
 
-    def due(self, index):
-        leg = self.problem.legs[index]
-        speed, slope = constant_and_slope(self.problem.scene.shaft.speed, leg)
+    def due(self, segment):
+        leg = segment.interval
+        speed, slope = constant_and_slope(segment.model.scene.shaft.speed, leg)
         step, begun = 2 * math.pi / self.per_turn, float(leg.rotor_angle)
         turned = leg.length * (speed + 0.5 * slope * leg.length)
         if turned <= 0.0:
             self.first = 0
             return np.empty(0)
         self.first = math.ceil(begun / step - 1e-9)
-        last = index + 1 == len(self.problem.legs)
-        count = math.floor((begun + turned) / step + (1e-9 if last else -1e-9)) - self.first + 1
+        count = math.floor((begun + turned) / step + (1e-9 if segment.last else -1e-9)) - self.first + 1
         ahead = np.maximum((self.first + np.arange(max(count, 0))) * step - begun, 0.0)
         # speed tau + slope tau^2 / 2 = ahead, in the form that does not cancel.
         root = np.sqrt(np.maximum(speed * speed + 2 * slope * ahead, 0.0))
         return np.clip(2 * ahead / np.maximum(speed + root, 1e-300), 0.0, leg.length)
 
-    def take(self, index, taus, q, q_rate):
-        problem, m = self.problem, len(taus)
-        gap = np.empty((m, 3))
-        for i in range(m):
-            self.y[: problem.n] = q[i]
-            equations.kinematics(taus[i], self.y, self.yp, problem.p, problem.w, problem.s)
-            gap[i] = problem.s[DZ], problem.s[GX], problem.s[GY]
-        speed, slope = constant_and_slope(problem.scene.shaft.speed, problem.leg)
-        turned = float(problem.leg.rotor_angle) + taus * (speed + 0.5 * slope * taus)
+    def take(self, segment, taus, q, q_rate):
+        gap, y = np.empty((len(taus), 3)), np.zeros(segment.size)
+        for i, tau in enumerate(taus):
+            y[: segment.n] = q[i]
+            s = segment.gap_state(tau, y)
+            gap[i] = s[DZ], s[GX], s[GY]
+        speed, slope = constant_and_slope(segment.model.scene.shaft.speed, segment.interval)
+        turned = float(segment.interval.rotor_angle) + taus * (speed + 0.5 * slope * taus)
         number = np.rint(turned * self.per_turn / (2 * math.pi)).astype(int)
         tilt = gap[:, 1] + 1j * gap[:, 2]
-        self.parts.append((number, problem.leg.time + taus, speed + slope * taus, tilt, gap[:, 0]))
+        self.parts.append((number, segment.time + taus, speed + slope * taus, tilt, gap[:, 0]))
 
-    def state(self, index, tau, y):
+    def state(self, segment, tau, y):
         pass
 
-    def event(self, index, tau, event):
+    def event(self, segment, tau, event):
         pass
 
     def log(self, events):
@@ -146,11 +143,11 @@ class EvenAngleSink:
 
 @dataclass
 class Passed:
-    """A trip as it was run: problem, how it ended, time reached (s), samples evenly over the angle (see
+    """A trip as it was run: run, how it ended, time reached (s), samples evenly over the angle (see
     Evenly.arrays), the free whirl as (times, relative tilt) or None, thinnest film (m) and its time (s), largest
     relative misalignment (rad) and its time, whether the faces touched."""
 
-    problem: Model
+    state: RunState
     status: str
     message: str
     until: float
@@ -166,33 +163,32 @@ def run_cycle(
 ) -> Passed:
     """Run a trip.  With a `mode` (whirl.Along) a whirl of it of relative tilt `disturbance` (rad) is added at the
     trip's crossing, and unless `twin` is false the same run without it gives the free whirl."""
-    problem, method, *_ = prepare_run(trip.on(scenario))
-    accuracy = problem.accuracy
+    run, method, *_ = prepare_run(trip.on(scenario))
+    accuracy = run.model.accuracy
     if mode is None:
-        sink = EvenAngleSink(problem, per_turn)
-        outcome = solve(problem, method, accuracy, sink)
-        return told(problem, outcome, sink.arrays(), None, [(problem, problem.records[0])])
+        sink = EvenAngleSink(per_turn)
+        outcome = solve(run, method, accuracy, sink)
+        return told(run, outcome, sink.arrays(), None, [(run, run.extrema.records[0])])
     there, back = trip.crossed()
-    first = Model(problem.scene, there, accuracy)
-    first.y0 = problem.y0.copy()
-    early = EvenAngleSink(first, per_turn)
+    first = RunState(run.model, there)
+    first.y0 = run.y0.copy()
+    early = EvenAngleSink(per_turn)
     before = solve(first, method, accuracy, early)
-    if before.status != "ok":
-        return told(first, before, early.arrays(), None, [(first, first.records[0])])
-    leg = next(k for k, leg in enumerate(problem.legs) if abs(leg.time - there) <= 1e-12 * trip.duration)
+    if before.status != Status.OK:
+        return told(first, before, early.arrays(), None, [(first, first.extrema.records[0])])
+    leg = next(k for k, leg in enumerate(run.intervals) if abs(leg.time - there) <= 1e-12 * trip.duration)
     without = None
     if twin:
-        plain = Model(problem.scene, back, accuracy)
-        without = EvenAngleSink(plain, per_turn)
-        plain.restore_modes(first.kept_modes())
+        plain, without = RunState(run.model, back), EvenAngleSink(per_turn)
+        plain.restore_modes(first.modes())
         solve(plain, method, accuracy, without, resume=(leg, 0.0, before.y))
-    problem.restore_modes(first.kept_modes())
-    late = EvenAngleSink(problem, per_turn)
-    disturbed = before.y + modal_disturbance(problem, mode, trip.crossing, disturbance)
-    outcome = solve(problem, method, accuracy, late, resume=(leg, 0.0, disturbed))
+    run.restore_modes(first.modes())
+    late = EvenAngleSink(per_turn)
+    disturbed = before.y + modal_disturbance(run.model, mode, trip.crossing, disturbance)
+    outcome = solve(run, method, accuracy, late, resume=(leg, 0.0, disturbed))
     free = _difference(late, without) if without else None
-    both = [(first, first.records[0]), (problem, problem.records[0])]
-    return told(problem, outcome, late.arrays([early]), free, both)
+    both = [(first, first.extrema.records[0]), (run, run.extrema.records[0])]
+    return told(run, outcome, late.arrays([early]), free, both)
 
 
 def _difference(one: EvenAngleSink, other: EvenAngleSink):
@@ -206,16 +202,16 @@ def _difference(one: EvenAngleSink, other: EvenAngleSink):
     return a[1][at][same], a[3][at][same] - b[3][to][same]
 
 
-def told(problem, outcome, samples, free, records) -> Passed:
-    """What a trip leaves; `records` (problem, record) of its parts are put together."""
+def told(run, outcome, samples, free, records) -> Passed:
+    """What a trip leaves; `records` (run, record) of its parts are put together."""
     low, most = [], []
     for own, r in records:
         if math.isfinite(r[H]):
-            low.append((float(r[H]), own.legs[int(r[H_LEG])].time + float(r[H_TAU])))
+            low.append((float(r[H]), own.end_time(int(r[H_LEG]), float(r[H_TAU]))))
         if math.isfinite(r[MOST]):
-            most.append((float(r[MOST]), own.legs[int(r[MOST_LEG])].time + float(r[MOST_TAU])))
+            most.append((float(r[MOST]), own.end_time(int(r[MOST_LEG]), float(r[MOST_TAU]))))
     lowest, largest = min(low, default=(math.nan, 0.0)), max(most, default=(0.0, 0.0))
-    level = max(problem.face[TOUCH], problem.face[COLLAPSE])
-    until = problem.legs[outcome.leg].time + outcome.tau
-    touched = outcome.status == "collapsed" or lowest[0] <= level
-    return Passed(problem, outcome.status, outcome.message, until, samples, free, lowest, largest, touched)
+    level = max(run.model.face[TOUCH], run.model.face[COLLAPSE])
+    until = run.end_time(outcome.segment, outcome.tau)
+    touched = outcome.status == Status.COLLAPSED or lowest[0] <= level
+    return Passed(run, str(outcome.status), outcome.message, until, samples, free, lowest, largest, touched)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from ...analysis.continuation import frozen_at_end
-from ...analysis.whirl import free_problem
+from ...analysis.whirl import free_model
 from ...analysis.whirl.mode_over_speed import along
 from ...dynamics.model import Model
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
@@ -25,10 +25,10 @@ BELOW = 0.9
 WINDOWS = (6, 32)
 
 
-def touch_tilt(problem) -> float:
+def touch_tilt(model) -> float:
     """Relative tilt (rad) at which the faces touch, or the film is at its floor, without axial opening; 0 if they touch
     aligned."""
-    face = problem.face
+    face = model.face
     level = max(face[TOUCH], face[COLLAPSE])
     if smallest_gap(face, 0.0, 0.0)[0] <= level:
         return 0.0
@@ -43,10 +43,10 @@ class Steady:
     def __init__(self, scene):
         scene = replace(frozen_at_end(scene), housing=Housing())
         self.speed = 1.0
-        self.problem = Model(replace(scene, shaft=replace(scene.shaft, speed=self.speed)), 1.0)
-        self.tilting = self.problem.layout.with_tilt
+        self.model = Model(replace(scene, shaft=replace(scene.shaft, speed=self.speed)))
+        self.tilting = self.model.unknowns.with_tilt
         # At a speed of one the frequency of what turns with the shaft is its order.
-        own = [h for h in self.problem.harmonics() if h.ring == 1 or h.frequency == 0.0]
+        own = [h for h in self.model.segment().harmonics() if h.ring == 1 or h.frequency == 0.0]
         self.orders = {round(h.frequency, 9): [] for h in own}
         for h in own:
             self.orders[round(h.frequency, 9)].append(h)
@@ -57,7 +57,7 @@ class Steady:
 
     def at(self, speed: float, order: float) -> complex:
         """Complex amplitude of the order at a speed (rad/s): relative tilt of exp(i order angle), or axial gap."""
-        linear, total = self.problem.linear_scene(speed=speed), 0j
+        linear, total = self.model.linear_scene(speed=speed), 0j
         for h in self.orders.get(order, []):
             turning = replace(h, frequency=order * speed)
             z, x, y = linear.relative(turning, linear.response(turning))
@@ -85,7 +85,7 @@ def followed_mode(scene, low: float, high: float, crossing: float | None):
     """The whirl mode that loses its damping at `crossing`, over the speeds of a trip; None without."""
     if crossing is None:
         return None
-    free = free_problem(frozen_at_end(scene), crossing)
+    free = free_model(frozen_at_end(scene), crossing)
     return along(free, min(low, BELOW * crossing), high, crossing)
 
 
@@ -186,9 +186,9 @@ def passage(point: dict) -> dict:
     mode = followed_mode(scenario.scene, trip.begin, trip.end, trip.crossing)
     run = run_cycle(scenario, trip, point["per_turn"], mode, point["disturbance"])
     row = {"rate": trip.rate, **extremes(run), **_followed(run, trip, steady, point)}
-    row["warnings"] = [said for said in run.problem.warnings if not said.startswith("aliasing")]
+    row["warnings"] = [said for said in run.state.warnings if not said.startswith("aliasing")]
     row["h_min_way"] = "up" if row["h_min_time"] < 0.5 * (trip.top + trip.back) else "down"
-    scale = run.problem.clearance / run.problem.face[1]
+    scale = run.state.model.clearance / run.state.model.face[1]
     row["growth"] = (
         measured_growth(mode, trip, run.free, scale) if run.free is not None and len(run.free[0]) > 2 else None
     )
@@ -207,7 +207,7 @@ def _followed(run, trip, steady, point) -> dict:
     out = {"turns": turns, "window": window, "resolution": resolution(window), "folding": 0.0, "waterfall": {}}
     out["speed_in_window"] = trip.rate * window * 2 * math.pi / (0.5 * (trip.begin + trip.end))
     linear_peak = steady.peak(trip.begin, trip.end, order)
-    still = 1e-9 * (run.problem.clearance / (run.problem.face[1] if steady.tilting else 1.0))
+    still = 1e-9 * (run.state.model.clearance / (run.state.model.face[1] if steady.tilting else 1.0))
     highest = max((abs(c) for c in steady.curve(np.linspace(trip.begin, trip.end, 61), order)), default=0.0)
     for way, (first, last) in way_turns.items():
         at = centres(first, last, window * per_turn, speed, CURVE)

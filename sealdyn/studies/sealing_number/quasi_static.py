@@ -8,7 +8,6 @@ half-Sommerfeld cavitation: an estimate.  The seat is tilted by a fixed angle, t
 
 import math
 from dataclasses import dataclass
-from types import SimpleNamespace
 
 import numpy as np
 from scipy.optimize import root
@@ -168,14 +167,14 @@ class Settling:
         return float(self.mean_film[-1]), float(self.amplitude[-1])
 
 
-class _Problem:
-    """What the integrator asks of a problem, for unknowns h0, h1 and the balance of force and one moment.
+class _Balance:
+    """What the integrator asks of a segment, for unknowns h0, h1 and the balance of force and one moment.
 
     `balance` "sine" asks M_s = 4 R F_d / pi, "cosine" asks that the moment about the tilt axis vanishes.
     """
 
     algebraic = ()
-    sticking = None
+    may_change, length = False, math.inf
 
     def __init__(self, ring: Ring, force_ratio: float, films, balance: str):
         self.ring, self.wedge, self.balance = ring, Wedge(ring), balance
@@ -183,7 +182,7 @@ class _Problem:
         # A last, idle unknown: the integrators leave the last one uncontrolled.
         self.scales = np.array([films[0], films[0], 1.0])
         self.last_rates = np.zeros(2)
-        self.fast_time, self.memory = 2 * math.pi / ring.shaft_speed, 1.0
+        self.shortest_period, self.memory = 2 * math.pi / ring.shaft_speed, 1.0
 
     def longest_step(self):
         return math.inf
@@ -231,15 +230,15 @@ class _Problem:
         raise SolverFailure(NO_RATES)
 
 
-def _integrate(problem: _Problem, start, duration: float, accuracy: float, ended) -> tuple:
+def _integrate(balance: _Balance, start, duration: float, accuracy: float, ended) -> tuple:
     """Steps of IDA until `ended(films, rates)` says so, the time is over or IDA gives up (its sentence is handed
     back); times, unknowns, rates, verdict, sentence, evaluations."""
-    counts, y = Counts(), np.array([*start, 0.0])
+    counts, y, balance.length = Counts(), np.array([*start, 0.0]), duration
     times, films, rates, verdict, said = [0.0], [y[:2]], [], "", ""
     try:
-        rates.append(problem.start_rates(0.0, y)[:2])
-        tolerance = tolerance_for("ida", accuracy, problem.memory)
-        for t, ys, yps in METHODS["ida"](problem, SimpleNamespace(length=duration), 0.0, y, "ida", tolerance, counts):
+        rates.append(balance.start_rates(0.0, y)[:2])
+        tolerance = tolerance_for("ida", accuracy, balance.memory)
+        for t, ys, yps in METHODS["ida"](balance, 0.0, y, "ida", tolerance, counts):
             times += list(t)
             films += list(ys[:, :2])
             rates += list(yps[:, :2])
@@ -252,10 +251,10 @@ def _integrate(problem: _Problem, start, duration: float, accuracy: float, ended
     return np.array(times), np.array(films), np.array(rates), verdict, said, counts.rhs
 
 
-def _run(problem: _Problem, start, duration, accuracy, ended, sentence) -> Settling:
-    times, films, rates, verdict, said, evaluations = _integrate(problem, start, duration, accuracy, ended)
-    carried = 2 if problem.balance == "sine" else 1
-    moments = [problem.wedge(film, rate)[carried] for film, rate in zip(films, rates, strict=True)]
+def _run(balance: _Balance, start, duration, accuracy, ended, sentence) -> Settling:
+    times, films, rates, verdict, said, evaluations = _integrate(balance, start, duration, accuracy, ended)
+    carried = 2 if balance.balance == "sine" else 1
+    moments = [balance.wedge(film, rate)[carried] for film, rate in zip(films, rates, strict=True)]
     status, message = sentence(verdict, said, times[-1], films[-1])
     return Settling(status, message, times, films[:, 0], films[:, 1], rates, np.array(moments), evaluations)
 
@@ -280,7 +279,7 @@ def quasi_static(
     `carried_moment` is the cosine moment: nobody balances it.
     """
     ring = ring or Ring()
-    problem = _Problem(ring, force_ratio, start, "sine")
+    balance = _Balance(ring, force_ratio, start, "sine")
 
     def ended(film, rate):
         # No amplitude, no wedge: nothing holds the ring against its friction any more.
@@ -292,7 +291,7 @@ def quasi_static(
         where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
         if verdict == "settled":
             return "settled", f"settled {where}"
-        if said == NO_RATES or (said and problem.none_ahead(film)):
+        if said == NO_RATES or (said and balance.none_ahead(film)):
             return "hang-up", _hung(force_ratio, NO_RATES, where)
         if verdict == "no wedge":
             return "hang-up", _hung(force_ratio, "the wedge is gone", where)
@@ -300,7 +299,7 @@ def quasi_static(
             return "hang-up", _hung(force_ratio, said or "the film goes on moving", where)
         return ("failed", f"{said} ({where})") if said else ("moving", f"not settled {where}")
 
-    return _run(problem, start, duration, accuracy, ended, sentence)
+    return _run(balance, start, duration, accuracy, ended, sentence)
 
 
 def guided(
@@ -308,7 +307,7 @@ def guided(
 ) -> Settling:
     """A ring merely guided along the seat's direction: spring force and the moment about the tilt axis, which
     straightens it; it does not go to Ludwig & Allen's film.  `carried_moment` is the sine moment, on the guide."""
-    problem = _Problem(ring or Ring(), force_ratio, start, "cosine")
+    balance = _Balance(ring or Ring(), force_ratio, start, "cosine")
 
     def sentence(verdict, said, time, film):
         where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
@@ -318,4 +317,4 @@ def guided(
             "straightened" if film[1] < 0.1 * film[0] else "moving"
         ), f"h1/h0 fell to {film[1] / film[0]:.3g} {where}"
 
-    return _run(problem, start, duration, accuracy, lambda *_: "", sentence)
+    return _run(balance, start, duration, accuracy, lambda *_: "", sentence)

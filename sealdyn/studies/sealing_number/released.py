@@ -15,12 +15,15 @@ from ...closed_form import ludwig_allen as closed
 from ...closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
 from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
+from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...scene.contact import Contact
 from ...scene.excitation import Shaft
 from ...scene.rings import Rotor, Stator, Support
 from ...scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ...scene.secondary_seal import SecondarySeal
+from ...simulation.method_selection import choose_method
+from ...solvers.contract import Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
 from . import quasi_static
@@ -46,7 +49,7 @@ def film_on(scene, clearance: float | None = None) -> tuple[float, float, comple
     axial = support.axial_stiffness / ring.spring_force
     if axial == 0.0:
         return found
-    rest = Model(scene, 1.0, 1e-3).clearance if clearance is None else clearance
+    rest = Model(scene, 1e-3).clearance if clearance is None else clearance
 
     def missing(load):
         try:
@@ -183,7 +186,7 @@ def start_film(force_ratio: float, ring: quasi_static.Ring) -> tuple[float, floa
 def started(scene, start="closed form", factor: float = 1.0) -> Scene:
     """The scene with its start: "closed form" (ring following the seat at `factor` times that film), "open" (ring
     square to its shaft and at rest there, faces just apart), or (h0, h1) in m."""
-    ring, clearance = ring_of(scene), Model(scene, 1.0, 1e-3).clearance
+    ring, clearance = ring_of(scene), Model(scene, 1e-3).clearance
     seat, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
     if start == "open":
         mean, tilt = APART * ring.mean_radius * seat, 0.0
@@ -230,45 +233,45 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     `accuracy` is that of a run, relative to the clearance at which asperities carry the spring."""
     ring = ring_of(scene)
     turn = 2 * math.pi / ring.shaft_speed
-    problem = Model(scene, turns * turn, accuracy)
+    run = RunState(Model(scene, accuracy), turns * turn)
     for part in ("z", "tilt_x", "tilt_y"):
-        problem.y0[problem.names.index(f"rotor_{part}")] = getattr(scene.initial.rotor, part) or 0.0
-    problem.check_start()
-    sink = Kept(problem, turn / SAMPLES)
-    outcome = solve(problem, method or problem.solver()[0], accuracy, sink)
+        run.y0[run.model.unknowns.names.index(f"rotor_{part}")] = getattr(scene.initial.rotor, part) or 0.0
+    run.check_start()
+    sink = Kept(turn / SAMPLES)
+    outcome = solve(run, method or choose_method(run)[0], accuracy, sink)
     series = {name: np.concatenate([part[name] for part in sink.series]) for name in sink.series[0]}
-    return _told(problem, ring, series, outcome, last)
+    return _told(run, ring, series, outcome, last)
 
 
 class Kept(Recorder):
     """Signals of a run, taken while it runs: whether the ring sticks is known only then."""
 
-    def __init__(self, problem, interval):
-        super().__init__(problem, interval)
+    def __init__(self, interval):
+        super().__init__(interval)
         self.series = []
 
-    def take(self, index, taus, q, q_rate):
-        self.series.append(signals(self.problem, taus, q, q_rate))
+    def take(self, segment, taus, q, q_rate):
+        self.series.append(signals(segment, taus, q, q_rate))
 
 
-def _told(problem, ring, series, outcome, last) -> Released:
-    time, h0 = series["time"], problem.clearance + series["axial_gap_change"]
+def _told(run, ring, series, outcome, last) -> Released:
+    time, h0 = series["time"], run.model.clearance + series["axial_gap_change"]
     g = (series["relative_tilt_x"] + 1j * series["relative_tilt_y"]) * np.exp(
-        -1j * problem.scene.stator.misalignment_direction
+        -1j * run.model.scene.stator.misalignment_direction
     )
     h1 = ring.mean_radius * np.abs(g)
     end = time >= time[-1] - last * 2 * math.pi / ring.shaft_speed
     angle = np.unwrap(np.angle(g[end]))
     told = Released(
-        outcome.status, outcome.message, *(_spread(h[end]) for h in (h0, h1, h0 - h1)),
+        str(outcome.status), outcome.message, *(_spread(h[end]) for h in (h0, h1, h0 - h1)),
         share=float(np.mean(h1[end]) / np.mean(h0[end])), direction=float(np.angle(np.mean(g[end]))),
         whirl=float(angle[-1] - angle[0]) / (2 * math.pi * last),
         contact_share=float(np.mean(series["contact_force"][end]) / ring.spring_force),
         stuck_share=float(np.mean(series["rotor_seal_stuck"][end])), time=time, h0=h0, h1=h1,
         evaluations=outcome.counts.rhs, energy_residual=outcome.energy_residual,
     )  # fmt: skip
-    if outcome.status == "ok":
-        told.status, told.message = _fate(told, force_ratio_of(problem.scene))
+    if outcome.status == Status.OK:
+        told.status, told.message = _fate(told, force_ratio_of(run.model.scene))
     return told
 
 

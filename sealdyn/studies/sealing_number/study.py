@@ -91,7 +91,7 @@ def _line(highest) -> dict:
 def _foreseen_line(scene, ring, highest) -> dict:
     """The released ring's film on the scene's own support, where it has one."""
     q = np.geomspace(4 / np.pi, min(closed.LEAST_FORCE_RATIO * 1.5, highest), 120)
-    films, rest = [], Model(scene, 1.0, 1e-3).clearance
+    films, rest = [], Model(scene, 1e-3).clearance
     for ratio in q:
         try:
             films.append(

@@ -88,8 +88,8 @@ class Grid:
     def __init__(self, scenario, axes: dict[str, np.ndarray]):
         self.scenario, self.scene = scenario, frozen_at_start(scenario.scene)
         self.axes = {key: np.asarray(values, dtype=float) for key, values in axes.items()}
-        self.problem = Model(self.scene, 1.0)
-        self.floating = [n for n, f in zip(("stator", "rotor"), self.problem.floats.values(), strict=True) if f]
+        self.model = Model(self.scene)
+        self.floating = [n for n, f in zip(("stator", "rotor"), self.model.unknowns.floats.values(), strict=True) if f]
         self.films = self._films()
 
     def rates(self) -> tuple[np.ndarray, np.ndarray]:
@@ -104,7 +104,7 @@ class Grid:
 
     def _block(self, grid, rows):
         given = _Given(self.scene, grid)
-        possible = _possible(given, self.problem.clearance)
+        possible = _possible(given, self.model.clearance)
         k, d, k_z, d_z = self.films(given, rows)
         mean_spin = 0.5 * (given("shaft.speed") + given("stator.speed"))
         tilt, axial = ([], [], []), ([], [], [])
@@ -132,7 +132,7 @@ class Grid:
         return self._rebuilt()
 
     def _closed_form(self):
-        film, name = self.scene.film, self.problem.film_name
+        film, name = self.scene.film, self.model.interface.name
         own = film.coefficients if name == "linear" else "radial"
         if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local":
             return None
@@ -144,7 +144,7 @@ class Grid:
             numbers = {n: given(f"film.{n}") for n in names}
             drop = given("film.outer_pressure") - given("film.inner_pressure")
             # Impossible faces are answered by the reference seal and blanked afterwards.
-            good = _open(given, self.problem.clearance)
+            good = _open(given, self.model.clearance)
             numbers = {n: np.where(good, v, getattr(film, n)) for n, v in numbers.items()}
             return formula(**numbers, pressure_drop=drop, **more)
 
@@ -152,7 +152,7 @@ class Grid:
 
     def _reproduces(self, closed) -> bool:
         """Whether the formula is this film's own linearisation."""
-        stiffness, damping = self.problem.film_matrices()
+        stiffness, damping = self.model.film_matrices()
         own = [stiffness[1, 1], damping[1, 1], stiffness[0, 0], damping[0, 0]]
         return bool(np.allclose(np.array(closed(_Given(self.scene, {}))), own, rtol=1e-6))
 
@@ -172,17 +172,17 @@ class Grid:
 
     def _coefficients(self, values) -> list[float]:
         try:
-            problem = Model(frozen_at_start(with_values(self.scenario, {**values, "run.start": '"steady"'}).scene), 1.0)
+            model = Model(frozen_at_start(with_values(self.scenario, {**values, "run.start": '"steady"'}).scene))
         except (ScenarioError, SceneError):
             return [np.nan] * 4
-        k, d = problem.film_matrices()
+        k, d = model.film_matrices()
         if abs(k[1, 1] - k[2, 2]) > 1e-6 * abs(k[1, 1]) or abs(k[1, 2] + k[2, 1]) > 1e-6 * abs(k[1, 2]) + 1e-9:
             raise SceneError("film.model", "a film that is not the same in all directions", "an isotropic film")
         return [k[1, 1], d[1, 1], k[0, 0], d[0, 0]]
 
     def _follows_speed(self) -> bool:
         """Whether the film's coefficients change with speed (those of liquid films do not)."""
-        ends = [self.problem.linear_scene(speed=float(w)) for w in self.axes["shaft.speed"][[0, -1]]]
+        ends = [self.model.linear_scene(speed=float(w)) for w in self.axes["shaft.speed"][[0, -1]]]
         return not all(
             np.allclose(getattr(ends[0], m)[i, i], getattr(ends[1], m)[i, i], rtol=1e-6)
             for m in ("film_k", "film_d")

@@ -12,11 +12,13 @@ from ...analysis.arrangements import arrangement, frozen_at_start
 from ...analysis.validation import growth_rate
 from ...dynamics import modes
 from ...dynamics.model import Model
+from ...dynamics.run_state import RunState
 from ...scenario.errors import ScenarioError, tables
 from ...scenario.reader import ScenarioFile, parse_scenario
 from ...scenario.settings import axis, with_values
 from ...scene.excitation import Housing, Shaft
 from ...scene.scene import SceneError
+from ...simulation.method_selection import choose_method
 from .grid import INERTIA_RATIO, Grid
 
 units = {"growth_rate": "1/s", "tilt_growth_rate": "1/s"}
@@ -156,10 +158,10 @@ def _listed(rates) -> list:
 
 def margins(scene) -> dict:
     """Growth rate, whirl ratio and critical speed at the scenario's own values, and how far off the threshold is."""
-    problem = Model(scene, 1.0)
-    found, speed = problem.linear_scene().modes(), scene.shaft.speed
+    model = Model(scene)
+    found, speed = model.linear_scene().modes(), scene.shaft.speed
     tilt = [mode for mode in found if mode.kind == "tilt"]
-    critical = modes.critical_speed(lambda w: problem.linear_scene(speed=w), max(1.0, 1e-3 * abs(speed)), 1e6, 240)
+    critical = modes.critical_speed(lambda w: model.linear_scene(speed=w), max(1.0, 1e-3 * abs(speed)), 1e6, 240)
     return {
         "verdict": modes.verdict(found),
         "growth_rate": found[0].value.real,
@@ -175,7 +177,7 @@ def unconditional(scene) -> dict:
     if arrangement(scene) != "FMR":
         return nothing
     damping = scene.rotor.support.tilt()[1]
-    stiffness, film_damping = Model(scene, 1.0).film_matrices()
+    stiffness, film_damping = Model(scene).film_matrices()
     if damping + film_damping[1, 1] <= 0 or scene.rotor.support.tilt()[0] + stiffness[1, 1] <= 0:
         return nothing
     limit = cf.unconditional_inertia_ratio(support_damping=damping, film_damping=film_damping[1, 1])
@@ -228,15 +230,15 @@ def confirmed(point: dict) -> dict:
         rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
         stator=replace(scene.stator, misalignment=0.0),
     )
-    problem, speed, rate = Model(scene, 1.0), scene.shaft.speed, point["rate"]
-    scene = frozen_at_start(scene, clearance=problem.clearance)
+    model, speed, rate = Model(scene), scene.shaft.speed, point["rate"]
+    scene = frozen_at_start(scene, clearance=model.clearance)
     if rate == 0.0 or speed == 0.0:
         raise ValueError("neutral, or a shaft at rest: nothing to measure")
     length = (GROWN if rate > 0 else DECAYED) / abs(rate)
     turns = min(max(length * abs(speed) / (2 * math.pi), FEWEST), MOST)
     if rate > 0 and turns == FEWEST:
         raise ValueError("grows too fast to be followed")
-    measured = growth_rate(scene, turns, problem.solver()[0])
+    measured = growth_rate(scene, turns, choose_method(RunState(model, 1.0))[0])
     return {"time_domain": measured, "turns": turns, "agrees": bool((measured > 0) == (rate > 0))}
 
 

@@ -15,15 +15,16 @@ from scipy.optimize import brentq
 
 from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
 from ...dynamics import equations
-from ...dynamics.contact_events import no_contact
-from ...dynamics.extrema import empty_records
 from ...dynamics.model import Model
+from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
 from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, h_min
 from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
+from ...simulation.method_selection import choose_method
+from ...solvers.contract import Cause, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
 from .rosenbrock import Average, NoAverage
@@ -54,29 +55,29 @@ class ShortRunAverages:
         self.own = np.interp(self.radius, film.profile.radius, film.profile.depth)
         self.within, self.turns, self.patience = within, turns, patience
         rough = scene.contact.roughness
-        probe = Model(self.scene, 1.0, accuracy)
+        probe = RunState(Model(self.scene, accuracy), 1.0)
         # The closing force stays the law that the tables' first values decide, as it does in a run.
-        start = Model(begun, 1.0, accuracy)
-        self.accuracy = min(accuracy, FINER * within * rough / start.clearance)
-        self.clearance, self.face_area = start.clearance, start.closing.area
+        start = RunState(Model(begun, accuracy), 1.0)
+        self.accuracy = min(accuracy, FINER * within * rough / start.model.clearance)
+        self.clearance, self.face_area = start.model.clearance, start.model.closing.area
         given = self.scene.closing.spring_force
-        self.closing = start.closing if given is None else replace(start.closing, spring=given)
-        self.still = not len(probe.rows)
+        self.closing = start.model.closing if given is None else replace(start.model.closing, spring=given)
+        self.still = not len(probe.segment(0).rows)
         self.period = probe.period()
         if self.period is None:
             raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
         self.stiffness, self.shares = _supports(self.scene)
         self.wears = np.array([scene.contact.stator_wear_coefficient, scene.contact.rotor_wear_coefficient])
         self.difference = DIFFERENCE * rough
-        self.unstable = bool(np.max(probe.linear_scene().eigen()[0].real) > 0.0)
+        self.unstable = bool(np.max(probe.model.linear_scene().eigen()[0].real) > 0.0)
 
     def __call__(self, depth, motion=None) -> Average:
         motion = motion or self.first(depth)
         # The ring follows what has been worn off where it touches.
         travel = motion["travel"] - float(np.dot(motion["share"], depth - np.array(motion["depth"])))
-        problem = self.problem(depth, travel, self.turns * self.period)
-        run = self._rest if self.still else self._settle
-        seen, states, more = run(problem, motion)
+        run = self.run(depth, travel)
+        average = self._rest if self.still else self._settle
+        seen, states, more = average(run, motion)
         (*nodal, volume_rate), scatter = more.pop("rates"), more.pop("scatter")
         nodal = np.array(nodal)
         shift = seen["axial_gap_change"]
@@ -87,7 +88,7 @@ class ShortRunAverages:
             "depth": [float(v) for v in depth],
             "share": (nodal / total if total > 0.0 else np.full(len(nodal), 1.0 / len(nodal))).tolist(),
         }
-        slope = self._slope(problem, states) if total > 0.0 else None
+        slope = self._slope(run, states) if total > 0.0 else None
         row = seen | more | {"travel": travel + shift}
         return Average(nodal, float(volume_rate), slope, scatter, end, row)
 
@@ -98,97 +99,94 @@ class ShortRunAverages:
             try:
                 y = ramp_to(self.scene, None, None, None, {"accuracy": self.accuracy, "ramp": RAMP}).tolist()
             except FilmCollapsed as lost:
-                if "interrupted" in str(lost):
+                if lost.cause == Cause.INTERRUPTED:
                     raise KeyboardInterrupt from None
-                raise NoAverage("collapsed" if "crushed" in str(lost) else "failed", str(lost)) from None
+                crushed = lost.cause == Cause.ASPERITIES_CRUSHED
+                raise NoAverage("collapsed" if crushed else "failed", str(lost)) from None
         n = len(self.radius)
         return {"travel": 0.0, "y": y, "depth": [float(v) for v in depth], "share": [1.0 / n] * n}
 
-    def problem(self, depth, travel: float, duration: float) -> Model:
+    def run(self, depth, travel: float) -> RunState:
         """The scene over worn faces, its ring `travel` (m) from where it began: the profile is counted from there, so
         that the ring is near zero again, and the closing force is what the springs still give."""
         profile = self._profile(depth, travel)
         film = replace(self.scene.film, clearance=self.clearance, profile=profile)
-        problem = Model(replace(self.scene, film=film, closing=Closing()), duration, self.accuracy)
-        problem.closing = replace(self.closing, spring=self.closing.spring + self.stiffness * travel)
-        # What was linearised about the other closing force.
-        problem._shifts.clear()
-        problem._linear_scenes.clear()
-        problem.begin(0)
-        return problem
+        closing = Closing(self.closing.balance_ratio, self.closing.spring + self.stiffness * travel)
+        model = Model(replace(self.scene, film=film, closing=closing), self.accuracy)
+        return RunState(model, self.turns * self.period)
 
     def _profile(self, depth, travel) -> Profile:
         return Profile(tuple(self.radius.tolist()), tuple((self.own + depth + travel).tolist()))
 
     # --- a scene in which nothing moves ---------------------------------------------------------------
 
-    def _rest(self, problem, motion):
+    def _rest(self, run, motion):
         """The balance of forces of aligned faces."""
-        still = np.zeros((1, problem.n))
-        (s,) = _states(problem, np.zeros(1), still, still)
-        closing = problem.closing_force()
+        still = np.zeros((1, run.model.unknowns.n))
+        (s,) = _states(run, np.zeros(1), still, still)
+        closing = run.model.closing_force()
 
         def excess(shift):
             s[DZ] = shift
-            problem.faces.wrench(problem.f, s)
+            run.model.interface.wrench(run.model.f, s)
             return s[FORCE] - closing - self.stiffness * shift
 
-        shift = self._root(problem, excess)
-        q = np.array([[shift * self.shares[name] for name in problem.names]])
-        seen = self._seen(problem, np.zeros(1), q, still)
-        states = _states(problem, np.zeros(1), q, still)
-        more = {"rates": self._rates(problem, states), "scatter": None, "settled": True, "periods": 0, "y": []}
+        shift = self._root(run, excess)
+        q = np.array([[shift * self.shares[name] for name in run.model.unknowns.names]])
+        seen = self._seen(run, np.zeros(1), q, still)
+        states = _states(run, np.zeros(1), q, still)
+        more = {"rates": self._rates(run, states), "scatter": None, "settled": True, "periods": 0, "y": []}
         return seen, states, more
 
-    def _root(self, problem, excess) -> float:
+    def _root(self, run, excess) -> float:
         """Where the opening force falls through the closing force, nearest to where the ring was."""
         here, step = excess(0.0), 0.1 * self.scene.contact.roughness
         if here == 0.0:
             return 0.0
         side, near = math.copysign(step, here), 0.0
-        lowest = h_min(problem.face, 0.0, 0.0, 0.0)[0]
+        lowest = h_min(run.model.face, 0.0, 0.0, 0.0)[0]
         while True:
             far = near + side
             if excess(far) * here <= 0.0:
                 return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
             if lowest + far < contact_thresholds(self.scene.contact)[2]:
                 raise NoAverage("collapsed", "asperities crushed flat: the faces cannot carry the closing force")
-            if far > 100 * max(self.clearance, problem.face[1] * 1e-3):
+            if far > 100 * max(self.clearance, run.model.face[1] * 1e-3):
                 raise NoAverage("failed", "the ring is blown open: no gap at which film and springs balance")
             near, side = far, 1.3 * side
 
     # --- a scene that moves ---------------------------------------------------------------------------
 
-    def _settle(self, problem, motion):
+    def _settle(self, run, motion):
         """Runs of whole periods, each from the last one's end, until the averages stay."""
-        y = np.zeros(problem.size)
+        y = np.zeros(run.model.unknowns.size)
         y[: len(motion["y"])] = motion["y"]
         method, past = None, []
         for _ in range(self.patience):
-            problem.y0 = y
-            problem.records, problem.touching, problem.contacts = empty_records(), no_contact(), []
-            method = method or problem.solver()[0]
-            sink = Recorder(problem, self.period / self._samples())
-            outcome = solve(problem, method, self.accuracy, sink)
-            if outcome.status == "interrupted":
+            run = RunState(run.model, run.duration)
+            run.y0 = y
+            method = method or choose_method(run)[0]
+            sink = Recorder(self.period / self._samples())
+            outcome = solve(run, method, self.accuracy, sink)
+            if outcome.status == Status.INTERRUPTED:
                 raise KeyboardInterrupt
-            if outcome.status != "ok":
-                raise NoAverage(outcome.status, outcome.message)
+            if outcome.status != Status.OK:
+                raise NoAverage(str(outcome.status), outcome.message)
             t, q, rate = (part[:-1] for part in sink.arrays())
-            states = _states(problem, t, q, rate)
-            past.append(self._rates(problem, states))
-            y = np.zeros(problem.size)
-            y[: problem.n_mechanical] = outcome.y[: problem.n_mechanical]
+            states = _states(run, t, q, rate)
+            past.append(self._rates(run, states))
+            y = np.zeros(run.model.unknowns.size)
+            y[: run.model.unknowns.n_mechanical] = outcome.y[: run.model.unknowns.n_mechanical]
             if _stays(past, self.within):
                 break
         settled = _stays(past, self.within)
-        seen = self._seen(problem, t, q, rate)
+        seen = self._seen(run, t, q, rate)
         rates, scatter = past[-1], None
         if not settled:
             # The later half of the windows is what there is.
             late = np.array(past[len(past) // 2 :])
             rates, scatter = late.mean(axis=0), 2.0 * late.std(axis=0)[:-1] / math.sqrt(len(late))
-        y = self._moved(problem, y, seen["axial_gap_change"])
+        y = self._moved(run, y, seen["axial_gap_change"])
         more = {"rates": rates, "scatter": scatter, "settled": settled, "periods": len(past) * self.turns, "y": y}
         return seen, states[:: max(1, len(states) // FEW)], more
 
@@ -197,53 +195,53 @@ class ShortRunAverages:
         turns = self.period * abs(self.scene.shaft.speed) / (2 * math.pi)
         return PER_TURN * max(1, round(turns))
 
-    def _moved(self, problem, y, shift) -> list[float]:
+    def _moved(self, run, y, shift) -> list[float]:
         """Mechanical unknowns with the mean shift of the gap taken out of the rings' axial displacements."""
-        y = y[: problem.n_mechanical].copy()
-        for i, name in enumerate(problem.names):
+        y = y[: run.model.unknowns.n_mechanical].copy()
+        for i, name in enumerate(run.model.unknowns.names):
             if name in self.shares:
                 y[i] -= shift * self.shares[name]
         return y.tolist()
 
     # --- from the gap to the nodes --------------------------------------------------------------------
 
-    def _nodal(self, problem, s, f=None) -> np.ndarray:
+    def _nodal(self, run, s, f=None) -> np.ndarray:
         """Volume rate (n,) m^3/s of both faces at each node's hat, in one gap state."""
         out = np.zeros(len(self.radius))
-        contact.wear_rates(problem.contact, problem.f if f is None else f, s, out)
+        contact.wear_rates(run.model.contact, run.model.f if f is None else f, s, out)
         return float(self.wears.sum()) * abs(s[SPIN_DIFFERENCE]) * out
 
-    def _rates(self, problem, states) -> np.ndarray:
+    def _rates(self, run, states) -> np.ndarray:
         """Means over gap states of `_nodal`, and last, by an integral of its own, the volume rate of both faces."""
         found = np.zeros(len(self.radius) + 1)
         for state in states:
             s = state.copy()
-            contact.contact_load_and_friction(problem.contact, problem.f, s)
-            found[:-1] += self._nodal(problem, s)
+            contact.contact_load_and_friction(run.model.contact, run.model.f, s)
+            found[:-1] += self._nodal(run, s)
             found[-1] += s[WEAR] * self.face_area
         return found / len(states)
 
-    def _slope(self, problem, states) -> np.ndarray:
+    def _slope(self, run, states) -> np.ndarray:
         """d nodal / d depth (n, n) m^2/s by central differences over gap states as they are, and with the ring moved so
         that the forces balance: exact for faces at rest, near enough for those that move."""
         n, step = len(self.radius), self.difference
         nodal, force = np.zeros((n, n)), np.zeros(n)
         for k, side in product(range(n), (1.0, -1.0)):
-            f = problem.f.copy()
+            f = run.model.f.copy()
             f[PROFILE_DEPTHS + k] += side * step
             for state in states:
                 s = state.copy()
-                problem.faces.wrench(f, s)
-                nodal[:, k] += side * self._nodal(problem, s, f) / (2 * step * len(states))
+                run.model.interface.wrench(f, s)
+                nodal[:, k] += side * self._nodal(run, s, f) / (2 * step * len(states))
                 force[k] += side * s[FORCE] / (2 * step * len(states))
         # All hats together are the ring's own motion, against the film, the asperities and its springs.
         give = force.sum() - self.stiffness
         return nodal - np.outer(nodal.sum(axis=1), force) / give if give else nodal
 
-    def _seen(self, problem, t, q, rate) -> dict:
+    def _seen(self, run, t, q, rate) -> dict:
         """Means and extremes of what is looked at, over evenly spaced times of whole periods."""
-        columns = signals(problem, t, q, rate)
-        side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+        columns = signals(run.segment(0), t, q, rate)
+        side = "leakage_inner" if run.model.closing.outer_is_high else "leakage_outer"
         seen = {name: float(columns[name].mean()) for name in MEANS}
         seen["leakage"] = float(columns[side].mean())
         seen["contact_pressure"] = float(columns["contact_pressure"].max())
@@ -269,13 +267,14 @@ def _supports(scene) -> tuple[float, dict[str, float]]:
     return series, {name: sign * series / stiffness for name, (stiffness, sign) in give.items()}
 
 
-def _states(problem, t, q, rate) -> list[np.ndarray]:
+def _states(run, t, q, rate) -> list[np.ndarray]:
     """Gap states at times (m,) with displacements and rates (m, n)."""
-    states, yps = [], np.zeros(problem.size)
+    segment, states = run.segment(0), []
+    yps = np.zeros(segment.size)
     for tau, here, speed in zip(t, q, rate, strict=True):
-        yps[: problem.n] = speed
-        equations.kinematics(tau, problem.unknowns(here, speed), yps, problem.p, problem.w, problem.s)
-        states.append(problem.s.copy())
+        yps[: segment.n] = speed
+        equations.kinematics(tau, run.model.vector(here, speed), yps, segment.p, segment.w, segment.s)
+        states.append(segment.s.copy())
     return states
 
 

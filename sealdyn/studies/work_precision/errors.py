@@ -8,7 +8,7 @@ import numpy as np
 
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
-from ...solvers.contract import Counts, SolverFailure
+from ...solvers.contract import Counts, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
 
@@ -40,10 +40,9 @@ class Observed:
 class Sampler(Recorder):
     """Keeps what is looked at, at even times."""
 
-    def take(self, index, taus, q, q_rate):
-        problem = self.problem
-        columns = signals(problem, taus, q, q_rate)
-        side = "leakage_inner" if problem.closing.outer_is_high else "leakage_outer"
+    def take(self, segment, taus, q, q_rate):
+        columns = signals(segment, taus, q, q_rate)
+        side = "leakage_inner" if segment.model.closing.outer_is_high else "leakage_outer"
         self.parts.append(
             (columns["time"], columns["h_min"], columns["relative_misalignment"], columns[side])
         )  # fmt: skip
@@ -75,39 +74,42 @@ class _Stopwatch:
             yield block
 
 
-def observe(problem, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
-    """Integrate a problem with a method's generator `steps` (contract of solvers/methods.py) and look at it.
+def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
+    """Integrate a run with a method's generator `steps` (contract of solvers/methods.py) and look at it.
 
     `limit` (s) of integration; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
     """
-    watch, sink = _Stopwatch(steps, limit), Sampler(problem, problem.duration / samples)
+    watch, sink = _Stopwatch(steps, limit), Sampler(run.duration / samples)
     with np.errstate(all="ignore"):
-        outcome = solve(problem, method, problem.accuracy, sink, steps=watch, tolerance=tolerance)
-    if outcome.status == "interrupted":
+        outcome = solve(run, method, run.model.accuracy, sink, steps=watch, tolerance=tolerance)
+    if outcome.status == Status.INTERRUPTED:
         raise KeyboardInterrupt
-    status, reason = outcome.status, "" if outcome.status == "ok" else outcome.message
+    status, reason = str(outcome.status), "" if outcome.status == Status.OK else outcome.message
     if watch.stopped:
         status = "stopped"
     elif status == "ok" and not np.all(np.isfinite(outcome.y)):
         status, reason = "failed", "overflowed"
-    found = _observed(problem, status, reason, watch.spent, outcome.counts, sink, outcome.y)
+    found = _observed(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
     found.processor = watch.processor
     return found
 
 
-def _observed(problem, status, reason, wall, counts, sink, y) -> Observed:
+def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
     columns = [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
-    record, steady = problem.records[1], None
+    record, steady = run.extrema.records[1], None
     if status == "ok" and math.isfinite(record[H]) and math.isfinite(record[MOST]):
         steady = {"h_min": [record[H]], "relative_misalignment": [record[LEAST], record[MOST]]}
-        late = columns[0] >= problem.windows[1][0] * (1 - 1e-12)
+        late = columns[0] >= run.extrema.windows[1][0] * (1 - 1e-12)
         if late.sum() > 1:
             steady["leakage"] = [float(np.max(columns[3][late])), float(np.min(columns[3][late]))]
-    place = problem.layout.impulse
-    impulse = float(y[place]) if problem.contact is not None and place is not None else None
+    place = run.model.unknowns.impulse
+    impulse = float(y[place]) if run.model.contact is not None and place is not None else None
     series = dict(zip(OBSERVABLES, columns[1:], strict=False))
-    scales = {"h_min": problem.clearance, "relative_misalignment": problem.clearance / problem.scene.film.outer_radius}
+    scales = {
+        "h_min": run.model.clearance,
+        "relative_misalignment": run.model.clearance / run.model.scene.film.outer_radius,
+    }
     if len(columns[3]) and np.max(np.abs(columns[3])) > 0:
         scales["leakage"] = float(np.max(np.abs(columns[3])))
     if impulse:

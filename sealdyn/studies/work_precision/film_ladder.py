@@ -66,12 +66,12 @@ def _highest(scenario, ladder, samples, longest):
     """The exact run of the highest rung that this scene can be run with, and that rung."""
     for rung in reversed(ladder):
         try:
-            problem, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
-            found = observe(problem, collocation, "gauss", JUDGE, 2 * longest, samples)
+            run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
+            found = observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
             if found.status not in ("ok", "collapsed"):
-                problem, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": 1e-9, **AUTO}))
-                tolerance = tolerance_for(method, 1e-9, problem.memory)
-                found = observe(problem, METHODS[method], method, tolerance, longest, samples)
+                run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": 1e-9, **AUTO}))
+                tolerance = tolerance_for(method, 1e-9, run.memory)
+                found = observe(run, METHODS[method], method, tolerance, longest, samples)
         except ValueError:
             # This film refuses the scene.
             continue
@@ -95,9 +95,9 @@ def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
     best = None
     try:
         for _ in range(max(1, repeats) + 1):
-            problem, method, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
-            tolerance = tolerance_for(method, scenario.run.accuracy, problem.memory)
-            found = observe(problem, METHODS[method], method, tolerance, longest, samples)
+            run, method, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+            tolerance = tolerance_for(method, scenario.run.accuracy, run.memory)
+            found = observe(run, METHODS[method], method, tolerance, longest, samples)
             best = found if best is None or found.wall < best.wall else best
             if found.wall > 1.0 or found.status != "ok":
                 break
@@ -115,16 +115,15 @@ def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
 def _balanced(scenario, rung, highest, repeats) -> dict | None:
     """The harmonic balance of a rung's linearisation, with its own call time; None where there is no steady state."""
     label, overrides = rung
-    problem, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
-    last = len(problem.legs) - 1
-    problem.begin(last)
-    steady = highest.steady and problem.period() and not problem.layout.extended and not problem.massless
-    if not steady or modes.verdict(problem.linear_scene(last).modes()) != "stable":
+    run, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+    last = run.intervals[-1]
+    steady = highest.steady and run.period(-1) and not run.model.unknowns.extended and not run.model.unknowns.massless
+    if not steady or modes.verdict(run.model.linear_scene(last).modes()) != "stable":
         return None
     wall = math.inf
     for _ in range(repeats + 1):
         begun = clock.perf_counter()
-        found = harmonic_balance(problem, last)
+        found = harmonic_balance(run)
         wall = min(wall, clock.perf_counter() - begun)
     length = highest.scales["h_min"]
     tilt = highest.scales["relative_misalignment"]
@@ -143,20 +142,22 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     }
 
 
-def harmonic_balance(problem, leg_index: int) -> dict:
-    """Linear steady extremes over one period of a leg: `h_min` (m) and the least and most relative misalignment (rad).
+def harmonic_balance(run) -> dict:
+    """Linear steady extremes over one period of the last segment: `h_min` (m) and the least and most relative
+    misalignment (rad).
 
     **Source** the answers of modes.LinearScene to every imposed harmonic, superposed.
     **Valid** small motion; constant conditions; a stable scene."""
-    linear = problem.linear_scene(leg_index)
-    relative = [(h.frequency, linear.relative(h, linear.response(h))) for h in problem.harmonics()]
-    t = np.linspace(0.0, problem.period(), POINTS + 1)
+    segment = run.segment(-1)
+    linear = run.model.linear_scene(segment.interval)
+    relative = [(h.frequency, linear.relative(h, linear.response(h))) for h in segment.harmonics()]
+    t = np.linspace(0.0, run.period(-1), POINTS + 1)
     motion = np.zeros((3, len(t)))
     for frequency, amplitude in relative:
         motion += (amplitude[:, None] * np.exp(1j * frequency * t)).real
     tilt = np.hypot(motion[1], motion[2])
-    shift = problem.axial_shift(leg_index) + motion[0]
-    thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(problem.scene.film, problem.clearance))
+    shift = run.model.axial_shift(segment.interval) + motion[0]
+    thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(run.model.scene.film, run.model.clearance))
     return {
         "h_min": float(thinnest),
         "relative_misalignment": [float(tilt.min()), float(tilt.max())],

@@ -14,6 +14,7 @@ from importlib.metadata import version
 
 from ...scenario.reader import parse_scenario
 from ...scenario.settings import with_values
+from ...simulation.method_selection import choose_method
 from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
@@ -67,9 +68,9 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Methods, their judge, models, and who is fastest at which accuracy."""
     point = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
-    problem = ready(scenario)
+    run = ready(scenario)
     chosen = [m for m in (*FAST, *SLOW) if not settings.methods or m in settings.methods]
-    chosen = [m for m in chosen if m != "expm" or (problem.linear and problem.constant)]
+    chosen = [m for m in chosen if m != "expm" or (run.model.unknowns.linear and run.model.unknowns.constant)]
     judging = {"samples": settings.samples, "limit": settings.judging}
     exact, band, judges = reference(json.dumps({**point, **judging}))
     tools.say(0.1)
@@ -91,7 +92,7 @@ def run(scenario, settings, tools) -> dict:
         rungs = film_ladder.compare(scenario, settings.samples, settings.longest, settings.repeats, exact)
     answer = {
         "where": settings.where,
-        "scene": {"turns": _turns(problem), "duration": problem.duration, "method": problem.solver()[0]},
+        "scene": {"turns": _turns(run), "duration": run.duration, "method": choose_method(run)[0]},
         "judges": judges,
         "judge_error": band,
         "methods": methods,
@@ -104,12 +105,12 @@ def run(scenario, settings, tools) -> dict:
 
 
 def ready(scenario):
-    """A fresh problem whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
+    """A fresh run whose film and gap are evaluated far more accurately than any judged run.  Coulomb friction
     fades over a band that follows the accuracy, so there the scenario's own is kept."""
     seals = (scenario.scene.stator.secondary_seal, scenario.scene.rotor.secondary_seal)
     accuracy = scenario.run.accuracy if any(s and s.law == "coulomb" for s in seals) else TIGHT
-    problem, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
-    return problem
+    run, *_ = prepare_run(with_values(scenario, {"run.accuracy": accuracy, "run.solver": "auto"}))
+    return run
 
 
 def tolerances(settings) -> list[float]:
@@ -128,12 +129,12 @@ def reference(point: str):
     DOP853 at 1e-13 where they can, then the other nodes."""
     asked = json.loads(point)
     scenario = parse_scenario(asked["text"], asked["name"], asked["overrides"])
-    problem = ready(scenario)
-    stiff = problem.solver()[0] == "bdf"
+    run = ready(scenario)
+    stiff = choose_method(run)[0] == "bdf"
     own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
-    if problem.linear and problem.constant and not problem.massless:
+    if run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.massless:
         others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
-    elif stiff or problem.massless:
+    elif stiff or run.model.unknowns.massless:
         others = []
     else:
         others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
@@ -277,8 +278,8 @@ def _crosses(methods) -> str:
     return f"crosses ({'; '.join(said)})" if said else ""
 
 
-def _turns(problem) -> float:
-    return float(abs(problem.pace) * problem.duration / (2 * math.pi))
+def _turns(run) -> float:
+    return float(abs(run.model.reference_rate) * run.duration / (2 * math.pi))
 
 
 def busy(methods) -> float:

@@ -1,6 +1,7 @@
 """What exhibits share: rows, and runs of small scenes in memory."""
 
 from ....dynamics.model import Model
+from ....dynamics.run_state import RunState
 from ....scene.film import Coefficients
 from ....solvers.integrate import solve
 from ....solvers.recorder import Recorder
@@ -28,16 +29,16 @@ def not_available(item: int, title: str, why: str) -> dict:
     return row(item, title, ("", None), ("", None), "", "") | {"absent": why}
 
 
-def model_started_at(scene, duration: float, accuracy: float, **start) -> Model:
-    """A problem whose unknowns named in `start` (as in Model.names, or with `_rate`) begin there."""
-    problem = Model(scene, duration, accuracy)
+def run_from(scene, duration: float, accuracy: float, **start) -> RunState:
+    """A run whose unknowns named in `start` (as in Unknowns.names, or with `_rate`) begin there."""
+    run = RunState(Model(scene, accuracy), duration)
     for name, value in start.items():
-        place = problem.names.index(name.removesuffix("_rate"))
-        problem.y0[problem.rate_places[place] if name.endswith("_rate") else place] = value
-    return problem
+        place = run.model.unknowns.names.index(name.removesuffix("_rate"))
+        run.y0[run.model.unknowns.rate_places[place] if name.endswith("_rate") else place] = value
+    return run
 
 
-def integrated(problem, method: str, accuracy: float, interval: float | None = None):
-    """Outcome and recorder of a problem by one method."""
-    recorder = Recorder(problem, interval)
-    return solve(problem, method, accuracy, recorder), recorder
+def integrated(run, method: str, accuracy: float, interval: float | None = None):
+    """Outcome and recorder of a run by one method."""
+    recorder = Recorder(interval)
+    return solve(run, method, accuracy, recorder), recorder

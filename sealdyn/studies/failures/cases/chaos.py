@@ -9,7 +9,8 @@ from ....analysis.validation import reference_scene
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....scene.contact import Contact
-from ._common import integrated, model_started_at, row
+from ....solvers.contract import Status
+from ._common import integrated, row, run_from
 
 ITEM = 9
 RAMP, TURNS, SETTLED, PER_TURN, ACCURACIES = 0.05, 130, 40, 16, (1e-5, 1e-7)
@@ -34,16 +35,16 @@ def followed(accuracy: float):
     """Tilt over its scale once a turn, and film over the clearance, after the ramp."""
     scene = rubbing()
     turn = 2 * math.pi / scene.shaft.speed
-    problem = model_started_at(scene, TURNS * turn, accuracy)
-    outcome, recorder = integrated(problem, "adams", accuracy, turn / PER_TURN)
-    if outcome.status != "ok":
+    run = run_from(scene, TURNS * turn, accuracy)
+    outcome, recorder = integrated(run, "adams", accuracy, turn / PER_TURN)
+    if outcome.status != Status.OK:
         raise RuntimeError(outcome.message)
     t, q, rate = recorder.arrays()
     late = t > t[-1] - (TURNS - SETTLED) * turn
-    problem.begin(len(problem.legs) - 1)
-    h_min = signals(problem, t[late] - problem.leg.time, q[late], rate[late])["h_min"] / problem.clearance
-    x = problem.names.index("stator_tilt_x")
-    return (q[late, x] + 1j * q[late, x + 1])[::PER_TURN] * problem.face[1] / problem.clearance, h_min
+    last = run.segment(-1)
+    h_min = signals(last, t[late] - last.time, q[late], rate[late])["h_min"] / run.model.clearance
+    x = run.model.unknowns.names.index("stator_tilt_x")
+    return (q[late, x] + 1j * q[late, x + 1])[::PER_TURN] * run.model.face[1] / run.model.clearance, h_min
 
 
 def show() -> list[dict]:

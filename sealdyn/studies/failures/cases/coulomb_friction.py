@@ -6,7 +6,7 @@ from dataclasses import replace
 from ....analysis.validation import reference_scene
 from ....scene.rings import Rotor
 from ....scene.secondary_seal import SecondarySeal
-from ._common import ZERO_FILM, integrated, model_started_at, row
+from ._common import ZERO_FILM, integrated, row, run_from
 
 ITEM = 4
 FRICTION, START, CYCLES, ACCURACY = 0.31, 5e-6, 12, 1e-6
@@ -22,13 +22,13 @@ def off_rest(seal) -> tuple[float, int]:
     film = replace(scene.film, model="linear", coefficients=ZERO_FILM)
     scene = replace(scene, film=film, stator=stator, rotor=Rotor())
     natural = math.sqrt(support.axial_stiffness / stator.mass)
-    problem = model_started_at(scene, CYCLES * 2 * math.pi / natural, ACCURACY, stator_z=START)
-    outcome, _ = integrated(problem, "adams", ACCURACY)
+    run = run_from(scene, CYCLES * 2 * math.pi / natural, ACCURACY, stator_z=START)
+    outcome, _ = integrated(run, "adams", ACCURACY)
     # Amplitude falls by 2 F/k each half cycle, until the spring is weaker than friction.
     rest, dead = START, FRICTION / support.axial_stiffness
     while abs(rest) > dead:
         rest = -math.copysign(abs(rest) - 2 * dead, rest)
-    return abs(outcome.y[0] - rest) / problem.clearance, outcome.counts.rhs
+    return abs(outcome.y[0] - rest) / run.model.clearance, outcome.counts.rhs
 
 
 def show() -> list[dict]:

@@ -11,7 +11,7 @@ from ....analysis.validation import reference_scene
 from ....closed_form import film_coefficients
 from ....faces.geometry import DZ_RATE, FORCE, GAP_STATE_SIZE, VISCOSITY
 from ....films.radial import film as radial
-from ._common import integrated, model_started_at, row
+from ._common import integrated, row, run_from
 
 ITEM = 5
 # Coning over the face, of the clearance: a nanometre.
@@ -112,10 +112,10 @@ def zero_tilt() -> list[dict]:
         nutation = told[0] * np.exp(1j * told[1])
         stopped = solve_ivp(eulerian, (0, END), [0.0] * 4, "DOP853", rtol=1e-9, atol=1e-15)
     sound = abs(complex(*runge_kutta(cartesian, back)[:2]) - exact) / scale
-    problem = model_started_at(scene, END, 1e-9)
-    rest, _ = integrated(problem, "adams", 1e-9)
+    run = run_from(scene, END, 1e-9)
+    rest, _ = integrated(run, "adams", 1e-9)
     at_end = solve_ivp(cartesian, (0, END), [0.0] * 4, "DOP853", rtol=1e-13, atol=1e-20).y[:, -1]
-    place = problem.names.index("rotor_tilt_x")
+    place = run.model.unknowns.names.index("rotor_tilt_x")
     apart = abs(complex(*rest.y[place : place + 2]) - complex(*at_end[:2])) / scale
     default = "integrates the two tilts about fixed axes, which do not know of the nutation"
     error = abs(nutation - exact) / scale

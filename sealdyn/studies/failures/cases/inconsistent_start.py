@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from ....analysis.validation import reference_scene
 from ....dynamics.model import Model
 from ....scene.scene import Closing, SceneError
-from ._common import model_started_at, not_available, row
+from ._common import not_available, row, run_from
 from .vanishing_inertia import lightened
 
 ITEM = 7
@@ -28,9 +28,9 @@ def closed_start() -> dict:
 
     through = solve_ivp(rates, (0.0, 0.01), [BELOW, 0.0], "LSODA", rtol=1e-6, atol=1e-12)
     closed = max(0.0, -float(np.min(through.y[0]))) if through.success else np.nan
-    problem = model_started_at(replace(scene, film=film), 0.01, 1e-6, rotor_z=wide - BELOW)
+    run = run_from(replace(scene, film=film), 0.01, 1e-6, rotor_z=wide - BELOW)
     try:
-        problem.check_start()
+        run.check_start()
         said, refused = "starts all the same", -BELOW
     except SceneError:
         said, refused = "refused with a sentence, no step taken", 0.0
@@ -46,7 +46,7 @@ def no_equilibrium() -> dict:
     scene = reference_scene("FMR")
     film = replace(scene.film, model="radial", clearance=None)
     overloaded = replace(scene, film=film, closing=Closing(balance_ratio=1.3, spring_force=0.0))
-    opening = Model(replace(scene, film=replace(film, clearance=1e-5)), 1.0).film.opening_force
+    opening = Model(replace(scene, film=replace(film, clearance=1e-5))).interface.film.opening_force
     area = np.pi * (film.outer_radius**2 - film.inner_radius**2)
     closing = 1.3 * area * film.outer_pressure
 
@@ -61,7 +61,7 @@ def no_equilibrium() -> dict:
             break
         c = moved
     try:
-        Model(overloaded, 1.0)
+        Model(overloaded)
         said, left = "assembled all the same", abs(excess(c)) / closing
     except SceneError:
         said, left = "refused with a sentence", 0.0
@@ -74,11 +74,12 @@ def no_equilibrium() -> dict:
 
 def contradicting_rates() -> dict:
     """A massless ring begun with rates of zero, and with the rates that its film's equation asks for."""
-    problem = model_started_at(lightened(0.0), 0.01, 1e-6)
-    left, sizes = np.empty(problem.size), []
-    for yp in (np.zeros(problem.size), problem.start_rates(0.0, problem.y0)):
-        problem.residual(0.0, problem.y0, yp, left)
-        sizes.append(float(np.max(np.abs(left[: problem.n]))))
+    run = run_from(lightened(0.0), 0.01, 1e-6)
+    segment, sizes = run.segment(0), []
+    left = np.empty(segment.size)
+    for yp in (np.zeros(segment.size), segment.start_rates(0.0, run.y0)):
+        segment.residual(0.0, run.y0, yp, left)
+        sizes.append(float(np.max(np.abs(left[: segment.n]))))
     return row(
         ITEM, "Rates at the start of a DAE", ("started with rates of zero", sizes[0]),
         ("rates from the balance itself", sizes[1]), "unbalanced, N and N m",

@@ -8,6 +8,7 @@ from ....analysis.shooting import Shooter
 from ....analysis.validation import reference_scene
 from ....dynamics import modes
 from ....dynamics.model import Model
+from ....dynamics.run_state import RunState
 from ._common import integrated, row
 
 ITEM = 12
@@ -24,11 +25,11 @@ def scene(misalignment: float, model: str = "radial"):
 
 def linear_gap(misalignment: float) -> float:
     """Smallest film over the clearance, as the linear steady state has it."""
-    problem = Model(scene(misalignment, "linear"), 1.0, ACCURACY)
-    linear = problem.linear_scene()
-    answers = [(h, linear.response(h)) for h in problem.harmonics()]
-    most, _, closing = modes.steady_extremes(linear, answers, problem.period())
-    inner, outer, coning, c = problem.face[0], problem.face[1], problem.face[3], problem.clearance
+    run = RunState(Model(scene(misalignment, "linear"), ACCURACY), 1.0)
+    linear = run.model.linear_scene()
+    answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
+    most, _, closing = modes.steady_extremes(linear, answers, run.period())
+    inner, outer, coning, c = run.model.face[0], run.model.face[1], run.model.face[3], run.model.clearance
     return min(c - closing - inner * most, c + coning * (outer - inner) - closing - outer * most) / c
 
 
@@ -62,11 +63,11 @@ def show() -> list[dict]:
     orbit, later = way[1.0], way[SHARES[-1]]
     found, still = (o.extremes["h_min"]["of_clearance"] for o in (orbit, later))
     # The run begins a little off the orbit and must come back to it.
-    problem = Model(scene(touching), TURNS * orbit.period, ACCURACY)
-    problem.y0[: len(orbit.start)] = 0.999 * orbit.start
-    problem.windows[1] = [problem.duration - orbit.period, problem.duration]
-    integrated(problem, "adams", ACCURACY)
-    in_time = problem.records[1, 0] / problem.clearance
+    run = RunState(Model(scene(touching), ACCURACY), TURNS * orbit.period)
+    run.y0[: len(orbit.start)] = 0.999 * orbit.start
+    run.extrema.windows[1] = [run.duration - orbit.period, run.duration]
+    integrated(run, "adams", ACCURACY)
+    in_time = run.extrema.records[1, 0] / run.model.clearance
     return [
         row(
             ITEM, "Linear theory at large tilt",

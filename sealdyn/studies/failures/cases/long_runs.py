@@ -15,7 +15,7 @@ from ....dynamics.imposed_motion import (
     harmonics_of_segment,
     imposed_state,
 )
-from ....dynamics.segments import LONGEST, TURN, split_at_breaks
+from ....dynamics.intervals import LONGEST, TURN, split_at_breaks
 from ....scenario.reader import parse_scenario
 from ....scene.excitation import Housing, Shaft
 from ....scene.rings import ROTOR, Rotor, Stator
@@ -100,8 +100,8 @@ def apparent(per_turn: int) -> float:
 
 def warns(per_turn: int) -> bool:
     """Whether a run with so many samples a turn is warned of."""
-    problem, *_ = prepare_run(parse_scenario(SCENE.replace("PER", str(per_turn)), "tone"))
-    return any(warning.startswith("aliasing") for warning in problem.warnings)
+    run, *_ = prepare_run(parse_scenario(SCENE.replace("PER", str(per_turn)), "tone"))
+    return any(warning.startswith("aliasing") for warning in run.warnings)
 
 
 def aliasing() -> dict:

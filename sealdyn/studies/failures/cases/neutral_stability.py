@@ -5,8 +5,9 @@ import math
 import numpy as np
 
 from ....analysis.validation import reference_scene
-from ....analysis.whirl import RotatingWave, contact_tilt_aligned, free_problem, least_damped
+from ....analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, least_damped
 from ....dynamics import modes
+from ....dynamics.run_state import RunState
 from ....solvers.contract import Counts
 from ....solvers.fixed_step import REFERENCE_METHODS
 from ._common import row
@@ -18,32 +19,32 @@ AMPLITUDE, TURNS, BARE = 0.1, 60, 1e-5
 
 def threshold(scene) -> float | None:
     """Speed (rad/s) where the eigenvalues of the unforced scene cross the axis; None if nowhere."""
-    at = free_problem(scene, 1.0)
+    at = free_model(scene, 1.0)
     pace = max((abs(mode.value) for mode in at.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
     return modes.critical_speed(lambda w: at.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
 
 
-def neutral_problem(scene, speed: float, turns: float, accuracy: float = 1e-8):
-    """The unforced problem at its threshold, starting on its neutral circle, and what reads the whirl."""
-    problem = free_problem(scene, speed, turns * 2 * math.pi / speed, accuracy)
-    whirling = RotatingWave(problem)
-    frequency, shape = least_damped(problem, speed)
-    problem.y0 = whirling.state(AMPLITUDE * contact_tilt_aligned(problem) * shape, frequency)
-    return problem, whirling
+def neutral_run(scene, speed: float, turns: float, accuracy: float = 1e-8):
+    """The unforced run at its threshold, starting on its neutral circle, and what reads the whirl."""
+    model = free_model(scene, speed, accuracy)
+    run, whirling = RunState(model, turns * 2 * math.pi / speed), RotatingWave(model)
+    frequency, shape = least_damped(model, speed)
+    run.y0 = whirling.state(AMPLITUDE * contact_tilt_aligned(model) * shape, frequency)
+    return run, whirling
 
 
-def growth(problem, whirling, method: str, tolerance: float, most: float = math.inf) -> tuple[float, int]:
+def growth(run, whirling, method: str, tolerance: float, most: float = math.inf) -> tuple[float, int]:
     """Growth rate (1/s) that a method at a bare solver tolerance gives the neutral whirl, over the last three
     quarters of the run, less the eigenvalue's; and right-hand sides spent.  Raises SolverFailure, or TimeoutError
     beyond `most` right-hand sides."""
     counts, steps = Counts(), []
-    for t, y, _ in REFERENCE_METHODS[method](problem, problem.begin(0), 0.0, problem.y0, method, tolerance, counts):
-        steps.append((t, np.abs(whirling.relative(y[:, : problem.n].T))))
+    for t, y, _ in REFERENCE_METHODS[method](run.segment(0), 0.0, run.y0, method, tolerance, counts):
+        steps.append((t, np.abs(whirling.relative(y[:, : run.model.unknowns.n].T))))
         if counts.rhs > most:
             raise TimeoutError(f"more than {most:.3g} right-hand sides")
     t, size = (np.concatenate([step[k] for step in steps]) for k in range(2))
     late = t > 0.25 * t[-1]
-    exact = max(mode.value.real for mode in problem.linear_scene().modes() if mode.kind == "tilt")
+    exact = max(mode.value.real for mode in run.model.linear_scene().modes() if mode.kind == "tilt")
     return float(np.polyfit(t[late] - t[-1], np.log(size[late]), 1)[0]) - exact, counts.rhs
 
 
@@ -51,9 +52,9 @@ def show() -> list[dict]:
     """BDF at a bare tolerance of 1e-5 damps, Adams errs too; the matrix exponential keeps the circle."""
     scene = reference_scene("FMR", 3.0)
     speed = threshold(scene)
-    problem, whirling = neutral_problem(scene, speed, TURNS)
+    run, whirling = neutral_run(scene, speed, TURNS)
     turn = 2 * math.pi / speed
-    rates = {m: growth(problem, whirling, m, BARE)[0] * turn for m in ("bdf", "adams", "expm")}
+    rates = {m: growth(run, whirling, m, BARE)[0] * turn for m in ("bdf", "adams", "expm")}
 
     def named(method, words):
         return f"{words} {'pumps' if rates[method] > 0 else 'damps'}", abs(rates[method])

@@ -23,11 +23,11 @@ def diverging():
 
 def show() -> list[dict]:
     """Newton from the design clearance finds one answer, the search over all clearances every one."""
-    problem = Model(diverging(), 1.0)
-    film, roots, closing = problem.scene.film, problem.equilibria, problem.closing_force()
+    model = Model(diverging())
+    film, roots, closing = model.scene.film, model.interface.equilibria, model.closing_force()
 
     def excess(clearance):
-        force = problem.faces.opening_force(film, clearance, film.inner_pressure, film.outer_pressure)
+        force = model.interface.opening_force(film, clearance, film.inner_pressure, film.outer_pressure)
         return force / closing - 1
 
     alone = newton(excess, 10e-6)

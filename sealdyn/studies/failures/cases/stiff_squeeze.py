@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from ....analysis.validation import reference_scene
 from ....scene.rings import Rotor, Stator
-from ....solvers.contract import Counts
+from ....simulation.method_selection import choose_method
+from ....solvers.contract import Counts, Status
 from ....solvers.methods import METHODS
-from ._common import integrated, model_started_at, row
+from ._common import integrated, row, run_from
 
 ITEM = 2
 CLEARANCE, ACCURACY, BUDGET = 1e-5, 1e-6, 20_000
@@ -19,26 +20,26 @@ def squeezed():
     flat = replace(scene.film, model="radial", coning=0.0, outer_radius=0.036)
     support = replace(scene.rotor.support, axial_stiffness=5e6, radius=0.036)
     ring = replace(scene.rotor, support=support)
-    return model_started_at(replace(scene, film=flat, rotor=Rotor(**vars(ring)), stator=Stator()), 8.0, ACCURACY,
+    return run_from(replace(scene, film=flat, rotor=Rotor(**vars(ring)), stator=Stator()), 8.0, ACCURACY,
                    rotor_z=0.99 * CLEARANCE)  # fmt: skip
 
 
 def show() -> list[dict]:
     """Right-hand sides that a second of motion costs: DOP853 given 20 000, BDF to the end."""
-    problem, counts, reached = squeezed(), Counts(), 0.0
-    for t, _, _ in METHODS["dop853"](problem, problem.begin(0), 0.0, problem.y0, "dop853", ACCURACY, counts):
+    run, counts, reached = squeezed(), Counts(), 0.0
+    for t, _, _ in METHODS["dop853"](run.segment(0), 0.0, run.y0, "dop853", ACCURACY, counts):
         reached = t[-1]
         if counts.rhs > BUDGET:
             break
-    problem = squeezed()
-    outcome, _ = integrated(problem, "bdf", ACCURACY)
-    if outcome.status != "ok":
+    run = squeezed()
+    outcome, _ = integrated(run, "bdf", ACCURACY)
+    if outcome.status != Status.OK:
         raise RuntimeError(outcome.message)
-    left = math.floor(math.log10(problem.duration / reached))
+    left = math.floor(math.log10(run.duration / reached))
     return [
         row(
             ITEM, "Stiff squeeze film", (f"DOP853 crawls: 1e-{left} of the run done", counts.rhs / reached),
-            ("BDF runs to the end", outcome.counts.rhs / problem.duration), "right-hand sides per second of motion",
-            f'looks at the fastest decay where the run starts and takes "{problem.solver()[0]}" by itself',
+            ("BDF runs to the end", outcome.counts.rhs / run.duration), "right-hand sides per second of motion",
+            f'looks at the fastest decay where the run starts and takes "{choose_method(run)[0]}" by itself',
         )
     ]  # fmt: skip

@@ -9,7 +9,7 @@ from sksundae.cvode import CVODE
 from ....analysis.validation import reference_scene
 from ....scene.contact import Contact, contact_thresholds
 from ....scene.rings import AxialRunout, Rotor
-from ._common import ZERO_FILM, integrated, model_started_at, row
+from ._common import ZERO_FILM, integrated, row, run_from
 
 ITEM = 3
 TURNS, TOLERANCE, HALF = 300, 1e-4, math.radians(2)
@@ -49,9 +49,9 @@ def by_the_watch(scene) -> int:
         rotor=Rotor(axial_runout=[AxialRunout(order=1, amplitude=depth, phase=math.pi / 3)]),
         contact=SOFT,
     )
-    problem, events = model_started_at(dipping, TURNS * 2 * math.pi / scene.shaft.speed, TOLERANCE), []
-    outcome, _ = integrated(problem, "adams", TOLERANCE)
-    problem.tell_contacts(events.extend, end=(outcome.tau, outcome.y))
+    run, events = run_from(dipping, TURNS * 2 * math.pi / scene.shaft.speed, TOLERANCE), []
+    outcome, _ = integrated(run, "adams", TOLERANCE)
+    run.contacts.tell(events.extend, end=(outcome.tau, outcome.y))
     return len(events)
 
 

@@ -8,7 +8,7 @@ from ....analysis.validation import reference_scene
 from ....scene.rings import Rotor, Stator
 from ....solvers.contract import Counts, SolverFailure
 from ....solvers.methods import METHODS
-from ._common import integrated, model_started_at, row
+from ._common import integrated, row, run_from
 
 ITEM = 6
 TURNS, ACCURACY, LIGHT, BUDGET = 2, 1e-6, 1e-7, 60_000
@@ -23,16 +23,16 @@ def lightened(share: float):
 
 
 def begun(share: float):
-    """A problem of that scene over some turns."""
+    """A run of that scene over some turns."""
     scene = lightened(share)
-    return model_started_at(scene, TURNS * 2 * np.pi / scene.shaft.speed, ACCURACY)
+    return run_from(scene, TURNS * 2 * np.pi / scene.shaft.speed, ACCURACY)
 
 
 def calls(share: float, method: str, limit: float = np.inf) -> float:
     """Right-hand sides per turn; a run that spends more than `limit` is judged by the turns it made."""
-    problem, counts, reached = begun(share), Counts(), 0.0
-    for t, _, _ in METHODS[method](problem, problem.begin(0), 0.0, problem.y0, method, ACCURACY, counts):
-        reached = t[-1] / problem.duration
+    run, counts, reached = begun(share), Counts(), 0.0
+    for t, _, _ in METHODS[method](run.segment(0), 0.0, run.y0, method, ACCURACY, counts):
+        reached = t[-1] / run.duration
         if counts.rhs > limit:
             break
     return counts.rhs / (reached * TURNS)
@@ -43,14 +43,14 @@ def without_mass() -> tuple[float | None, float]:
     to none (BDF); over clearance / outer radius.  None for CVODE if it gives up."""
     end = integrated(begun(LIGHT), "bdf", ACCURACY)[0].y
     massless = begun(0.0)
-    x = massless.names.index("stator_tilt_x")
+    x = massless.model.unknowns.names.index("stator_tilt_x")
 
     def off(y):
-        return float(np.hypot(*(y[x : x + 2] - end[x : x + 2]))) * massless.face[1] / massless.clearance
+        return float(np.hypot(*(y[x : x + 2] - end[x : x + 2]))) * massless.model.face[1] / massless.model.clearance
 
     by_ida = off(integrated(begun(0.0), "ida", ACCURACY)[0].y)
     try:
-        *_, (_, y, _) = METHODS["bdf"](massless, massless.begin(0), 0.0, massless.y0, "bdf", ACCURACY, Counts())
+        *_, (_, y, _) = METHODS["bdf"](massless.segment(0), 0.0, massless.y0, "bdf", ACCURACY, Counts())
     except SolverFailure:
         return None, by_ida
     return off(y[-1]) if np.isfinite(y[-1]).all() else None, by_ida

@@ -1,0 +1,113 @@
+"""What a run changes: where it starts, its segments, and what is observed on the way."""
+
+from functools import cached_property
+
+import numpy as np
+
+from ..faces.geometry import COLLAPSE, DZ, GX, GY, h_min
+from ..scene.scene import SceneError
+from .contact_events import ContactEvents
+from .extrema import ExtremaTracker
+from .imposed_motion import harmonics_of_segment
+from .intervals import constant_and_slope
+from .model import Model
+from .segments import Segment
+from .stick_slip import StickSlip
+
+
+class RunState:
+    """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`,
+    `stick_slip` or
+    None), `reasons` and `warnings` (sentences), and `last`, the segment's index, time and unknowns reached so far."""
+
+    def __init__(self, model: Model, duration: float):
+        self.model, self.duration = model, duration
+        self.intervals = model.intervals(duration)
+        self.y0 = np.zeros(model.unknowns.size)
+        self.extrema = ExtremaTracker(model, duration)
+        self.contacts = ContactEvents(model, self.extrema)
+        self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
+        self.reasons, self.warnings = list(model.unknowns.reasons), []
+        self.last = (0, 0.0, self.y0)
+
+    def segment(self, index: int = 0, stuck=None) -> Segment:
+        """The equations over the interval `index` (negative: from the end)."""
+        index %= len(self.intervals)
+        if stuck is None and self.stick_slip:
+            stuck = self.stick_slip.stuck
+        return self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
+
+    @cached_property
+    def memory(self) -> float:
+        """Shortest periods for which the linearised scene remembers an error, at most those of the run."""
+        speeds = {self.model.speed_at(interval): interval for interval in self.intervals}
+        rates = [self.model.linear_scene(interval).eigen()[0].real for interval in speeds.values()]
+        # A massless undamped ring has no free motion: it forgets at once.
+        slowest = max(float(np.max(rate, initial=-np.inf)) for rate in rates)
+        longest = self.duration if slowest * self.duration > -1.0 else -1.0 / slowest
+        return longest / self.model.shortest_period
+
+    def period(self, index: int = 0) -> float | None:
+        """Common period (s) of the forcing in a segment (Segment.period); where nothing moves a quarter of the run."""
+        period = self.segment(index).period()
+        return self.duration / 4 if period == 0.0 else period
+
+    def fastest_forcing(self) -> float:
+        """Highest angular frequency (rad/s) imposed at any interval's start or end; the shaft speed counts."""
+        scene, fastest = self.model.scene, 0.0
+        for interval in self.intervals:
+            for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval):
+                fastest = max(fastest, abs(row[7]), abs(row[7] + 2 * row[8] * interval.length))
+            speed, slope = constant_and_slope(scene.shaft.speed, interval)
+            fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
+        return fastest
+
+    # --- the start ----------------------------------------------------------------------------------
+
+    def steady_start(self) -> np.ndarray:
+        """Unknowns on the linear steady state at time zero."""
+        at, _, _ = self.segment(0).steady_motion()
+        q, rate = at(0.0)
+        places = self.model.unknowns.among_three()
+        return self.model.vector(q[places], rate[places])
+
+    def start_film(self) -> float:
+        """Thinnest film (m) at the start."""
+        s = self.segment(0).gap_state(0.0, self.y0)
+        return float(h_min(self.model.face, s[DZ], s[GX], s[GY])[0])
+
+    def check_start(self):
+        """Raises SceneError if the film is closed at the start."""
+        low, floor = self.start_film(), self.model.face[COLLAPSE]
+        if low <= floor:
+            raise SceneError(
+                "film.clearance",
+                f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
+                f'more than the floor, {floor * 1e6:.3g} um: less tilt, more clearance, or run.start = "steady"',
+            )
+
+    def check_loads(self):
+        """Warn of loads for which no equilibrium gap is found."""
+        for interval in self.intervals:
+            if not self.model.loads_are_balanced(interval):
+                self.warnings.append(
+                    f"no equilibrium gap found for the loads from t = {interval.time:.4g} s: linear numbers are at the "
+                    "clearance"
+                )
+                return
+
+    # --- going on -----------------------------------------------------------------------------------
+
+    def modes(self) -> dict:
+        """What a continued run needs beside the unknowns: contacts so far, and which rings stick."""
+        return {**self.contacts.state(), "sticking": self.stick_slip.state() if self.stick_slip else None}
+
+    def restore_modes(self, modes: dict):
+        """Go on from `modes`."""
+        self.contacts.restore(modes)
+        if self.stick_slip:
+            self.stick_slip.restore(modes["sticking"])
+
+    def end_time(self, index: int, tau: float) -> float:
+        """Time (s) since the start of the run at time tau of a segment."""
+        return self.intervals[index].time + tau

@@ -1,0 +1,47 @@
+"""The method a run wants, and why."""
+
+import math
+
+import numpy as np
+
+from ..dynamics.intervals import constant_and_slope
+from ..faces.geometry import DZ, FLOOR
+from ..scene.scene import SceneError
+
+# Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
+STIFF = 60.0
+
+
+def choose_method(run) -> tuple[str, str]:
+    """The method for a run (RunState), and a sentence."""
+    model = run.model
+    if model.unknowns.massless:
+        return "ida", "a massless ring has no rates: IDA, on the residual form"
+    if model.unknowns.linear and model.unknowns.constant:
+        return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
+    ratio = _fastest_decay(run) * model.shortest_period / (2 * math.pi)
+    if ratio > STIFF:
+        return "bdf", f"fastest decay {ratio:.0f} times the fastest forcing: stiff, CVODE BDF"
+    return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
+
+
+def check_method(model, method: str) -> None:
+    """Raises SceneError where a method cannot integrate a scene."""
+    unknowns = model.unknowns
+    if unknowns.massless and method != "ida":
+        raise SceneError("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
+    if method == "expm" and not (unknowns.linear and unknowns.constant):
+        what = "a nonlinear film, contact or friction" if not unknowns.linear else "parameters that change with time"
+        raise SceneError("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')
+
+
+def _fastest_decay(run) -> float:
+    """Fastest decay (1/s) of the scene linearised where the run starts (a squeezed film is stiffer by the cube) and at
+    the equilibrium of each interval's loads."""
+    model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
+    varying = (model.scene.shaft.speed, model.scene.film.viscosity)
+    places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
+    for interval in run.intervals:
+        places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
+    scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
+    return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)

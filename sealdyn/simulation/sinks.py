@@ -1,0 +1,126 @@
+"""Where a run's samples go: into an archive, or into means and maxima only."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from ..dynamics.signals import signals
+
+# Single events kept in an archive; a seal that rubs for hours has more, which are counted.
+MOST_EVENTS = 20_000
+
+
+@dataclass
+class Tally:
+    """Running means and maxima of the sampled series; kept in the archive to go on from."""
+
+    rows: int = 0
+    sums: dict = None
+    largest: dict = None
+
+    NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
+             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change", "closing_force", "contact_force",
+             "contact_torque", "contact_area_fraction", "contact_pressure", "wear_rate")  # fmt: skip
+
+    def add(self, columns):
+        names = [name for name in self.NAMES if name in columns]
+        self.sums = self.sums or dict.fromkeys(names, 0.0)
+        self.largest = self.largest or dict.fromkeys(names, -math.inf)
+        self.rows += len(columns["time"])
+        for name in self.sums:
+            self.sums[name] += float(columns[name].sum())
+            self.largest[name] = max(self.largest[name], float(columns[name].max()))
+
+    def mean(self, name: str) -> float:
+        return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
+
+
+class ArchiveSink:
+    """Takes what the solver has integrated: signals into the archive, restart data beside them."""
+
+    def __init__(self, run, writer, dt, count, tally, progress, stop):
+        self.run, self.writer, self.dt, self.count = run, writer, dt, count
+        self.tally, self.progress, self.stop = tally, progress, stop
+        self.audit = self.errors = None
+        self.waiting = None
+        self.logged, self.pending = 0, []
+
+    def due(self, segment) -> np.ndarray:
+        """Times of the samples in a segment, counted from the nearest sample so that they stay exact."""
+        first = max(0, math.ceil(segment.time / self.dt - 1e-9))
+        # The offset of the first sample is taken in exact arithmetic.
+        offset = float(Fraction(self.dt) * first - segment.interval.start)
+        end, last = segment.length, segment.last
+        number = math.floor((end - offset) / self.dt + 1e-9) + 1
+        taus = offset + self.dt * np.arange(max(number, 0))
+        # A sample at a segment's end belongs to the next one, whose parameters it shows; the run's last stays.
+        keep = (taus >= -1e-12 * end) & ((taus < end * (1 - 1e-12)) | last)
+        return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
+
+    def take(self, segment, taus, q, q_rate):
+        columns = signals(segment, taus, q, q_rate)
+        self.tally.add(columns)
+        if self.waiting is None:
+            self.waiting = columns
+        else:
+            self.waiting = {k: np.concatenate([self.waiting[k], columns[k]]) for k in columns}
+
+    def event(self, segment, tau, event):
+        self.log([{**event, "time": segment.time + tau}])
+
+    def log(self, events):
+        """Keep events until the next flush; beyond the most that an archive keeps they are only counted."""
+        kept = events[: max(MOST_EVENTS - self.logged, 0)]
+        self.logged += len(kept)
+        self.pending += kept
+
+    def state(self, segment, tau, y):
+        self.flush(segment.index, tau, y)
+        if self.progress:
+            self.progress(segment.time + tau, self.run.duration)
+        if self.stop and self.stop():
+            raise KeyboardInterrupt
+
+    def flush(self, index, tau, y):
+        """Rows, what happened, and the state to go on from: all three belong together."""
+        if self.waiting is None:
+            return
+        run = self.run
+        run.contacts.tell(self.log)
+        self.write_events()
+        state = {
+            "leg": index,
+            "tau": tau,
+            "y": np.asarray(y),
+            "records": run.extrema.state(),
+            "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
+            "audit": self.audit.state(),
+            "errors": self.errors and self.errors.state(),
+            "modes": run.modes() | {"logged": self.logged},
+            "names": run.model.unknowns.names,
+        }
+        self.writer.append(self.waiting, state)
+        self.waiting = None
+
+    def write_events(self):
+        if self.pending:
+            self.writer.events(self.pending)
+        self.pending = []
+
+
+class TallySink(ArchiveSink):
+    """Takes the same samples, and keeps their means and maxima only."""
+
+    def __init__(self, run, dt, count):
+        super().__init__(run, None, dt, count, Tally(), None, None)
+
+    def take(self, segment, taus, q, q_rate):
+        self.tally.add(signals(segment, taus, q, q_rate))
+
+    def log(self, events):
+        pass
+
+    def flush(self, index, tau, y):
+        pass

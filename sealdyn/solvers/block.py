@@ -1,0 +1,74 @@
+"""Accepted steps as observers see them, and what lies between them."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..numerics.hermite import sample
+
+# Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
+OVERLAP = 4
+
+
+@dataclass(frozen=True)
+class Block:
+    """Accepted steps of a segment: times `t` (m,), unknowns `ys` (m, size), derivatives `yps` (m, size; zero where
+    every ring has mass).  New are the intervals between the steps `begin` and `end`, up to `until` (s) if the run
+    ends before the last of them does; the other steps are neighbours."""
+
+    segment: object
+    t: np.ndarray
+    ys: np.ndarray
+    yps: np.ndarray
+    begin: int
+    end: int
+    until: float | None = None
+
+    @cached_property
+    def motion(self) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and rates (m, n) at the steps."""
+        return self.segment.motion(self.ys, self.yps)
+
+    @cached_property
+    def slopes(self) -> np.ndarray | None:
+        """The right-hand side (m, size) at the steps; None where a ring has no mass."""
+        return None if self.segment.massless else self.segment.derivatives(self.t, self.ys)
+
+    @cached_property
+    def accelerations(self) -> np.ndarray | None:
+        """Second derivatives (m, n) of the displacements at the steps; None where a ring has no mass."""
+        slopes = self.slopes
+        return None if slopes is None else np.ascontiguousarray(slopes[:, self.segment.rate_places])
+
+    @property
+    def whole(self) -> int:
+        """The last step up to which whole intervals belong to the run."""
+        return self.end if self.until is None else self.end - 1
+
+    def cut(self, until: float) -> "Block":
+        """The block of a run that ends at `until` (s)."""
+        found = replace(self, end=int(np.searchsorted(self.t, until)), until=until)
+        # What has been worked out stays.
+        for name in ("motion", "slopes", "accelerations"):
+            if name in self.__dict__:
+                found.__dict__[name] = self.__dict__[name]
+        return found
+
+    def at(self, times) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and rates (k, n) at `times` (k,) inside the new steps.
+
+        Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
+        magnify their error by one over the step.
+        """
+        first, last = max(0, self.begin - OVERLAP), min(len(self.t), self.end + OVERLAP + 1)
+        begin, end, count = self.begin - first, self.end - first, last - first
+        q, q_rate = (part[first:last] for part in self.motion)
+        t = self.t[first:last]
+        out, slope = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
+        sample(t, q, q_rate, count, begin, end, times, out, slope)
+        if self.accelerations is None:
+            return out, slope
+        rate = np.empty_like(out)
+        sample(t, q_rate, self.accelerations[first:last], count, begin, end, times, rate, slope)
+        return out, rate
