@@ -57,7 +57,7 @@ class Shooter:
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
         self.scene, self.accuracy, self.tight = scene, accuracy, tight
-        probe = RunState(Model(scene, accuracy))
+        probe = RunState(Model(scene, accuracy), 1.0)
         period = probe.period()
         if period is None or not probe.model.unknowns.constant:
             raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
