@@ -1,18 +1,21 @@
 """A scenario file becomes a scene: TOML in, dataclasses out.  All input errors end here, in one line each."""
 
+import ast
 import dataclasses
 import difflib
+import inspect
 import math
 import re
 import tomllib
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from .scenario_errors import ScenarioError, explain, film_models, tables, without_indices
+from .scenario_errors import ScenarioError, explain, film_models, table_in, tables, without_indices
 from .scenario_overrides import override_key
 from .scenario_rules import refuse_impossible, unused
 from .scene import ImpossibleScene, Scene
@@ -43,12 +46,19 @@ class Run:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     turns: Annotated[float, Field(gt=0)] | None = None
+    """Of the shaft (60 without `duration`)."""
     duration: Time | None = None
+    """In place of `turns`."""
     samples_per_turn: Annotated[int, Field(gt=0)] | None = None
+    """Of the archive (64 without `samples`; 1000 in all if the shaft stands)."""
     samples: Annotated[int, Field(gt=0)] | None = None
+    """In all, in place of `samples_per_turn`."""
     accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
+    """Asked error of displacements, relative to clearance, and of tilts, to clearance / outer radius."""
     solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
+    """Method; "auto" chooses by stiffness and inertia."""
     start: Annotated[str, Field(pattern=STARTS)] = "rest"
+    """From the untilted equilibrium ("rest"), the linear steady response ("steady") or the end of an archive."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +68,9 @@ class File(Scene):
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     run: Run = field(default_factory=Run)
+    """How long, how exact, by which method."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """Settings of studies, one table [study.NAME] each."""
 
 
 @dataclass(frozen=True)
@@ -142,10 +154,33 @@ def unused_keys(scenario: Scenario) -> list[str]:
 
 
 def json_schema() -> dict:
-    """JSON schema (draft 2020-12) of a scenario file, for editors."""
+    """JSON schema (draft 2020-12) of a scenario file, for editors.
+
+    The first line of a key's description is its meaning (the docstring below it in its class), the next what is
+    expected; `quantity` and `unit` name what it holds."""
     schema = _without_null(TypeAdapter(File).json_schema())
     schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_models()
+    for kind in _kinds(File):
+        keys = (schema if kind is File else schema["$defs"][kind.__name__])["properties"]
+        for key, meaning in _meanings(kind).items():
+            keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
+
+
+def _kinds(kind: type) -> set[type]:
+    """The dataclass of every table, `kind` and all below it."""
+    below = [table_in(f.type) for f in dataclasses.fields(kind)]
+    return {kind}.union(*(_kinds(table) for table in below if table))
+
+
+def _meanings(kind: type) -> dict[str, str]:
+    """Docstring below each field of a dataclass; of the inherited ones too."""
+    found = {}
+    for part in filter(dataclasses.is_dataclass, reversed(kind.__mro__)):
+        for key, text in pairwise(ast.parse(inspect.getsource(part)).body[0].body):
+            if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr):
+                found[key.target.id] = text.value.value
+    return found
 
 
 @cache

@@ -31,7 +31,8 @@ class Lengths(Quantity):
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         entry = LENGTH.__get_pydantic_json_schema__(None, None)
-        return {"description": self.expected(), "type": "array", "minItems": 2, "maxItems": MOST_NODES, "items": entry}
+        about = {"description": self.expected(), "quantity": self.name, "unit": self.unit}
+        return about | {"type": "array", "minItems": 2, "maxItems": MOST_NODES, "items": entry}
 
 
 Column = Annotated[tuple[float, ...], Lengths("list of lengths", "m", "")]
@@ -45,7 +46,9 @@ class Profile:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Column
+    """From the inner to the outer radius of the face, increasing."""
     depth: Column
+    """By which the film is thicker there, on top of clearance and coning; linear between."""
 
 
 # Films that know a coned face only.
