@@ -227,7 +227,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 @app.command()
 def schema():
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario.reader import json_schema
+    from .scenario.schema import json_schema
 
     print(json.dumps(json_schema(), indent=2))
 

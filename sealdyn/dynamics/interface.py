@@ -25,7 +25,7 @@ from ..faces.geometry import (
     VISCOSITY,
     face_parameters,
 )
-from ..films import film_module
+from ..films import film_module, film_name
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, profile_errors
 from ..scene.scene import SceneError
@@ -44,7 +44,7 @@ class Interface:
         for key, found, expected in profile_errors(scene.film):
             raise SceneError(f"film.{key}", found, expected)
         self.film = film_module(scene.film.model, scene.film.profile)
-        self.name = self.film.__name__.rsplit(".", 1)[1]
+        self.name = film_name(self.film)
         self.clearance, self.closing, self.equilibria, self.said = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
         if self._borrowed() is not self.film:

@@ -29,6 +29,11 @@ def film_module(name: str, profile=None):
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 
 
+def film_name(module) -> str:
+    """Name of a film, as `film.model` has it, from its module."""
+    return module.__name__.removeprefix(f"{__name__}.").split(".")[0]
+
+
 def all_film_names() -> list[str]:
     """Names of all films, sorted."""
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))

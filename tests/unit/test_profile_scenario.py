@@ -8,7 +8,8 @@ from scenes import film, fmr
 
 from sealdyn.dynamics.model import Model
 from sealdyn.report.text import resolved_lines
-from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario
+from sealdyn.scenario.reader import ScenarioError, parse_scenario
+from sealdyn.scenario.schema import json_schema
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
 from sealdyn.scene.scene import SceneError
