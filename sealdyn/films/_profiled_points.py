@@ -26,7 +26,7 @@ from ..gap import (
     above_floor,
 )
 from ._radial_rules import BLOCK_SIZE as RADIAL_BLOCK
-from ._radial_rules import FAST, RADIAL_POINTS, RULE_SIZE, RULES, angle_count, gauss, points_for, roominess
+from ._radial_rules import RADIAL_POINTS, RULE_SIZE, RULES, angle_count, gauss, points_for, roominess
 
 # Behind the radial film's block: the largest film ratios of a piece that the rules serve with points in r.
 PLAIN = RADIAL_BLOCK
@@ -113,7 +113,7 @@ def rule_at(f, rule):
     return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def phi(d, r_i, r_m, mean, planar):
     """Integrals of 1 and of the tilt's arm from r_i to r_i + d, over r dr (planar: dr)."""
     if planar:
@@ -142,7 +142,7 @@ def lay_in_r(f, nodes, pieces, table):
             table[UNIT, k] = 0.5 * w[i] * width / (1.0 if planar != 0.0 else r_i + d)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
     """The points of one piece at one angle, in the radial film's rational rule."""
     h_g = math.sqrt(h_a * h_b)
@@ -161,7 +161,7 @@ def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
         table[PHI_0, k], table[PHI_1, k] = phi(d, r_i, r_m, mean, planar)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _films(table, tilt_cos):
     for k in range(table.shape[1]):
         h = table[POINT_ALIGNED, k] - table[POINT_ARM, k] * tilt_cos
@@ -189,7 +189,7 @@ def at_angle(f, nodes, pieces, table, tilt_cos, low):
             _rational(table, first, nodes[D, n], width, h_a, h_b, r_i, r_m, mean != 0.0, planar != 0.0, x, w)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def sums(table, z_rate, even):
     """Over a radius, of weight over h^3: times 1, Phi's even and Phi's odd part; the three with r^2; with r^3."""
     a0 = ae = a1 = b0 = be = b1 = c0 = ce = c1 = 0.0
@@ -210,7 +210,7 @@ def sums(table, z_rate, even):
     return a0, ae, a1, b0, be, b1, c0, ce, c1
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def drag(table, planar):
     """Integral of r^3 / h over a radius."""
     total = 0.0
