@@ -15,7 +15,7 @@ ALLOWED = {
     "units": {"unit_names"},
     "unit_names": set(),
     "gap": set(),
-    "stale_kernels": set(),
+    "kernel_cache": set(),
     "asperities": set(),
     "annulus": {"asperities"},
     "contact": DOORS | {"annulus", "asperities", "gap"},
