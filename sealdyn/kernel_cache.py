@@ -42,7 +42,7 @@ def _writable(folder: Path) -> bool:
     """Whether files can be made in the folder, which is made if it can be."""
     with contextlib.suppress(OSError):
         folder.mkdir(parents=True, exist_ok=True)
-    return os.access(folder, os.W_OK | os.X_OK)
+    return folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)
 
 
 def _shared_folder() -> Path | None:
@@ -63,7 +63,9 @@ def kernel_folders() -> list[Path]:
     if shared is None:
         return [folder / "__pycache__" for folder in sources]
     # numba's own names: a source folder's name and the SHA-1 of its path.
-    return [shared / f"{folder.name}_{hashlib.sha1(os.path.abspath(folder).encode()).hexdigest()}" for folder in sources]
+    return [
+        shared / f"{folder.name}_{hashlib.sha1(os.path.abspath(folder).encode()).hexdigest()}" for folder in sources
+    ]
 
 
 def kept_kernels() -> list[Path]:
@@ -97,8 +99,11 @@ def _keep_for_this_process():
     global _temporary
     import tempfile
 
+    from numba.core import config
+
     _temporary = tempfile.TemporaryDirectory(prefix="sealdyn_kernels_", ignore_cleanup_errors=True)
-    os.environ["NUMBA_CACHE_DIR"] = _temporary.name
+    # numba looks at the environment once; the processes started from here look again.
+    os.environ["NUMBA_CACHE_DIR"] = config.CACHE_DIR = _temporary.name
     warnings.warn(
         "no folder for compiled kernels can be written: every run compiles them again; "
         "let NUMBA_CACHE_DIR name one that can",
