@@ -156,9 +156,9 @@ def _catch_interrupt() -> list:
 
 def _say_compiling(file):
     """The first run on a machine compiles the kernels; say so before the wait."""
-    # Where numba keeps compiled kernels; numba itself is not imported just to ask.
-    kept = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(__file__).parent / "__pycache__")
-    if not any(kept.rglob("dynamics.*.nbi")):
+    from .kernel_cache import kept_kernels
+
+    if not kept_kernels():
         print("first run on this machine: compiling kernels once (some seconds) ...", file=file, flush=True)
 
 
