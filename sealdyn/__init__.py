@@ -5,12 +5,12 @@ result = sealdyn.simulate(scenario, "outputs/fmr_reference.h5")
 data = sealdyn.open_archive(result.archive)          # xarray Dataset
 """
 
-from .stale_kernels import drop_stale_kernels
+from .kernel_cache import clear_stale_kernels
 
 __version__ = "0.1.0"
 __all__ = ["open_archive", "read_scenario", "simulate"]
 
-drop_stale_kernels()
+clear_stale_kernels()
 
 
 def __getattr__(name):

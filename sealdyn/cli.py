@@ -156,9 +156,9 @@ def _catch_interrupt() -> list:
 
 def _say_compiling(file):
     """The first run on a machine compiles the kernels; say so before the wait."""
-    # Where numba keeps compiled kernels; numba itself is not imported just to ask.
-    kept = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(__file__).parent / "__pycache__")
-    if not any(kept.rglob("dynamics.*.nbi")):
+    from .kernel_cache import kept_kernels
+
+    if not kept_kernels():
         print("first run on this machine: compiling kernels once (some seconds) ...", file=file, flush=True)
 
 
@@ -227,7 +227,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 @app.command()
 def schema():
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario.reader import json_schema
+    from .scenario.schema import json_schema
 
     print(json.dumps(json_schema(), indent=2))
 

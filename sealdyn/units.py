@@ -105,7 +105,7 @@ class Quantity:
         if self.least > -math.inf:
             number["exclusiveMinimum" if self.open else "minimum"] = self.least
         text = {"type": "string", "pattern": r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*\S"}
-        return {"description": self.expected(), "anyOf": [number, text]}
+        return {"description": self.expected(), "quantity": self.name, "unit": self.unit, "anyOf": [number, text]}
 
 
 WRITTEN = {
@@ -196,7 +196,7 @@ class VaryingQuantity:
             "required": ["time", "value"],
             "additionalProperties": False,
         }
-        return {
+        return constant | {
             "description": constant["description"] + "; or a table of times",
             "anyOf": [*constant["anyOf"], table],
         }

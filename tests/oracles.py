@@ -1,7 +1,7 @@
 """Films solved the long way, importing nothing of the package: for tests to compare with."""
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 
 def pressure_lines(face, state, angles, cuts=()):
@@ -104,3 +104,43 @@ def floored_wrench(face, state, floor, angles, points):
     d = 2 * np.pi / angles
     line, line_2 = np.trapezoid(p * r, r, axis=1), np.trapezoid(p * r * r, r, axis=1)
     return np.sum(line) * d, np.sum(line_2 * (np.sin(theta) - 1j * np.cos(theta))) * d
+
+
+def green_film():
+    """Tilt stiffness (N m/rad) and damping (N m s/rad) of the film of the reference seal, Green (1989), appendix, made
+    dimensional: inner over outer radius 0.8, coning 12.5 clearances over the outer radius."""
+    ratio, b, r_o, c, mu = 0.8, 12.5, 0.04, 1e-5, 0.5e-3
+    stiffness = np.pi * 5e5 * (b * ratio - 1) * ((1 - ratio**2) / (4 + 2 * b * (1 - ratio))) ** 2 * r_o**4 / c
+    x = b * (1 - ratio)
+    g = (np.log(1 + x) - 2 * x / (2 + x)) / (b**3 * (1 - ratio) ** 2)
+    scale = 6 * mu * (r_o / c) ** 2 * (1 - ratio) ** 2 * r_o**4 / c
+    return stiffness, 2 * np.pi * ((1 + ratio) / 2) ** 3 * g * scale
+
+
+def christensen(h, c, strength):
+    """Share in contact (pressure over the strength) and energy per area (J/m^2) of asperities of half height c (m)."""
+    x = np.clip(h / c, -1, 1)
+    share = 0.5 - 35 / 32 * (x - x**3 + 3 * x**5 / 5 - x**7 / 7)
+    left = 0.5 * x - 35 / 32 * (x**2 / 2 - x**4 / 4 + x**6 / 10 - x**8 / 56)
+    whole = 0.5 - 35 / 32 * (1 / 2 - 1 / 4 + 1 / 10 - 1 / 56)
+    return share, strength * c * (whole - left + np.maximum(-1 - h / c, 0))
+
+
+def tilt_roots(speed, flexible, *, inertia, polar, k_s, d_s, k, d):
+    """Roots s (1/s) of the tilt equation of `gamma exp(s t)`, gamma = tilt_x + i tilt_y, in the fixed frame, of a
+    flexible "rotor" (turns, and its dampers with it) or "stator" on a support k_s, d_s and a film k, d."""
+    spin = speed if flexible == "rotor" else 0.0
+    return np.roots([inertia, d_s + d - 1j * polar * spin, k_s + k - 1j * (d_s * spin + d * speed / 2)])
+
+
+def opening_force(clearance, coning, p_i, p_o, r_i=0.032, r_o=0.040, geometry="cylindrical"):
+    """Opening force (N) from the pressure line itself: r h^3 p' = const, then int p 2 pi r dr, by quadrature."""
+
+    def per(r):
+        return 1 / (clearance + coning * (r - r_i)) ** 3 / (r if geometry == "cylindrical" else 1.0)
+
+    options = dict(epsabs=0.0, epsrel=1e-13, limit=400)
+    whole = quad(per, r_i, r_o, **options)[0]
+    # int p 2 pi r dr by parts: pi [p r^2] - pi int p' r^2 dr.
+    bent = quad(lambda r: per(r) * r * r, r_i, r_o, **options)[0] / whole
+    return np.pi * (p_o * r_o**2 - p_i * r_i**2 - (p_o - p_i) * bent)

@@ -105,6 +105,18 @@ def free_ring(c=0.5, tilt=20e-6, tilt_rate=5e-3, speed=SPEED):
     )
 
 
+# Tilt stiffness and damping, axial stiffness and damping of a film given by its four numbers.
+GIVEN = 5790.0, 4.08, 6.1e6, 5200.0
+
+
+def of_given_film(stator=None, rotor=None, speed=SPEED, film_table=None, turns=1.0, **parts):
+    """Problem of rings (rigid unless given) on either side of that film."""
+    table = film_table or film("linear", coefficients=Coefficients(*GIVEN))
+    shaft = parts.pop("shaft", Shaft(speed=speed))
+    scene = Scene(shaft=shaft, film=table, stator=stator or Stator(), rotor=rotor or Rotor(), **parts)
+    return Model(scene, 2 * math.pi * turns / abs(speed))
+
+
 class Sink:
     """Keeps displacements, rates and signals at evenly spaced times."""
 

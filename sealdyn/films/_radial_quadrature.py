@@ -8,7 +8,7 @@ from numba import njit
 
 from ..faces.geometry import FACE_SIZE, face_parameters
 
-# Gauss rules offered; multiples of four fill the vector registers.
+# Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
 # Angle counts offered are divisors of the longest table.
 MOST_ANGLES = 3072
@@ -21,8 +21,6 @@ ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
 COSINES = ANGLE_COUNTS + len(ANGLES)
 SINES = COSINES + MOST_ANGLES // 2 + 1
 BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
-
-FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @lru_cache(maxsize=16)

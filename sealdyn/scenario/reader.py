@@ -24,7 +24,6 @@ __all__ = [
     "Run",
     "Scenario",
     "ScenarioError",
-    "json_schema",
     "parse_scenario",
     "read_scenario",
     "unused_keys",
@@ -45,12 +44,19 @@ class Run:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     turns: Annotated[float, Field(gt=0)] | None = None
+    """Of the shaft (60 without `duration`)."""
     duration: Time | None = None
+    """In place of `turns`."""
     samples_per_turn: Annotated[int, Field(gt=0)] | None = None
+    """Of the archive (64 without `samples`; 1000 in all if the shaft stands)."""
     samples: Annotated[int, Field(gt=0)] | None = None
+    """In all, in place of `samples_per_turn`."""
     accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
+    """Asked error of displacements, relative to clearance, and of tilts, to clearance / outer radius."""
     solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
+    """Method; "auto" chooses by stiffness and inertia."""
     start: Annotated[str, Field(pattern=STARTS)] = "rest"
+    """From the untilted equilibrium ("rest"), the linear steady response ("steady") or the end of an archive."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +66,9 @@ class ScenarioFile(Scene):
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     run: Run = field(default_factory=Run)
+    """How long, how exact, by which method."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """Settings of studies, one table [study.NAME] each."""
 
 
 @dataclass(frozen=True)
@@ -142,13 +150,6 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
 def unused_keys(scenario: Scenario) -> list[str]:
     """`scenario.unused()`, as a function."""
     return scenario.unused()
-
-
-def json_schema() -> dict:
-    """JSON schema (draft 2020-12) of a scenario file, for editors."""
-    schema = _without_null(TypeAdapter(ScenarioFile).json_schema())
-    schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
 
 
 def film_choices() -> list[str]:
@@ -278,14 +279,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(v) for v in value]
     return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
-
-
-def _without_null(schema: Any) -> Any:
-    """TOML has no null: an absent key is absent."""
-    if isinstance(schema, list):
-        return [_without_null(s) for s in schema if s != {"type": "null"}]
-    if not isinstance(schema, dict):
-        return schema
-    kept = {k: _without_null(v) for k, v in schema.items() if (k, v) != ("default", None)}
-    only = kept.get("anyOf", [])
-    return {k: v for k, v in kept.items() if k != "anyOf"} | only[0] if len(only) == 1 else kept

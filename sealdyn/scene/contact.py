@@ -19,15 +19,25 @@ class Contact:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     roughness: Length
+    """Composite rms roughness of both faces; they meet at 3 rms."""
     law: Literal["christensen", "greenwood-williamson"] = "christensen"
+    """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
     compressive_strength: Stress | None = None
+    """Of the softer face, for "christensen"."""
     friction_coefficient: float | None = None
+    """Friction over contact load; 0.1 without it and without `shear_strength`."""
     shear_strength: Stress | None = None
+    """Friction over touching area, in place of `friction_coefficient`."""
     stator_wear_coefficient: WearCoefficient = 0.0
+    """Archard: wear depth over contact pressure and sliding distance."""
     rotor_wear_coefficient: WearCoefficient = 0.0
+    """The same, of the rotor's face."""
     asperity_density: AsperityDensity | None = None
+    """Peaks per area, for "greenwood-williamson"."""
     asperity_radius: Length | None = None
+    """Radius of the peaks, for "greenwood-williamson"."""
     modulus: Stress | None = None
+    """Composite elastic modulus, for "greenwood-williamson"."""
 
 
 LAW_KEYS = {
@@ -65,8 +75,8 @@ def contact_errors(contact: Contact) -> list[tuple[str, str, str]]:
 def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
     """Mean films h (m), with c = 3 rms roughnesses: (film_floor, touch, collapse).
 
-    film_floor  0.6 c: below it the smooth film law is continued (`gap.above_floor`, floor/2 at h = 0), as rough
-                faces do: E(H^3)^(1/3) at h = 0 is 0.30 c (Christensen), 0.31 c (Gaussian).
+    film_floor  0.6 c: below it the smooth film law is continued (`geometry.regularised_thickness`, floor/2 at h = 0),
+                as rough faces do: E(H^3)^(1/3) at h = 0 is 0.30 c (Christensen), 0.31 c (Gaussian).
     touch       where the first asperities meet: c; 5 rms for Gaussian heights, whose load there is 1e-7 of that at 0.
     collapse    -c: all asperities are flattened, and the law has nothing more to say.
     """

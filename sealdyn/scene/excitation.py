@@ -12,8 +12,11 @@ class Whirl:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     ratio: float
+    """Whirl speed over shaft speed; negative against the shaft."""
     angle: Angle
+    """Tilt of the shaft."""
     phase: Angle = 0.0
+    """Of the tilt, at the start."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,9 @@ class Shaft:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed: Varying[Speed]
+    """Shaft speed; negative turns the other way."""
     whirl: list[Whirl] = field(default_factory=list)
+    """Whirling motions of the shaft."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +38,13 @@ class AxialVibration:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Frequency
+    """Of this tone."""
     displacement: Length | None = None
+    """Amplitude; or give `acceleration`."""
     acceleration: Acceleration | None = None
+    """Amplitude, in place of `displacement`."""
     phase: Angle = 0.0
+    """Of the cosine, at the start."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +54,15 @@ class AngularVibration:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Frequency
+    """Of this tone."""
     displacement: Angle | None = None
+    """Amplitude; or give `acceleration`."""
     acceleration: AngularAcceleration | None = None
+    """Amplitude, in place of `displacement`."""
     direction: Angle = 0.0
+    """Of the axis about which the housing rocks, from the x axis."""
     phase: Angle = 0.0
+    """Of the cosine, at the start."""
 
 
 @dataclass(frozen=True)
@@ -58,4 +72,6 @@ class Housing:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     axial: list[AxialVibration] = field(default_factory=list)
+    """Tones along the shaft axis."""
     angular: list[AngularVibration] = field(default_factory=list)
+    """Tones of tilt."""

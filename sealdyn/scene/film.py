@@ -48,7 +48,8 @@ class Lengths(Quantity):
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         entry = LENGTH.__get_pydantic_json_schema__(None, None)
-        return {"description": self.expected(), "type": "array", "minItems": 2, "maxItems": MOST_NODES, "items": entry}
+        about = {"description": self.expected(), "quantity": self.name, "unit": self.unit}
+        return about | {"type": "array", "minItems": 2, "maxItems": MOST_NODES, "items": entry}
 
 
 Column = Annotated[tuple[float, ...], Lengths("list of lengths", "m", "")]
@@ -62,7 +63,9 @@ class Profile:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Column
+    """From the inner to the outer radius of the face, increasing."""
     depth: Column
+    """By which the film is thicker there, on top of clearance and coning; linear between."""
 
 
 @dataclass(frozen=True)
@@ -73,9 +76,13 @@ class Coefficients:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     tilt_stiffness: SignedTiltStiffness
+    """Restoring moment per relative tilt."""
     tilt_damping: SignedTiltDamping
+    """Moment per relative tilt rate."""
     axial_stiffness: AxialFilmStiffness
+    """Force per change of film thickness."""
     axial_damping: AxialFilmDamping
+    """Force per rate of film thickness."""
 
 
 @dataclass(frozen=True)
@@ -85,21 +92,37 @@ class Film:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     inner_radius: Length
+    """Inner radius of the narrower face."""
     outer_radius: Length
+    """Outer radius of the narrower face."""
     viscosity: Varying[Viscosity]
+    """Dynamic viscosity, the same over the face."""
     outer_pressure: Varying[Pressure]
+    """Absolute, at the outer radius."""
     inner_pressure: Varying[Pressure]
+    """Absolute, at the inner radius."""
     model: str = "auto"
+    """"auto": the linear film where its estimated error is within the accuracy, else the radial or profiled one."""
     geometry: Literal["cylindrical", "planar"] = "cylindrical"
+    """Radial flow on the ring, or the narrow-seal limit without curvature."""
     tilt_radius: Literal["local", "mean"] = "local"
+    """Tilt moves the film by local radius times tilt, or everywhere as at the mean radius."""
     clearance: Length | None = None
+    """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
     coning: Angle = 0.0
+    """Slope of the faces: the film is thicker outwards where positive."""
     density: Density = 1000.0
+    """For mass flow and heating of the leakage only."""
     specific_heat: SpecificHeat = 4180.0
+    """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None
+    """Floor of the film pressure, absolute; none without it.  Does not conserve mass."""
     coefficients: Literal["green", "radial"] | Coefficients = "green"
+    """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3
+    """Share of the clearance below which the film counts as collapsed."""
     profile: Profile | None = None
+    """Faces that are no plain cones."""
 
 
 # Films that know a coned face only.

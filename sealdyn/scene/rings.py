@@ -23,10 +23,15 @@ class Support:
     __pydantic_config__ = FORBID_UNKNOWN
 
     axial_stiffness: Stiffness
+    """All springs together, along the shaft axis."""
     axial_damping: Damping = 0.0
+    """All dampers together, along the shaft axis."""
     radius: Length | None = None
+    """Radius of the circle of springs: tilt coefficient = axial coefficient * radius^2 / 2."""
     tilt_stiffness: TiltStiffness | None = None
+    """About a diameter, in place of `radius`."""
     tilt_damping: TiltDamping | None = None
+    """About a diameter, beside `tilt_stiffness`; none without it."""
 
     def tilt(self) -> tuple[float, float]:
         """Tilt stiffness (N m/rad) and tilt damping (N m s/rad)."""
@@ -43,8 +48,11 @@ class AxialRunout:
     __pydantic_config__ = FORBID_UNKNOWN
 
     order: float
+    """Waves per turn of the shaft."""
     amplitude: Length
+    """Half of the peak-to-peak axial motion of the whole face."""
     phase: Angle = 0.0
+    """Of the wave, at the start."""
 
 
 @dataclass(frozen=True)
@@ -54,14 +62,23 @@ class Stator:
     __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
+    """Mass of the ring, if it floats."""
     transverse_inertia: Inertia = 0.0
+    """Moment of inertia about a diameter; with mass 0 and inertias 0 the ring has no inertia."""
     polar_inertia: Inertia = 0.0
+    """Moment of inertia about the shaft axis, at most twice the transverse one."""
     unphysical_inertia: bool = False
+    """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Angle] = 0.0
+    """Tilt of the seat of a rigid stator, or of the unloaded face in its springs if it floats."""
     misalignment_direction: Angle = 0.0
+    """Of the axis of that tilt, fixed in space, from the x axis."""
     speed: Varying[Speed] = 0.0
+    """Of a stator that turns with a carrier of its own (counter-rotation: negative)."""
     support: Support | None = None
+    """Springs and dampers to the housing: the stator floats."""
     secondary_seal: SecondarySeal | None = None
+    """Friction of the O-ring under a floating stator."""
 
 
 @dataclass(frozen=True)
@@ -72,13 +89,24 @@ class Rotor:
     __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
+    """Mass of the ring, if it floats."""
     transverse_inertia: Inertia = 0.0
+    """Moment of inertia about a diameter; with mass 0 and inertias 0 the ring has no inertia."""
     polar_inertia: Inertia = 0.0
+    """Moment of inertia about the shaft axis, at most twice the transverse one."""
     unphysical_inertia: bool = False
+    """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Angle] = 0.0
+    """Tilt of the unloaded face of a floating rotor in its springs; turns with the shaft."""
     misalignment_phase: Angle = 0.0
+    """Of the axis of that tilt, at the start, from the x axis."""
     runout: Varying[Angle] = 0.0
+    """Tilt of the face of a rigid rotor, turning with the shaft; also "20 um TIR", read at the outer radius."""
     runout_phase: Angle = 0.0
+    """Of the axis of that tilt, at the start, from the x axis."""
     axial_runout: list[AxialRunout] = field(default_factory=list)
+    """Harmonics of the axial motion of the rotor's carrier."""
     support: Support | None = None
+    """Springs and dampers to the shaft: the rotor floats."""
     secondary_seal: SecondarySeal | None = None
+    """Friction of the O-ring under a floating rotor."""

@@ -17,7 +17,9 @@ class Closing:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     balance_ratio: float | None = None
+    """Closing area over face area, of the high-pressure side."""
     spring_force: Varying[Force] | None = None
+    """Closing force of the springs at the operating length."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +29,17 @@ class RingStart:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     z: Length | None = None
+    """Displacement along the shaft axis from equilibrium; positive closes a rotor's gap and opens a stator's."""
     tilt_x: Angle | None = None
+    """Tilt about the x axis."""
     tilt_y: Angle | None = None
+    """Tilt about the y axis."""
     z_rate: Velocity | None = None
+    """Rate of `z`."""
     tilt_x_rate: Speed | None = None
+    """Rate of `tilt_x`."""
     tilt_y_rate: Speed | None = None
+    """Rate of `tilt_y`."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +49,9 @@ class Initial:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     rotor: RingStart = field(default_factory=RingStart)
+    """Start of a floating rotor."""
     stator: RingStart = field(default_factory=RingStart)
+    """Start of a floating stator."""
 
 
 @dataclass(frozen=True)
@@ -51,13 +61,21 @@ class Scene:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     shaft: Shaft
+    """Speed and whirl."""
     film: Film
+    """Faces, fluid, pressures, film model."""
     rotor: Rotor = field(default_factory=Rotor)
+    """The ring that turns with the shaft."""
     stator: Stator = field(default_factory=Stator)
+    """The ring that stands in the housing."""
     housing: Housing = field(default_factory=Housing)
+    """Vibration of the housing."""
     closing: Closing = field(default_factory=Closing)
+    """Hydraulic balance and spring."""
     initial: Initial = field(default_factory=Initial)
+    """Start of the floating rings."""
     contact: Contact | None = None
+    """Asperities; without this table a film that closes ends the run."""
 
 
 class SceneError(ValueError):

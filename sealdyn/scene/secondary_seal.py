@@ -16,10 +16,15 @@ class SecondarySeal:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     radius: Length
+    """Radius of the circle on which the O-ring slides."""
     line_friction: LineForce | None = None
+    """Friction per length of that circle; or give `friction_force`."""
     friction_force: Force | None = None
+    """Axial breakaway force, in place of `line_friction`."""
     law: Literal["coulomb", "regularised"] = "coulomb"
+    """Real sticking, or a smoothed sign that creeps."""
     width: Velocity | None = None
+    """Sliding speed over which the sign turns, for "regularised"."""
 
     def line(self) -> float:
         """Friction per length F' (N/m)."""

@@ -1,4 +1,4 @@
-"""Critical speed: the stability threshold of the aligned seal by three roads, and what the film makes of it beyond.
+"""Critical speed: the stability threshold of the aligned seal by three independent methods, and the whirl beyond it.
 
 Linear: published formula with the film's own coefficients, eigenvalues, growth of a small disturbance in time.
 Beyond: the family of circular whirls that leaves the threshold (whirl.py), and runs in time that must agree.

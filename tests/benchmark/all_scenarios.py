@@ -4,7 +4,7 @@
 
 Runs `sealdyn study work-precision` on every scenario, some shortened so that the slowest method ends, six tolerances
 each; archives in outputs/work_precision/ are used again unless --fresh.  Who won goes into a JSON file beside the page,
-from which readme_claims.py takes the README's words.
+from which gallery.py makes the table of the gallery's page.
 """
 
 import json

@@ -2,7 +2,7 @@
 
     OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [turns]
 
-A figure's numbers go beside it (figure.json), for the README (readme_claims.py).
+A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
 Random scenes (seeded): arrangement, seal, speed, forcing, start, run and asked accuracy.  The truth of each is the
 radial film by DOP853 at 1e-12.  Honest: what a user looks at (thinnest film over the clearance, relative misalignment
 over clearance / outer radius, leakage over its largest value, at every sample) is wrong by less than what was asked.

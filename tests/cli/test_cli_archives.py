@@ -10,7 +10,8 @@ import tomllib
 import h5py
 import numpy as np
 import pytest
-from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, started
+from command import REFERENCE, SCENARIOS, sealdyn, settings
+from PIL import Image
 
 FEW = settings({"run.turns": 4, "rotor.misalignment": '"30 urad"'})
 
@@ -73,8 +74,8 @@ def test_show_and_csv(folder):
 def test_plot(kind, folder):
     answer = sealdyn("plot", "first.h5", "--kind", kind, "--out", f"{kind}.png", cwd=folder)
     assert answer.code == 0 and answer.out == f"{kind}.png\n"
-    picture = (folder / f"{kind}.png").read_bytes()
-    assert picture[:4] == b"\x89PNG" and len(picture) > 10_000
+    with Image.open(folder / f"{kind}.png") as picture:
+        assert picture.format == "PNG"
 
 
 def test_schema_knows_the_keys_of_the_shipped_scenarios(tmp_path):
@@ -121,7 +122,7 @@ def test_check_resolves_to_si(tmp_path):
 
 
 def test_validate_agrees(tmp_path):
-    answer = finished(started("validate", "--json", cwd=tmp_path))
+    answer = sealdyn("validate", "--json", cwd=tmp_path)
     assert answer.code == 0, answer.err
     checks = answer.found["checks"]
     assert len(checks) >= 10 and all(check["verdict"] != "FAILED" for check in checks)

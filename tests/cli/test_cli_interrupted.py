@@ -11,10 +11,10 @@ from command import REFERENCE, finished, sealdyn, settings, started, until
 
 from sealdyn.archive import ArchiveError, column, partial_path, read_info
 
-# Both rings' forcing, no sample beyond need: some seconds of solving.
-LONG = settings({"run.turns": 6000, "run.samples_per_turn": 8})
-# Longer, for being killed twenty times on the way.
-LONGEST = settings({"run.turns": 12000, "run.samples_per_turn": 4})
+# Both rings' forcing, no sample beyond need: seconds of solving.
+LONG = settings({"run.turns": 2500, "run.samples_per_turn": 8})
+# Three times what was enough for being killed twenty times on the way: a faster machine is done before.
+LONGEST = settings({"run.turns": 36000, "run.samples_per_turn": 4})
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
 
 
@@ -49,7 +49,7 @@ def interrupted(tmp_path_factory):
     assert sealdyn("run", REFERENCE, *settings({"run.turns": 2}), "--no-plot", cwd=folder).code == 0
     seen = {"complete": archive.read_bytes(), "folder": folder, "archive": archive}
     process = started("run", REFERENCE, *LONG, "--json", cwd=folder)
-    until(lambda: rows(partial_path(archive)) > 1000, process)
+    until(lambda: rows(partial_path(archive)) > 300, process)
     seen["show"] = sealdyn("show", partial_path(archive), cwd=folder)
     seen["show json"] = sealdyn("show", partial_path(archive), "--json", cwd=folder)
     seen["csv"] = sealdyn("show", partial_path(archive), "--csv", cwd=folder)
@@ -59,9 +59,9 @@ def interrupted(tmp_path_factory):
 
 
 def test_show_works_while_a_run_writes(interrupted):
-    assert interrupted["show"].code == 0 and ": running" in interrupted["show"].out
+    assert interrupted["show"].code == 0
     found = interrupted["show json"].found
-    assert found["status"] == "running" and found["rows"] > 1000
+    assert found["status"] == "running" and found["rows"] > 300
     table = list(csv.reader(io.StringIO(interrupted["csv"].out)))
     assert table[0][0] == "time [s]" and "h_min [m]" in table[0]
     assert len(table) > found["rows"]
@@ -77,7 +77,7 @@ def test_interrupt_ends_cleanly(interrupted):
     assert "--continue" in answer.err and "Traceback" not in answer.err
     info = read_info(interrupted["folder"] / answer.found["archive"])
     assert info["status"] == "interrupted"
-    assert 1000 < info["rows"] < 48001
+    assert 300 < info["rows"] < 20001
     assert info["summary"]["end"]["time"] < info["summary"]["end"]["asked"]
 
 
@@ -88,7 +88,7 @@ def test_a_complete_archive_is_replaced_only_by_a_complete_one(interrupted):
 def test_an_interrupted_run_goes_on_to_where_an_unbroken_one_ends(interrupted, unbroken):
     folder = interrupted["folder"]
     other = sealdyn("run", REFERENCE, "--continue", "--json", cwd=folder)
-    assert other.code == 2 and "--set" in other.found["message"]
+    assert other.code == 2 and other.found["status"] == "invalid"
     answer = sealdyn("run", REFERENCE, *LONG, "--continue", "--json", "--no-plot", cwd=folder)
     assert answer.code == 0, answer.out
     agree(interrupted["archive"], unbroken)
@@ -98,7 +98,7 @@ def test_an_interrupted_run_goes_on_to_where_an_unbroken_one_ends(interrupted, u
     assert found["h_min"]["value"] == pytest.approx(whole["h_min"]["value"], abs=1e-11)
     assert found["energy_residual"] < 1e-5
     again = sealdyn("run", REFERENCE, *LONG, "--continue", "--json", cwd=folder)
-    assert again.code == 0 and "nothing to continue" in again.found["message"]
+    assert again.code == 0 and again.found["status"] == "ok" and "counts" not in again.found
 
 
 @pytest.mark.slow

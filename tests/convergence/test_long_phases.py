@@ -88,12 +88,3 @@ def test_phases_after_a_million_turns(speed):
     kept, lost = (worst(found, speed, legs) for found in (by_kernel, by_floats))
     assert np.all(kept < 2.5 * np.spacing(largest))
     assert np.all(lost > 50 * kept) and lost[0] > 1e-10
-
-
-def test_an_angle_added_up_in_floats_is_worse_still():
-    """Four additions a turn for a million turns: 2e-4 rad off (measured)."""
-    speed, steps = 1047.1975511965977, 4_000_000
-    step = speed * (2 * math.pi * 1e6 / speed / steps)
-    summed = np.cumsum(np.full(steps, step))[-1]
-    exact = mpmath.mpf(step) * steps
-    assert abs(float(mpmath.mpf(float(summed)) - exact)) > 1e-5

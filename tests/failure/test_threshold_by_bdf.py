@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr
 
 from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, growth_rate, least_damped
@@ -25,10 +26,9 @@ TURNS = 200
 
 
 def exact(speed):
-    """Largest real part of the roots of the ring's complex equation, written out here (1/s)."""
-    d_f, k_f = FILM.tilt_damping, FILM.tilt_stiffness
-    damping = D_S + d_f - 1j * speed * INERTIA / 3
-    return max(np.roots([INERTIA, damping, K_S + k_f - 1j * speed * (D_S + d_f / 2)]).real)
+    """Largest real part of the roots of the ring's complex equation (1/s)."""
+    film = dict(k=FILM.tilt_stiffness, d=FILM.tilt_damping)
+    return max(tilt_roots(speed, "rotor", inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, **film).real)
 
 
 def rate_by_bdf(speed, tolerance):
@@ -59,7 +59,7 @@ def test_looser_bdf_calls_a_stable_seal_unstable(tolerance):
     assert rate_by_bdf(speed, tolerance) > 0
 
 
-@pytest.mark.parametrize("share", [0.998, 0.9998, 1.0002, 1.002])
+@pytest.mark.parametrize("share", [0.9998, 1.0002])
 @pytest.mark.parametrize("method", ["adams", "bdf"])
 def test_the_study_tightens_until_the_method_cannot_decide(share, method):
     """Even BDF, begun at an accuracy of 1e-2, is right once its own damping is measured and made small."""

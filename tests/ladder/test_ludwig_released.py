@@ -109,7 +109,7 @@ def test_held_by_its_support_it_returns_to_the_closed_form(factor):
 def test_it_hangs_up_where_the_wedge_has_no_arm():
     """F_s/F_d = 1.2 < 4/pi: from a film that carries the spring it opens until its secondary seal holds it."""
     _, told = ran(1.2)
-    assert told.status == "hang-up" and told.message.startswith("hang-up")
+    assert told.status == "hang-up"
     assert told.mean_film[0] > 0.8 * RING.mean_radius * 2.5e-3
 
 

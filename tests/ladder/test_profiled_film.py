@@ -1,15 +1,12 @@
 """Runs of seals whose faces have a profile: through the program, against cones, and the energy they exchange."""
 
-import json
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr, fms, run
 
-from sealdyn import open_archive
+from sealdyn import open_archive, read_scenario, simulate
 from sealdyn.faces import contact, geometry
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
@@ -53,15 +50,12 @@ ROUGH = Contact(roughness=0.1e-6, compressive_strength=300e6, stator_wear_coeffi
 
 
 def test_a_rubbing_run_of_the_program(tmp_path):
-    """`sealdyn run`: the energy balances, h_min is the sheet's formula, and faces touch at a radius of the profile."""
+    """The energy balances, h_min is the sheet's formula, and faces touch at a radius of the profile."""
     (tmp_path / "worn.toml").write_text(SCENARIO)
-    line = [sys.executable, "-c", "from sealdyn.cli import main; main()", "run", "worn.toml", "--json", "--no-plot"]
-    answer = subprocess.run(line, capture_output=True, text=True, cwd=tmp_path)
-    assert answer.returncode == 0, answer.stderr
-    found = json.loads(answer.stdout)
-    assert found["status"] == "ok" and found["model"]["film"] == "profiled"
-    assert found["energy_residual"] < 1e-4
-    data = open_archive(next(tmp_path.rglob("*.h5")))
+    result = simulate(read_scenario(tmp_path / "worn.toml"), tmp_path / "worn.h5")
+    assert result.status == "ok" and result.summary["model"]["film"] == "profiled"
+    assert result.summary["energy_residual"] < 1e-4
+    data = open_archive(result.archive)
     g = np.hypot(data["relative_tilt_x"].values, data["relative_tilt_y"].values)[:, None]
     low = CLEARANCE + data["axial_gap_change"].values[:, None] + np.array(DEPTH) - np.array(RADIUS) * g
     assert data["h_min"].values == pytest.approx(low.min(axis=1), rel=1e-9, abs=1e-15)

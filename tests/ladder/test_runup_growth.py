@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
@@ -20,23 +21,10 @@ from sealdyn.studies.runup.ramp_run import RampCycle, run_cycle
 from sealdyn.studies.runup.speed_ramp import measured_growth, predicted_growth
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-SCALE, INERTIA, POLAR = 1e-5 / 0.04, 8e-4, 16e-4
+SCALE, INERTIA = 1e-5 / 0.04, 8e-4
 SUPPORT_K, SUPPORT_D = 400.0, 0.24
 RATES = (3000.0, 6000.0, 20000.0)
-
-
-def green() -> tuple[float, float]:
-    """Tilt stiffness and damping of Green's film (1989, appendix), the reference seal."""
-    r_o, ratio, c, mu, w, p = 0.04, 0.8, 1e-5, 0.5e-3, 1000.0, 5e5
-    s = 6 * mu * w * (r_o / c) ** 2 * (1 - ratio) ** 2
-    b = 3.125e-3 * r_o / c
-    k = np.pi * p / s * (b * ratio - 1) * ((1 - ratio**2) / (4 + 2 * b * (1 - ratio))) ** 2
-    x = b * (1 - ratio)
-    d = 2 * np.pi * ((1 + ratio) / 2) ** 3 * (np.log(1 + x) - 2 * x / (2 + x)) / (b**3 * (1 - ratio) ** 2)
-    return k * s * r_o**4 / c, d * s * r_o**4 / (c * w)
-
-
-FILM_K, FILM_D = green()
+FILM_K, FILM_D = green_film()
 
 
 def stator(w):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms, run
 
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_critical_speed
@@ -26,10 +27,9 @@ def scene(kind, speed):
 
 
 def eigenvalues(kind, speed):
-    """Roots of the ring's complex equation, written out here."""
-    film = FILM.tilt_stiffness - 0.5j * speed * FILM.tilt_damping
-    gyroscopic, turning = (0.0, 0.0) if kind == "fms" else (-1j * INERTIA / 3 * speed, -1j * speed * D_S)
-    return np.roots([INERTIA, D_S + FILM.tilt_damping + gyroscopic, K_S + film + turning])
+    """Roots of the ring's complex equation."""
+    film, flexible = dict(k=FILM.tilt_stiffness, d=FILM.tilt_damping), {"fms": "stator", "fmr": "rotor"}[kind]
+    return tilt_roots(speed, flexible, inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, **film)
 
 
 def test_critical_speeds_of_the_reference_seal():

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from in_process import InProcess
+from oracles import green_film, tilt_roots
 
 from sealdyn import read_scenario
 from sealdyn.studies import campbell
@@ -12,23 +14,8 @@ from sealdyn.studies.campbell import Settings, follow
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
-class Tools:
-    def say(self, fraction):
-        pass
-
-
 def answer(name, overrides=(), **settings):
-    return campbell.run(read_scenario(SCENARIOS / f"{name}.toml", overrides), Settings(**settings), Tools())
-
-
-def green():
-    """Film stiffness and damping of the reference seal, appendix of Green (1989), dimensional."""
-    ratio, b, mu = 0.8, 12.5, 0.5e-3
-    stiffness = np.pi * 5e5 * (b * ratio - 1) * ((1 - ratio**2) / (4 + 2 * b * (1 - ratio))) ** 2 * 0.04**4 / 1e-5
-    x = b * (1 - ratio)
-    g = (np.log(1 + x) - 2 * x / (2 + x)) / (b**3 * (1 - ratio) ** 2)
-    damping = 2 * np.pi * ((1 + ratio) / 2) ** 3 * g * 6 * mu * (0.04 / 1e-5) ** 2 * (1 - ratio) ** 2 * 0.04**4 / 1e-5
-    return stiffness, damping
+    return campbell.run(read_scenario(SCENARIOS / f"{name}.toml", overrides), Settings(**settings), InProcess())
 
 
 def two_oscillators(coupling):
@@ -93,15 +80,12 @@ def test_gyroscopic_ring_on_springs():
 def test_tilt_modes_are_the_roots_of_greens_complex_equation(name, ring, c):
     overrides = ["film.model=linear", f"{ring}.polar_inertia={8e-4 / c!r}"]
     found = answer(name, overrides, points=41, speed_to=12000.0)
-    k, d = green()
+    k, d = green_film()
     k_s, d_s, inertia = 400.0, 0.24, 8e-4
     tilt = [m for m in found["modes"] if m["kind"] == "tilt"]
     assert len(tilt) == 2
     for i, w in enumerate(found["speed"]):
-        turn = w if ring == "rotor" else 0.0
-        roots = np.roots(
-            [inertia, d_s + d - 1j * inertia / c * turn, k_s + k - 1j * (d_s * turn + d * w / 2)],
-        )
+        roots = tilt_roots(w, ring, inertia=inertia, polar=inertia / c, k_s=k_s, d_s=d_s, k=k, d=d)
         got = sorted(m["signed_frequency"][i] for m in tilt)
         assert got == pytest.approx(sorted(roots.imag), rel=1e-7, abs=1e-3)
         for m in tilt:

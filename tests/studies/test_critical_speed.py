@@ -1,9 +1,10 @@
 """The threshold by three roads against printed numbers and roots written out here; the whirl beyond it."""
 
 import math
+from pathlib import Path
 
-import numpy as np
 import pytest
+from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms
 
 from sealdyn.analysis.whirl import growth_rate
@@ -18,8 +19,6 @@ LINEAR = ['film.model="linear"']
 
 
 def study(scenario, tmp_path, overrides=(), **flags):
-    from pathlib import Path
-
     path = Path(__file__).parents[2] / "scenarios" / f"{scenario}.toml"
     read = parse_scenario(path.read_text(), scenario, [*overrides])
     return run_study("critical-speed", read, tmp_path / "out.h5", flags=flags, workers=1)
@@ -46,8 +45,8 @@ def test_verdict_at_two_thousandths_of_the_threshold(kind, share):
     speed = share * math.sqrt((K_S + K_F) / INERTIA / (nu**2 if kind == "fms" else nu * (nu - 1 / 3)))
     scene = (fms if kind == "fms" else fmr)("linear", 3.0, speed=speed)
     found = growth_rate(scene, speed, 150, "adams", 1e-7)
-    gyroscopic, turning = (0.0, 0.0) if kind == "fms" else (1j * speed * INERTIA / 3, 1j * speed * D_S)
-    roots = np.roots([INERTIA, D_S + D_F - gyroscopic, K_S + K_F - 0.5j * speed * D_F - turning])
+    flexible = {"fms": "stator", "fmr": "rotor"}[kind]
+    roots = tilt_roots(speed, flexible, inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, k=K_F, d=D_F)
     assert found["decided"]
     assert (found["rate"] > 0) == (share > 1)
     assert found["rate"] == pytest.approx(max(roots.real), rel=0.05)
@@ -60,14 +59,14 @@ def test_unconditionally_stable_rotor_has_no_critical_speed(tmp_path):
 
 
 def test_two_floating_rings_have_no_formula(tmp_path):
-    answer = study("fmsr_both_flexible", tmp_path, beyond=False)
-    assert answer["formula"] is None and "no published formula" in answer["formula_reason"]
+    answer = study("fmsr_both_flexible", tmp_path, beyond=False, turns=80)
+    assert answer["formula"] is None and answer["formula_reason"]
     assert answer["time_domain"]["value"] == pytest.approx(answer["eigenvalue"], rel=1e-6)
 
 
 def test_stator_tips_below_its_threshold(tmp_path):
     """Subcritical: what tips it is found by bisection in time, and the whirl it lingers at is the family's."""
-    answer = study("fms_reference", tmp_path, speeds=2)
+    answer = study("fms_reference", tmp_path, speeds=1, turns=20)
     found = answer["nonlinear"]
     assert found["kind"] == "subcritical"
     assert found["contact_speed"] == pytest.approx(0.958 * answer["eigenvalue"], rel=1e-3)
@@ -77,17 +76,17 @@ def test_stator_tips_below_its_threshold(tmp_path):
     assert 0.9 * row["whirl"] < row["disturbance"] < row["whirl"]
     fates = {(r["start"], r["speed"] > answer["eigenvalue"]): r["fate"] for r in found["directions"]}
     assert fates["small", False] == "decays" and fates["small", True] == "contact"
-    assert [r["fate"] for r in found["directions"] if r["start"] == "large"] == ["decays", *["contact"] * 3]
+    assert [r["fate"] for r in found["directions"] if r["start"] == "large"] == ["decays", "contact", "contact"]
 
 
 def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
     """Supercritical: small and large whirls end in the same bounded one, the family's, until it touches."""
-    answer = study("fmr_reference", tmp_path, THREE, speeds=2)
+    answer = study("fmr_reference", tmp_path, THREE, speeds=1, turns=20)
     found = answer["nonlinear"]
     assert found["kind"] == "supercritical" and found["tipping"] == []
     assert found["contact_speed"] == pytest.approx(1.0111 * answer["eigenvalue"], rel=1e-3)
     inside = [r for r in found["directions"] if answer["eigenvalue"] < r["speed"] < found["contact_speed"]]
-    assert len(inside) == 4
+    assert [r["start"] for r in inside] == ["small", "large"]
     for row in inside:
         assert row["fate"] == "bounded" and row["whirl"] == pytest.approx(row["branch"], rel=1e-4)
     outside = {

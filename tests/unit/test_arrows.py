@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Rooms, lowest first: a room may import only rooms of the lines above its own.
 ORDER = (
-    ("numerics", "closed_form", "archive", "stale_kernels", "unit_names"),
+    ("numerics", "closed_form", "archive", "kernel_cache", "unit_names"),
     ("units", "solvers", "report"),
     ("scene",),
     ("faces",),

@@ -61,8 +61,17 @@ def deviation(found, expected):
     return max(abs(found[0] - expected[0]) / size, abs(found[1] - expected[1]) / abs(expected[1]))
 
 
-@pytest.mark.parametrize("share", [0.7, 0.1, 0.003])
-@pytest.mark.parametrize(("coning", "geometry", "tilt_radius"), FACES)
+# At 0.3 % shooting takes seconds: there every coning once, geometries and levers in turn.
+THINNEST = {(CONVERGING, "cylindrical", "local"), (FLAT, "planar", "mean"), (DIVERGING, "cylindrical", "mean")}
+SHOT = [
+    pytest.param(*face.values, share, id=f"{face.id}-{share}",
+                 marks=pytest.mark.slow if share < 0.05 and face.values not in THINNEST else ())
+    for share in (0.7, 0.1, 0.003)
+    for face in FACES
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("coning", "geometry", "tilt_radius", "share"), SHOT)
 def test_wrench_leakage_and_torque_at_random_states(coning, geometry, tilt_radius, share):
     face = face_of(coning, geometry, tilt_radius)
     state = random_state(face, share, seed=int(1000 * share))

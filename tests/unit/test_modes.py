@@ -6,25 +6,15 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scenes import INERTIA, NOTHING, SPEED, SUPPORT, film, ring
+from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
+from scenes import of_given_film as problem
 
-from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
-from sealdyn.scene.excitation import Shaft
-from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator
-from sealdyn.scene.scene import Scene
 
-K_F, D_F, K_FZ, D_FZ = 5790.0, 4.08, 6.1e6, 5200.0
-FILM = film("linear", coefficients=Coefficients(K_F, D_F, K_FZ, D_FZ))
+K_F, D_F, K_FZ, D_FZ = GIVEN
 K_S, D_S = SUPPORT.tilt()
 SLENDER = INERTIA / 3
-
-
-def problem(stator=None, rotor=None, speed=SPEED, film_table=FILM, turns=1.0, **parts):
-    shaft = parts.pop("shaft", Shaft(speed=speed))
-    scene = Scene(shaft=shaft, film=film_table, stator=stator or Stator(), rotor=rotor or Rotor(), **parts)
-    return Model(scene, 2 * math.pi * turns / abs(speed))
 
 
 def free_ring():

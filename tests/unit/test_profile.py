@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from oracles import christensen
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -82,21 +83,12 @@ def grid(shape, angles=1440, per_piece=241):
     return theta, r, np.concatenate(dr) * r * 2 * np.pi / angles
 
 
-def christensen(h):
-    """Share in contact (pressure over the strength) and energy per area (J/m^2)."""
-    x = np.clip(h / C, -1, 1)
-    p = 0.5 - 35 / 32 * (x - x**3 + 3 * x**5 / 5 - x**7 / 7)
-    left = 0.5 * x - 35 / 32 * (x**2 / 2 - x**4 / 4 + x**6 / 10 - x**8 / 56)
-    whole = 0.5 - 35 / 32 * (1 / 2 - 1 / 4 + 1 / 10 - 1 / 56)
-    return p, STRENGTH * C * (whole - left + np.maximum(-1 - h / C, 0))
-
-
 def summed(shape, at, mean=False, coning=0.0):
     """Every answer of `rub`, and the wear integrals, by sums over the grid."""
     theta, r, da = grid(shape)
     h = thickness(shape, r, theta, at, mean, coning)
     arm = 0.5 * (R_I + R_O) if mean else r
-    share, energy = christensen(h)
+    share, energy = christensen(h, C, STRENGTH)
     p, slope = STRENGTH * share, arm * (at[1] * np.cos(theta) + at[2] * np.sin(theta))
     load_arm, face_area = np.sum(p * r * da), np.pi * (R_O**2 - R_I**2)
     hats = [np.interp(r, shape[0], row) for row in np.eye(len(shape[0]))]
@@ -196,7 +188,7 @@ def test_aligned_faces_against_quadrature(shape):
                     corners.append(brentq(above, a, b, xtol=1e-17))
 
         def pressed(x, weight, at=at):
-            return STRENGTH * christensen(thickness(shape, x, 0.0, at))[0] * weight(x) * 2 * np.pi * x
+            return STRENGTH * christensen(thickness(shape, x, 0.0, at), C, STRENGTH)[0] * weight(x) * 2 * np.pi * x
 
         ends = [R_I, *sorted(corners), R_O]
 

@@ -8,7 +8,8 @@ from scenes import film, fmr
 
 from sealdyn.dynamics.model import Model
 from sealdyn.report.text import resolved_lines
-from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario
+from sealdyn.scenario.reader import ScenarioError, parse_scenario
+from sealdyn.scenario.schema import json_schema
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
 from sealdyn.scene.scene import SceneError
@@ -102,7 +103,6 @@ def test_auto_goes_straight_to_the_profiled_film():
     worn = fmr(film=film("auto", profile=Profile((0.032, 0.036, 0.04), (0.0, 2e-6, 0.0))))
     problem, error = select_film(worn, 0.01, 1e-3, lambda p: None)
     assert problem.film_name == "profiled" and error is None
-    assert any("film auto: the profiled film" in line for line in problem.reasons)
 
 
 def test_scenes_built_in_python_are_refused_too():

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario, read_scenario, unused_keys
+from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario, unused_keys
+from sealdyn.scenario.schema import json_schema
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FMR = (SCENARIOS / "fmr_reference.toml").read_text()

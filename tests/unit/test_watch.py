@@ -97,7 +97,6 @@ def test_collapse_is_located(method):
     assert found.outcome.tau == pytest.approx(instant, rel=1e-8)
     assert found.record(0)[H] == pytest.approx(1e-3 * CLEARANCE, rel=1e-5)
     assert found.times[-1] == pytest.approx(instant, rel=1e-8)
-    assert "collapsed" in found.outcome.message and "inner radius" in found.outcome.message
 
 
 def test_a_short_dip_below_the_floor_is_a_collapse():

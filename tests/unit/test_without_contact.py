@@ -23,13 +23,14 @@ def test_tables_are_left_out_and_the_rest_stays():
 
 def test_keys_outside_a_table_are_refused_by_name():
     whole = parse_scenario('contact.roughness = "0.1 um"\ncontact.compressive_strength = 3e8\n' + TEXT, "x")
-    with pytest.raises(ScenarioError, match="contact"):
+    with pytest.raises(ScenarioError) as refused:
         without_contact(whole)
+    assert "contact" in refused.value.key
 
 
 def test_the_verdict_says_what_was_left_out(tmp_path):
     scenario = parse_scenario(TEXT + CONTACT, "x")
     answer = run_study("equilibrium", scenario, tmp_path / "a.h5")
-    assert "[contact] left out" in answer["verdict"][-1]
+    assert "[contact]" in answer["verdict"][-1]
     alone = run_study("equilibrium", parse_scenario(TEXT, "x"), tmp_path / "b.h5")
     assert answer["roots"] == alone["roots"]

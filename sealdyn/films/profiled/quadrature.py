@@ -27,7 +27,6 @@ from ...faces.geometry import (
 )
 from .._radial_quadrature import BLOCK_SIZE as RADIAL_BLOCK
 from .._radial_quadrature import (
-    FAST,
     RADIAL_POINTS,
     RULE_SIZE,
     RULES,
@@ -122,7 +121,7 @@ def rule_at(f, rule):
     return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def phi(d, r_i, r_m, mean, planar):
     """Integrals of 1 and of the tilt's arm from r_i to r_i + d, over r dr (planar: dr)."""
     if planar:
@@ -151,7 +150,7 @@ def lay_in_r(f, nodes, pieces, table):
             table[UNIT, k] = 0.5 * w[i] * width / (1.0 if planar != 0.0 else r_i + d)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
     """The points of one piece at one angle, in the radial film's rational rule."""
     h_g = math.sqrt(h_a * h_b)
@@ -170,7 +169,7 @@ def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
         table[PHI_0, k], table[PHI_1, k] = phi(d, r_i, r_m, mean, planar)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _films(table, tilt_cos):
     for k in range(table.shape[1]):
         h = table[POINT_ALIGNED, k] - table[POINT_ARM, k] * tilt_cos
@@ -198,7 +197,7 @@ def at_angle(f, nodes, pieces, table, tilt_cos, low):
             _rational(table, first, nodes[D, n], width, h_a, h_b, r_i, r_m, mean != 0.0, planar != 0.0, x, w)
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def sums(table, z_rate, even):
     """Over a radius, of weight over h^3: times 1, Phi's even and Phi's odd part; the three with r^2; with r^3."""
     a0 = ae = a1 = b0 = be = b1 = c0 = ce = c1 = 0.0
@@ -219,7 +218,7 @@ def sums(table, z_rate, even):
     return a0, ae, a1, b0, be, b1, c0, ce, c1
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def drag(table, planar):
     """Integral of r^3 / h over a radius."""
     total = 0.0

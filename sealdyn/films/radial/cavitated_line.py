@@ -9,8 +9,6 @@ import math
 
 from numba import njit
 
-from .._radial_quadrature import FAST
-
 # A line's state: bits.
 INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8
 NOTHING_DRY = HAS_WET
@@ -18,7 +16,7 @@ NOTHING_DRY = HAS_WET
 CLOSE = 1e-9
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
     """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
     the same three of 1/h^3."""

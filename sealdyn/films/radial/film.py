@@ -54,7 +54,6 @@ from ...faces.geometry import (
 )
 from .._radial_quadrature import (
     COSINES,
-    FAST,
     HAS_CAVITATION,
     MOST_ANGLES,
     RADIAL_POINTS,
@@ -70,6 +69,11 @@ from .cavitated_circle import cavitated_circle
 
 RUNG = 2
 UNKNOWNS = 0
+
+# Angles worked on side by side, and their rows: what their Gauss points need, and the integrals over 1/h^3 of 1, Phi's
+# even and its odd part; the three with r^2; with r^3; the integral of r^3/h.
+LANES, ROWS = 16, 16
+T, REACH, SCALE, U_I, H_G, EVEN, A0, AE, A1, B0, BE, B1, C0, CE, C1, D0 = range(ROWS)
 
 
 def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
@@ -87,7 +91,61 @@ def angles_for(f, h_i, h_o, swing_i, swing_o):
     return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)))
 
 
-@njit(cache=True, fastmath=FAST, error_model="numpy")
+@njit(inline="always")
+def _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, complete):
+    """Add up the radial integrals of `lanes` angles side by side.  Inlined, the sizes of `at` are known and the inner
+    loop fills vector registers; every angle's sum keeps the order of its points, so the result has the same bits with
+    any vector unit (what fast-math would not keep)."""
+    at[A0:, :lanes] = 0.0
+    for k in range(len(x_k)):
+        x, w = x_k[k], w_k[k]
+        for j in range(lanes):
+            tx = at[T, j] * x
+            fore, aft = 1.0 + tx, 1.0 - tx
+            both = 1.0 / (fore * aft)
+            back = fore * both
+            u, v = fore * back, aft * aft * both
+            d = at[REACH, j] * (1.0 + x) * back * (u + at[U_I, j])
+            r = r_i + d
+            weight = w * at[SCALE, j] * (back * back) * v**5
+            if planar:
+                phi_0, phi_1, a = d, d * (r_i + 0.5 * d), weight
+            else:
+                phi_0, phi_1 = d * (r_i + 0.5 * d), d * (r_i * r_i + d * (r_i + d * (1.0 / 3.0)))
+                a = weight / r
+            if mean:
+                phi_1 = r_m * phi_0
+            phi = z_rate * phi_0 - at[EVEN, j] * phi_1
+            b = a * r * r
+            c = b * r
+            at[A0, j] += a
+            at[AE, j] += a * phi
+            at[A1, j] += a * phi_1
+            at[B0, j] += b
+            at[BE, j] += b * phi
+            at[C0, j] += c
+            at[CE, j] += c * phi
+            at[C1, j] += c * phi_1
+            if complete:
+                h = at[H_G, j] * u * u
+                at[B1, j] += b * phi_1
+                at[D0, j] += weight * (h * h) * r**3
+
+
+@njit(inline="always")
+def _lines(at, lanes, width):
+    """From the films at both edges (in rows U_I and H_G) what the Gauss points of each angle need."""
+    for j in range(lanes):
+        h_i, h_o = at[U_I, j], at[H_G, j]
+        h_g = math.sqrt(h_i * h_o)
+        q = math.sqrt(h_g / h_i)
+        t, share = (q - 1.0) / (q + 1.0), width * q / (q * q + 1.0)
+        at[H_G, j], at[T, j], at[U_I, j] = h_g, t, 1.0 / q
+        at[SCALE, j] = (1.0 - t * t) * share / (h_g * h_g * h_g)
+        at[REACH, j] = 0.5 * (1.0 - t) * share
+
+
+@njit(cache=True, error_model="numpy")
 def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too; returns the torque's part that
     the pressure has on the slope of the film."""
@@ -118,67 +176,40 @@ def _circle(f, s, complete):
     stride = MOST_ANGLES // angles
     drive = (p_o - p_i) / (12.0 * mu)
 
+    if planar:
+        whole_0, whole_1 = width, r_m * width
+    else:
+        whole_0, whole_1 = 0.5 * (r_o * r_o - r_i * r_i), (r_o**3 - r_i**3) * (1.0 / 3.0)
+    if mean:
+        whole_1 = r_m * whole_0
+
+    at, half = np.empty((ROWS, LANES)), angles // 2 + 1
     force = moment_even = moment_odd = flow_i = flow_o = drag = twist = 0.0
-    for j in range(angles // 2 + 1):
-        cos_b, sin_b = f[COSINES + j * stride], f[SINES + j * stride]
-        h_i, h_o = h_i0 - swing_i * cos_b, h_o0 - swing_o * cos_b
-        if low:
-            h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
-        h_g = math.sqrt(h_i * h_o)
-        q = math.sqrt(h_g / h_i)
-        t, u_i, u_s = (q - 1.0) / (q + 1.0), 1.0 / q, 1.0 / (q + 1.0 / q)
-        per_h = 1.0 / h_g
-        scale = width * (1.0 - t * t) * u_s * per_h**3
-        reach = 0.5 * (1.0 - t) * u_s * width
-        even = along * cos_b
-
-        a0 = ae = a1 = b0 = be = b1 = c0 = ce = c1 = d0 = 0.0
-        for k in range(points):
-            tx = t * x_k[k]
-            back, fore = 1.0 / (1.0 - tx), 1.0 / (1.0 + tx)
-            u, v = (1.0 + tx) * back, (1.0 - tx) * fore
-            d = reach * (1.0 + x_k[k]) * back * (u + u_i)
-            r = r_i + d
-            weight = w_k[k] * scale * back * back * v**5
-            if planar:
-                phi_0, phi_1, a = d, d * (r_i + 0.5 * d), weight
-            else:
-                phi_0, phi_1 = d * (r_i + 0.5 * d), d * (r_i * r_i + d * (r_i + d * (1.0 / 3.0)))
-                a = weight / r
-            if mean:
-                phi_1 = r_m * phi_0
-            phi = z_rate * phi_0 - even * phi_1
-            b = a * r * r
-            c = b * r
-            a0 += a
-            ae += a * phi
-            a1 += a * phi_1
-            b0 += b
-            be += b * phi
-            b1 += b * phi_1
-            c0 += c
-            ce += c * phi
-            c1 += c * phi_1
-            d0 += weight * (h_g * u * u) ** 2 * r**3
-
-        edge = (drive - ae) / a0
-        edge_odd = -a1 / a0
-        twice = 1.0 if j == 0 or 2 * j == angles else 2.0
-        force += twice * (be + edge * b0)
-        moment_even += twice * cos_b * (ce + edge * c0)
-        moment_odd += twice * sin_b * sin_b * (c1 + edge_odd * c0)
-        if complete:
-            if planar:
-                phi_0, phi_1 = width, r_m * width
-            else:
-                phi_0 = 0.5 * (r_o * r_o - r_i * r_i)
-                phi_1 = (r_o**3 - r_i**3) * (1.0 / 3.0)
-            if mean:
-                phi_1 = r_m * phi_0
-            flow_i -= twice * edge
-            flow_o -= twice * (edge + z_rate * phi_0 - even * phi_1)
-            drag += twice * d0
-            twist += twice * sin_b * sin_b * (b1 + edge_odd * b0)
+    for first in range(0, half, LANES):
+        count = min(LANES, half - first)
+        # Whole vector registers: behind the half circle its last angle again.
+        lanes = (count + 3) // 4 * 4
+        for j in range(lanes):
+            cos_b = f[COSINES + min(first + j, half - 1) * stride]
+            h_i, h_o = h_i0 - swing_i * cos_b, h_o0 - swing_o * cos_b
+            if low:
+                h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
+            at[EVEN, j], at[U_I, j], at[H_G, j] = along * cos_b, h_i, h_o
+        _lines(at, lanes, width)
+        _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, complete)
+        for j in range(count):
+            n = first + j
+            cos_b, sin_b = f[COSINES + n * stride], f[SINES + n * stride]
+            edge, edge_odd = (drive - at[AE, j]) / at[A0, j], -at[A1, j] / at[A0, j]
+            twice = 1.0 if n == 0 or 2 * n == angles else 2.0
+            force += twice * (at[BE, j] + edge * at[B0, j])
+            moment_even += twice * cos_b * (at[CE, j] + edge * at[C0, j])
+            moment_odd += twice * sin_b * sin_b * (at[C1, j] + edge_odd * at[C0, j])
+            if complete:
+                flow_i -= twice * edge
+                flow_o -= twice * (edge + z_rate * whole_0 - at[EVEN, j] * whole_1)
+                drag += twice * at[D0, j]
+                twist += twice * sin_b * sin_b * (at[B1, j] + edge_odd * at[B0, j])
 
     d_beta = 2.0 * math.pi / angles
     m_along = 4.0 * mu * d_beta * moment_even

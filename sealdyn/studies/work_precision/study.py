@@ -48,7 +48,7 @@ class Settings:
     """`tolerances` so many, evenly from `loosest` to `tightest`; `repeats` of a run, of which the fastest counts;
     `longest` seconds of a run, `slowest` times the fastest run of that error: beyond, a cross; `samples` intervals at
     which errors are taken; `methods` to judge (empty: all); `judging` seconds the reference may take; `where` the
-    verdict looks: "end", "over_time" or "steady"; `models`: also compare the rungs of the ladder."""
+    verdict looks: "end", "over_time" or "steady"; `models`: also compare the film models."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

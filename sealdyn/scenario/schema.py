@@ -1,0 +1,53 @@
+"""The JSON schema of scenario files, with what every key means."""
+
+import ast
+import dataclasses
+import inspect
+from itertools import pairwise
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from .errors import table_in
+from .reader import ScenarioFile, film_choices
+
+
+def json_schema() -> dict:
+    """JSON schema (draft 2020-12) of a scenario file, for editors.
+
+    The first line of a key's description is its meaning (the docstring below it in its class), the next what is
+    expected; `quantity` and `unit` name what it holds."""
+    schema = _without_null(TypeAdapter(ScenarioFile).json_schema())
+    schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
+    for kind in _kinds(ScenarioFile):
+        keys = (schema if kind is ScenarioFile else schema["$defs"][kind.__name__])["properties"]
+        for key, meaning in _meanings(kind).items():
+            keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
+
+
+def _kinds(kind: type) -> set[type]:
+    """The dataclass of every table, `kind` and all below it."""
+    below = [table_in(f.type) for f in dataclasses.fields(kind)]
+    return {kind}.union(*(_kinds(table) for table in below if table))
+
+
+def _meanings(kind: type) -> dict[str, str]:
+    """Docstring below each field of a dataclass; of the inherited ones too."""
+    found = {}
+    for part in filter(dataclasses.is_dataclass, reversed(kind.__mro__)):
+        for key, text in pairwise(ast.parse(inspect.getsource(part)).body[0].body):
+            if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr):
+                found[key.target.id] = text.value.value
+    return found
+
+
+def _without_null(schema: Any) -> Any:
+    """TOML has no null: an absent key is absent."""
+    if isinstance(schema, list):
+        return [_without_null(s) for s in schema if s != {"type": "null"}]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {k: _without_null(v) for k, v in schema.items() if (k, v) != ("default", None)}
+    only = kept.get("anyOf", [])
+    return {k: v for k, v in kept.items() if k != "anyOf"} | only[0] if len(only) == 1 else kept

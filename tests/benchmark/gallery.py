@@ -1,0 +1,101 @@
+"""outputs/gallery/README.md: every committed picture with the command that draws it, and what was measured.
+
+    python tests/benchmark/gallery.py
+
+The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
+studies), work_precision_all.json (all_scenarios.py) and honesty.json (honesty.py).  The captions stand in gallery.md.
+"""
+
+import json
+from pathlib import Path
+
+from sealdyn.archive import read_study
+from sealdyn.report.charts.study_work_precision import SHORT
+from sealdyn.studies.work_precision.study import NAMES
+
+GALLERY = Path(__file__).parents[2] / "outputs" / "gallery"
+PAGE = GALLERY / "README.md"
+CAPTIONS = Path(__file__).with_name("gallery.md")
+
+
+def page() -> str:
+    """The captions, each `{{ name }}` replaced by the table of that name."""
+    text = CAPTIONS.read_text()
+    for rows in (fastest, models, machine, scenarios, honesty, failures):
+        head, *below = [f"| {' | '.join(row)} |" for row in rows()]
+        lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
+        text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
+    return text
+
+
+def number(value: float | None, digits: int = 2) -> str:
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def fastest():
+    """The fastest method on the reference scene at each error."""
+    answer = read_study(GALLERY / "work_precision_fmr.h5")["answer"]
+    yield "error at any time", "fastest", "wall time, ms", "next", "next / fastest", "DOP853 / fastest"
+    for row in answer["fastest"]:
+        names = [NAMES.get(row[key], "-") for key in ("method", "next")]
+        yield (f"{row['error']:.0e}", names[0], number(row["wall"] * 1e3, 3), names[1], number(row["factor_next"]),
+               number(row["factor_dop853"]))  # fmt: skip
+
+
+def models():
+    """Film models on the reference scene: error of the steady state and wall time."""
+    yield "model", "error of the steady state", "wall time, ms"
+    for row in read_study(GALLERY / "work_precision_fmr.h5")["answer"]["models"]:
+        yield row["label"], number(row["error"]["steady"]), number(row["wall"] * 1e3)
+
+
+def machine():
+    """What the reference scene was measured on."""
+    answer = read_study(GALLERY / "work_precision_fmr.h5")["answer"]
+    yield "reference solution", "second, and its difference", "machine"
+    judges, on = answer["judges"], answer["machine"]
+    yield (judges["exact"], f"{judges['second']}, {number(answer['judge_error'][answer['where']])}",
+           f"{on['processor']}, {on['cores']} cores")  # fmt: skip
+
+
+def scenarios():
+    """The fastest method on each shipped scenario, with its lead over the next and over DOP853."""
+    scenes = json.loads((GALLERY / "work_precision_all.json").read_text())["scenes"]
+    yield "scenario", *(f"at {row['error']:.0e}" for row in scenes[0]["fastest"])
+    for scene in scenes:
+        yield f"`{scene['name']}`", *map(winner, scene["fastest"])
+
+
+def winner(row: dict) -> str:
+    """Method, how many times faster than the next, how many times faster than DOP853."""
+    if row["method"] is None:
+        return f"none: {row['why'].replace('judges', 'reference solutions')}"
+    return f"{SHORT[row['method']]}, {number(row['factor_next'])}, {number(row['factor_dop853'])}"
+
+
+def honesty():
+    """The automatic choice on random seals."""
+    found = json.loads((GALLERY / "honesty.json").read_text())
+    yield "measured", "value"
+    yield "seed, random seals", f"{found['seed']}, {found['scenes']}"
+    yield "asked accuracies", " to ".join(number(asked) for asked in found["asked"])
+    yield "runs whose true error was within the asked accuracy", str(found["honest"])
+    yield "runs on the linear film", str(found["linear"])
+    yield (
+        "cost of choosing, running and certifying over the cheapest choice in hindsight, median",
+        number(found["median_cost"]),
+    )
+    yield "cost of the run alone over the same, median", number(found["median_cost_running"])
+
+
+def failures():
+    """The method that fails and the one that survives."""
+    yield "place", "method that fails", "its error", "method that survives", "its error", "unit"
+    for row in read_study(GALLERY / "failures.h5")["answer"]["rows"]:
+        if not row.get("absent"):
+            yield (f"{row['item']} {row['title']}", row["failing"], number(row["failing_error"]), row["survivor"],
+                   number(row["survivor_error"]), row["unit"])  # fmt: skip
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page())

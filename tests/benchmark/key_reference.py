@@ -1,0 +1,121 @@
+"""scenarios/README.md: every key of a scenario file, every study's settings, every shipped scenario.
+
+    python tests/benchmark/key_reference.py
+
+Keys come from the JSON schema (`sealdyn schema`), settings from the studies, scenarios from the comment at the head
+of each file.
+"""
+
+import dataclasses
+import inspect
+import json
+import pkgutil
+import re
+from pathlib import Path
+
+from sealdyn import read_scenario, studies
+from sealdyn.scenario.schema import json_schema
+from sealdyn.studies._runner import study_module
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+PAGE = SCENARIOS / "README.md"
+HEAD = """# Scenario files
+
+One TOML file describes a seal and a run.  This page is written by `python tests/benchmark/key_reference.py` from the
+JSON schema (`sealdyn schema`), which editors read too.
+
+- A quantity is a string with a unit (`"10 um"`, `"9550 rpm"`, `"5 bar"`, `"0.5 mPa*s"`) or a bare number in the SI unit
+  named below.  Pressures are absolute.
+- A quantity marked ~ may vary with time: `{ time = [...], value = [...] }`, linear between the times, constant before
+  the first and after the last; the same time twice is a step.
+- The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
+  the rotor (FMR), both make both float (FMSR).
+- An unknown key is refused; a known key that this seal does not use is listed as `not used`.
+- Axes: the shaft axis z points from the rotor to the stator; angles are counted from the x axis.
+"""
+
+
+def page() -> str:
+    """The whole page, markdown."""
+    parts = [HEAD, "## Shipped scenarios\n", *map(shipped, sorted(SCENARIOS.glob("*.toml"))), "## Keys\n"]
+    schema = json_schema()
+    parts += filter(None, (key_table(schema["$defs"][kind], paths) for kind, paths in tables(schema, schema).items()))
+    parts += ["## Settings of studies\n", "Keys of `[study.NAME]`, or flags `--key value` of `sealdyn study`.\n"]
+    parts += [settings(m.name) for m in pkgutil.iter_modules(studies.__path__) if m.name[0] != "_"]
+    return "\n".join(parts)
+
+
+def shipped(path: Path) -> str:
+    """Question, expected answer and source of a scenario, from its head."""
+    text = re.sub(r"\s+", " ", read_scenario(path).question)
+    question, *rest = re.split(r"\s*\b(Expected|Found|Source): ", text)
+    lines = [f"**[{path.stem}]({path.name})**  {question}"]
+    lines += [f"*{word}:* {said}" for word, said in zip(rest[::2], rest[1::2], strict=True)]
+    return "  \n".join(lines) + "\n"
+
+
+def tables(schema: dict, table: dict, path: str = "") -> dict[str, list[str]]:
+    """Headings of every table below, such as "[rotor.support]", by the name of its definition."""
+    found = {}
+    for key, holds in table["properties"].items():
+        for way in (holds, holds.get("items", {}), *holds.get("anyOf", [])):
+            if "$ref" in way:
+                kind = way["$ref"].rsplit("/", 1)[1]
+                dotted = f"{path}.{key}".strip(".")
+                found.setdefault(kind, []).append(f"[[{dotted}]]" if holds.get("type") == "array" else f"[{dotted}]")
+                for below, paths in tables(schema, schema["$defs"][kind], dotted).items():
+                    found.setdefault(below, []).extend(paths)
+    return found
+
+
+def key_table(table: dict, paths: list[str]) -> str:
+    """One row a key: quantity and unit, default, meaning."""
+    rows = [row(key, holds, key in table.get("required", ())) for key, holds in table["properties"].items()]
+    rows = [line for line in rows if line]
+    if not rows:
+        return ""
+    heading = ", ".join(f"`{path}`" for path in paths)
+    return "\n".join(
+        [f"### {heading}\n", "| key | quantity, SI unit | default | meaning |", "|---|---|---|---|", *rows, ""]
+    )
+
+
+def row(key: str, holds: dict, required: bool) -> str:
+    """The row of a key; nothing for a key that only holds tables, which have headings of their own."""
+    if "$ref" in holds or "$ref" in holds.get("items", {}):
+        return ""
+    if "quantity" in holds:
+        varies = any("properties" in kind for kind in holds.get("anyOf", []))
+        what = f"{holds['quantity']}, {holds['unit']}{' ~' if varies else ''}"
+    else:
+        words = [word for kind in (holds, *holds.get("anyOf", [])) for word in kind.get("enum", [])]
+        what = ", ".join(f"`{json.dumps(word)}`" for word in words) or {"boolean": "true or false"}.get(
+            holds.get("type"), holds.get("type")
+        )
+        if any("$ref" in kind for kind in holds.get("anyOf", [])):
+            what += f", table `{key}`"
+    default = "required" if required else f"`{shown(holds['default'])}`" if "default" in holds else "none"
+    return f"| `{key}` | {what} | {default} | {holds['description'].splitlines()[0]} |"
+
+
+def settings(module: str) -> str:
+    """What a study is for, and its settings with their defaults."""
+    study = study_module(module)
+    keys = ", ".join(f"`{f.name}`{default(f)}" for f in dataclasses.fields(study.Settings))
+    about = inspect.cleandoc(study.__doc__).split("\n\n")[0]
+    words = re.sub(r"\s+", " ", f"{about}  \n*Keys (default):* {keys}.  {study.Settings.__doc__}")
+    return f"**{module.replace('_', '-')}**  {words}\n"
+
+
+def default(field: dataclasses.Field) -> str:
+    """The default in brackets, if there is one to print."""
+    return "" if field.default in (None, ()) else f" ({shown(field.default)})"
+
+
+def shown(value) -> str:
+    """A default as one types it."""
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value)
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page())

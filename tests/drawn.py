@@ -1,0 +1,102 @@
+"""Charts as the tests read them: the figure a chart saves, its lines as data, and whether its words can be read."""
+
+from unittest import mock
+
+import numpy as np
+
+
+def drawn(chart, archive, out, written=True):
+    """The figure that `chart.draw` hands to be saved; `written`: saved too, as a PNG with nothing left beside it."""
+    seen, save = [], chart.save
+
+    def keep(figure, path):
+        seen.append(figure)
+        return save(figure, path) if written else path
+
+    with mock.patch.object(chart, "save", keep):
+        assert chart.draw(archive, out) == out
+    if written:
+        from PIL import Image
+
+        with Image.open(out) as picture:
+            assert picture.format == "PNG" and round(picture.info["dpi"][0]) == 150
+        assert list(out.parent.glob("*.new")) == []
+    (figure,) = seen
+    return figure
+
+
+def panel(figure, title):
+    """The axes whose title begins so."""
+    (found,) = [ax for ax in figure.axes if any(ax.get_title(loc).startswith(title) for loc in ("left", "center"))]
+    return found
+
+
+def curve(ax, label):
+    """x and y of the one line with this label, (2, n)."""
+    (line,) = [line for line in ax.lines if line.get_label() == label]
+    return np.array(line.get_data(), dtype=float)
+
+
+def points(ax):
+    """x and y of everything drawn as lines or marks in data coordinates, (2, n)."""
+    return np.hstack([np.array(line.get_data(), dtype=float) for line in ax.lines if len(line.get_xdata())])
+
+
+def has_points(ax, x, y, rel=1e-9):
+    """Whether each (x, y) is drawn somewhere in the panel."""
+    found = points(ax)
+    wanted = np.array([np.atleast_1d(x), np.atleast_1d(y)], dtype=float)
+    return all(np.isclose(found, pair[:, None], rtol=rel, atol=0.0).all(axis=0).any() for pair in wanted.T)
+
+
+def text_trouble(figure):
+    """Pairs of texts that lie on one another, and texts that leave the page."""
+    figure.draw_without_rendering()
+    page, hidden = figure.bbox, _hidden(figure)
+    texts = [
+        text
+        for text in figure.findobj(lambda artist: hasattr(artist, "get_text") and hasattr(artist, "get_fontsize"))
+        if text.get_visible() and text.get_text().strip() and text not in hidden
+    ]
+    words = [text.get_text() for text in texts]
+    boxes = np.array([text.get_window_extent().extents for text in texts]).reshape(-1, 4)
+    low, high = boxes[:, :2], boxes[:, 2:]
+    # Letters fill nine tenths of their box's width and eight of its height.
+    room = (high - low) * [0.05, 0.1]
+    low, high, empty = low + room, high - room, high[:, 0] - low[:, 0] < 1
+    meet = np.all((low[:, None] < high) & (low < high[:, None]), axis=-1) & ~empty & ~empty[:, None]
+    outside = (boxes[:, :2] < 0).any(axis=1) | (boxes[:, 2:] > [page.x1, page.y1]).any(axis=1)
+    return [(words[i], words[j]) for i, j in np.argwhere(np.triu(meet, 1))], [words[i] for i in np.flatnonzero(outside)]
+
+
+def _hidden(figure):
+    """Texts that are there and not drawn: labels of ticks out of view, of hidden axes, unused titles."""
+    found = set()
+    for ax in figure.axes:
+        for axis in (ax.xaxis, ax.yaxis):
+            visible = axis.get_visible() and ax.axison
+            seen = {tick.label1 for tick in axis._update_ticks()} if visible else set()
+            for tick in [*axis.get_major_ticks(), *axis.get_minor_ticks()]:
+                found |= {tick.label1, tick.label2} - seen
+            if not visible:
+                found |= {axis.label, axis.offsetText}
+    return found
+
+
+def crossed(ax):
+    """Names in a panel that a line not their own, or a mark, runs through."""
+    ax.figure.draw_without_rendering()
+    found = []
+    for text in ax.texts:
+        box = text.get_window_extent()
+        for line in ax.lines:
+            points = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
+            along = np.linspace(0, 1, 4000)
+            at = np.linspace(0, 1, len(points))
+            dense = np.column_stack([np.interp(along, at, points[:, k]) for k in (0, 1)])
+            inside = (box.x0 < dense[:, 0]) & (dense[:, 0] < box.x1) & (box.y0 < dense[:, 1]) & (dense[:, 1] < box.y1)
+            # Its own line runs through the middle of the name.
+            middle = np.hypot(dense[:, 0] - (box.x0 + box.x1) / 2, dense[:, 1] - (box.y0 + box.y1) / 2).min()
+            if inside.any() and middle > 2:
+                found.append(text.get_text())
+    return found

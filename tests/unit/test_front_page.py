@@ -1,0 +1,35 @@
+"""The README's own seal prints what the README says, and its table has every study."""
+
+import pkgutil
+import re
+from pathlib import Path
+
+import pytest
+
+import sealdyn
+from sealdyn import studies
+from sealdyn.scenario.reader import parse_scenario
+
+README = (Path(__file__).parents[2] / "README.md").read_text()
+
+
+def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
+    scenario = parse_scenario(re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1], "pump.toml")
+    found = sealdyn.simulate(scenario, tmp_path / "pump.h5").summary
+    for printed, value in {
+        r"h_min +([\d.]+) um": found["h_min"]["value"] * 1e6,
+        r"relative, urad: max ([\d.]+)": found["relative_misalignment"]["max"] * 1e6,
+        r"may grow ([\d.]+) times": found["contact_margin"],
+        r"= ([\d.]+) ml/h": found["leakage"]["mean_ml_per_h"],
+        r"friction +([\d.]+) W": found["friction"]["power"],
+        r"clearance ([\d.]+) um": found["film"]["clearance"] * 1e6,
+        r"closing +([\d.]+) N": found["closing"]["force"],
+        r"critical speed ([\d.e+]+) rad/s \(stable": found["stability"]["critical_speed"],
+    }.items():
+        assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
+
+
+def test_every_study_has_its_question_in_the_readme():
+    for module in pkgutil.iter_modules(studies.__path__):
+        if not module.name.startswith("_"):
+            assert f"| `{module.name.replace('_', '-')}`, " in README

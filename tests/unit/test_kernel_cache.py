@@ -1,0 +1,105 @@
+"""Kernels kept on disk, in a package of two kernels that keeps them as sealdyn does: one kernel takes in a constant and
+calls a kernel of other files, in folders of their own."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import sealdyn.kernel_cache
+
+FILES = {
+    "__init__.py": "from .kernel_cache import clear_stale_kernels\n\ncleared = clear_stale_kernels()\n",
+    "faces/__init__.py": "",
+    "faces/slots.py": "WIDTH = 2.0\n",
+    "faces/thickness.py": "from numba import njit\n\n\n@njit(cache=True)\ndef thick(x):\n    return 10.0 * x\n",
+    "films/deep/__init__.py": "",
+    "films/deep/wide.py": "from numba import njit\n\nfrom ...faces import (\n    slots,\n)\n"
+    "from ...faces.thickness import thick\n\nWIDTH = slots.WIDTH\n\n\n"
+    "@njit(cache=True)\ndef wide(x):\n    return WIDTH * thick(x)\n",
+    "report.py": "",
+}
+CALL = """
+import plain
+from plain.films.deep.wide import wide
+from plain.kernel_cache import kept_kernels
+print(wide(1.0), sum(wide.stats.cache_misses.values()), len(kept_kernels()), plain.cleared)
+"""
+WARM = (20.0, 0, 4, False)
+
+
+@pytest.fixture(params=["beside the sources", "where NUMBA_CACHE_DIR says", "in the user's folder", "nowhere"])
+def package(request, tmp_path):
+    """A function that calls the kernel in a new process: result, kernels compiled, files kept, whether cleared."""
+    root, user = tmp_path / "plain", tmp_path / "user"
+    for name, text in FILES.items():
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text)
+    shutil.copy(Path(sealdyn.kernel_cache.__file__), root / "kernel_cache.py")
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    environment |= {"XDG_CACHE_HOME": str(user), "PYTHONDONTWRITEBYTECODE": "1"}
+    if request.param.startswith("where"):
+        environment["NUMBA_CACHE_DIR"] = str(tmp_path / "elsewhere")
+    elif not request.param.startswith("beside"):
+        if sys.platform != "linux":
+            pytest.skip("the user's folder is named otherwise")
+        # A file in the folder's place: not even root can write into it.
+        for folder in [root, *(path for path in root.rglob("*") if path.is_dir())]:
+            (folder / "__pycache__").touch()
+        if request.param == "nowhere":
+            user.touch()
+
+    def call():
+        done = subprocess.run(
+            [sys.executable, "-c", CALL], cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        result, misses, kept, cleared = done.stdout.split()
+        return (float(result), int(misses), int(kept), cleared == "True"), done.stderr
+
+    call.root, call.keeps = root, request.param != "nowhere"
+    return call
+
+
+def changed(package, name, old, new):
+    file = package.root / name
+    file.write_text(file.read_text().replace(old, new) if old else new)
+
+
+def test_stale_kernels_are_made_anew(package):
+    cold = (20.0, 1, 4, False)
+    found, words = package()
+    assert found == cold and ("NUMBA_CACHE_DIR" in words) == (not package.keeps)
+    assert package()[0] == (WARM if package.keeps else cold)
+    # A constant of another folder, imported as a module; a kernel of another file.
+    changed(package, "faces/slots.py", "2.0", "3.0")
+    assert package()[0] == (30.0, 1, 4, package.keeps)
+    changed(package, "faces/thickness.py", "10.0", "100.0")
+    assert package()[0] == (300.0, 1, 4, package.keeps)
+
+
+def test_a_change_elsewhere_keeps_them(package):
+    package()
+    changed(package, "report.py", "", "print\n")
+    assert package()[0][1] == (0 if package.keeps else 1)
+
+
+@pytest.mark.parametrize("package", ["where NUMBA_CACHE_DIR says"], indirect=True)
+def test_kernels_of_others_stay(package, tmp_path):
+    """The folder may be shared: another package's kernels, and those of a copy elsewhere, are left alone."""
+    package()
+    other = tmp_path / "elsewhere" / "plain_of_another_place" / "wide.wide-9.py311.1.nbc"
+    other.parent.mkdir()
+    other.write_bytes(b"kernel")
+    changed(package, "faces/slots.py", "2.0", "3.0")
+    assert package()[0] == (30.0, 1, 4, True) and other.exists()
+
+
+def test_sources_of_this_package_reach_their_constants():
+    """Files of kernels, and a file without a kernel whose numbers a kernel takes in."""
+    found = {path.name for path in sealdyn.kernel_cache.kernel_sources()}
+    assert {"radial.py", "gap.py", "contact.py", "asperities.py"} <= found
+    assert not {"cli.py", "summary.py", "recorder.py"} & found

@@ -1,0 +1,28 @@
+"""The generated pages are current: scenarios/README.md and outputs/gallery/README.md."""
+
+import re
+
+import pytest
+from benchmark import gallery, key_reference
+
+from sealdyn.scenario.schema import json_schema
+
+
+@pytest.mark.parametrize("made", [gallery, key_reference], ids=lambda made: made.__name__)
+def test_page_is_what_its_script_writes(made):
+    """`python tests/benchmark/NAME.py` writes it."""
+    assert made.PAGE.read_text() == made.page()
+
+
+def test_gallery_shows_every_picture_and_fills_every_table():
+    page = gallery.page()
+    assert set(re.findall(r"!\[.*?\]\((.*?)\)", page)) == {path.name for path in gallery.GALLERY.glob("*.png")}
+    assert "{{" not in page
+
+
+def test_every_key_has_a_meaning():
+    schema = json_schema()
+    for table in (schema, *schema["$defs"].values()):
+        for key, holds in table["properties"].items():
+            meaning = holds.get("description", "").splitlines()[:1]
+            assert meaning and not re.match("an? .* in ", meaning[0]), key
