@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.run_state import RunState
 from sealdyn.dynamics.signals import signals
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft
@@ -110,49 +111,47 @@ GIVEN = 5790.0, 4.08, 6.1e6, 5200.0
 
 
 def of_given_film(stator=None, rotor=None, speed=SPEED, film_table=None, turns=1.0, **parts):
-    """Problem of rings (rigid unless given) on either side of that film."""
+    """A run of rings (rigid unless given) on either side of that film."""
     table = film_table or film("linear", coefficients=Coefficients(*GIVEN))
     shaft = parts.pop("shaft", Shaft(speed=speed))
     scene = Scene(shaft=shaft, film=table, stator=stator or Stator(), rotor=rotor or Rotor(), **parts)
-    return Model(scene, 2 * math.pi * turns / abs(speed))
+    return started(scene, 2 * math.pi * turns / abs(speed))
 
 
 class Sink:
     """Keeps displacements, rates and signals at evenly spaced times."""
 
-    def __init__(self, problem, interval):
-        self.problem, self.interval = problem, interval
-        self.count = round(problem.duration / interval)
+    def __init__(self, duration, interval):
+        self.interval, self.count = interval, round(duration / interval)
         self.times, self.q, self.rates, self.parts, self.events = [], [], [], [], []
 
-    def due(self, index):
-        leg = self.problem.legs[index]
-        taus = np.arange(self.count + 1) * self.interval - leg.time
-        last = index + 1 == len(self.problem.legs)
-        inside = (taus >= -1e-12) & ((taus < leg.length * (1 - 1e-12)) | last) & (taus <= leg.length * (1 + 1e-9))
-        return np.clip(taus[inside], 0.0, leg.length)
+    def due(self, segment):
+        taus, length = np.arange(self.count + 1) * self.interval - segment.time, segment.length
+        inside = (taus >= -1e-12) & ((taus < length * (1 - 1e-12)) | segment.last) & (taus <= length * (1 + 1e-9))
+        return np.clip(taus[inside], 0.0, length)
 
-    def take(self, index, taus, q, q_rate):
-        self.times.append(taus + self.problem.legs[index].time)
+    def take(self, segment, taus, q, q_rate):
+        self.times.append(taus + segment.time)
         self.q.append(q)
         self.rates.append(q_rate)
-        self.parts.append(signals(self.problem, taus, q, q_rate))
+        self.parts.append(signals(segment, taus, q, q_rate))
 
     def state(self, *anything):
         pass
 
-    def event(self, index, tau, event):
-        self.events.append({**event, "time": self.problem.legs[index].time + tau})
+    def event(self, segment, tau, event):
+        self.events.append({**event, "time": segment.time + tau})
 
 
 class Run:
-    """A finished run: problem, outcome, times (m,), displacements and rates (m, n), signals by name."""
+    """A finished run: its state, outcome, times (m,), displacements and rates (m, n), signals by name."""
 
-    def __init__(self, problem, outcome, sink):
-        self.problem, self.outcome = problem, outcome
+    def __init__(self, ready, outcome, sink):
+        self.ready, self.model, self.outcome = ready, ready.model, outcome
+        n = ready.model.unknowns.n
         self.times = np.concatenate(sink.times) if sink.times else np.empty(0)
-        self.q = np.concatenate(sink.q) if sink.q else np.empty((0, problem.n))
-        self.rates = np.concatenate(sink.rates) if sink.rates else np.empty((0, problem.n))
+        self.q = np.concatenate(sink.q) if sink.q else np.empty((0, n))
+        self.rates = np.concatenate(sink.rates) if sink.rates else np.empty((0, n))
         self.parts, self.events = sink.parts, sink.events
 
     def __getitem__(self, name):
@@ -160,53 +159,58 @@ class Run:
 
     def record(self, window):
         """Extremes of one window, as `sealdyn.dynamics.extrema` names its slots."""
-        return self.problem.records[window]
+        return self.ready.extrema.records[window]
 
     def scaled(self):
         """Displacements and rates over their scales, (m, 2n)."""
-        scales = self.problem.scales[: self.problem.n]
-        return np.hstack([self.q / scales, self.rates / (scales * self.problem.pace)])
+        scales = self.model.scales[: self.model.unknowns.n]
+        return np.hstack([self.q / scales, self.rates / (scales * self.model.reference_rate)])
 
     def tilt(self, ring):
         """Complex tilt of a ring at the sampled times."""
-        at = self.problem.names.index(f"{ring}_tilt_x")
+        at = self.model.unknowns.names.index(f"{ring}_tilt_x")
         return self.q[:, at] + 1j * self.q[:, at + 1]
 
 
-def prepared(scene, duration, accuracy, start="rest", problem_class=Model):
-    """A problem with its start: at rest (plus what [initial] gives) or on the linear steady state."""
-    problem = problem_class(scene, duration, accuracy)
+def started(scene, duration, accuracy=1e-6, model_class=Model):
+    """A run of a scene over `duration` (s), at rest."""
+    return RunState(model_class(scene, accuracy), duration)
+
+
+def prepared(scene, duration, accuracy, start="rest", model_class=Model):
+    """A run with its start: at rest (plus what [initial] gives) or on the linear steady state."""
+    ready = started(scene, duration, accuracy, model_class)
+    unknowns = ready.model.unknowns
     if start == "steady":
-        problem.y0 = problem.steady_start()
+        ready.y0 = ready.steady_start()
     for name, given in (("stator", scene.initial.stator), ("rotor", scene.initial.rotor)):
         for part in ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate"):
             value, base = getattr(given, part), f"{name}_{part.removesuffix('_rate')}"
-            if value is not None and base in problem.names:
-                place = problem.names.index(base)
-                problem.y0[problem.rate_places[place] if part.endswith("_rate") else place] = value
-    return problem
+            if value is not None and base in unknowns.names:
+                place = unknowns.names.index(base)
+                ready.y0[unknowns.rate_places[place] if part.endswith("_rate") else place] = value
+    return ready
 
 
 def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="rest", duration=None,
-        problem_class=Model):  # fmt: skip
-    """Integrate a scene; the last two turns are the windows 1 and 2."""
+        model_class=Model, **options):  # fmt: skip
+    """Integrate a scene; the last two turns are the windows 1 and 2; `options` of `solve`."""
     speed = scene.shaft.speed if not isinstance(scene.shaft.speed, PiecewiseLinear) else max(scene.shaft.speed.value)
     turn = 2 * math.pi / abs(speed)
     duration = duration if duration is not None else turns * turn
-    problem = prepared(scene, duration, accuracy, start, problem_class)
-    problem.windows[1] = [duration - turn, duration]
-    problem.windows[2] = [duration - 2 * turn, duration - turn]
-    sink = Sink(problem, duration / max(1, round(duration / turn * per_turn)))
-    outcome = solve(problem, method, accuracy, sink)
-    return Run(problem, outcome, sink)
+    ready = prepared(scene, duration, accuracy, start, model_class)
+    ready.extrema.windows[1:] = [[duration - turn, duration], [duration - 2 * turn, duration - turn]]
+    sink = Sink(duration, duration / max(1, round(duration / turn * per_turn)))
+    outcome = solve(ready, method, accuracy, sink, **options)
+    return Run(ready, outcome, sink)
 
 
-def apart(problem, one, other, interval):
+def apart(ready, one, other, interval):
     """Largest difference of displacements, relative to their scales, at samples every `interval` (s) of two runs, each
     a method and options of `solve`; both must end well."""
-    found = []
+    found, model = [], ready.model
     for method, options in (one, other):
-        sink = Recorder(problem, interval)
-        assert solve(problem, method, problem.accuracy, sink, **options).status == "ok"
-        found.append(sink.arrays()[1] / problem.scales[: problem.n])
+        sink = Recorder(interval)
+        assert solve(ready, method, model.accuracy, sink, **options).status == "ok"
+        found.append(sink.arrays()[1] / model.scales[: model.unknowns.n])
     return float(np.max(np.abs(found[0] - found[1])))

@@ -12,58 +12,62 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scenes import started
 from scipy.integrate import solve_ivp
 from sksundae.cvode import CVODE
 
 import sealdyn
-from sealdyn.dynamics.model import Model
 from sealdyn.solvers.contract import absolute_tolerances
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 TURNS, REPEATS = 400, 5
 
 
-def cvode(problem, tolerance, times):
+def cvode(ready, tolerance, times):
+    segment = ready.segment(0)
+
     def rhs(t, y, yp):
-        problem.rhs(t, y, yp)
+        segment.rhs(t, y, yp)
 
-    solver = CVODE(rhs, method="Adams", rtol=tolerance, atol=absolute_tolerances(problem, tolerance),
-                   jacfn=problem.jacobian, max_num_steps=10**7)  # fmt: skip
-    return solver.solve(times, problem.y0).y
+    solver = CVODE(rhs, method="Adams", rtol=tolerance, atol=absolute_tolerances(segment, tolerance),
+                   jacfn=segment.jacobian, max_num_steps=10**7)  # fmt: skip
+    return solver.solve(times, ready.y0).y
 
 
-def dop853(problem, tolerance, times):
+def dop853(ready, tolerance, times):
+    segment = ready.segment(0)
+
     def rhs(t, y):
         yp = np.empty(len(y))
-        problem.rhs(t, y, yp)
+        segment.rhs(t, y, yp)
         return yp
 
-    return solve_ivp(rhs, (0.0, times[-1]), problem.y0, "DOP853", t_eval=times,
-                     rtol=max(tolerance, 2.3e-14), atol=absolute_tolerances(problem, tolerance)).y.T  # fmt: skip
+    return solve_ivp(rhs, (0.0, times[-1]), ready.y0, "DOP853", t_eval=times,
+                     rtol=max(tolerance, 2.3e-14), atol=absolute_tolerances(segment, tolerance)).y.T  # fmt: skip
 
 
 def measure(method, tolerance, times, reference, scale):
     wall = math.inf
     for _ in range(REPEATS):
-        problem = fresh()
+        ready = fresh()
         begun = time.perf_counter()
-        y = method(problem, tolerance, times)
+        y = method(ready, tolerance, times)
         wall = min(wall, time.perf_counter() - begun)
     return float(np.max(np.abs(y[1:, 1:3] - reference[1:, 1:3])) / scale), wall
 
 
 def fresh():
     scene = sealdyn.read_scenario(SCENARIO).scene
-    return Model(scene, TURNS * 2 * math.pi / scene.shaft.speed, 1e-8)
+    return started(scene, TURNS * 2 * math.pi / scene.shaft.speed, 1e-8)
 
 
 def main():
-    problem = fresh()
-    turn = problem.duration / TURNS
+    ready = fresh()
+    turn = ready.duration / TURNS
     # The first point is the start; the few others cost nothing.
-    times = np.concatenate([[0.0], problem.duration - turn * np.linspace(40, 0, 17)])
+    times = np.concatenate([[0.0], ready.duration - turn * np.linspace(40, 0, 17)])
     reference = dop853(fresh(), 3e-14, times)
-    scale = problem.clearance / problem.scene.film.outer_radius
+    scale = ready.model.clearance / ready.model.scene.film.outer_radius
     found = {}
     for name, method in (("CVODE Adams", cvode), ("SciPy DOP853", dop853)):
         found[name] = [measure(method, 10.0**-k, times, reference, scale) for k in np.arange(3, 13.1, 0.5)]

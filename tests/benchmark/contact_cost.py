@@ -19,10 +19,10 @@ CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 
 
 def seconds(scenario):
-    problem, method, *_ = prepare_run(scenario)
+    ready, method, *_ = prepare_run(scenario)
     begun = time.perf_counter()
-    outcome = solve(problem, method, scenario.run.accuracy, Recorder(problem))
-    return time.perf_counter() - begun, outcome, problem
+    outcome = solve(ready, method, scenario.run.accuracy, Recorder())
+    return time.perf_counter() - begun, outcome, ready
 
 
 def open_film():

@@ -18,8 +18,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scenes import started
 
-from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import palette
 from sealdyn.scene.excitation import AngularVibration, Housing, Shaft
@@ -28,6 +28,7 @@ from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
 from sealdyn.simulation.certificate import certify, choose_tolerance, error_estimator
 from sealdyn.simulation.film_selection import select_film
+from sealdyn.simulation.method_selection import choose_method
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -74,30 +75,30 @@ def scene(random, turns=None):
 
 
 def begin(start):
-    """What sets a problem's unknowns."""
+    """What sets a ready's unknowns."""
 
-    def set_start(problem):
+    def set_start(ready):
         if start == "steady":
-            problem.y0 = problem.steady_start()
-        problem.check_start()
+            ready.y0 = ready.steady_start()
+        ready.check_start()
 
     return set_start
 
 
-def looked_at(problem, method, accuracy, interval, **options):
+def looked_at(ready, method, accuracy, interval, **options):
     """Observables (m, 3) of a run, scaled, or None if it did not end well; and its wall time (s)."""
     begun = time.perf_counter()
-    sink = Recorder(problem, interval)
-    outcome = solve(problem, method, accuracy, sink, **options)
+    sink = Recorder(interval)
+    outcome = solve(ready, method, accuracy, sink, **options)
     wall = time.perf_counter() - begun
     if outcome.status != "ok":
         return None, wall
     parts = []
     for t, q, rate in sink.parts:
-        problem.begin(min(range(len(problem.legs)), key=lambda k: (problem.legs[k].time > t[0] + 1e-12, -k)))
-        seen = signals(problem, t - problem.leg.time, q, rate)
-        parts.append(np.stack([seen["h_min"] / problem.clearance,
-                               seen["relative_misalignment"] * problem.face[1] / problem.clearance,
+        segment = ready.segment(max(k for k, part in enumerate(ready.intervals) if part.time <= t[0] + 1e-12))
+        seen = signals(segment, t - segment.time, q, rate)
+        parts.append(np.stack([seen["h_min"] / ready.model.clearance,
+                               seen["relative_misalignment"] * ready.model.face[1] / ready.model.clearance,
                                seen["leakage_inner"]], 1))  # fmt: skip
     return np.concatenate(parts), wall
 
@@ -112,25 +113,25 @@ def apart(found, truth):
 
 
 def automatic(made, duration, accuracy, start, interval):
-    """Wall times (s) of choosing, running and certifying; problem, method, what was found, certificate."""
+    """Wall times (s) of choosing, running and certifying; ready, method, what was found, certificate."""
     begun = time.perf_counter()
-    problem, by_model = select_film(made, duration, accuracy, begin(start))
-    method, _ = problem.solver()
-    trial, errors = choose_tolerance(problem, method), error_estimator(problem, method)
+    ready, by_model = select_film(made, duration, accuracy, begin(start))
+    method, _ = choose_method(ready)
+    trial, errors = choose_tolerance(ready, method), error_estimator(ready, method)
     chosen = time.perf_counter() - begun
     options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
-    found, wall = looked_at(problem, method, accuracy, interval, errors=errors, **options)
+    found, wall = looked_at(ready, method, accuracy, interval, errors=errors, **options)
     begun = time.perf_counter()
-    certificate = certify(problem, method, errors, by_model)
-    return chosen, wall, time.perf_counter() - begun, problem, method, found, certificate
+    certificate = certify(ready, method, errors, by_model)
+    return chosen, wall, time.perf_counter() - begun, ready, method, found, certificate
 
 
 def hindsight(film_scene, name, accuracy, problem_of, observed, interval):
     """What a run by this film, method and accuracy finds, and its wall time with making it ready (s)."""
     begun = time.perf_counter()
     tried = problem_of(film_scene, accuracy)
-    if tried.film_name == "linear":
-        tried.observed = observed
+    if tried.model.interface.name == "linear":
+        tried.model.observed = observed
     ready = time.perf_counter() - begun
     seen, wall = looked_at(tried, name, accuracy, interval)
     return seen, ready + wall
@@ -142,9 +143,9 @@ def judge(made, duration, accuracy, start):
     radial = replace(made, film=replace(made.film, model="radial"))
 
     def problem_of(film_scene, knob):
-        problem = Model(film_scene, duration, knob)
-        begin(start)(problem)
-        return problem
+        ready = started(film_scene, duration, knob)
+        begin(start)(ready)
+        return ready
 
     try:
         exact = problem_of(radial, 1e-9)
@@ -155,17 +156,17 @@ def judge(made, duration, accuracy, start):
         return None
     tries = [automatic(made, duration, accuracy, start, interval) for _ in range(TIMES)]
     chosen, wall, certified = (min(one[k] for one in tries) for k in range(3))
-    problem, method, found, certificate = tries[0][3:]
+    ready, method, found, certificate = tries[0][3:]
     best = math.inf
     linear = replace(made, film=replace(made.film, model="linear", coefficients="radial"))
     for film_scene in (linear, radial):
         for name in (*METHODS, EXACT) if film_scene is linear else METHODS:
             for knob in KNOBS:
                 asked = min(accuracy * knob, 0.05)
-                seen, cost = hindsight(film_scene, name, asked, problem_of, exact.observed, interval)
+                seen, cost = hindsight(film_scene, name, asked, problem_of, exact.model.observed, interval)
                 if apart(seen, truth) <= accuracy:
                     again = [
-                        hindsight(film_scene, name, asked, problem_of, exact.observed, interval)[1]
+                        hindsight(film_scene, name, asked, problem_of, exact.model.observed, interval)[1]
                         for _ in range(TIMES - 1)
                     ]
                     best = min(best, cost, *again)
@@ -174,8 +175,9 @@ def judge(made, duration, accuracy, start):
                     # A tighter one costs more still.
                     break
     error, estimated = apart(found, truth), certificate.estimated
-    return {"accuracy": accuracy, "error": error, "estimated": estimated, "film": problem.film_name, "method": method,
-            "cost": chosen + wall + certified, "solving": chosen + wall, "running": wall, "best": best}  # fmt: skip
+    return {"accuracy": accuracy, "error": error, "estimated": estimated, "film": ready.model.interface.name,
+            "method": method, "cost": chosen + wall + certified, "solving": chosen + wall, "running": wall,
+            "best": best}  # fmt: skip
 
 
 def main():

@@ -12,9 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scenes import started
 
 import sealdyn
-from sealdyn.dynamics.model import Model
 from sealdyn.report.charts import palette
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor
@@ -36,9 +36,9 @@ def problem_with(seal):
     film = replace(scene.film, model="linear", coefficients=NOTHING)
     scene = replace(scene, film=film, stator=stator, rotor=Rotor(), initial=Initial(stator=RingStart(z=START)))
     period = 2 * math.pi / math.sqrt(support.axial_stiffness / stator.mass)
-    problem = Model(scene, CYCLES * period, ACCURACY)
-    problem.y0[problem.names.index("stator_z")] = START
-    return problem, support.axial_stiffness
+    ready = started(scene, CYCLES * period, ACCURACY)
+    ready.y0[ready.model.unknowns.names.index("stator_z")] = START
+    return ready, support.axial_stiffness
 
 
 def rest(stiffness):
@@ -50,9 +50,9 @@ def rest(stiffness):
 
 
 def run(seal, method):
-    problem, stiffness = problem_with(seal)
-    outcome = solve(problem, method, ACCURACY, Recorder(problem))
-    error = abs(outcome.y[0] - rest(stiffness)) / problem.clearance
+    ready, stiffness = problem_with(seal)
+    outcome = solve(ready, method, ACCURACY, Recorder())
+    error = abs(outcome.y[0] - rest(stiffness)) / ready.model.clearance
     return error, outcome.counts.rhs, outcome.wall_time, outcome.status
 
 

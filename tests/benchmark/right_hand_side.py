@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scenes import started
 from sksundae.cvode import CVODE
 
 import sealdyn
-from sealdyn.dynamics.model import Model
 from sealdyn.films.radial import film as radial
 from sealdyn.solvers.contract import absolute_tolerances, tolerance_for
 from sealdyn.solvers.integrate import solve
@@ -41,11 +41,12 @@ def film_kernel(scene):
     print("film kernel (us a call, dispatch from Python included), by film accuracy and tilt")
     for error in (1e-5, 1e-7, 1e-9, 1e-11):
         f = radial.parameters(scene.film, scene.film.clearance, error)
-        problem = Model(scene, 1e-6)
-        s = problem.s
+        ready = started(scene, 1.0)
+        segment = ready.segment(0)
+        s = segment.s
         row = []
         for tilt in (0.01, 0.3, 0.8, 1.1, 1.2):
-            problem.rhs(0.0, problem.y0, np.empty(problem.size))
+            segment.rhs(0.0, ready.y0, np.empty(segment.size))
             s[1] = tilt * scene.film.clearance / scene.film.outer_radius
             row.append(f"|g|r_o/C {tilt}: {per_call(lambda f=f, s=s: radial.wrench(f, s), 5000):.2f}")
         print(f"  {error:.0e}:  " + ",  ".join(row))
@@ -53,29 +54,30 @@ def film_kernel(scene):
 
 def shares(scene):
     duration = TURNS * 2 * math.pi / scene.shaft.speed
-    problem = Model(scene, duration, 1e-6)
-    y, yp = problem.y0.copy(), np.empty(problem.size)
-    film = per_call(lambda: problem.film.wrench(problem.f, problem.s))
-    rhs = per_call(lambda: problem.rhs(0.1, y, yp))
-    tolerance = tolerance_for("adams", 1e-6, problem.memory)
+    ready = started(scene, duration, 1e-6)
+    segment = ready.segment(0)
+    y, yp = ready.y0.copy(), np.empty(segment.size)
+    film = per_call(lambda: ready.model.interface.film.wrench(ready.model.f, segment.s))
+    rhs = per_call(lambda: segment.rhs(0.1, y, yp))
+    tolerance = tolerance_for("adams", 1e-6, ready.memory)
     calls = [0]
 
     def counted(t, y, yp):
         calls[0] += 1
-        problem.rhs(t, y, yp)
+        segment.rhs(t, y, yp)
 
     def bare():
         calls[0] = 0
-        solver = CVODE(counted, method="Adams", rtol=tolerance, atol=absolute_tolerances(problem, tolerance),
-                       jacfn=problem.jacobian, max_num_steps=10**7)  # fmt: skip
-        return solver.solve(np.array([0.0, duration]), problem.y0)
+        solver = CVODE(counted, method="Adams", rtol=tolerance, atol=absolute_tolerances(segment, tolerance),
+                       jacfn=segment.jacobian, max_num_steps=10**7)  # fmt: skip
+        return solver.solve(np.array([0.0, duration]), ready.y0)
 
     alone = best(bare) / calls[0] * 1e6
     outcome = [None]
 
     def whole():
-        run = Model(scene, duration, 1e-6)
-        outcome[0] = solve(run, "adams", 1e-6, Recorder(run))
+        run = started(scene, duration, 1e-6)
+        outcome[0] = solve(run, "adams", 1e-6, Recorder())
 
     whole()
     best(whole, 4)
@@ -91,8 +93,8 @@ def shares(scene):
 
 
 def _wall(scene, duration):
-    problem = Model(scene, duration, 1e-6)
-    return solve(problem, "adams", 1e-6, Recorder(problem)).wall_time
+    ready = started(scene, duration, 1e-6)
+    return solve(ready, "adams", 1e-6, Recorder()).wall_time
 
 
 def floor():

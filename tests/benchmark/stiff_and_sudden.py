@@ -20,11 +20,14 @@ from scipy import integrate
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
-from scenes import Model, prepared, run  # noqa: E402
+from scenes import prepared, run  # noqa: E402
 
 import sealdyn  # noqa: E402
+from sealdyn.dynamics.model import Model  # noqa: E402
+from sealdyn.dynamics.segments import Segment  # noqa: E402
 from sealdyn.scene.contact import contact_thresholds  # noqa: E402
 from sealdyn.solvers.contract import SolverFailure  # noqa: E402
+from sealdyn.solvers.methods import METHODS  # noqa: E402
 
 SCENES = ("pressure_step", "squeeze", "impact")
 PACKAGE = ("adams", "bdf", "ida", "radau", "dop853")
@@ -44,22 +47,19 @@ def scenario(name):
     return sealdyn.read_scenario(ROOT / "scenarios" / f"{name}.toml")
 
 
-class Observed(Model):
-    """A problem that counts its evaluations, stops a method beyond its budget, and remembers every accepted step."""
-
-    budget = BUDGET
+class CountedSegment(Segment):
+    """A segment that counts its evaluations, and stops a method beyond its model's budget."""
 
     def _bind(self):
         super()._bind()
-        rhs, residual = self.rhs, self.residual
-        self.calls, self.closed = getattr(self, "calls", 0), getattr(self, "closed", 0)
+        rhs, residual, model = self.rhs, self.residual, self.model
 
         def check(t, y):
-            self.calls += 1
+            model.calls += 1
             # Trial states with the rotor beyond the other face.
-            self.closed += y[0] >= self.clearance
-            if self.calls > self.budget:
-                raise SolverFailure(f"crawls at {self.legs[self.leg_index].time + t:.3g} s")
+            model.closed += y[0] >= model.clearance
+            if model.calls > model.budget:
+                raise SolverFailure(f"crawls at {self.time + t:.3g} s")
 
         def counted_rhs(t, y, yp):
             check(t, y)
@@ -71,9 +71,14 @@ class Observed(Model):
 
         self.rhs, self.residual = counted_rhs, counted_residual
 
-    def watch(self, index, t, q, q_rate, impulse, count, begin, end):
-        self.taken = [*getattr(self, "taken", []), t[begin : end + 1] + self.legs[index].time]
-        return super().watch(index, t, q, q_rate, impulse, count, begin, end)
+
+class Counted(Model):
+    """A model of such segments: evaluations so far, those with the faces beyond each other, most of them."""
+
+    calls, closed, budget = 0, 0, BUDGET
+
+    def segment(self, interval=None, index=0, last=True, stuck=None):
+        return CountedSegment(self, interval or self.start, index, last, stuck)
 
 
 @dataclass
@@ -100,13 +105,20 @@ def by_package(name, method, accuracy=None, scene=None):
     # `run` of the shared scenes samples by the turn.
     per_turn = POINTS * 2 * math.pi / (given.scene.shaft.speed * given.run.duration)
     begun = time.perf_counter()
+    taken = [np.zeros(1)]
+
+    def steps(segment, *how):
+        for block in METHODS[method](segment, *how):
+            taken.append(segment.time + block[0])
+            yield block
+
     found = run(scene or given.scene, accuracy=accuracy or given.run.accuracy, method=method, per_turn=per_turn,
-                duration=given.run.duration, problem_class=Observed)  # fmt: skip
+                duration=given.run.duration, model_class=Counted, steps=steps)  # fmt: skip
     wall = time.perf_counter() - begun
-    problem, outcome = found.problem, found.outcome
-    times = np.unique(np.concatenate(getattr(problem, "taken", [np.zeros(1)])))
-    q = found.q / problem.scales[: problem.n]
-    return Measured(outcome.status, problem.calls, wall, times, q, outcome.energy_residual, problem.closed, found)
+    model, outcome = found.model, found.outcome
+    q = found.q / model.scales[: model.unknowns.n]
+    times = np.unique(np.concatenate(taken))
+    return Measured(outcome.status, model.calls, wall, times, q, outcome.energy_residual, model.closed, found)
 
 
 def by_scipy(name, method, tolerance=None, exact_jacobian=False):
@@ -114,39 +126,39 @@ def by_scipy(name, method, tolerance=None, exact_jacobian=False):
     given = scenario(name)
     # The same margin between tolerance and accuracy as for the package's Radau.
     tolerance = tolerance or given.run.accuracy / 30
-    problem = prepared(given.scene, given.run.duration, given.run.accuracy, problem_class=Observed)
+    ready = prepared(given.scene, given.run.duration, given.run.accuracy, model_class=Counted)
     if tolerance < 1e-9:
-        problem.budget = 100 * BUDGET
-    absolute = np.append(tolerance * problem.scales[:-1], 1e30)
+        ready.model.budget = 100 * BUDGET
+    absolute = np.append(tolerance * ready.model.scales[:-1], 1e30)
     even = np.linspace(0.0, given.run.duration, POINTS + 1)
 
     def rhs(t, y):
-        yp = np.empty(problem.size)
-        problem.rhs(t, y, yp)
+        yp = np.empty(segment.size)
+        segment.rhs(t, y, yp)
         return yp
 
     def jacobian(t, y):
-        matrix = np.zeros((problem.size, problem.size))
-        problem.jacobian(t, np.array(y), None, matrix)
+        matrix = np.zeros((segment.size, segment.size))
+        segment.jacobian(t, np.array(y), None, matrix)
         return matrix
 
     options = {"jac": jacobian} if exact_jacobian else {}
-    y, times, q, status, begun = problem.y0, [0.0], [], "ok", time.perf_counter()
+    y, times, q, status, begun = ready.y0, [0.0], [], "ok", time.perf_counter()
     try:
-        for index, leg in enumerate(problem.legs):
-            problem.begin(index)
-            last = index + 1 == len(problem.legs)
+        for index, leg in enumerate(ready.intervals):
+            segment = ready.segment(index)
+            last = index + 1 == len(ready.intervals)
             inside = even[(even >= leg.time) & ((even < leg.time + leg.length) | last)] - leg.time
             solver = getattr(integrate, method)(rhs, 0.0, y, leg.length, rtol=max(tolerance, 2.3e-14), atol=absolute,
                                                 **options)  # fmt: skip
             for t, at_due in _steps(solver, np.minimum(inside, leg.length)):
                 times.append(t + leg.time)
-                q += [state[: problem.n] for state in at_due]
+                q += [state[: ready.model.unknowns.n] for state in at_due]
             y = solver.y
     except SolverFailure as failure:
         status = str(failure)
-    q = np.array(q) / problem.scales[: problem.n] if q else np.zeros((0, problem.n))
-    return Measured(status, problem.calls, time.perf_counter() - begun, np.array(times), q)
+    q = np.array(q) / ready.model.scales[: ready.model.unknowns.n] if q else np.zeros((0, ready.model.unknowns.n))
+    return Measured(status, ready.model.calls, time.perf_counter() - begun, np.array(times), q)
 
 
 def _steps(solver, due):

@@ -63,13 +63,13 @@ def test_contact_work_is_the_change_of_its_potential():
     accuracy = 1e-6
     for turns in (0.31, 1.7, 6.3):
         found = run(scene, turns=turns, accuracy=accuracy)
-        problem, y = found.problem, found.outcome.y
-        energies = []
-        for state in (problem.y0, y):
-            problem.rhs(found.outcome.tau, state, np.empty(problem.size))
-            contact.contact_load_and_friction(problem.contact, problem.f, problem.s)
-            energies.append(problem.s[CONTACT_ENERGY])
-        work = y[problem.works][equations.WORKS.index("contact")]
+        ready, y = found.ready, found.outcome.y
+        segment, energies = ready.segment(0), []
+        for state in (ready.y0, y):
+            segment.rhs(found.outcome.tau, state, np.empty(segment.size))
+            contact.contact_load_and_friction(ready.model.contact, ready.model.f, segment.s)
+            energies.append(segment.s[CONTACT_ENERGY])
+        work = y[ready.model.unknowns.works][equations.WORKS.index("contact")]
         assert work == pytest.approx(energies[0] - energies[1], abs=10 * accuracy * y[-1])
 
 
@@ -78,13 +78,14 @@ def test_an_undamped_ring_keeps_its_energy_through_impacts():
     scene, _, _ = SCENES["impacts in a vacuum"]
     found = run(scene, turns=20, accuracy=1e-7)
     rows = []
-    found.problem.tell_contacts(rows.extend, end=(found.outcome.tau, found.outcome.y))
+    found.ready.contacts.tell(rows.extend, end=(found.outcome.tau, found.outcome.y))
     assert sum(row["kind"] == "contact" for row in rows) > 5
-    start = found.problem.energies(np.zeros(1), found.problem.y0[None, :])[0]
-    end = found.problem.energies(np.zeros(1), found.outcome.y[None, :])[0]
-    found.problem.rhs(found.outcome.tau, found.outcome.y, np.empty(found.problem.size))
-    contact.contact_load_and_friction(found.problem.contact, found.problem.f, found.problem.s)
-    assert end + found.problem.s[CONTACT_ENERGY] == pytest.approx(start, rel=1e-5)
+    segment = found.ready.segment(0)
+    start = segment.energies(np.zeros(1), found.ready.y0[None, :])[0]
+    end = segment.energies(np.zeros(1), found.outcome.y[None, :])[0]
+    segment.rhs(found.outcome.tau, found.outcome.y, np.empty(segment.size))
+    contact.contact_load_and_friction(found.model.contact, found.model.f, segment.s)
+    assert end + segment.s[CONTACT_ENERGY] == pytest.approx(start, rel=1e-5)
 
 
 def test_touching_moves_both_rings_of_a_pair():

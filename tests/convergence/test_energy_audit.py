@@ -5,6 +5,7 @@ import pytest
 from scenes import INERTIA, SPEED, SUPPORT, fmr, fms, fmsr, prepared, run
 
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.segments import Segment
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
@@ -15,7 +16,7 @@ K_S, D_S = SUPPORT.tilt()
 def wrong(change):
     """A Model whose equation of motion is off by `change(y, rates' part)` while its works are as before."""
 
-    class Wrong(Model):
+    class WrongSegment(Segment):
         def _bind(self):
             super()._bind()
             right, tilt, rate = self.rhs, self.n - 2, self.n_mechanical - 2
@@ -27,6 +28,10 @@ def wrong(change):
                 yp[rate + 1] += push.imag
 
             self.rhs = rhs
+
+    class Wrong(Model):
+        def segment(self, interval=None, index=0, last=True, stuck=None):
+            return WrongSegment(self, interval or self.start, index, last, stuck)
 
     return Wrong
 
@@ -44,7 +49,7 @@ MISTAKES = {
 @pytest.mark.parametrize("scene", [fmr(), fms("linear")], ids=["fmr", "fms-linear"])
 def test_a_wrong_force_is_exposed(scene, mistake):
     right = run(scene, turns=5, accuracy=1e-6, method="adams")
-    found = run(scene, turns=5, accuracy=1e-6, method="adams", problem_class=wrong(MISTAKES[mistake]))
+    found = run(scene, turns=5, accuracy=1e-6, method="adams", model_class=wrong(MISTAKES[mistake]))
     assert right.outcome.energy_residual < 2e-6
     # Ten times the accuracy is the line a sound run stays below.
     assert found.outcome.energy_residual > 10e-6
@@ -56,10 +61,10 @@ def test_works_summed_over_the_steps_expose_it_too(mistake):
     1.4e-5 of a spring 1 % stiff).  Not twice as loose: from there on Adams takes 690 or 860 steps, as rounding decides,
     and the residual jumps by a factor of thirteen."""
 
-    def audited(problem_class, follow):
-        problem = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4, problem_class=problem_class)
-        told = {"errors": GlobalErrorEstimate(problem)} if follow else {}
-        return solve(problem, "adams", 1e-4, Recorder(problem), tolerance=1.4e-6, **told).energy_residual
+    def audited(model_class, follow):
+        ready = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4, model_class=model_class)
+        told = {"errors": GlobalErrorEstimate(ready.segment(0))} if follow else {}
+        return solve(ready, "adams", 1e-4, Recorder(), tolerance=1.4e-6, **told).energy_residual
 
     # The damped rotor forgets its errors, its works do not.
     right = audited(Model, True)
@@ -71,7 +76,7 @@ def test_works_summed_over_the_steps_expose_it_too(mistake):
 def test_gyroscopic_moment_does_no_work():
     """Turning it the other way round is another seal, but no energy is missing: the audit is right to be silent."""
     turned = wrong(lambda g, v: -2j * INERTIA * 2 * SPEED * v)
-    assert run(fmr(), turns=5, accuracy=1e-6, problem_class=turned).outcome.energy_residual < 1e-5
+    assert run(fmr(), turns=5, accuracy=1e-6, model_class=turned).outcome.energy_residual < 1e-5
 
 
 def test_works_against_an_integral_of_the_trajectory():
@@ -80,9 +85,9 @@ def test_works_against_an_integral_of_the_trajectory():
     y = found.outcome.y
     damper = 0.0
     for name, spin in (("stator", 0.0), ("rotor", SPEED)):
-        at = found.problem.names.index(f"{name}_tilt_x")
+        at = found.ready.model.unknowns.names.index(f"{name}_tilt_x")
         g, v = found.tilt(name), found.rates[:, at] + 1j * found.rates[:, at + 1]
         power = -D_S * ((v - 1j * spin * g) * np.conj(v)).real
         step = found.times[1] - found.times[0]
         damper += step / 3 * (power[0] + power[-1] + 4 * power[1:-1:2].sum() + 2 * power[2:-1:2].sum())
-    assert y[found.problem.n_mechanical] == pytest.approx(damper, rel=1e-7)
+    assert y[found.ready.model.unknowns.n_mechanical] == pytest.approx(damper, rel=1e-7)

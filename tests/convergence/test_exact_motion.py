@@ -31,11 +31,15 @@ SCENES = {
 def ran(scene, method, accuracy, start="rest", turns=6, **options):
     """Displacements and rates (m, n) at samples, relative to their scales, and the outcome."""
     turn = 2 * math.pi / scene.shaft.speed
-    problem = prepared(scene, turns * turn, accuracy, start)
-    sink = Recorder(problem, turn / 48)
-    outcome = solve(problem, method, accuracy, sink, **options)
+    ready = prepared(scene, turns * turn, accuracy, start)
+    sink = Recorder(turn / 48)
+    outcome = solve(ready, method, accuracy, sink, **options)
     _, q, rate = sink.arrays()
-    return q / problem.scales[: problem.n], rate / problem.scales[problem.rate_places], outcome
+    return (
+        q / ready.model.scales[: ready.model.unknowns.n],
+        rate / ready.model.scales[ready.model.unknowns.rate_places],
+        outcome,
+    )
 
 
 @pytest.mark.parametrize("start", ["rest", "steady"])
@@ -57,8 +61,8 @@ def test_a_tighter_tolerance_takes_shorter_steps():
 
 def test_what_dies_away_does_not_shorten_the_steps_for_long():
     """The light rotor's fastest decay is thousands of times faster than the shaft."""
-    problem = prepared(SCENES["stiff"], 60 * TURN, 1e-6)
-    fastest = np.max(np.abs(problem.exact_motion().values))
+    ready = prepared(SCENES["stiff"], 60 * TURN, 1e-6)
+    fastest = np.max(np.abs(ready.segment(0).exact_motion().values))
     assert fastest * TURN > 3e3
     assert ran(SCENES["stiff"], "expm", 1e-6, turns=60)[2].counts.steps < 3000
 
@@ -84,37 +88,37 @@ def test_a_defective_scene_is_carried_on_exactly():
 
 def test_against_the_matrix_written_out():
     """Forced motion of the reference rotor from rest: an integral of exp(A (t - s)) f(s) by quadrature."""
-    problem = prepared(SCENES["fmr"], TURN, 1e-9)
-    motion = problem.exact_motion()
-    n, at = problem.n_mechanical, 0.7 * TURN
+    ready = prepared(SCENES["fmr"], TURN, 1e-9)
+    motion = ready.segment(0).exact_motion()
+    n, at = ready.model.unknowns.n_mechanical, 0.7 * TURN
 
     def rhs(t, y):
-        whole = np.zeros(problem.size)
-        problem.rhs(t, np.concatenate([y, np.zeros(problem.size - n)]), whole)
+        whole = np.zeros(ready.model.unknowns.size)
+        ready.segment(0).rhs(t, np.concatenate([y, np.zeros(ready.model.unknowns.size - n)]), whole)
         return whole[:n]
 
     push = [rhs(t, np.zeros(n)) for t in (0.0, 0.3 * TURN)]
     found = solve_ivp(rhs, (0.0, at), np.zeros(n), method="DOP853", rtol=1e-12, atol=1e-16).y[:, -1]
     exact = motion.forced([at])[0] + motion.free(-motion.forced([0.0])[0], [at])[0]
-    assert np.max(np.abs(exact - found) / problem.scales[:n]) < 1e-10
+    assert np.max(np.abs(exact - found) / ready.model.scales[:n]) < 1e-10
     # The free part alone, by SciPy's exponential.
-    start = problem.scales[:n] * np.linspace(0.1, 0.3, n)
+    start = ready.model.scales[:n] * np.linspace(0.1, 0.3, n)
     assert motion.free(start, [at])[0] == pytest.approx(expm(motion.matrix * at) @ start, rel=1e-9, abs=1e-16)
     assert np.any(push[0] != push[1])
 
 
 def test_a_resumed_run_ends_in_the_same_place():
     """Taken up in the middle of its steps, with the unknowns that it had there."""
-    problem = prepared(SCENES["fmsr"], 60 * TURN, 1e-9)
+    ready = prepared(SCENES["fmsr"], 60 * TURN, 1e-9)
     seen = []
 
     class Sink(Recorder):
-        def state(self, index, tau, y):
-            seen.append((index, tau, np.array(y)))
+        def state(self, segment, tau, y):
+            seen.append((segment.index, tau, np.array(y)))
 
-    outcome = solve(problem, "expm", 1e-9, Sink(problem, TURN / 8))
+    outcome = solve(ready, "expm", 1e-9, Sink(TURN / 8))
     middle = seen[0]
-    assert 0 < middle[1] < problem.duration
-    again = solve(problem, "expm", 1e-9, Recorder(problem, TURN / 8), resume=middle)
-    n = problem.n_mechanical
-    assert np.max(np.abs(again.y[:n] - outcome.y[:n]) / problem.scales[:n]) < 1e-12
+    assert 0 < middle[1] < ready.duration
+    again = solve(ready, "expm", 1e-9, Recorder(TURN / 8), resume=middle)
+    n = ready.model.unknowns.n_mechanical
+    assert np.max(np.abs(again.y[:n] - outcome.y[:n]) / ready.model.scales[:n]) < 1e-12

@@ -35,7 +35,7 @@ def precession(method, accuracy, a, b):
     """Times, tilt and rate of 60 turns from the start of two circles."""
     scene = free_ring(0.5, a + b, a * FORWARD + b * BACKWARD)
     found = run(scene, turns=TURNS, accuracy=accuracy, method=method, per_turn=16)
-    assert found.outcome.status == "ok" and found.problem.n == 2
+    assert found.outcome.status == "ok" and found.ready.model.unknowns.n == 2
     return found.times, found.tilt("rotor"), found.rates[:, 0] + 1j * found.rates[:, 1]
 
 

@@ -40,7 +40,7 @@ def test_error_and_energy_within_the_asked_accuracy(name, method, reference):
     """Error of displacements and rates at 32 samples a turn (steps and dense output together), over their scales."""
     exact = reference(name)
     assert exact.outcome.status == "ok"
-    if method == "expm" and not (exact.problem.linear and exact.problem.constant):
+    if method == "expm" and not (exact.ready.model.unknowns.linear and exact.ready.model.unknowns.constant):
         pytest.skip("the matrix exponential is for linear scenes with constant parameters")
     scene, options = SCENES[name]
     for accuracy in (1e-4, 1e-6) if method == "radau" else (1e-4, 1e-6, 1e-8):

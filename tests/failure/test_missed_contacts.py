@@ -20,7 +20,7 @@ TURN = 2 * math.pi / SPEED
 
 def contacts(found):
     events = []
-    found.problem.tell_contacts(events.extend, end=(found.outcome.tau, found.outcome.y))
+    found.ready.contacts.tell(events.extend, end=(found.outcome.tau, found.outcome.y))
     return events
 
 
@@ -43,7 +43,7 @@ def test_an_imposed_dip_is_seen_every_turn(method, accuracy, degrees):
         assert event["deepest"] == pytest.approx(middle, abs=1e-3 * TURN)
         assert event["depth"] == pytest.approx(amplitude - (CLEARANCE - TOUCH), abs=0.5 * accuracy * CLEARANCE)
         # What lies within the gap's error is named so.
-        decided = event["depth"] > found.problem.gap_error()
+        decided = event["depth"] > found.ready.model.gap_error()
         assert event["kind"] == ("contact" if decided else "grazing")
         if not decided:
             continue

@@ -11,12 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import Model, film, fmr, prepared, run
+from scenes import film, fmr, prepared, run, started
 from scipy.integrate import quad, solve_ivp
 
 from sealdyn.faces.geometry import TOUCH, regularised_thickness
 from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.simulation.method_selection import choose_method
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmark"))
 import stiff_and_sudden as measured
@@ -131,26 +132,27 @@ def test_film_alone_does_not_stop_the_impact(method):
     assert all(word in said for word in ("film collapsed at t = ", "inner radius 32 mm", "theta = ", "Try "))
     assert fallen.found.times[-1] == pytest.approx(fallen.found.record(0)[1], rel=1e-9)
     stopped, events = by("impact", method).found, []
-    stopped.problem.tell_contacts(events.extend, end=(stopped.outcome.tau, stopped.outcome.y))
+    stopped.ready.contacts.tell(events.extend, end=(stopped.outcome.tau, stopped.outcome.y))
     assert [event["kind"] for event in events] == ["contact"] and np.isfinite(events[0]["lift_off"])
-    assert 0 < stopped.record(0)[0] < stopped.problem.face[TOUCH]
+    assert 0 < stopped.record(0)[0] < stopped.ready.model.face[TOUCH]
 
 
 def fixed_steps(name, per_point):
     """Classical Runge-Kutta at so many fixed steps a point, what many a home-made simulation does: largest error over
     the scales, or infinity."""
     scenario = measured.scenario(name)
-    problem = prepared(scenario.scene, scenario.run.duration, 1e-6)
-    step, y, rates = problem.duration / measured.POINTS / per_point, problem.y0.copy(), np.zeros((4, problem.size))
+    ready = prepared(scenario.scene, scenario.run.duration, 1e-6)
+    segment, n = ready.segment(0), ready.model.unknowns.n
+    step, y, rates = ready.duration / measured.POINTS / per_point, ready.y0.copy(), np.zeros((4, segment.size))
     exact, worst = measured.reference(name, "DOP853"), 0.0
     for k in range(measured.POINTS * per_point):
         for stage, part in enumerate((0.0, 0.5, 0.5, 1.0)):
-            problem.rhs((k + part) * step, y + part * step * rates[stage - 1], rates[stage])
+            segment.rhs((k + part) * step, y + part * step * rates[stage - 1], rates[stage])
         y = y + step / 6 * (rates[0] + 2 * rates[1] + 2 * rates[2] + rates[3])
         if not np.isfinite(y).all():
             return math.inf
         if (k + 1) % per_point == 0:
-            error = y[: problem.n] / problem.scales[: problem.n] - exact[(k + 1) // per_point]
+            error = y[:n] / segment.scales[:n] - exact[(k + 1) // per_point]
             worst = max(worst, float(np.max(np.abs(error))))
     return worst
 
@@ -175,15 +177,15 @@ def test_trial_states_beyond_the_other_face_do_no_harm():
 @pytest.mark.parametrize("name", measured.SCENES)
 def test_right_hand_side_is_finite_beyond_the_other_face(name):
     scenario = measured.scenario(name)
-    problem = prepared(scenario.scene, scenario.run.duration, 1e-6)
-    rates = np.empty(problem.size)
-    for k in range(len(problem.legs)):
-        problem.begin(k)
+    ready = prepared(scenario.scene, scenario.run.duration, 1e-6)
+    rates = np.empty(ready.model.unknowns.size)
+    for k in range(len(ready.intervals)):
+        segment = ready.segment(k)
         for beyond in (1 - 1e-12, 1.0, 1 + 1e-12, 1.5, 10.0, 1e6):
             for speed in (-1.0, 0.0, 1.0):
-                y = problem.y0.copy()
-                y[0], y[problem.rate_places[0]] = beyond * problem.clearance, speed
-                problem.rhs(0.0, y, rates)
+                y = ready.y0.copy()
+                y[0], y[ready.model.unknowns.rate_places[0]] = beyond * ready.model.clearance, speed
+                segment.rhs(0.0, y, rates)
                 assert np.isfinite(rates).all(), (beyond, speed)
 
 
@@ -251,14 +253,14 @@ def test_the_same_throw_ends_collapsed(method):
 )
 def test_auto_chooses_the_survivor(name, survivor):
     scenario = measured.scenario(name)
-    problem = prepared(scenario.scene, scenario.run.duration, scenario.run.accuracy)
-    assert problem.solver()[0] == survivor
+    ready = prepared(scenario.scene, scenario.run.duration, scenario.run.accuracy)
+    assert choose_method(ready)[0] == survivor
 
 
 def test_massless_ring_takes_ida_and_is_as_right():
     scene = measured.scenario("squeeze").scene
     light = replace(scene, rotor=Rotor(support=scene.rotor.support))
-    assert Model(light, 8.0).solver()[0] == "ida"
+    assert choose_method(started(light, 8.0))[0] == "ida"
     found = run(light, method="ida", duration=8.0, per_turn=2.5)
     exact = by("squeeze", "ida").q
     assert found.outcome.status == "ok"

@@ -13,6 +13,7 @@ from scenes import INERTIA, SUPPORT, fmr
 
 from sealdyn.analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, growth_rate, least_damped
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed
+from sealdyn.dynamics.run_state import RunState
 from sealdyn.solvers.contract import Counts
 from sealdyn.solvers.methods import METHODS
 
@@ -33,13 +34,13 @@ def exact(speed):
 
 def rate_by_bdf(speed, tolerance):
     """Growth rate (1/s) of a tenth of the contact tilt over 200 turns of CVODE BDF at a bare solver tolerance."""
-    problem = free_model(fmr("linear", 3.0), speed, TURNS * 2 * math.pi / speed)
-    whirling = RotatingWave(problem)
-    frequency, shape = least_damped(problem, speed)
-    start = whirling.state(0.1 * contact_tilt_aligned(problem) * shape, frequency)
-    blocks = list(METHODS["bdf"](problem, problem.begin(0), 0.0, start, "bdf", tolerance, Counts()))
+    model = free_model(fmr("linear", 3.0), speed)
+    ready, whirling = RunState(model, TURNS * 2 * math.pi / speed), RotatingWave(model)
+    frequency, shape = least_damped(model, speed)
+    start = whirling.state(0.1 * contact_tilt_aligned(model) * shape, frequency)
+    blocks = list(METHODS["bdf"](ready.segment(0), 0.0, start, "bdf", tolerance, Counts()))
     t = np.concatenate([block[0] for block in blocks])
-    size = np.abs(np.concatenate([whirling.relative(block[1][:, : problem.n].T) for block in blocks]))
+    size = np.abs(np.concatenate([whirling.relative(block[1][:, : ready.model.unknowns.n].T) for block in blocks]))
     late = t > 0.25 * t[-1]
     return np.polyfit(t[late], np.log(size[late]), 1)[0]
 

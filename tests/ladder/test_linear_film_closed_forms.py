@@ -69,7 +69,7 @@ def test_fmsr_tends_to_its_limits_as_one_over_stiffness(limit):
     for factor in factors:
         stiff = {"stator_stiffer": factor} if limit == "rotor" else {"rotor_stiffer": factor}
         both = run(fmsr("linear", **stiff), turns=3, accuracy=ACCURACY, start="steady")
-        assert both.problem.n == 4
+        assert both.ready.model.unknowns.n == 4
         answer = both["relative_tilt_x"] + 1j * both["relative_tilt_y"]
         errors.append(np.max(np.abs(answer - relative)) / np.max(np.abs(relative)))
     slope = np.polyfit(np.log(factors), np.log(errors), 1)[0]

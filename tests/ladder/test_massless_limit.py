@@ -29,7 +29,7 @@ def test_light_ring_tends_to_the_massless_one_linearly(build, model):
     """CVODE's BDF with mass against IDA without: the difference is proportional to the mass."""
     name = "rotor" if build is fmr else "stator"
     limit = run(lightened(build, 0.0, model), turns=TURNS, accuracy=1e-9, method="ida", per_turn=PER_TURN)
-    assert limit.outcome.status == "ok" and limit.problem.massless
+    assert limit.outcome.status == "ok" and limit.ready.model.unknowns.massless
     shares, errors = np.array([1e-2, 3e-3, 1e-3, 3e-4]), []
     for share in shares:
         found = run(lightened(build, share, model), turns=TURNS, accuracy=1e-9, method="bdf", per_turn=PER_TURN)
@@ -73,5 +73,5 @@ def test_massless_ring_without_damping_stands_in_balance_at_once(build):
     own, partner = (own * turning, partner) if build is fmr else (own, partner * turning)
     expected = (k_s * own + k_f * partner) / (k_s + k_f)
     tilt = found.tilt("rotor" if build is fmr else "stator")
-    assert found.problem.algebraic == [0, 1]
+    assert found.ready.model.algebraic == [0, 1]
     assert np.max(np.abs(tilt - expected)) < 1e-8 * TILT_SCALE

@@ -93,12 +93,12 @@ def test_rubbing_converges_and_its_energy_balances():
 def test_wear_at_the_radii_is_the_wear_rate_of_the_run():
     """Sum of depth rate times hat area over the face: the mean wear rate, at every sample."""
     found = rubbing(1e-6)
-    problem, out = found.problem, np.zeros(len(RADIUS))
-    areas, rates = contact.hat_areas(problem.face), []
+    ready, out = found.ready, np.zeros(len(RADIUS))
+    areas, rates = contact.hat_areas(ready.model.face), []
     for dz, x, y in zip(*(found[n] for n in ("axial_gap_change", "relative_tilt_x", "relative_tilt_y")), strict=True):
         s = np.zeros(geometry.GAP_STATE_SIZE)
         s[geometry.DZ], s[geometry.GX], s[geometry.GY] = dz, x, y
-        contact.wear_rates(problem.contact, problem.f, s, out)
+        contact.wear_rates(ready.model.contact, ready.model.f, s, out)
         depth_rates = 1e-16 * SPEED * out / areas
         rates.append(np.sum(depth_rates * areas) / np.sum(areas))
     assert max(rates) > 0 and np.array(rates) == pytest.approx(found["wear_rate"], rel=1e-12, abs=1e-30)

@@ -30,7 +30,7 @@ def test_small_tilt_is_the_closed_form(flexible, geometry):
     partner = {"fixed": forcing} if flexible == "rotor" else {"runout": forcing}
     build = fmr if flexible == "rotor" else fms
     found = run(build(film=film(geometry=geometry), own=forcing, **partner), turns=10, accuracy=1e-10)
-    stiffness, damping = found.problem.film_matrices()
+    stiffness, damping = found.ready.model.film_matrices()
     assert stiffness[1, 1] == pytest.approx(own.tilt_stiffness, rel=1e-9)
     assert damping[1, 1] == pytest.approx(own.tilt_damping, rel=1e-9)
     assert stiffness[0, 0] == pytest.approx(own.axial_stiffness, rel=1e-9)

@@ -58,9 +58,9 @@ def scenario(name="runup_past_threshold", *overrides, model="linear"):
 
 def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     """The trip past the threshold and back, and the mode along it."""
-    problem = free_model(asked.scene, 1000.0)
-    crossing = modes.critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4)
-    mode = along(problem, 0.9 * crossing, 1.05 * crossing, crossing)
+    ready = free_model(asked.scene, 1000.0)
+    crossing = modes.critical_speed(lambda w: ready.linear_scene(speed=w), 500.0, 2e4)
+    mode = along(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
     return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
 
@@ -90,8 +90,8 @@ def oracle(ring, trip, times, start):
 
 
 def test_thresholds_are_those_of_the_complex_ring():
-    problem = free_model(scenario().scene, 1000.0)
-    assert modes.critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4) == pytest.approx(
+    ready = free_model(scenario().scene, 1000.0)
+    assert modes.critical_speed(lambda w: ready.linear_scene(speed=w), 500.0, 2e4) == pytest.approx(
         threshold(stator), rel=1e-9
     )
     assert threshold(stator) == pytest.approx(5890.6, abs=0.1)
@@ -151,8 +151,8 @@ def test_what_forcing_adds_goes_with_its_square():
 
 def test_the_factor_of_one_ring_is_a_square_root():
     """(2 lambda + D/I)**(-1/2) of the flexible stator, whose damping does not change with the speed."""
-    problem = free_model(scenario().scene, 1000.0)
-    mode = along(problem, 4000.0, 8000.0, 5890.0)
+    ready = free_model(scenario().scene, 1000.0)
+    mode = along(ready, 4000.0, 8000.0, 5890.0)
     speeds = np.linspace(4000.0, 8000.0, 9)
     d = (SUPPORT_D + FILM_D) / INERTIA
     roots = [np.log(abs(2 * whirl(stator, w) + d)) for w in speeds]

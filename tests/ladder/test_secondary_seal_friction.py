@@ -122,7 +122,7 @@ def test_hysteresis_loop_of_a_slowly_tilted_ring():
                 rotor=Rotor(**ring(support=UNDAMPED), secondary_seal=holding(friction)))  # fmt: skip
     found = run_at_rest(scene, 2 / hertz, 800)
     last = found.times > 1.01 / hertz
-    gamma = found.q[last, found.problem.names.index("rotor_tilt_x")]
+    gamma = found.q[last, found.ready.model.unknowns.names.index("rotor_tilt_x")]
     drive = moment * np.cos(2 * np.pi * hertz * found.times[last])
     # Slow: inertia is (2 pi 2 Hz)^2 I / K = 2e-4 of the spring.
     assert np.max(gamma) == pytest.approx((moment - friction) / stiffness, rel=2e-3)
@@ -142,9 +142,9 @@ def run_at_rest(scene, duration, points):
 
     from sealdyn.solvers.integrate import solve
 
-    problem = prepared(scene, duration, 1e-6)
-    sink = Sink(problem, duration / points)
-    return Run(problem, solve(problem, "adams", 1e-6, sink), sink)
+    ready = prepared(scene, duration, 1e-6)
+    sink = Sink(ready.duration, duration / points)
+    return Run(ready, solve(ready, "adams", 1e-6, sink), sink)
 
 
 # --- under a rotating moment ---------------------------------------------------------------------------
@@ -227,5 +227,5 @@ def test_the_energy_dropped_at_a_capture_is_told():
     """What is lost when a ring is caught is the kinetic energy it had left: below band squared."""
     found = oscillator(0.31, 5e-6, 6)
     (event,) = found.events
-    assert 0 < event["value"] <= 0.5 * MASS * found.problem.band**2
-    assert found.problem.sticking.dropped == event["value"]
+    assert 0 < event["value"] <= 0.5 * MASS * found.ready.model.capture_speed**2
+    assert found.ready.stick_slip.dropped == event["value"]

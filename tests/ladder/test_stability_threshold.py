@@ -44,7 +44,7 @@ def test_verdict_and_rate_either_side(kind, share, method):
     speed = share * CRITICAL[kind]
     found = run(scene(kind, speed), turns=120, accuracy=1e-8, method=method, per_turn=8)
     slowest = max(eigenvalues(kind, speed), key=lambda value: value.real)
-    modes = found.problem.linear_scene().modes()
+    modes = found.ready.model.linear_scene().modes()
     assert modes[0].value == pytest.approx(slowest, rel=1e-8)
     assert verdict(modes) == ("stable" if share < 1 else "unstable")
     # After twenty turns the damped root is gone: one exponential is left.
@@ -60,7 +60,7 @@ def test_verdict_and_rate_either_side(kind, share, method):
 
 @pytest.mark.parametrize("kind", ["fms", "fmr"])
 def test_critical_speed_by_eigenvalues(kind):
-    problem = run(scene(kind, 1000.0), turns=1).problem
-    found = critical_speed(lambda w: problem.linear_scene(speed=w), 500.0, 2e4)
+    ready = run(scene(kind, 1000.0), turns=1).problem
+    found = critical_speed(lambda w: ready.model.linear_scene(speed=w), 500.0, 2e4)
     # Growth within 1e-9 of the eigenvalue counts as none: so much the threshold may be off, over its slope.
     assert found == pytest.approx(CRITICAL[kind], rel=1e-8)

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenes import started
 
 import sealdyn
 from sealdyn import closed_form as cf
 from sealdyn.analysis.shooting import Shooter
-from sealdyn.dynamics.model import Model
 from sealdyn.films.radial import film as radial
 from sealdyn.scenario.settings import with_values
 from sealdyn.solvers.integrate import solve
@@ -66,7 +66,7 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
     for part, status in ((0.995, "ok"), (1.005, "collapsed")):
         scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": '"steady"'}).scene
         shooter = Shooter(scene, 1e-6, tight=1e-9)
-        problem = Model(scene, 40 * shooter.period, 1e-6)
+        ready = started(scene, 40 * shooter.period, 1e-6)
         start = np.array(answer["start"])
         # Below, the orbit lies within a trial of Newton; above, the film must be reached from the touching one.
         if status == "ok":
@@ -75,9 +75,9 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
             # The touching orbit itself attracts, about as its neighbour does.
             assert answer["multiplier"] < 1
             assert answer["multiplier"] == pytest.approx(np.max(np.abs(below.multipliers)), rel=0.2)
-        problem.y0[: len(start)] = start
-        outcome = solve(problem, "adams", 1e-6, Recorder(problem))
-        assert outcome.status == status, (part, problem.records[0, 0])
+        ready.y0[: len(start)] = start
+        outcome = solve(ready, "adams", 1e-6, Recorder())
+        assert outcome.status == status, (part, ready.extrema.records[0, 0])
 
 
 class Tools:

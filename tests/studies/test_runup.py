@@ -260,8 +260,8 @@ def test_the_tilt_that_touches_whatever_the_profile():
     """Faces 30 um apart everywhere, by a profile of 25 um on a clearance of 5: h = floor at the outer radius."""
     film = "film.profile={ radius = ['32 mm', '40 mm'], depth = ['25 um', '25 um'] }"
     scene = read("fms_reference", film, "film.clearance=5 um", "film.coning=0 rad", "film.model=auto").scene
-    problem = Model(scene)
-    assert touch_tilt(problem) == pytest.approx((30e-6 - problem.face[COLLAPSE]) / 40e-3, rel=1e-9)
+    ready = Model(scene)
+    assert touch_tilt(ready) == pytest.approx((30e-6 - ready.model.face[COLLAPSE]) / 40e-3, rel=1e-9)
 
 
 # --- errors -----------------------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from in_process import InProcess
+from scenes import started
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
@@ -113,7 +114,10 @@ def lags(seal, w, k, d, c=0.5):
 def test_phases_follow_from_the_equations_in_turning_axes(c):
     overrides = ["film.model=linear", f"rotor.polar_inertia={8e-4 / c!r}"]
     found = answer(overrides=overrides, points=7, speed_to=4200.0, time_points=3)
-    k, d = (m[1, 1] for m in Model(read_scenario(SCENARIOS / "fmr_reference.toml", overrides).scene, 1).film_matrices())
+    k, d = (
+        m[1, 1]
+        for m in started(read_scenario(SCENARIOS / "fmr_reference.toml", overrides).scene, 1).model.film_matrices()
+    )
     assert found["phases_apart"] < 1e-9
     for seal in ("fmr", "fms"):
         for i, w in enumerate(found["speed"]):

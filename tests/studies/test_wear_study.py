@@ -145,8 +145,8 @@ def _both(answer) -> list[float]:
 
 def test_kernel_s_hats_are_the_slow_scale_s():
     runs = ShortRunAverages(pressed(), RADIUS)
-    problem = runs.problem(np.zeros(17), 0.0, 1.0)
-    assert contact.hat_areas(problem.face) == pytest.approx(HatBasis(RADIUS).areas, rel=1e-13, abs=0.0)
+    ready = runs.ready(np.zeros(17), 0.0, 1.0)
+    assert contact.hat_areas(ready.model.face) == pytest.approx(HatBasis(RADIUS).areas, rel=1e-13, abs=0.0)
 
 
 def test_slope_of_faces_at_rest_is_that_of_their_averages():

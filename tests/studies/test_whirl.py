@@ -16,15 +16,15 @@ SEALS = {"fms": fms(), "fmr": fmr(c=3.0), "fmsr": fmsr()}
 @pytest.fixture(scope="module", params=SEALS)
 def family(request):
     scene = SEALS[request.param]
-    problem = free_model(scene, 1000.0)
-    threshold = critical_speed(lambda w: problem.linear_scene(speed=w), 1e2, 1e5)
-    problem = free_model(scene, threshold, accuracy=1e-10)
-    return request.param, scene, threshold, problem, branch(problem, threshold)
+    model = free_model(scene, 1000.0)
+    threshold = critical_speed(lambda w: model.linear_scene(speed=w), 1e2, 1e5)
+    model = free_model(scene, threshold, accuracy=1e-10)
+    return request.param, scene, threshold, model, branch(model, threshold)
 
 
 def test_leaves_the_threshold_with_the_square_of_the_amplitude(family):
-    name, _, threshold, problem, whirls = family
-    least_damped = max((m for m in problem.linear_scene().modes() if m.kind == "tilt"), key=lambda m: m.value.real)
+    name, _, threshold, model, whirls = family
+    least_damped = max((m for m in model.linear_scene().modes() if m.kind == "tilt"), key=lambda m: m.value.real)
     assert whirls[0].frequency == pytest.approx(least_damped.value.imag, rel=1e-3)
     shift = [(w.speed - threshold) / w.amplitude**2 for w in whirls[1:4]]
     assert shift == pytest.approx([shift[0]] * 3, rel=0.02)
@@ -34,29 +34,29 @@ def test_leaves_the_threshold_with_the_square_of_the_amplitude(family):
 
 
 def test_ends_at_contact(family):
-    _, _, _, problem, whirls = family
+    _, _, _, model, whirls = family
     last = whirls[-1]
-    assert last.h_min == pytest.approx(problem.face[4], rel=1e-6)
+    assert last.h_min == pytest.approx(model.face[4], rel=1e-6)
     assert all(w.h_min > last.h_min for w in whirls[:-1])
     # It opens the gap on its way: the tilt goes beyond that which closes an unopened one.
-    assert last.amplitude > 1.3 * contact_tilt_aligned(problem)
+    assert last.amplitude > 1.3 * contact_tilt_aligned(model)
 
 
 @pytest.mark.parametrize("place", [8, 24, 40])
 def test_another_integrator_stays_on_the_whirl(family, place):
     _, scene, _, _, whirls = family
     whirl = whirls[place]
-    problem = free_model(scene, whirl.speed, accuracy=1e-10)
-    turns = 3
+    model = free_model(scene, whirl.speed, accuracy=1e-10)
+    segment, turns = model.segment(), 3
     end = turns * 2 * math.pi / whirl.frequency
 
     def rhs(t, y):
         yp = np.empty_like(y)
-        problem.rhs(t, y, yp)
+        segment.rhs(t, y, yp)
         return yp
 
-    absolute = 1e-12 * problem.scales
-    found = solve_ivp(rhs, (0, end), whirl.y, method="DOP853", rtol=1e-11, atol=absolute).y[: problem.n, -1]
+    absolute = 1e-12 * model.scales
+    found = solve_ivp(rhs, (0, end), whirl.y, method="DOP853", rtol=1e-11, atol=absolute).y[: model.unknowns.n, -1]
     # Whole turns later it is back where it was.
     assert found == pytest.approx(whirl.q, abs=1e-7 * np.max(np.abs(whirl.q)))
 
@@ -65,19 +65,17 @@ def test_departs_at_the_growth_rate_stated(family):
     """A nudge of a thousandth grows or dies as the linearisation in the turning frame says, not as at rest."""
     _, scene, _, _, whirls = family
     whirl = whirls[30]
-    problem = free_model(scene, whirl.speed, accuracy=1e-10)
-    whirling = RotatingWave(problem)
+    model = free_model(scene, whirl.speed, accuracy=1e-10)
+    whirling, segment = RotatingWave(model), model.segment()
 
     def rhs(t, y):
         yp = np.empty_like(y)
-        problem.rhs(t, y, yp)
+        segment.rhs(t, y, yp)
         return yp
 
     start = whirling.state(whirl.q * 1.001, whirl.frequency)
     times = np.linspace(0.6, 1.6, 60) / abs(whirl.growth)
-    found = solve_ivp(
-        rhs, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-10, atol=1e-11 * problem.scales
-    )
-    apart = np.abs(whirling.relative(found.y[: problem.n])) / whirl.amplitude - 1
+    found = solve_ivp(rhs, (0, times[-1]), start, method="DOP853", t_eval=times, rtol=1e-10, atol=1e-11 * model.scales)
+    apart = np.abs(whirling.relative(found.y[: model.unknowns.n])) / whirl.amplitude - 1
     rate = np.polyfit(times, np.log(np.abs(apart)), 1)[0]
     assert rate == pytest.approx(whirl.growth, rel=0.03)

@@ -40,31 +40,31 @@ def reference_seal(tmp_path_factory):
 def test_errors_are_those_of_an_independent_integration(reference_seal):
     """h_min and tilt at the end by SciPy's Radau alone, against one judged run stepped here."""
     answer, _ = reference_seal
-    problem = study.ready(scenario("fmr_reference", "run.turns=4"))
-    problem.begin(0)
+    ready = study.ready(scenario("fmr_reference", "run.turns=4"))
+    segment = ready.segment(0)
 
     def rhs(t, y):
-        out = np.empty(problem.size)
-        problem.rhs(t, y, out)
+        out = np.empty(ready.model.unknowns.size)
+        segment.rhs(t, y, out)
         return out
 
     def looked_at(y):
         g = [0.0, 0.0]
-        turn = 1000.0 * problem.duration
+        turn = 1000.0 * ready.duration
         # Rotor's tilt against the stator's fixed one, all in inertial axes.
-        at = problem.names.index("rotor_tilt_x")
+        at = ready.model.unknowns.names.index("rotor_tilt_x")
         g[0], g[1] = 25e-6 - y[at], -y[at + 1]
         assert turn == pytest.approx(8 * math.pi)
-        return math.hypot(*g), thinnest(problem.face, -y[problem.names.index("rotor_z")], *g)[0]
+        return math.hypot(*g), thinnest(ready.model.face, -y[ready.model.unknowns.names.index("rotor_z")], *g)[0]
 
-    atol = 1e-13 * problem.scales
+    atol = 1e-13 * ready.model.scales
     atol[-1] = 1e30
-    exact = solve_ivp(rhs, (0, problem.duration), problem.y0, "Radau", rtol=3e-14, atol=atol).y[:, -1]
+    exact = solve_ivp(rhs, (0, ready.duration), ready.y0, "Radau", rtol=3e-14, atol=atol).y[:, -1]
     tolerance = answer["methods"]["adams"]["tolerance"][0]
     from sealdyn.solvers.contract import Counts
 
-    y = problem.y0.copy()
-    for _, ys, _ in REFERENCE_METHODS["adams"](problem, problem.begin(0), 0.0, y, "adams", tolerance, Counts()):
+    y = ready.y0.copy()
+    for _, ys, _ in REFERENCE_METHODS["adams"](ready.segment(0), 0.0, y, "adams", tolerance, Counts()):
         y = ys[-1]
     (tilt, film), (tilt_exact, film_exact) = looked_at(y), looked_at(exact)
     found = answer["methods"]["adams"]["observables"]["end"]
@@ -115,10 +115,10 @@ def test_models_against_the_radial_film(reference_seal):
 
 
 def test_harmonic_balance_is_the_linear_film_in_time():
-    problem = study.ready(scenario("fms_reference", 'film.model="linear"', 'run.start="steady"', "run.turns=3"))
-    problem.windows[1] = [problem.duration * 2 / 3, problem.duration]
-    found = errors.observe(problem, REFERENCE_METHODS["expm"], "expm", 1e-9, samples=30)
-    balance = film_ladder.harmonic_balance(problem, 0)
+    ready = study.ready(scenario("fms_reference", 'film.model="linear"', 'run.start="steady"', "run.turns=3"))
+    ready.extrema.windows[1] = [ready.duration * 2 / 3, ready.duration]
+    found = errors.observe(ready, REFERENCE_METHODS["expm"], "expm", 1e-9, samples=30)
+    balance = film_ladder.harmonic_balance(ready)
     assert balance["relative_misalignment"] == pytest.approx(found.steady["relative_misalignment"], rel=1e-5)
     assert balance["h_min"] == pytest.approx(found.steady["h_min"][0], rel=1e-8)
 

@@ -21,9 +21,9 @@ from scenes import (
     prepared,
     ring,
     run,
+    started,
 )
 
-from sealdyn.dynamics.model import Model
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.contact import Contact
@@ -48,7 +48,7 @@ def on(scene, model, **changes):
 
 def film_change(found):
     """Change of the film at the outer radius, in clearances, at every sample: axial and angular, complex."""
-    names, total = found.problem.names, {}
+    names, total = found.ready.model.unknowns.names, {}
     for ring_name, sign in (("stator", 1.0), ("rotor", -1.0)):
         for part in ("z", "tilt_x", "tilt_y"):
             if f"{ring_name}_{part}" in names:
@@ -77,11 +77,11 @@ def test_model_error_is_the_difference_of_the_films(name, start):
         motions.append(film_change(found))
     z, tilt = (a - b for a, b in zip(*motions, strict=True))
     actual = np.max(np.abs(z) + np.abs(tilt))
-    problem = Model(on(SCENES[name], "linear", coefficients="radial"), 12 * TURN, 1e-9)
+    ready = started(on(SCENES[name], "linear", coefficients="radial"), 12 * TURN, 1e-9)
     if start == "steady":
-        problem.y0 = problem.steady_start()
+        ready.y0 = ready.steady_start()
     assert actual > 1e-6
-    film, leakage = model_errors(problem)
+    film, leakage = model_errors(ready)
     assert 0.7 * actual < film < 1.6 * actual
     # Squeeze and the cube of the film weigh more than the film itself.
     assert film < leakage < 60 * film
@@ -89,12 +89,12 @@ def test_model_error_is_the_difference_of_the_films(name, start):
 
 @pytest.mark.parametrize("start", ["rest", "steady"])
 def test_model_error_does_not_depend_on_how_many_steps_are_taken_at_once(start, monkeypatch):
-    problem = prepared(on(SCENES["fmsr"], "linear", coefficients="radial"), 12 * TURN, 1e-6, start)
+    ready = prepared(on(SCENES["fmsr"], "linear", coefficients="radial"), 12 * TURN, 1e-6, start)
     monkeypatch.setattr(film_comparison, "STEADY", 4)
     found = []
     for at_once in (7, 1000):
         monkeypatch.setattr(film_comparison, "AT_ONCE", at_once)
-        found.append(model_errors(problem))
+        found.append(model_errors(ready))
     # Leakage is counted relative to the largest seen so far.
     assert found[0] == pytest.approx(found[1], rel=1e-3) and found[0][0] == pytest.approx(found[1][0], rel=1e-10)
 
@@ -105,8 +105,8 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     """A stretch done twice, against a run at 1e-11: at least a third of the true error, and below what was asked."""
     scene = fms()
     rough, sharp = (run(scene, turns=20, accuracy=a, method=m) for a, m in ((accuracy, method), (1e-11, "dop853")))
-    true = float(np.max(np.abs(rough.scaled() - sharp.scaled())[:, : rough.problem.n]))
-    estimate = solver_error(Model(scene, 20 * TURN, accuracy), method)
+    true = float(np.max(np.abs(rough.scaled() - sharp.scaled())[:, : rough.ready.model.unknowns.n]))
+    estimate = solver_error(started(scene, 20 * TURN, accuracy), method)
     assert true / 3 < estimate + 1e-11 and estimate < accuracy
 
 
@@ -119,11 +119,13 @@ def test_an_undamped_scene_adds_its_errors_up():
     assert 0 < short < 1e-3 and drift / 10 < long < 1e-3
 
 
-def followed(problem, method, trial, sharp=1e-13):
+def followed(ready, method, trial, sharp=1e-13):
     """True largest error of displacements of a run (relative to their scales), and the estimate of its own steps."""
-    errors = error_estimator(problem, method)
+    errors = error_estimator(ready, method)
     told = {"tolerance": trial.tolerance, "steps": trial.steps, "errors": errors}
-    return apart(problem, (method, told), ("dop853", {"tolerance": sharp}), problem.fast_time / 12), errors.worst
+    return apart(
+        ready, (method, told), ("dop853", {"tolerance": sharp}), ready.model.shortest_period / 12
+    ), errors.worst
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf"])
@@ -132,11 +134,11 @@ def followed(problem, method, trial, sharp=1e-13):
 def test_a_tolerance_on_trial_keeps_the_accuracy(name, start, method, accuracy):
     """Looser than the cautious one, and the run at it is still as exact as was asked; its own steps tell its error
     within half (by Adams at 1e-7 several times too much, cause not found)."""
-    problem = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy, start)
-    trial = choose_tolerance(problem, method)
-    cautious = tolerance_for(method, accuracy, problem.memory)
+    ready = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy, start)
+    trial = choose_tolerance(ready, method)
+    cautious = tolerance_for(method, accuracy, ready.memory)
     assert cautious <= trial.tolerance <= LOOSER * cautious * (1 + 1e-12)
-    true, estimate = followed(problem, method, trial)
+    true, estimate = followed(ready, method, trial)
     # Rounding decides the orders Adams takes at 1e-7: with the accuracy moved by 1e-9 to 0.1 of itself the estimate is
     # 0.97 to 12 times the true error of the shaken scene, 0.97 to 3 times that of the larger; threefold for others.
     unsure = {"shaken": 36.0, "larger": 9.0} if (method, accuracy) == ("adams", 1e-7) else {}
@@ -149,23 +151,23 @@ def test_what_comes_after_the_stretch_is_not_forgotten(accuracy):
     """A faint vibration at 60 times the shaft speed: the stretch is a twentieth of a turn and shows nothing."""
     faint = AngularVibration(frequency=60.5 * SPEED / (2 * math.pi), displacement=1e-5 * TILT_SCALE)
     scene = replace(on(SCENES["larger"], "radial"), housing=Housing(angular=[faint]))
-    problem = prepared(scene, 10 * TURN, accuracy)
-    true, estimate = followed(problem, "adams", choose_tolerance(problem, "adams"))
+    ready = prepared(scene, 10 * TURN, accuracy)
+    true, estimate = followed(ready, "adams", choose_tolerance(ready, "adams"))
     assert true / 1.5 < estimate < accuracy
 
 
 def test_a_run_goes_on_from_its_trial(monkeypatch):
     """The steps of the stretch are the run's first; what they cost is counted."""
     monkeypatch.setattr(certificate, "SHARE", 5.0)
-    problem = prepared(SCENES["fmsr"], 5 * TURN, 1e-4)
-    trial, sink = choose_tolerance(problem, "adams"), Recorder(problem, TURN / 32)
-    assert len(trial.times) > 10 and trial.times[-1] == pytest.approx(3 * problem.fast_time)
-    blocks = list(trial.steps(problem, problem.begin(0), 0.0, problem.y0.copy(), "adams", trial.tolerance, Counts()))
+    ready = prepared(SCENES["fmsr"], 5 * TURN, 1e-4)
+    trial, sink = choose_tolerance(ready, "adams"), Recorder(TURN / 32)
+    assert len(trial.times) > 10 and trial.times[-1] == pytest.approx(3 * ready.model.shortest_period)
+    blocks = list(trial.steps(ready.segment(0), 0.0, ready.y0.copy(), "adams", trial.tolerance, Counts()))
     assert blocks[0][0] is trial.times and blocks[1][0][0] > trial.times[-1] and blocks[-1][0][-1] == 5 * TURN
-    outcome = solve(problem, "adams", 1e-4, sink, tolerance=trial.tolerance, steps=trial.steps)
+    outcome = solve(ready, "adams", 1e-4, sink, tolerance=trial.tolerance, steps=trial.steps)
     assert outcome.counts.rhs > trial.counts.rhs > 30
     # A run that is taken up later does not begin again.
-    late = trial.steps(problem, problem.begin(0), TURN, trial.unknowns[-1].copy(), "adams", trial.tolerance, Counts())
+    late = trial.steps(ready.segment(0), TURN, trial.unknowns[-1].copy(), "adams", trial.tolerance, Counts())
     assert next(late)[0][0] > TURN
 
 
@@ -175,21 +177,21 @@ def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypa
     monkeypatch.setattr(certificate, "TRIAL_SAFETY", 1e-9)
     monkeypatch.setattr(certificate, "ENERGY", 1e9)
     monkeypatch.setattr(certificate, "LOOSER", 300.0)
-    problem, times = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy), []
+    ready, times = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy), []
 
     class Seen(Recorder):
-        def take(self, index, taus, q, q_rate):
+        def take(self, segment, taus, q, q_rate):
             times.append(taus)
-            super().take(index, taus, q, q_rate)
+            super().take(segment, taus, q, q_rate)
 
-    trial, errors, found = choose_tolerance(problem, "adams"), error_estimator(problem, "adams"), []
-    cautious = tolerance_for("adams", accuracy, problem.memory)
+    trial, errors, found = choose_tolerance(ready, "adams"), error_estimator(ready, "adams"), []
+    cautious = tolerance_for("adams", accuracy, ready.memory)
     assert trial.tolerance > 50 * cautious
     told = {"tolerance": trial.tolerance, "steps": trial.steps, "errors": errors}
     for kind, method, options in ((Seen, "adams", told), (Recorder, "dop853", {"tolerance": 1e-13})):
-        sink = kind(problem, TURN / 32)
-        outcome = solve(problem, method, accuracy, sink, **options)
-        found.append((sink.arrays()[1] / problem.scales[: problem.n], outcome))
+        sink = kind(TURN / 32)
+        outcome = solve(ready, method, accuracy, sink, **options)
+        found.append((sink.arrays()[1] / ready.model.scales[: ready.model.unknowns.n], outcome))
     assert cautious <= found[0][1].tolerance < trial.tolerance and found[0][1].counts.restarts > 1
     assert np.max(np.abs(found[0][0] - found[1][0])) < accuracy and found[0][1].energy_residual < 10 * accuracy
     # Every sample once, in order.
@@ -198,19 +200,19 @@ def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypa
 
 def test_a_trial_that_errs_too_much_is_done_again_sharper(monkeypatch):
     """The tolerance goes down with the estimated error, and never below the cautious one."""
-    problem = prepared(SCENES["fmsr"], 30 * TURN, 1e-4)
-    cautious = tolerance_for("adams", 1e-4, problem.memory)
+    ready = prepared(SCENES["fmsr"], 30 * TURN, 1e-4)
+    cautious = tolerance_for("adams", 1e-4, ready.memory)
     monkeypatch.setattr(certificate, "SHARE", 5.0)
-    taken = choose_tolerance(problem, "adams")
+    taken = choose_tolerance(ready, "adams")
     assert taken.tolerance == LOOSER * cautious and len(taken.times)
     monkeypatch.setattr(certificate, "SHARE", 0.3)
-    sharper = choose_tolerance(problem, "adams")
+    sharper = choose_tolerance(ready, "adams")
     assert cautious < sharper.tolerance < taken.tolerance and not len(sharper.times)
     monkeypatch.setattr(certificate, "SHARE", 1e-6)
-    assert choose_tolerance(problem, "adams").tolerance == cautious
+    assert choose_tolerance(ready, "adams").tolerance == cautious
     monkeypatch.setattr(certificate, "SHARE", 1.0)
     monkeypatch.setattr(certificate, "ENERGY", 1e-6)
-    assert choose_tolerance(problem, "adams").tolerance == cautious
+    assert choose_tolerance(ready, "adams").tolerance == cautious
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
@@ -237,13 +239,13 @@ def test_where_a_stretch_does_not_tell_of_the_run(scene):
 
 
 def choose(scene, accuracy, start=None):
-    return select_film(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda problem: None))[0]
+    return select_film(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda ready: None))[0]
 
 
 def test_the_lowest_film_that_keeps_the_accuracy():
     gentle = SCENES["fms"]
-    error = model_error(Model(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
-    assert choose(gentle, 2.2 * error).film_name == "linear"
+    error = model_error(started(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
+    assert choose(gentle, 2.2 * error).model.interface.name == "linear"
     assert choose(gentle, 1.8 * error).film_name == "radial"
     assert any("film auto" in reason for reason in choose(gentle, 1.8 * error).reasons)
 
@@ -269,14 +271,14 @@ def test_an_unstable_scene_is_not_linearised():
 
 def test_leakage_of_a_chosen_linear_film_is_the_radial_films():
     """The motion may be linear; what leaks at a clearance is not for the narrow-seal formula to say."""
-    problem = choose(SCENES["fmsr"], 1e-2)
-    assert problem.film_name == "linear" and problem.observed[0].__module__.endswith("radial")
+    ready = choose(SCENES["fmsr"], 1e-2)
+    assert ready.model.interface.name == "linear" and ready.model.observed[0].__module__.endswith("radial")
 
 
 def test_the_sentence_says_what_was_asked_and_what_was_found():
-    problem = choose(SCENES["fms"], 1e-2)
-    found = certify(problem, "adams")
+    ready = choose(SCENES["fms"], 1e-2)
+    found = certify(ready, "adams")
     assert found.estimated == pytest.approx(found.solver + found.model)
     assert found.said.startswith("asked 1e-02, estimated ") and "model" in found.said and "NOT met" not in found.said
-    linear = Model(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
+    linear = started(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
     assert "NOT met: try a higher film rung" in certify(linear, "adams").said

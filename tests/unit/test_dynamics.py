@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import CLEARANCE, R_O, SPEED, SUPPORT, film, ring
+from scenes import CLEARANCE, R_O, SPEED, SUPPORT, film, ring, started
 
 from sealdyn.dynamics.equations import PLAIN, WORKS
-from sealdyn.dynamics.model import Model
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Coefficients
@@ -41,13 +40,13 @@ SCENES = {
 TAU = 0.0371
 
 
-def problem_of(name, film_table=FILM):
-    return Model(Scene(**(dict(shaft=SHAFT, film=film_table, housing=SHAKING) | SCENES[name])), 0.1)
+def segment_of(name, film_table=FILM):
+    return started(Scene(**(dict(shaft=SHAFT, film=film_table, housing=SHAKING) | SCENES[name])), 0.1).segment(0)
 
 
-def random_state(problem, seed):
+def random_state(segment, seed):
     """Displacements and rates of the size of their scales; works are numbers of no matter."""
-    return np.random.default_rng(seed).normal(size=problem.size) * problem.scales * 0.3
+    return np.random.default_rng(seed).normal(size=segment.size) * segment.scales * 0.3
 
 
 class Oracle:
@@ -114,25 +113,25 @@ class Oracle:
         return axial / body.mass, angular / body.transverse_inertia
 
 
-def states_of(problem, y):
+def states_of(segment, y):
     states = {}
     for k, name in enumerate(("stator", "rotor")):
-        if problem.floats[k]:
-            z, x = problem.names.index(f"{name}_z"), problem.names.index(f"{name}_tilt_x")
-            z_rate, x_rate = problem.rate_places[[z, x]]
+        if segment.model.unknowns.floats[k]:
+            z, x = segment.model.unknowns.names.index(f"{name}_z"), segment.model.unknowns.names.index(f"{name}_tilt_x")
+            z_rate, x_rate = segment.model.unknowns.rate_places[[z, x]]
             states[k] = y[z], y[z_rate], complex(*y[x : x + 2]), complex(*y[x_rate : x_rate + 2])
     return states
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_right_hand_side_against_the_complex_form(name):
-    problem = problem_of(name)
+    segment = segment_of(name)
     for seed in range(10):
-        y, yp = random_state(problem, seed), np.empty(problem.size)
-        problem.rhs(TAU, y, yp)
-        states = states_of(problem, y)
-        found = states_of(problem, yp)
-        oracle = Oracle(problem.scene, TAU, states)
+        y, yp = random_state(segment, seed), np.empty(segment.size)
+        segment.rhs(TAU, y, yp)
+        states = states_of(segment, y)
+        found = states_of(segment, yp)
+        oracle = Oracle(segment.model.scene, TAU, states)
         for k, (_, v, _, g_rate) in states.items():
             acceleration, angular = oracle.accelerations(k)
             assert found[k][0] == v and found[k][2] == g_rate
@@ -144,27 +143,27 @@ def test_right_hand_side_against_the_complex_form(name):
 @pytest.mark.parametrize("model", ["linear", "radial"])
 @pytest.mark.parametrize("name", SCENES)
 def test_residual_is_the_same_equation(name, model):
-    problem = problem_of(name, FILM if model == "linear" else film())
-    y, yp, res = random_state(problem, 1) * 0.3, np.empty(problem.size), np.empty(problem.size)
-    problem.rhs(TAU, y, yp)
-    problem.residual(TAU, y, yp, res)
+    segment = segment_of(name, FILM if model == "linear" else film())
+    y, yp, res = random_state(segment, 1) * 0.3, np.empty(segment.size), np.empty(segment.size)
+    segment.rhs(TAU, y, yp)
+    segment.residual(TAU, y, yp, res)
     assert np.max(np.abs(res) / (1e-300 + np.abs(yp))) < 1e-13
     # And it is one: a wrong derivative is left over as it is.
-    wrong = yp + problem.scales * np.arange(1, problem.size + 1)
-    problem.residual(TAU, y, wrong, res)
+    wrong = yp + segment.scales * np.arange(1, segment.size + 1)
+    segment.residual(TAU, y, wrong, res)
     assert np.allclose(res, wrong - yp, rtol=1e-9, atol=1e-12)
 
 
 def test_residual_of_a_massless_ring_is_its_force_balance():
     """Mass times acceleration plus the massless residual is zero for the acceleration of the ring with mass."""
-    massive = problem_of("FMR")
-    light = Model(
+    massive = segment_of("FMR")
+    light = started(
         replace(massive.scene, rotor=replace(FLEXIBLE_R, mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)), 0.1
     )
-    y, yp, res = random_state(massive, 2), np.empty(massive.size), np.empty(light.size)
+    y, yp, res = random_state(massive, 2), np.empty(massive.size), np.empty(light.model.unknowns.size)
     massive.rhs(TAU, y, yp)
     q_rate = y[massive.rate_places]
-    light.residual(TAU, light.unknowns(y[:3], []), np.concatenate([q_rate, np.zeros(6)]), res)
+    light.segment(0).residual(TAU, light.model.vector(y[:3], []), np.concatenate([q_rate, np.zeros(6)]), res)
     # The gyroscopic moment goes with the polar inertia.
     body, i = massive.scene.rotor, massive.rate_places
     gyroscopic = 1j * body.polar_inertia * SPEED * complex(*q_rate[1:])
@@ -175,19 +174,19 @@ def test_residual_of_a_massless_ring_is_its_force_balance():
 @pytest.mark.parametrize("name", SCENES)
 def test_energy_and_works_against_the_complex_form(name):
     """Energy, the power of each element, and their balance dE/dt = sum of powers."""
-    problem = problem_of(name)
+    segment = segment_of(name)
     k_z, d_z = SUPPORT.axial_stiffness, SUPPORT.axial_damping
     k_s, d_s = k_z * 0.04**2 / 2, d_z * 0.04**2 / 2
     for seed in range(5):
-        y, yp = random_state(problem, seed), np.empty(problem.size)
-        problem.rhs(TAU, y, yp)
-        states, energy, change = states_of(problem, y), 0.0, 0.0
+        y, yp = random_state(segment, seed), np.empty(segment.size)
+        segment.rhs(TAU, y, yp)
+        states, energy, change = states_of(segment, y), 0.0, 0.0
         powers = dict.fromkeys(WORKS[:PLAIN], 0.0)
-        oracle = Oracle(problem.scene, TAU, states)
+        oracle = Oracle(segment.model.scene, TAU, states)
         force, moment = oracle.film()
-        opening = problem.closing.over(problem.leg, problem.scene.film)[0]
+        opening = segment.model.closing.over(segment.interval, segment.model.scene.film)[0]
         for k, (z, v, g, g_rate) in states.items():
-            body, sign, w = (problem.scene.stator, problem.scene.rotor)[k], (1, -1)[k], oracle.spin[k]
+            body, sign, w = (segment.model.scene.stator, segment.model.scene.rotor)[k], (1, -1)[k], oracle.spin[k]
             z_c, v_c, g_c, g_c_rate = oracle.carriers[k]
             own, own_rate = oracle.own[k]
             stretch, bend = z - z_c, g - g_c - own
@@ -202,9 +201,9 @@ def test_energy_and_works_against_the_complex_form(name):
             powers["film"] += sign * ((opening + force) * v + (np.conj(moment) * g_rate).real)
             powers["closing"] -= sign * opening * v
             powers["carrier"] -= k_z * stretch * v_c + k_s * (np.conj(bend) * (g_c_rate + own_rate)).real
-        found = yp[problem.n_mechanical :]
+        found = yp[segment.n_mechanical :]
         size = found[5]
-        assert problem.energies(np.array([TAU]), y[None, :])[0] == pytest.approx(energy, rel=1e-12)
+        assert segment.energies(np.array([TAU]), y[None, :])[0] == pytest.approx(energy, rel=1e-12)
         assert np.allclose(found[:5], list(powers.values()), rtol=0, atol=1e-12 * size)
         assert found[:5].sum() == pytest.approx(change, abs=1e-12 * size)
         assert size >= np.abs(found[:5]).sum()
@@ -212,18 +211,18 @@ def test_energy_and_works_against_the_complex_form(name):
 
 def test_jacobian_is_the_slope_of_the_right_hand_side():
     """Linear scene: the Jacobian from steps is the exact matrix, here from differences of whole states."""
-    problem = problem_of("FMSR")
-    jac, y = np.empty((problem.size, problem.size)), random_state(problem, 3)
-    problem.jacobian(TAU, y, np.empty(problem.size), jac)
-    base, moved = np.empty(problem.size), np.empty(problem.size)
-    problem.rhs(TAU, y, base)
-    step = np.zeros(problem.size)
-    step[: problem.n_mechanical] = random_state(problem, 4)[: problem.n_mechanical]
-    problem.rhs(TAU, y + step, moved)
-    n = problem.n_mechanical
+    segment = segment_of("FMSR")
+    jac, y = np.empty((segment.size, segment.size)), random_state(segment, 3)
+    segment.jacobian(TAU, y, np.empty(segment.size), jac)
+    base, moved = np.empty(segment.size), np.empty(segment.size)
+    segment.rhs(TAU, y, base)
+    step = np.zeros(segment.size)
+    step[: segment.n_mechanical] = random_state(segment, 4)[: segment.n_mechanical]
+    segment.rhs(TAU, y + step, moved)
+    n = segment.n_mechanical
     assert np.allclose((jac @ step)[:n], (moved - base)[:n], rtol=1e-5, atol=1e-5 * np.max(np.abs(base)))
 
 
 def test_scales_are_the_clearance_and_its_tilt():
-    problem = problem_of("FMSR")
-    assert np.allclose(problem.scales[:3], [CLEARANCE, CLEARANCE / R_O, CLEARANCE / R_O], rtol=1e-15)
+    segment = segment_of("FMSR")
+    assert np.allclose(segment.scales[:3], [CLEARANCE, CLEARANCE / R_O, CLEARANCE / R_O], rtol=1e-15)

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles import opening_force
-from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run
+from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run, started
 
 from sealdyn.analysis.continuation import frozen_at_end
 from sealdyn.dynamics.equilibrium import equilibria, settle
-from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import FLOOR
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
@@ -41,47 +40,51 @@ def scene(closing=None, build=fms, **film_changes):
 @pytest.mark.parametrize("geometry", ["cylindrical", "planar"])
 @pytest.mark.parametrize("balance,spring", [(0.72, 40.0), (0.80, 0.0), (0.65, 120.0)])
 def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balance, spring):
-    problem = Model(scene(Closing(balance, spring), clearance=None, geometry=geometry), 1e-3)
+    ready = started(scene(Closing(balance, spring), clearance=None, geometry=geometry), 1e-3)
     force = closing_force(balance, spring)
-    assert opening(problem.clearance, geometry=geometry) == pytest.approx(force, rel=1e-10)
-    root = problem.equilibria[0]
-    assert len(problem.equilibria) == 1 and root.stable
-    step = 1e-4 * problem.clearance
-    slope = opening(problem.clearance - step, geometry=geometry) - opening(problem.clearance + step, geometry=geometry)
+    assert opening(ready.model.clearance, geometry=geometry) == pytest.approx(force, rel=1e-10)
+    root = ready.model.interface.equilibria[0]
+    assert len(ready.model.interface.equilibria) == 1 and root.stable
+    step = 1e-4 * ready.model.clearance
+    slope = opening(ready.model.clearance - step, geometry=geometry) - opening(
+        ready.model.clearance + step, geometry=geometry
+    )
     assert root.stiffness == pytest.approx(slope / (2 * step), rel=1e-6)
     # The aligned scene stands still there.
-    y, yp = np.zeros(problem.size), np.empty(problem.size)
-    problem.rhs(0.0, y, yp)
-    assert abs(yp[problem.rate_places[0]]) < 1e-10 * force
+    y, yp = np.zeros(ready.model.unknowns.size), np.empty(ready.model.unknowns.size)
+    ready.segment(0).rhs(0.0, y, yp)
+    assert abs(yp[ready.model.unknowns.rate_places[0]]) < 1e-10 * force
 
 
 def test_two_give_the_third_around_the_circle():
-    first = Model(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
-    spring = Model(scene(Closing(balance_ratio=0.72), clearance=first.clearance), 1e-3).closing.spring
-    balance = Model(scene(Closing(spring_force=40.0), clearance=first.clearance), 1e-3).closing.balance_ratio
+    first = started(scene(Closing(0.72, 40.0), clearance=None), 1e-3)
+    spring = started(scene(Closing(balance_ratio=0.72), clearance=first.model.clearance), 1e-3).model.closing.spring
+    balance = started(
+        scene(Closing(spring_force=40.0), clearance=first.model.clearance), 1e-3
+    ).model.closing.balance_ratio
     assert spring == pytest.approx(40.0, rel=1e-9)
     assert balance == pytest.approx(0.72, rel=1e-12)
 
 
 def test_clearance_alone_is_held_by_hydraulic_closing():
-    problem = Model(scene(), 1e-3)
-    assert problem.clearance == CLEARANCE and problem.closing.spring == 0.0
-    assert closing_force(problem.closing.balance_ratio, 0.0) == pytest.approx(opening(CLEARANCE), rel=1e-12)
+    ready = started(scene(), 1e-3)
+    assert ready.model.clearance == CLEARANCE and ready.model.closing.spring == 0.0
+    assert closing_force(ready.model.closing.balance_ratio, 0.0) == pytest.approx(opening(CLEARANCE), rel=1e-12)
 
 
 def test_equal_pressures_are_held_by_the_spring():
-    problem = Model(scene(inner_pressure=P_O), 1e-3)
-    assert problem.closing.at(P_O, P_O, problem.closing.spring) == pytest.approx(P_O * AREA, rel=1e-12)
+    ready = started(scene(inner_pressure=P_O), 1e-3)
+    assert ready.model.closing.at(P_O, P_O, ready.model.closing.spring) == pytest.approx(P_O * AREA, rel=1e-12)
     with pytest.raises(SceneError) as raised:
-        Model(scene(Closing(spring_force=40.0), inner_pressure=P_O), 1e-3)
+        started(scene(Closing(spring_force=40.0), inner_pressure=P_O), 1e-3)
     assert raised.value.key.startswith("closing.")
 
 
 def test_a_pressure_step_moves_the_closing_force():
     """Hydraulic closing follows the sealed pressure, the spring does not."""
     step = PiecewiseLinear((0.0, 0.01, 0.01, 0.02), (P_O, P_O, 4e5, 4e5))
-    problem = Model(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
-    late = problem.closing.over(problem.legs[-1], problem.scene.film)
+    ready = started(scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step), 0.02)
+    late = ready.model.closing.over(ready.intervals[-1], ready.model.scene.film)
     assert late[0] == pytest.approx(closing_force(0.72, 40.0, P_I, 4e5), rel=1e-12)
     assert late[1] == pytest.approx(0.0, abs=1e-9)
 
@@ -91,9 +94,9 @@ def test_the_ring_settles_at_the_new_clearance_after_a_pressure_step():
     step = PiecewiseLinear((0.0, 0.001, 0.001, 0.02), (P_O, P_O, 5.5e5, 5.5e5))
     stepped = scene(Closing(0.72, 40.0), clearance=None, outer_pressure=step)
     found = run(stepped, duration=0.02)
-    z, clearance = found.q[-1, 0], found.problem.clearance
+    z, clearance = found.q[-1, 0], found.ready.model.clearance
     left = opening(clearance + z, p_o=5.5e5) - closing_force(0.72, 40.0, P_I, 5.5e5) - SUPPORT.axial_stiffness * z
-    assert found.problem.names == ["stator_z"] and abs(z) > 1e-8
+    assert found.ready.model.unknowns.names == ["stator_z"] and abs(z) > 1e-8
     assert abs(left) < 1e-5 * SUPPORT.axial_stiffness * CLEARANCE
 
 
@@ -103,25 +106,27 @@ def test_the_ring_settles_at_the_new_clearance_after_a_pressure_step():
 def test_inside_pressurised_seal_is_the_outside_pressurised_one_mirrored():
     """Narrow film: a face converging inwards under inner pressure.  The inner film of one is the outer of the other."""
     coning, width = 3.125e-3, R_O - R_I
-    outside = Model(scene(Closing(0.72, 40.0), model="linear", clearance=None, coning=coning), 1e-3)
-    inside = Model(
+    outside = started(scene(Closing(0.72, 40.0), model="linear", clearance=None, coning=coning), 1e-3)
+    inside = started(
         scene(
             Closing(0.72, 40.0), model="linear", clearance=None, coning=-coning,
             outer_pressure=P_I, inner_pressure=P_O,
         ), 1e-3,
     )  # fmt: skip
-    assert not inside.closing.outer_is_high and outside.closing.outer_is_high
-    assert inside.clearance == pytest.approx(outside.clearance + coning * width, rel=1e-9)
-    assert inside.equilibria[0].stiffness == pytest.approx(outside.equilibria[0].stiffness, rel=1e-7)
+    assert not inside.model.closing.outer_is_high and outside.model.closing.outer_is_high
+    assert inside.model.clearance == pytest.approx(outside.model.clearance + coning * width, rel=1e-9)
+    assert inside.model.interface.equilibria[0].stiffness == pytest.approx(
+        outside.model.interface.equilibria[0].stiffness, rel=1e-7
+    )
 
 
 def test_inside_pressurised_cylindrical_film_balances():
-    problem = Model(
+    ready = started(
         scene(Closing(0.72, 40.0), clearance=None, coning=-3.125e-3, outer_pressure=P_I, inner_pressure=P_O), 1e-3
     )
     force = closing_force(0.72, 40.0, P_O, P_I)
-    assert opening(problem.clearance, -3.125e-3, P_O, P_I) == pytest.approx(force, rel=1e-10)
-    assert problem.equilibria[-1].stable
+    assert opening(ready.model.clearance, -3.125e-3, P_O, P_I) == pytest.approx(force, rel=1e-10)
+    assert ready.model.interface.equilibria[-1].stable
 
 
 # --- several roots, or none ---------------------------------------------------------------------------
@@ -147,7 +152,7 @@ def test_all_roots_are_found_and_the_widest_stable_one_is_taken():
 @pytest.mark.parametrize("balance", [1.2, 0.3])
 def test_too_much_or_too_little_closing_has_no_equilibrium(balance):
     with pytest.raises(SceneError) as raised:
-        Model(scene(Closing(balance, 0.0), clearance=None), 1e-3)
+        started(scene(Closing(balance, 0.0), clearance=None), 1e-3)
     assert raised.value.key == "closing.balance_ratio"
     # What is expected brackets what a converging film can carry.
     least, most = (float(word) for word in raised.value.expected.split() if word.replace(".", "").isdigit())
@@ -159,7 +164,7 @@ def test_a_diverging_film_has_only_an_unstable_one():
     force = opening(20e-6, coning=-1e-3)
     spring = force - closing_force(0.3, 0.0)
     with pytest.raises(SceneError) as raised:
-        Model(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
+        started(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
     assert "20 um" in raised.value.found
 
 
@@ -167,24 +172,24 @@ def test_flat_faces_have_none():
     """The same force at every clearance: whatever the closing force, nothing decides the clearance."""
     for spring in (0.0, opening(1e-5, 0.0) - closing_force(0.5, 0.0)):
         with pytest.raises(SceneError):
-            Model(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
+            started(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
 
 
 def test_a_root_far_from_the_coning_is_found():
     """Coning of 25 um, clearances from 0.1 um to 1 mm."""
     for clearance in (0.1e-6, 1e-6, 1e-4, 1e-3):
         force = opening(clearance)
-        problem = Model(scene(Closing(0.5, force - closing_force(0.5, 0.0)), clearance=None), 1e-3)
+        ready = started(scene(Closing(0.5, force - closing_force(0.5, 0.0)), clearance=None), 1e-3)
         # The force hardly knows a clearance far from the coning: rounding over its slope.
-        assert problem.clearance == pytest.approx(clearance, rel=1e-8)
+        assert ready.model.clearance == pytest.approx(clearance, rel=1e-8)
 
 
 def test_a_flexible_rotor_finds_the_same_clearance():
-    one, other = (Model(scene(Closing(0.72, 40.0), build, clearance=None), 1e-3) for build in (fms, fmr))
-    assert one.clearance == other.clearance
-    y, yp = np.zeros(other.size), np.empty(other.size)
-    other.rhs(0.0, y, yp)
-    place = other.rate_places[other.names.index("rotor_z")]
+    one, other = (started(scene(Closing(0.72, 40.0), build, clearance=None), 1e-3) for build in (fms, fmr))
+    assert one.model.clearance == other.model.clearance
+    y, yp = np.zeros(other.model.unknowns.size), np.empty(other.model.unknowns.size)
+    other.segment(0).rhs(0.0, y, yp)
+    place = other.model.unknowns.rate_places[other.model.unknowns.names.index("rotor_z")]
     assert abs(yp[place]) < 1e-9 * closing_force(0.72, 40.0)
 
 
@@ -192,13 +197,13 @@ def test_a_flexible_rotor_finds_the_same_clearance():
 def test_rough_faces_pressed_into_each_other_balance_where_the_run_starts(spring):
     """Also where the film is thinner than 0.6 c and its law is continued: the run's own forces agree."""
     path = Path(__file__).parents[2] / "scenarios" / "run_in.toml"
-    problem = Model(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
+    ready = started(read_scenario(path, [f'closing.spring_force="{spring}"']).scene, 1e-3)
     if spring == "4000 N":
-        assert problem.clearance < 0.5 * problem.face[FLOOR]
-    y, yp = np.zeros(problem.size), np.empty(problem.size)
-    problem.rhs(0.0, y, yp)
-    force = 0.1 * yp[problem.rate_places[problem.names.index("stator_z")]]
-    assert abs(force) < 1e-9 * problem.closing_force()
+        assert ready.model.clearance < 0.5 * ready.model.face[FLOOR]
+    y, yp = np.zeros(ready.model.unknowns.size), np.empty(ready.model.unknowns.size)
+    ready.segment(0).rhs(0.0, y, yp)
+    force = 0.1 * yp[ready.model.unknowns.rate_places[ready.model.unknowns.names.index("stator_z")]]
+    assert abs(force) < 1e-9 * ready.model.closing_force()
 
 
 def test_what_a_scene_drives_to_is_closed_as_its_run_is():
@@ -206,8 +211,8 @@ def test_what_a_scene_drives_to_is_closed_as_its_run_is():
     falling = scene(
         Closing(None, 40.0), clearance=CLEARANCE, outer_pressure=PiecewiseLinear((0.0, 1.0), (P_O, P_O / 3))
     )
-    whole, end = Model(falling, 2.0), Model(frozen_at_end(falling), 2.0)
-    last = whole.closing.over(whole.legs[-1], falling.film)[0]
-    assert end.closing_force() == pytest.approx(last, rel=1e-12)
-    assert end.axial_shift(0) == pytest.approx(whole.axial_shift(len(whole.legs) - 1), rel=1e-9)
-    assert abs(end.axial_shift(0)) > 1e-9
+    whole, end = started(falling, 2.0), started(frozen_at_end(falling), 2.0)
+    last = whole.model.closing.over(whole.intervals[-1], falling.film)[0]
+    assert end.model.closing_force() == pytest.approx(last, rel=1e-12)
+    assert end.model.axial_shift() == pytest.approx(whole.model.axial_shift(whole.intervals[-1]), rel=1e-9)
+    assert abs(end.model.axial_shift()) > 1e-9

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
-from scenes import of_given_film as problem
+from scenes import of_given_film as run_of
 from scipy.integrate import solve_ivp
 
 from sealdyn.dynamics.modes import Harmonic, common_period, steady_extremes
@@ -61,9 +61,9 @@ def test_two_tones_about_fixed_axes_shake_a_flexible_stator():
         return -(support + K_F * relative + D_F * (relative_rate - 0.5j * SPEED * relative)) / INERTIA
 
     shaft = Shaft(speed=SPEED, whirl=[Whirl(ratio=0.42, angle=15e-6)])
-    whole = problem(stator=Stator(**ring(3.0, misalignment=10e-6)), housing=TONES, shaft=shaft, turns=20)
+    whole = run_of(stator=Stator(**ring(3.0, misalignment=10e-6)), housing=TONES, shaft=shaft, turns=20)
     g, rate = integrated(acceleration, 0.05)
-    q, q_rate = whole.steady_motion()[0](0.05)
+    q, q_rate = whole.segment(0).steady_motion()[0](0.05)
     assert abs(complex(*q[1:]) - g) < 1e-9 * 40e-6
     assert abs(complex(*q_rate[1:]) - rate) < 1e-9 * 40e-6 * SPEED
 
@@ -79,9 +79,9 @@ def test_two_tones_about_fixed_axes_shake_a_flexible_rotor_through_the_film():
         return (push - own + 1j * SLENDER * SPEED * v) / INERTIA
 
     rotor = Rotor(**ring(3.0, misalignment=25e-6, misalignment_phase=0.2))
-    whole = problem(rotor=rotor, housing=TONES, turns=20)
+    whole = run_of(rotor=rotor, housing=TONES, turns=20)
     g, rate = integrated(acceleration, 0.05)
-    q, q_rate = whole.steady_motion()[0](0.05)
+    q, q_rate = whole.segment(0).steady_motion()[0](0.05)
     assert abs(complex(*q[1:]) - g) < 1e-9 * 40e-6
     assert abs(complex(*q_rate[1:]) - rate) < 1e-9 * 40e-6 * SPEED
 
@@ -94,17 +94,17 @@ def test_whirl_of_the_shaft_carries_a_flexible_rotor(ratio):
     film_part = D_F * (s - 0.5j * SPEED) + K_F
     answer = 15e-6 * carried / (INERTIA * s * s - 1j * SLENDER * SPEED * s + carried + film_part)
     shaft = Shaft(speed=SPEED, whirl=[Whirl(ratio=ratio, angle=15e-6)])
-    whole = problem(rotor=Rotor(**ring(3.0)), shaft=shaft)
+    whole = run_of(rotor=Rotor(**ring(3.0)), shaft=shaft)
     for t in (0.0, 1.7e-3):
-        q, rate = whole.steady_motion()[0](t)
+        q, rate = whole.segment(0).steady_motion()[0](t)
         assert complex(*q[1:]) == pytest.approx(answer * np.exp(s * t), rel=1e-12)
         assert complex(*rate[1:]) == pytest.approx(s * answer * np.exp(s * t), rel=1e-12)
 
 
 def test_balance_at_turning_and_standing_forcing_is_the_closed_form():
-    whole = problem(rotor=Rotor(**ring(3.0, misalignment=1e-5)), stator=Stator(misalignment=1e-5))
-    linear, found = whole.linear_scene(), {}
-    for harmonic in whole.harmonics():
+    whole = run_of(rotor=Rotor(**ring(3.0, misalignment=1e-5)), stator=Stator(misalignment=1e-5))
+    linear, found = whole.model.linear_scene(), {}
+    for harmonic in whole.segment(0).harmonics():
         relative = linear.relative(harmonic, linear.response(harmonic))
         # A circle Re(a e^{iwt}) has a_y = -i a_x; a standing vector is real.
         standing = harmonic.frequency == 0.0
@@ -119,10 +119,10 @@ def test_balance_at_turning_and_standing_forcing_is_the_closed_form():
 
 def test_forcing_a_ring_at_its_undamped_mode_answers_without_bound():
     """Near the forward root of the free ring the answer grows as one over the distance."""
-    linear = problem(
+    linear = run_of(
         rotor=Rotor(**ring(support=replace(SUPPORT, axial_damping=0.0))),
         film_table=film("linear", coefficients=NOTHING),
-    ).linear_scene()
+    ).model.linear_scene()
     root = SPEED + math.sqrt(SPEED**2 + K_S / INERTIA)
     turning = np.array([0.0, 1e-6, -1e-6j])
     answers = [

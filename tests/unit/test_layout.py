@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from scenes import CLEARANCE, NOTHING, R_O, SPEED, SUPPORT, film, fmr, fms, fmsr, ring
+from scenes import CLEARANCE, NOTHING, R_O, SPEED, SUPPORT, film, fmr, fms, fmsr, ring, started
 
-from sealdyn.dynamics.model import Model
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import AxialRunout, Rotor, Support
 from sealdyn.scene.scene import Closing, Initial, RingStart
+from sealdyn.simulation.method_selection import choose_method
 
 TURN = 2 * math.pi / SPEED
 ALIGNED = dict(own=0.0, fixed=0.0)
@@ -19,7 +19,7 @@ MASSLESS = dict(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)
 
 
 def layout(scene):
-    return Model(scene, TURN)
+    return started(scene, TURN)
 
 
 # --- which ---------------------------------------------------------------------------------------------
@@ -32,9 +32,9 @@ def test_aligned_scene_has_axial_unknowns_only(model):
     shaking = Housing(axial=[AxialVibration(frequency=100.0, displacement=1e-6)])
     start = Initial(rotor=RingStart(z=1e-6))
     for more in ({}, dict(rotor=runout), dict(housing=shaking), dict(initial=start)):
-        problem = layout(fmr(model, **(ALIGNED | more)))
-        assert problem.names == ["rotor_z"]
-        assert problem.reasons
+        ready = layout(fmr(model, **(ALIGNED | more)))
+        assert ready.model.unknowns.names == ["rotor_z"]
+        assert ready.reasons
 
 
 def test_both_rings_of_an_aligned_scene():
@@ -56,8 +56,8 @@ def driven():
 
 @pytest.mark.parametrize("name", driven())
 def test_linear_film_without_axial_forcing_has_tilts_only(name):
-    problem = layout(driven()[name])
-    assert problem.names == TILTS and problem.size == 4 + 6
+    ready = layout(driven()[name])
+    assert ready.model.unknowns.names == TILTS and ready.model.unknowns.size == 4 + 6
 
 
 def test_linear_film_with_both_drives_keeps_both():
@@ -68,13 +68,13 @@ def test_linear_film_with_both_drives_keeps_both():
         dict(film=film("linear", clearance=None), closing=Closing(0.75, PiecewiseLinear((0.0, 1.0), (0.0, 1.0)))),
     ]
     for more in drives:
-        problem = layout(fmr("linear", **more))
-        assert problem.names == ["rotor_z", *TILTS]
+        ready = layout(fmr("linear", **more))
+        assert ready.model.unknowns.names == ["rotor_z", *TILTS]
 
 
 def test_nonlinear_film_with_tilt_keeps_all():
-    problem = layout(fmsr())
-    assert problem.names == [f"{r}_{p}" for r in ("stator", "rotor") for p in ("z", "tilt_x", "tilt_y")]
+    ready = layout(fmsr())
+    assert ready.model.unknowns.names == [f"{r}_{p}" for r in ("stator", "rotor") for p in ("z", "tilt_x", "tilt_y")]
 
 
 def test_a_start_of_a_rigid_ring_tilts_nothing():
@@ -87,29 +87,35 @@ def test_a_start_of_a_rigid_ring_tilts_nothing():
     [(fmr, "FMR:", [False, True]), (fms, "FMS:", [True, False]), (fmsr, "FMSR:", [True] * 2)],
 )
 def test_arrangement_follows_from_the_supports(build, arrangement, floats):
-    problem = layout(build())
-    assert [bool(problem.floats[k]) for k in (0, 1)] == floats and any(
-        reason.startswith(arrangement) for reason in problem.reasons
+    ready = layout(build())
+    assert [bool(ready.model.unknowns.floats[k]) for k in (0, 1)] == floats and any(
+        reason.startswith(arrangement) for reason in ready.reasons
     )
 
 
 def test_massless_ring_has_no_rates():
-    problem = layout(fmr(rotor=Rotor(**ring(**MASSLESS), misalignment=1e-6)))
-    assert problem.massless and list(problem.rate_places) == [-1] * 3
-    assert problem.n_mechanical == 3 and problem.size == 9 and problem.algebraic == []
-    assert problem.solver()[0] == "ida"
+    ready = layout(fmr(rotor=Rotor(**ring(**MASSLESS), misalignment=1e-6)))
+    assert ready.model.unknowns.massless and list(ready.model.unknowns.rate_places) == [-1] * 3
+    assert ready.model.unknowns.n_mechanical == 3 and ready.model.unknowns.size == 9 and ready.model.algebraic == []
+    assert choose_method(ready)[0] == "ida"
 
 
 def test_a_ring_may_lack_one_inertia_only():
     """Mass without transverse inertia: the axial motion keeps its rate."""
-    problem = layout(fmr(rotor=Rotor(**ring(transverse_inertia=0.0, polar_inertia=0.0), misalignment=1e-6)))
-    assert problem.massless and list(problem.rate_places) == [3, -1, -1] and problem.n_mechanical == 4
+    ready = layout(fmr(rotor=Rotor(**ring(transverse_inertia=0.0, polar_inertia=0.0), misalignment=1e-6)))
+    assert (
+        ready.model.unknowns.massless
+        and list(ready.model.unknowns.rate_places) == [3, -1, -1]
+        and ready.model.unknowns.n_mechanical == 4
+    )
 
 
 def test_mass_of_a_motion_that_is_not_integrated_does_not_matter():
     """Linear film, tilt only: a ring without mass but with inertia is an ordinary ring."""
-    problem = layout(fmr("linear", rotor=Rotor(**ring(mass=0.0), misalignment=1e-6)))
-    assert problem.names == TILTS and not problem.massless and problem.solver()[0] != "ida"
+    ready = layout(fmr("linear", rotor=Rotor(**ring(mass=0.0), misalignment=1e-6)))
+    assert (
+        ready.model.unknowns.names == TILTS and not ready.model.unknowns.massless and choose_method(ready)[0] != "ida"
+    )
 
 
 def test_massless_and_undamped_is_algebraic():
@@ -125,26 +131,28 @@ def test_massless_and_undamped_is_algebraic():
 
 @pytest.mark.parametrize("build", [fmr, fms, fmsr])
 def test_every_unknown_has_its_own_place(build):
-    problem = layout(build())
-    assert sorted([*range(problem.n), *problem.rate_places]) == list(range(problem.n_mechanical))
-    q, rate = np.arange(1.0, problem.n + 1), -np.arange(1.0, problem.n + 1)
-    y = problem.unknowns(q, rate)
-    found = problem.motion(y[None, :], np.zeros((1, problem.size)))
+    ready = layout(build())
+    assert sorted([*range(ready.model.unknowns.n), *ready.model.unknowns.rate_places]) == list(
+        range(ready.model.unknowns.n_mechanical)
+    )
+    q, rate = np.arange(1.0, ready.model.unknowns.n + 1), -np.arange(1.0, ready.model.unknowns.n + 1)
+    y = ready.model.vector(q, rate)
+    found = ready.segment(0).motion(y[None, :], np.zeros((1, ready.model.unknowns.size)))
     assert np.array_equal(found[0][0], q) and np.array_equal(found[1][0], rate)
 
 
 def test_scales_are_the_clearance_and_its_tilt_and_the_shaft_speed():
-    problem = layout(fmr())
+    ready = layout(fmr())
     expected = [CLEARANCE, CLEARANCE / R_O, CLEARANCE / R_O]
-    assert np.allclose(problem.scales[:3], expected, rtol=1e-15)
-    assert np.allclose(problem.scales[problem.rate_places], np.array(expected) * SPEED, rtol=1e-15)
-    assert problem.pace == SPEED and np.all(problem.scales > 0)
+    assert np.allclose(ready.model.scales[:3], expected, rtol=1e-15)
+    assert np.allclose(ready.model.scales[ready.model.unknowns.rate_places], np.array(expected) * SPEED, rtol=1e-15)
+    assert ready.model.reference_rate == SPEED and np.all(ready.model.scales > 0)
 
 
 def test_a_shaft_at_rest_takes_its_pace_from_what_shakes_it():
     shaking = Housing(axial=[AxialVibration(frequency=400.0, acceleration=20.0)])
-    problem = Model(fms(**dict(own=0.0, runout=0.0), speed=0.0, housing=shaking), 0.01)
-    assert problem.pace == pytest.approx(2 * math.pi * 400.0, rel=1e-15)
+    ready = started(fms(**dict(own=0.0, runout=0.0), speed=0.0, housing=shaking), 0.01)
+    assert ready.model.reference_rate == pytest.approx(2 * math.pi * 400.0, rel=1e-15)
 
 
 def test_memory_is_the_run_for_an_undamped_ring_and_short_for_a_damped_one():
@@ -153,7 +161,7 @@ def test_memory_is_the_run_for_an_undamped_ring_and_short_for_a_damped_one():
         rotor=Rotor(**ring(support=Support(axial_stiffness=5e5, radius=0.04))),
         fixed=1e-6,
     )
-    free, damped = Model(undamped, 1000 * TURN), Model(fmr("linear"), 1000 * TURN)
+    free, damped = started(undamped, 1000 * TURN), started(fmr("linear"), 1000 * TURN)
     # Fastest period of the free ring: the forward root of -I w^2 + J W w + K_s = 0.
     fastest = SPEED + math.sqrt(SPEED**2 + SUPPORT.tilt()[0] / 8e-4)
     assert free.memory == pytest.approx(1000 * TURN * fastest / (2 * math.pi), rel=1e-9)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
-from scenes import of_given_film as problem
+from scenes import of_given_film as run_of
 
 from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
 from sealdyn.scene.rings import Rotor, Stator
@@ -20,7 +20,7 @@ SLENDER = INERTIA / 3
 def free_ring():
     """A rotor on undamped springs in a film that does nothing."""
     undamped = replace(SUPPORT, axial_damping=0.0)
-    return problem(rotor=Rotor(**ring(3.0, support=undamped)), film_table=film("linear", coefficients=NOTHING))
+    return run_of(rotor=Rotor(**ring(3.0, support=undamped)), film_table=film("linear", coefficients=NOTHING))
 
 
 FMS, FMR = dict(stator=Stator(**ring(3.0))), dict(rotor=Rotor(**ring(3.0)))
@@ -83,7 +83,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_eigenvalues_against_the_complex_equations(name, speed):
     rings, floating, masses, stator_speed = CASES[name]
-    linear = problem(**rings).linear_scene(speed=speed)
+    linear = run_of(**rings).model.linear_scene(speed=speed)
     tilt = complex_roots(floating, speed, stator_speed)
     expected = np.concatenate([tilt, tilt.conj(), axial_roots(masses)])
     same(linear.eigen()[0], expected)
@@ -95,7 +95,7 @@ def test_eigenvalues_against_the_complex_equations(name, speed):
 def test_whirl_direction_is_the_sign_of_the_complex_root(name, speed):
     """gamma ~ exp(s t): forward turns with the shaft."""
     rings, floating, masses, stator_speed = CASES[name]
-    modes = problem(**rings).linear_scene(speed=speed).modes()
+    modes = run_of(**rings).model.linear_scene(speed=speed).modes()
     assert all(a.value.real >= b.value.real for a, b in pairwise(modes))
     for root in complex_roots(floating, speed, stator_speed):
         seen = root if root.imag > 0 else root.conj()
@@ -107,8 +107,8 @@ def test_whirl_direction_is_the_sign_of_the_complex_root(name, speed):
 
 
 def test_massless_ring_has_its_first_order_eigenvalue_alone():
-    light = problem(rotor=Rotor(**ring(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)))
-    values = light.linear_scene().eigen()[0]
+    light = run_of(rotor=Rotor(**ring(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)))
+    values = light.model.linear_scene().eigen()[0]
     tilt = -(K_S + K_F - 1j * SPEED * (D_S + D_F / 2)) / (D_S + D_F)
     axial = -(SUPPORT.axial_stiffness + K_FZ) / (SUPPORT.axial_damping + D_FZ)
     same(values, [tilt, tilt.conjugate(), axial])
@@ -129,26 +129,26 @@ def fms_threshold():
 
 @pytest.mark.parametrize("rings,expected", [(FMS, fms_threshold()), (FMR, fmr_threshold())], ids=["FMS", "FMR"])
 def test_critical_speed_is_the_formula(rings, expected):
-    whole = problem(**rings)
-    found = critical_speed(lambda w: whole.linear_scene(speed=w), 100.0, 1e6)
+    whole = run_of(**rings)
+    found = critical_speed(lambda w: whole.model.linear_scene(speed=w), 100.0, 1e6)
     assert found == pytest.approx(expected, rel=1e-10)
-    at = [verdict(whole.linear_scene(speed=share * expected).modes()) for share in (1 - 1e-6, 1.0, 1 + 1e-6)]
+    at = [verdict(whole.model.linear_scene(speed=share * expected).modes()) for share in (1 - 1e-6, 1.0, 1 + 1e-6)]
     assert at == ["stable", "neutral", "unstable"]
 
 
 def test_a_short_disk_has_no_critical_speed():
-    whole = problem(rotor=Rotor(**ring(0.5)))
-    assert critical_speed(lambda w: whole.linear_scene(speed=w), 100.0, 1e6) is None
+    whole = run_of(rotor=Rotor(**ring(0.5)))
+    assert critical_speed(lambda w: whole.model.linear_scene(speed=w), 100.0, 1e6) is None
 
 
 def test_an_undamped_ring_is_neutral_at_every_speed():
-    free = problem(
+    free = run_of(
         rotor=Rotor(**ring(support=replace(SUPPORT, axial_damping=0.0))),
         film_table=film("linear", coefficients=NOTHING),
     )
     for speed in (10.0, 1000.0, 1e5):
-        assert verdict(free.linear_scene(speed=speed).modes()) == "neutral"
-    assert critical_speed(lambda w: free.linear_scene(speed=w), 10.0, 1e5) is None
+        assert verdict(free.model.linear_scene(speed=speed).modes()) == "neutral"
+    assert critical_speed(lambda w: free.model.linear_scene(speed=w), 10.0, 1e5) is None
 
 
 def test_verdict_reads_the_worst_mode():
@@ -158,15 +158,15 @@ def test_verdict_reads_the_worst_mode():
 
 def test_an_aligned_scene_above_its_threshold_is_unstable():
     """Its run integrates the axial motion alone; the verdict sees the tilts."""
-    whole = problem(**FMR, speed=1.05 * fmr_threshold())
-    assert whole.names == ["rotor_z"]
-    assert verdict(whole.linear_scene().modes()) == "unstable"
+    whole = run_of(**FMR, speed=1.05 * fmr_threshold())
+    assert whole.model.unknowns.names == ["rotor_z"]
+    assert verdict(whole.model.linear_scene().modes()) == "unstable"
 
 
 def test_resonance_is_where_a_forward_mode_turns_with_the_shaft():
     """Undamped slender ring: -I w^2 + J w^2 + K = 0."""
     free = free_ring()
-    found = resonance_speeds(lambda w: free.linear_scene(speed=w), 10.0, 1e5)
+    found = resonance_speeds(lambda w: free.model.linear_scene(speed=w), 10.0, 1e5)
     assert found == pytest.approx([math.sqrt(K_S / (INERTIA - SLENDER))], rel=1e-9)
 
 

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import fmr, fms, fmsr, free_ring
+from scenes import fmr, fms, fmsr, free_ring, started
 
 import sealdyn
 from sealdyn.analysis.shooting import NoOrbit, Shooter
-from sealdyn.dynamics.model import Model
 from sealdyn.scene.excitation import Whirl
+from sealdyn.simulation.method_selection import choose_method
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -30,7 +30,7 @@ def test_linear_orbit_is_the_harmonic_balance(scene):
 def test_multipliers_are_the_exponentials_of_the_eigenvalues(scene):
     shooter = Shooter(scene)
     orbit = shooter.find()
-    values, shapes = shooter.problem.linear_scene().eigen()
+    values, shapes = shooter.model.linear_scene().eigen()
     # A linear scene without axial forcing integrates its tilts only.
     tilt = [v for v, s in zip(values, shapes.T, strict=True) if np.linalg.norm(s[0::3]) < 1e-6 * np.linalg.norm(s)]
     assert len(tilt) == len(orbit.multipliers)
@@ -48,11 +48,14 @@ def test_orbit_agrees_with_a_long_transient(name):
     shooter = Shooter(scenario.scene, accuracy)
     orbit = shooter.find()
     turns = 60 if name != "housing_vibration" else 12
-    problem = Model(scenario.scene, turns * orbit.period, accuracy)
-    recorder = Recorder(problem, orbit.period)
-    solve(problem, problem.solver()[0], accuracy, recorder)
+    ready = started(scenario.scene, turns * orbit.period, accuracy)
+    recorder = Recorder(orbit.period)
+    solve(ready, choose_method(ready)[0], accuracy, recorder)
     _, q, _ = recorder.arrays()
-    assert np.max(np.abs(q[-1] - orbit.start[: problem.n]) / problem.scales[: problem.n]) < accuracy
+    assert (
+        np.max(np.abs(q[-1] - orbit.start[: ready.model.unknowns.n]) / ready.model.scales[: ready.model.unknowns.n])
+        < accuracy
+    )
 
 
 def test_orbit_is_periodic_and_stable_below_the_threshold_and_not_above():

@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from scenes import fms
+from scenes import fms, started
 
-from sealdyn.dynamics.model import Model
 from sealdyn.numerics.order_tracking import FOLDED, at_the_edge, centres, peak, resolution, tracked, waterfall
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.studies.runup.ramp_run import EvenAngleSink, RampCycle
@@ -104,11 +103,11 @@ def test_samples_stand_at_even_angles():
     """Times between two samples, speed integrated over them exactly: 1/32 of a turn each, over kinks and reversals of
     the ramp, none twice and none left out."""
     times, values = (0.0, 0.01, 0.11, 0.15, 0.25), (0.0, 300.0, 4000.0, 4000.0, 500.0)
-    problem = Model(fms("linear", speed=PiecewiseLinear(times, values)), 0.25)
-    sink = EvenAngleSink(problem, PER_TURN)
+    ready = started(fms("linear", speed=PiecewiseLinear(times, values)), 0.25)
+    sink = EvenAngleSink(PER_TURN)
     found, first = [], []
-    for k, leg in enumerate(problem.legs):
-        taus = sink.due(k)
+    for k, leg in enumerate(ready.intervals):
+        taus = sink.due(ready.segment(k))
         found.append(leg.time + taus)
         first.append(sink.first)
     found = np.concatenate(found)

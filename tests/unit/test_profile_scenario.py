@@ -4,9 +4,8 @@ import json
 
 import numpy as np
 import pytest
-from scenes import film, fmr
+from scenes import film, fmr, started
 
-from sealdyn.dynamics.model import Model
 from sealdyn.report.text import resolved_lines
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
@@ -101,8 +100,8 @@ def test_half_a_profile():
 
 def test_auto_goes_straight_to_the_profiled_film():
     worn = fmr(film=film("auto", profile=Profile((0.032, 0.036, 0.04), (0.0, 2e-6, 0.0))))
-    problem, error = select_film(worn, 0.01, 1e-3, lambda p: None)
-    assert problem.film_name == "profiled" and error is None
+    ready, error = select_film(worn, 0.01, 1e-3, lambda p: None)
+    assert ready.model.interface.name == "profiled" and error is None
 
 
 def test_scenes_built_in_python_are_refused_too():
@@ -112,12 +111,12 @@ def test_scenes_built_in_python_are_refused_too():
         film("profiled", profile=Profile(np.linspace(0.032, 0.04, 66), np.zeros(66))),
     ):
         with pytest.raises(SceneError):
-            Model(fmr(film=bad), 0.01, 1e-6)
+            started(fmr(film=bad), 0.01, 1e-6)
 
 
 def test_profiled_without_a_profile_is_the_radial_film():
-    fine, other = (Model(fmr(model), 0.01, 1e-9) for model in ("radial", "profiled"))
-    for one, two in zip(fine.film_matrices(), other.film_matrices(), strict=True):
+    fine, other = (started(fmr(model), 0.01, 1e-9) for model in ("radial", "profiled"))
+    for one, two in zip(fine.model.film_matrices(), other.model.film_matrices(), strict=True):
         assert two == pytest.approx(one, rel=1e-8, abs=1e-8 * np.max(np.abs(one)))
 
 
@@ -125,10 +124,10 @@ def test_the_aligned_faces_rest_on_their_asperities_where_they_are_highest():
     """Closed by more than the film carries, the faces of a bent profile meet at its highest radius."""
     rough = Contact(roughness=0.1e-6, compressive_strength=300e6)
     worn = film("auto", clearance=0.2e-6, coning=0.0, profile=Profile((0.032, 0.036, 0.04), (5e-6, 0.0, 5e-6)))
-    problem = Model(fmr(film=worn, contact=rough, own=0.0, fixed=0.0), 0.01, 1e-6)
-    film_only = Model(fmr(film=worn, own=0.0, fixed=0.0), 0.01, 1e-6)
+    ready = started(fmr(film=worn, contact=rough, own=0.0, fixed=0.0), 0.01, 1e-6)
+    film_only = started(fmr(film=worn, own=0.0, fixed=0.0), 0.01, 1e-6)
     area = np.pi * (0.04**2 - 0.032**2)
-    carried = (problem.closing.balance_ratio - film_only.closing.balance_ratio) * 5e5 * area
+    carried = (ready.model.closing.balance_ratio - film_only.model.closing.balance_ratio) * 5e5 * area
     # Of a ridge |r - r_m| < (c - h) L / (2 depth): 2 pi r_m p_m int P dr, P the share in contact.
     x = np.linspace(0.2 / 0.3, 1.0, 4001)
     share = 0.5 - 35 / 32 * (x - x**3 + 3 * x**5 / 5 - x**7 / 7)

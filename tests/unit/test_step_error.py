@@ -16,11 +16,11 @@ from sealdyn.solvers.recorder import Recorder
 TURN = 2 * math.pi / SPEED
 
 
-def followed(problem, method, tolerance, exact):
+def followed(ready, method, tolerance, exact):
     """True largest error at samples and the estimate, both relative to the scales."""
-    errors = GlobalErrorEstimate(problem)
+    errors = GlobalErrorEstimate(ready.segment(0))
     run = method, {"tolerance": tolerance, "errors": errors}
-    return apart(problem, run, exact, TURN / 64), errors.worst
+    return apart(ready, run, exact, TURN / 64), errors.worst
 
 
 @pytest.mark.parametrize("method", ["adams", "bdf"])
@@ -28,9 +28,9 @@ def followed(problem, method, tolerance, exact):
 @pytest.mark.parametrize("make", [fms, fmr, fmsr], ids=["fms", "fmr", "fmsr"])
 def test_the_estimate_is_the_error(make, accuracy, method):
     """A linear film by a multistep method, thirty times looser than the cautious tolerance, against exact steps."""
-    problem = prepared(make("linear"), 30 * TURN, accuracy)
-    tolerance = 30 * tolerance_for(method, accuracy, problem.memory)
-    true, estimate = followed(problem, method, tolerance, ("expm", {"tolerance": 1e-11}))
+    ready = prepared(make("linear"), 30 * TURN, accuracy)
+    tolerance = 30 * tolerance_for(method, accuracy, ready.memory)
+    true, estimate = followed(ready, method, tolerance, ("expm", {"tolerance": 1e-11}))
     assert true > 1e-10 and true / 1.5 < estimate < 1.5 * true
 
 
@@ -39,9 +39,9 @@ def test_errors_that_add_up_are_added_up(accuracy):
     """An undamped ring over 300 turns: what a few turns show, a hundred times over."""
     worst = []
     for turns in (10, 300):
-        problem = prepared(free_ring(), turns * TURN, accuracy)
+        ready = prepared(free_ring(), turns * TURN, accuracy)
         tolerance = tolerance_for("adams", accuracy, prepared(free_ring(), 300 * TURN, accuracy).memory)
-        true, estimate = followed(problem, "adams", tolerance, ("expm", {"tolerance": 1e-11}))
+        true, estimate = followed(ready, "adams", tolerance, ("expm", {"tolerance": 1e-11}))
         assert true / 1.5 < estimate < 1.5 * true
         worst.append(estimate)
     assert worst[1] > 10 * worst[0]
@@ -49,31 +49,31 @@ def test_errors_that_add_up_are_added_up(accuracy):
 
 def test_a_large_tilt_is_near_enough_to_its_linearisation():
     """Two thirds of the film gone once a turn."""
-    problem = prepared(fmr(own=0.3 * TILT_SCALE, fixed=0.6 * TILT_SCALE), 30 * TURN, 1e-5)
-    tolerance = 10 * tolerance_for("adams", 1e-5, problem.memory)
-    true, estimate = followed(problem, "adams", tolerance, ("dop853", {"tolerance": 1e-13}))
+    ready = prepared(fmr(own=0.3 * TILT_SCALE, fixed=0.6 * TILT_SCALE), 30 * TURN, 1e-5)
+    tolerance = 10 * tolerance_for("adams", 1e-5, ready.memory)
+    true, estimate = followed(ready, "adams", tolerance, ("dop853", {"tolerance": 1e-13}))
     assert true / 3 < estimate < 3 * true
 
 
 def test_what_is_kept_goes_on():
     """Half a run, kept as an archive keeps it, and the other half: as if there had been no pause."""
-    problem = prepared(fmr("linear"), 60 * TURN, 1e-4)
-    whole, first = GlobalErrorEstimate(problem), GlobalErrorEstimate(problem)
+    ready = prepared(fmr("linear"), 60 * TURN, 1e-4)
+    whole, first = GlobalErrorEstimate(ready.segment(0)), GlobalErrorEstimate(ready.segment(0))
     steps = []
 
     class Seen(GlobalErrorEstimate):
-        def take(self, t, ys, accelerations, begin, end):
-            steps.append((t, ys, accelerations, begin, end))
+        def accept(self, block):
+            steps.append(block)
 
-    solve(problem, "adams", 1e-4, Recorder(problem, TURN), errors=Seen(problem), tolerance=1e-5)
+    solve(ready, "adams", 1e-4, Recorder(TURN), errors=Seen(ready.segment(0)), tolerance=1e-5)
     for block in steps:
-        whole.take(*block)
+        whole.accept(block)
     assert len(steps) > 1
-    first.take(*steps[0])
-    later = GlobalErrorEstimate(problem)
-    later.restore(json.loads(json.dumps(first.kept())))
+    first.accept(steps[0])
+    later = GlobalErrorEstimate(ready.segment(0))
+    later.restore(json.loads(json.dumps(first.state())))
     for block in steps[1:]:
-        later.take(*block)
+        later.accept(block)
     assert later.worst == pytest.approx(whole.worst, rel=1e-12) and np.allclose(later.modal, whole.modal, rtol=1e-12)
 
 
