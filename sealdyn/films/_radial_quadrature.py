@@ -14,6 +14,9 @@ RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
 MOST_ANGLES = 3072
 ANGLES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1536, 3072)
 
+# Cosines and sines of the half circle.
+HALF_CIRCLE = tuple(function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin))
+
 # Block layout after the faces.
 CAVITATION, HAS_CAVITATION, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 5)
 RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
@@ -89,9 +92,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     share = 0.1 if f[HAS_CAVITATION] else 1.0
     f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, share * error)
     f[ANGLE_COUNTS:COSINES] = ANGLES
-    beta = 2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES
-    f[COSINES:SINES] = np.cos(beta)
-    f[SINES:] = np.sin(beta)
+    f[COSINES:SINES], f[SINES:] = HALF_CIRCLE
     return f
 
 
