@@ -27,9 +27,8 @@ CASES = {
 def found(request):
     name, key, overrides = CASES[request.param]
     scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
-    point = {"text": scenario.text, "name": name, "overrides": overrides, "key": key, "margin": 1e-3,
-             "tolerance": 1e-6, "set": {}, "floor": False}  # fmt: skip
-    return request.param, scenario, key, onset(point)
+    point = {"key": key, "margin": 1e-3, "tolerance": 1e-6, "set": {}, "floor": False}
+    return request.param, scenario, key, onset(scenario, point)
 
 
 def test_linear_onset_is_the_formula(found):
@@ -64,7 +63,7 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
     """From the touching orbit itself, so that no start-up transient decides."""
     _, scenario, key, answer = found
     for part, status in ((0.995, "ok"), (1.005, "collapsed")):
-        scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": '"steady"'}).scene
+        scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": "steady"}).scene
         shooter = Shooter(scene, 1e-7, tight=1e-10)
         problem = Model(scene, 40 * shooter.period, 1e-6)
         start = np.array(answer["start"])
