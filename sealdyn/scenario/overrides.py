@@ -36,9 +36,9 @@ def set_value(raw: dict, key: str, value: Any, name: str) -> None:
 
 
 def opened(table: Any) -> dict:
-    """Keys and values of a table that was read, as a file would have them: no key without a value, lists for tuples."""
+    """Keys and values of a table that was read, as a file would have them: no empty keys, lists for tuples."""
     held = {f.name: getattr(table, f.name) for f in fields(table)}
-    return {k: list(v) if isinstance(v, tuple) else v for k, v in held.items() if v is not None}
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in held.items() if v is not None and v != []}
 
 
 def _entry(place: Any, step: str, key: str, name: str) -> Any:

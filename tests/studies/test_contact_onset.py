@@ -83,7 +83,7 @@ class Tools:
     """Answers made up from what is asked, so that what belongs to which point shows; two of them fail."""
 
     def map(self, function, points, what="points"):
-        assert function is onset
+        assert function.func is onset
         return [self.row(p["set"].get("film.coning", 1.0), p["floor"]) for p in points]
 
     @staticmethod
