@@ -73,13 +73,13 @@ def override_of(key: str, value: Any) -> str:
     """The override "key=value" that sets a value: a string as it stands, anything else written as TOML."""
     if isinstance(value, str):
         return f"{key}={value}"
-    return f"{key}={toml_line(_plain(value))}"
+    return f"{key}={toml_line(as_written(value))}"
 
 
-def _plain(value: Any) -> Any:
-    """Dicts, lists and what they hold, of tables that were read."""
+def as_written(value: Any) -> Any:
+    """What a file would have for a value: dicts for tables that were read, lists for tuples."""
     if is_dataclass(value):
         value = opened(value)
     if isinstance(value, dict):
-        return {key: _plain(held) for key, held in value.items()}
-    return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
+        return {key: as_written(held) for key, held in value.items()}
+    return [as_written(entry) for entry in value] if isinstance(value, list | tuple) else value

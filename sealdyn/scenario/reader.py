@@ -126,7 +126,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told.
     Raises `ScenarioError`."""
     _refuse_odd_numbers(raw, name)
-    given = frozenset(_given(raw)) if given is None else given
+    given = frozenset(given_keys(raw)) if given is None else given
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     _check_run_and_study(raw, name)
@@ -208,12 +208,13 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
         raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
-def _given(tree: dict, key: str = "") -> list[str]:
+def given_keys(tree: dict, key: str = "") -> list[str]:
+    """Dotted keys of a scenario's tables, down to what is no table."""
     found = []
     for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
         path = f"{key}.{step}" if key else str(step)
         is_table = without_indices(path) in tables(ScenarioFile) and isinstance(value, (dict, list))
-        found += _given(value, path) if is_table and path != "study" else [path]
+        found += given_keys(value, path) if is_table and path != "study" else [path]
     return found
 
 

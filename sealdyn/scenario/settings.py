@@ -18,8 +18,8 @@ from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
 from .errors import ScenarioError
-from .overrides import opened, override_of, set_value, value_of
-from .reader import Scenario, read_tables
+from .overrides import as_written, opened, override_of, set_value, value_of
+from .reader import Scenario, given_keys, read_tables
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
@@ -96,9 +96,12 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     given = set(scenario.given)
     for (key, value), override in zip(values.items(), more, strict=True):
         name = f"{scenario.name} (--set {quoted(override)})"
-        set_value(tables, key, value_of(value) if isinstance(value, str) else value, name)
+        value = value_of(value) if isinstance(value, str) else value
+        set_value(tables, key, value, name)
         table, _, last = key.rpartition(".")
-        given = {*given, key} - {f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ())}
+        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
+        given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
+        given |= {*given_keys({key: as_written(value)})}
     found = read_tables(tables, scenario.name, frozenset(given))
     return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
 

@@ -103,7 +103,7 @@ def scenario(*overrides, text=TEXT):
 def test_values_are_those_of_overrides(values):
     changed = settings.with_values(scenario("run.turns=5"), values)
     written = scenario("run.turns=5", *(override_of(key, value) for key, value in values.items()))
-    assert (changed.scene, changed.run, changed.unused()) == (written.scene, written.run, written.unused())
+    assert (changed.scene, changed.run, changed.given) == (written.scene, written.run, written.given)
     assert changed.overrides == written.overrides and changed.text == TEXT
 
 
