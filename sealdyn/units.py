@@ -7,7 +7,7 @@ are revolutions per time, so a speed in Hz and a frequency in rad/s both come ou
 import difflib
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from decimal import Decimal, DecimalException
 from functools import cache
 from typing import Annotated, Any
@@ -122,7 +122,7 @@ WRITTEN |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"):
 
 def quoted(value: Any, most: int = 60) -> str:
     """What a file held, in a few printable words."""
-    if isinstance(value, dict):
+    if isinstance(value, dict) or is_dataclass(value):
         return "a table"
     if isinstance(value, (list, tuple)):
         return "a list"

@@ -1,8 +1,4 @@
-"""Scenes made of a scene: the FMS twin of an FMR seal and back, the scene held at one speed, and both compared.
-
-The twin carries the same ring on the other side: mass, inertias, support and own misalignment move over; the rigid
-partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film stays.
-"""
+"""Both arrangements of a seal, flexible rotor and flexible stator: their linear answers and the published formulas."""
 
 from dataclasses import replace
 
@@ -10,79 +6,14 @@ import numpy as np
 
 from .. import closed_form as cf
 from ..dynamics import modes
-from ..dynamics.equilibrium import initially
 from ..dynamics.model import Model
-from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.excitation import Housing, Shaft
-from ..scene.rings import ROTOR, STATOR, Rotor, Stator
-from ..scene.scene import Closing, Initial, Scene, SceneError
+from ..scene.excitation import Housing
+from ..scene.rings import ROTOR, STATOR
+from ..scene.scene import Initial, Scene
+from ..scene.variants import frozen_at_start, with_single_flexible_ring
 
 SEALS = ("fmr", "fms")
 FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fms_dynamic)}
-CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support",
-           "secondary_seal")  # fmt: skip
-
-
-def arrangement(scene: Scene) -> str:
-    """ "FMR", "FMS" or "FMSR": which rings float."""
-    if scene.stator.support and scene.rotor.support:
-        return "FMSR"
-    return "FMR" if scene.rotor.support else "FMS"
-
-
-def counterpart(scene: Scene) -> Scene:
-    """The same seal with the other ring flexible.
-
-    **Source** Green (1989), who compares the two arrangements of one seal this way.
-    Raises ImpossibleScene when both rings float: there is no rigid partner to change places with.
-    """
-    rotor, stator = scene.rotor, scene.stator
-    if rotor.support and stator.support:
-        raise SceneError("stator.support", "a support under both rings", "one flexible ring, to have a twin")
-    if rotor.support:
-        moved = {name: getattr(rotor, name) for name in CARRIED}
-        new_stator = Stator(**moved, misalignment_direction=rotor.misalignment_phase, speed=stator.speed)
-        new_rotor = Rotor(
-            runout=stator.misalignment, runout_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout
-        )
-    else:
-        moved = {name: getattr(stator, name) for name in CARRIED}
-        new_rotor = Rotor(**moved, misalignment_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout)
-        new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed)
-    start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
-    return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
-
-
-def with_single_flexible_ring(scene: Scene, wanted: str) -> Scene:
-    """The scene as FMR or FMS (`wanted`): itself, its twin, or, of two floating rings, the other one held rigid."""
-    present = arrangement(scene)
-    if present == wanted:
-        return scene
-    if present != "FMSR":
-        return counterpart(scene)
-    if wanted == "FMR":
-        return replace(scene, stator=replace(scene.stator, support=None))
-    runout = replace(scene.rotor, support=None, runout=scene.rotor.misalignment)
-    return replace(scene, rotor=runout)
-
-
-def frozen_at_start(scene: Scene, speed: float | None = None, clearance: float | None = None) -> Scene:
-    """The scene with every table at its initial value, and at another shaft speed (rad/s) or clearance (m) if given;
-    with a clearance, the closing force is what holds it."""
-    film = replace(
-        scene.film,
-        **{name: initially(getattr(scene.film, name)) for name in ("viscosity", "outer_pressure", "inner_pressure")},
-    )
-    closing = scene.closing
-    if clearance is not None:
-        film, closing = replace(film, clearance=clearance), Closing()
-    elif isinstance(closing.spring_force, PiecewiseLinear):
-        closing = replace(closing, spring_force=initially(closing.spring_force))
-    rotor, stator = scene.rotor, scene.stator
-    rotor = replace(rotor, misalignment=initially(rotor.misalignment), runout=initially(rotor.runout))
-    stator = replace(stator, misalignment=initially(stator.misalignment), speed=initially(stator.speed))
-    shaft = Shaft(initially(scene.shaft.speed) if speed is None else float(speed), scene.shaft.whirl)
-    return replace(scene, shaft=shaft, film=film, rotor=rotor, stator=stator, closing=closing)
 
 
 class Arrangement:
@@ -159,10 +90,10 @@ class Arrangement:
         return static, dynamic, static + dynamic
 
 
-def seals_of(scenario) -> dict[str, Arrangement]:
-    """Both arrangements of the scenario's seal, nothing imposed, clearance kept."""
-    clearance = Model(frozen_at_start(scenario.scene)).clearance
-    scene = frozen_at_start(scenario.scene, clearance=clearance)
+def seals_of(scene: Scene) -> dict[str, Arrangement]:
+    """Both arrangements of the scene's seal, nothing imposed, clearance kept."""
+    clearance = Model(frozen_at_start(scene)).clearance
+    scene = frozen_at_start(scene, clearance=clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[]))
     quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
     return {name: Arrangement(quiet, name) for name in SEALS}

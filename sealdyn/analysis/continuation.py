@@ -1,7 +1,6 @@
 """A rubbing seal followed over a key: each point from the last one's end, and what its motion is like there."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -11,8 +10,8 @@ from ..dynamics.run_state import RunState
 from ..numerics import time_series
 from ..numerics.lyapunov import two_trajectories
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scenario.reader import parse_scenario
 from ..scene.scene import Closing
+from ..scene.variants import part, tables_at_end, with_values
 from ..solvers.contract import Cause, Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
@@ -26,19 +25,6 @@ ORDERS = 5.0
 FINER, APART = 100.0, 1e-4
 
 
-def part(thing, key: str):
-    """The value of a scene at a dotted key."""
-    for name in key.split("."):
-        thing = getattr(thing, name)
-    return thing
-
-
-def with_part(thing, key: str, value):
-    """The scene with another value at a dotted key."""
-    name, _, rest = key.partition(".")
-    return replace(thing, **{name: with_part(getattr(thing, name), rest, value) if rest else value})
-
-
 def frozen_at_end(scene):
     """The scene with every table at its last value: what it drives to, closed by the law that its start decides."""
     film = scene.film
@@ -46,12 +32,8 @@ def frozen_at_end(scene):
         isinstance(p, PiecewiseLinear) for p in (film.inner_pressure, film.outer_pressure)
     ):
         law = Interface(scene, 1e-6).closing
-        scene = replace(scene, closing=Closing(law.balance_ratio, law.spring))
-    for table in ("shaft", "film", "rotor", "stator", "closing"):
-        owner = getattr(scene, table)
-        ends = {n: float(v.value[-1]) for n, v in vars(owner).items() if isinstance(v, PiecewiseLinear)}
-        scene = replace(scene, **{table: replace(owner, **ends)})
-    return scene
+        scene = with_values(scene, {"closing": Closing(law.balance_ratio, law.spring)})
+    return tables_at_end(scene)
 
 
 class FilmCollapsed(RuntimeError):
@@ -76,7 +58,7 @@ def ramp_to(scene, key, last, x, point):
         # Whole turns, so that the phases meet.
         span *= 2 * scene.shaft.speed / (scene.shaft.speed + last)
     for k, start in starts.items():
-        moving = with_part(moving, k, PiecewiseLinear((0.0, span), (start, part(scene, k))))
+        moving = with_values(moving, {k: PiecewiseLinear((0.0, span), (start, part(scene, k)))})
     run = RunState(Model(moving, point["accuracy"]), span)
     if x is not None:
         run.y0[: stroboscope.size] = x
@@ -86,12 +68,11 @@ def ramp_to(scene, key, last, x, point):
     return outcome.y[: stroboscope.size]
 
 
-def sweep_branch(point: dict) -> dict:
+def sweep_branch(scene, point: dict) -> dict:
     """The points of one direction, each from the end of the one before."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
-    scene, x, last, rows = frozen_at_end(scenario.scene), None, None, []
+    scene, x, last, rows = frozen_at_end(scene), None, None, []
     for value in point["values"]:
-        here = with_part(scene, point["key"], value)
+        here = with_values(scene, {point["key"]: value})
         row = {"value": value, "direction": point["direction"], "start": "continued" if x is not None else "aligned"}
         try:
             x, more = characterise(here, ramp_to(here, point["key"], last, x, point), point)

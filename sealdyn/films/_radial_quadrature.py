@@ -15,7 +15,9 @@ MOST_ANGLES = 3072
 ANGLES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1536, 3072)
 
 # Cosines and sines of the half circle.
-HALF_CIRCLE = tuple(function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin))
+HALF_CIRCLE = tuple(
+    function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin)
+)
 
 # Block layout after the faces.
 CAVITATION, HAS_CAVITATION, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 5)

@@ -2,6 +2,8 @@
 
 import math
 
+from ..toml_line import toml_line
+
 MICRO, MILLI = 1e6, 1e3
 
 
@@ -160,26 +162,14 @@ def resolved_lines(found: dict) -> list[str]:
 
 def _table_lines(name, value):
     if not isinstance(value, dict):
-        return [] if value is None or value == [] else [f"{name} = {_toml(value)}"]
+        return [] if value is None or value == [] else [f"{name} = {toml_line(value)}"]
     plain = {k: v for k, v in value.items() if not isinstance(v, dict) or set(v) == {"time", "value"}}
     out = [f"[{name}]"] if any(v is not None and v != [] for v in plain.values()) else []
-    out += [f"{k} = {_toml(v)}" for k, v in plain.items() if v is not None and v != []]
+    out += [f"{k} = {toml_line(v)}" for k, v in plain.items() if v is not None and v != []]
     for k, v in value.items():
         if k not in plain:
             out += _table_lines(f"{name}.{k}", v)
     return out
-
-
-def _toml(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f'"{value}"'
-    if isinstance(value, list | tuple):
-        return "[" + ", ".join(_toml(v) for v in value) + "]"
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{k} = {_toml(v)}" for k, v in value.items() if v is not None) + " }"
-    return repr(value)
 
 
 def archive_lines(path, info: dict) -> list[str]:

@@ -1,23 +1,13 @@
-"""Overrides of a scenario's keys, "rotor.runout=0.2 mrad", before it is read."""
+"""Values set at dotted keys before a scenario is read: overrides "rotor.runout=0.2 mrad", and values of any kind."""
 
 import tomllib
+from dataclasses import fields, is_dataclass
 from typing import Any
 
+from ..scene.variants import ALTERNATIVES
+from ..toml_line import toml_line
 from ..units import quoted
 from .errors import ScenarioError
-
-# Giving one of these with --set takes its alternatives in the file away.
-ALTERNATIVES = {
-    "turns": ("duration",),
-    "duration": ("turns",),
-    "samples": ("samples_per_turn",),
-    "samples_per_turn": ("samples",),
-    "displacement": ("acceleration",),
-    "acceleration": ("displacement",),
-    "radius": ("tilt_stiffness", "tilt_damping"),
-    "tilt_stiffness": ("radius",),
-    "tilt_damping": ("radius",),
-}
 
 
 def override_key(raw: dict, override: str, name: str) -> None:
@@ -26,34 +16,70 @@ def override_key(raw: dict, override: str, name: str) -> None:
     name = f"{name} (--set {quoted(override)})"
     if not key or not equals:
         raise ScenarioError(name, "", "no key=value", 'for example rotor.runout="0.2 mrad"')
+    set_value(raw, key, value_of(written), name)
+
+
+def set_value(raw: dict, key: str, value: Any, name: str) -> None:
+    """Set one dotted key of a scenario's tables and take its alternatives away; tables that were read before are
+    opened on the way to the key.  Raises ScenarioError, of the scenario `name`, where the way leads through none."""
     *path, last = key.split(".")
     place: Any = raw
     for step in path:
         place = _entry(place, step, key, name)
     if isinstance(place, list):
         _entry(place, last, key, name)
-        place[int(last)] = _value(written)
+        place[int(last)] = value
         return
     for alternative in ALTERNATIVES.get(last, ()):
         place.pop(alternative, None)
-    place[last] = _value(written)
+    place[last] = value
+
+
+def opened(table: Any) -> dict:
+    """Keys and values of a table that was read, as a file would have them: no empty keys, lists for tuples."""
+    held = {f.name: getattr(table, f.name) for f in fields(table)}
+    return {k: list(v) if isinstance(v, tuple) else v for k, v in held.items() if v is not None and v != []}
 
 
 def _entry(place: Any, step: str, key: str, name: str) -> Any:
     if isinstance(place, list):
         if not step.isdecimal() or len(step) > 6 or int(step) >= len(place):
             raise ScenarioError(name, key, f"entry {quoted(step)}", f"0 to {len(place) - 1}: the file has {len(place)}")
-        below = place[int(step)]
+        step = int(step)
+        below = place[step]
     else:
         below = place.setdefault(step, {})
-    if not isinstance(below, (dict, list)):
-        raise ScenarioError(name, key, f"{quoted(below)} at {quoted(step)}", "a table there")
+    if is_dataclass(below):
+        below = opened(below)
+    elif isinstance(below, (dict, list)):
+        below = below.copy()
+    else:
+        raise ScenarioError(name, key, f"{quoted(below)} at {quoted(str(step))}", "a table there")
+    # What was read is never changed: its copy is.
+    place[step] = below
     return below
 
 
-def _value(written: str) -> Any:
+def value_of(written: str) -> Any:
+    """What a string holds: TOML where it can be, else the string itself."""
     try:
         tree = tomllib.loads(f"value = {written}")
     except (ValueError, RecursionError):
         return written
     return tree["value"] if set(tree) == {"value"} else written
+
+
+def override_of(key: str, value: Any) -> str:
+    """The override "key=value" that sets a value: a string as it stands, anything else written as TOML."""
+    if isinstance(value, str):
+        return f"{key}={value}"
+    return f"{key}={toml_line(as_written(value))}"
+
+
+def as_written(value: Any) -> Any:
+    """What a file would have for a value: dicts for tables that were read, lists for tuples."""
+    if is_dataclass(value):
+        value = opened(value)
+    if isinstance(value, dict):
+        return {key: as_written(held) for key, held in value.items()}
+    return [as_written(entry) for entry in value] if isinstance(value, list | tuple) else value

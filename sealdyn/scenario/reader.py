@@ -73,17 +73,22 @@ class ScenarioFile(Scene):
 
 @dataclass(frozen=True)
 class Scenario:
-    """A scene with its run, and the file it came from.  `given`: dotted keys that the user wrote."""
+    """A scene with its run, and the file it came from.
+
+    `text` and `overrides` say where the scene came from; nobody reads them again.  `given`: dotted keys that the user
+    wrote.  `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.
+    """
 
     scene: Scene
     run: Run
-    study: dict
-    text: str
-    name: str
-    path: Path | None
-    overrides: list[str]
-    question: str
-    given: frozenset[str]
+    study: dict = field(default_factory=dict)
+    text: str = ""
+    name: str = "scene"
+    path: Path | None = None
+    overrides: list[str] = field(default_factory=list)
+    question: str = ""
+    given: frozenset[str] = frozenset()
+    reading: Any = None
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -119,8 +124,18 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
+    found = read_tables(raw, name)
+    name = name.removesuffix(".toml")
+    return Scenario(**found, text=text, name=name, path=path, overrides=list(overrides), question=_question(text))
+
+
+def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
+    """What a Scenario holds (`scene`, `run`, `study`, `given`, `reading`) of tables whose values are written as in a
+    file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told.
+    Raises `ScenarioError`."""
     _refuse_odd_numbers(raw, name)
-    given = frozenset(_given(raw))
+    given = frozenset(given_keys(raw)) if given is None else given
+    reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     _check_run_and_study(raw, name)
     try:
@@ -134,17 +149,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
-    return Scenario(
-        scene,
-        file.run,
-        file.study,
-        text,
-        name.removesuffix(".toml"),
-        path,
-        list(overrides),
-        _question(text),
-        given,
-    )
+    return {"scene": scene, "run": file.run, "study": file.study, "given": given, "reading": reading}
 
 
 def unused_keys(scenario: Scenario) -> list[str]:
@@ -204,35 +209,48 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
         raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
-def _given(tree: dict, key: str = "") -> list[str]:
+def given_keys(tree: dict, key: str = "") -> list[str]:
+    """Dotted keys of a scenario's tables, down to what is no table."""
     found = []
     for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
         path = f"{key}.{step}" if key else str(step)
         is_table = without_indices(path) in tables(ScenarioFile) and isinstance(value, (dict, list))
-        found += _given(value, path) if is_table and path != "study" else [path]
+        found += given_keys(value, path) if is_table and path != "study" else [path]
     return found
+
+
+def _total_indicator_reading(raw: dict) -> Any:
+    """`rotor.runout` as written where any of it is a total indicator reading, "20 um TIR"; else None."""
+    runout = _table(raw, "rotor").get("runout")
+    return runout if any(map(_reading, _entries(runout))) else None
 
 
 def _tilt_of_tir(raw: dict) -> None:
     """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o)."""
-    rotor, film = _table(raw, "rotor"), _table(raw, "film")
-    if "runout" not in rotor:
-        return
-    runout = rotor["runout"]
+    rotor, outer = _table(raw, "rotor"), _table(raw, "film").get("outer_radius")
+    runout = rotor.get("runout")
+    tilts = [_tilt(entry, outer) for entry in _entries(runout)]
+    if tilts and "runout" in rotor:
+        rotor["runout"] = {**runout, "value": tilts} if isinstance(runout, dict) else tilts[0]
+
+
+def _entries(runout: Any) -> list:
     entries = runout.get("value") if isinstance(runout, dict) else [runout]
-    if not isinstance(entries, list):
-        return
-    length = Length.__metadata__[0]
-    for n, entry in enumerate(entries):
-        reading = re.fullmatch(r"(.*\S)\s*\bTIR\s*", entry) if isinstance(entry, str) else None
-        if reading:
-            try:
-                entries[n] = length.read(reading[1]) / (2 * length.read(film.get("outer_radius")))
-            except (QuantityError, ZeroDivisionError):
-                # The reader below says what is wrong with either.
-                continue
-    if not isinstance(runout, dict):
-        rotor["runout"] = entries[0]
+    return entries if isinstance(entries, list) else []
+
+
+def _reading(entry: Any) -> re.Match | None:
+    return re.fullmatch(r"(.*\S)\s*\bTIR\s*", entry) if isinstance(entry, str) else None
+
+
+def _tilt(entry: Any, outer_radius: Any) -> Any:
+    """The tilt (rad) of a total indicator reading; anything else as it is."""
+    reading, length = _reading(entry), Length.__metadata__[0]
+    try:
+        return length.read(reading[1]) / (2 * length.read(outer_radius)) if reading else entry
+    except (QuantityError, ZeroDivisionError):
+        # The reader of the tables says what is wrong with either.
+        return entry
 
 
 def _table(raw: dict, key: str) -> dict:

@@ -12,9 +12,14 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from ..scene import variants
+from ..scene.checks import check_scene
+from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
+from ..units import quoted
 from .errors import ScenarioError
-from .reader import Scenario, parse_scenario
+from .overrides import as_written, opened, override_of, set_value, value_of
+from .reader import Scenario, given_keys, read_tables
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
@@ -77,39 +82,42 @@ def _plain(words: str):
 
 
 def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
-    """The scenario with other values at dotted keys (SI numbers or strings with units).  Raises ScenarioError."""
-    more = [f"{key}={_written(value)}" for key, value in values.items()]
-    return parse_scenario(scenario.text, scenario.name, [*scenario.overrides, *more], scenario.path)
+    """The scenario with other values at dotted keys, read and checked like a file's; its text is not read again.
 
-
-SMOOTH = ("contact", "stator.secondary_seal", "rotor.secondary_seal")
-
-
-def _not_smooth(scene) -> list[str]:
-    tables = (scene.contact, scene.stator.secondary_seal, scene.rotor.secondary_seal)
-    return [name for name, table in zip(SMOOTH, tables, strict=True) if table]
+    `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
+    Raises ScenarioError.
+    """
+    values = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+    more = [override_of(key, value) for key, value in values.items()]
+    tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
+    tables |= {"run": opened(scenario.run), "study": scenario.study}
+    if scenario.reading is not None:
+        tables["rotor"]["runout"] = scenario.reading
+    given = set(scenario.given)
+    for (key, value), override in zip(values.items(), more, strict=True):
+        name = f"{scenario.name} (--set {quoted(override)})"
+        value = value_of(value) if isinstance(value, str) else value
+        set_value(tables, key, value, name)
+        table, _, last = key.rpartition(".")
+        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
+        given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
+        given |= {*given_keys({key: as_written(value)})}
+    found = read_tables(tables, scenario.name, frozenset(given))
+    return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
 
 
 def without_contact(scenario: Scenario) -> tuple[Scenario, list[str]]:
-    """The scenario without its contact and secondary-seal tables, for questions about the film alone, and the names of
-    the tables that were left out.  Raises ScenarioError if one is not written as a table."""
-    names = _not_smooth(scenario.scene)
+    """The scenario without contact and secondary seals, for questions about the film alone, and the names of the
+    tables that were left out.  Raises ScenarioError if no scene can be so."""
+    names = variants.not_smooth(scenario.scene)
     if not names:
         return scenario, []
-    text = scenario.text
-    for name in names:
-        text = re.sub(rf"(?ms)^[ \t]*\[\s*{re.escape(name)}\s*\].*?(?=^[ \t]*\[|\Z)", "", text)
-    overrides = [words for words in scenario.overrides if not words.strip().startswith(tuple(f"{n}." for n in names))]
-    film_alone = parse_scenario(text, scenario.name, overrides, scenario.path)
-    if _not_smooth(film_alone.scene):
-        raise ScenarioError(scenario.name, names[0], "keys outside a table", f"a table headed [{names[0]}]")
-    return film_alone, names
-
-
-def _written(value: Any) -> str:
-    if isinstance(value, bool):
-        return str(value).lower()
-    return repr(float(value)) if isinstance(value, int | float) else str(value)
+    scene = variants.without_contact(scenario.scene)
+    try:
+        check_scene(scene, scenario.run)
+    except SceneError as error:
+        raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
+    return dataclasses.replace(scenario, scene=scene), names
 
 
 def axis(words: str, name: str, where: str) -> dict:

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.linalg import eig
 from scipy.optimize import brentq, linear_sum_assignment
 
-from ..analysis.arrangements import frozen_at_start
 from ..dynamics.model import Model
 from ..dynamics.modes import NEUTRAL
+from ..scene.variants import frozen_at_start
 from ..units import Speed
 
 units = {"speed": "rad/s", "modes/frequency": "rad/s"}

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from ..analysis.arrangements import frozen_at_start
 from ..dynamics.model import Model
 from ..dynamics.modes import linearise
 from ..faces.geometry import (
@@ -28,6 +27,7 @@ from ..faces.geometry import (
 )
 from ..scene.film import aligned_gaps
 from ..scene.scene import SceneError
+from ..scene.variants import frozen_at_start
 from ..units import Angle, Length, Speed
 
 # Rows and columns of the matrices.

@@ -1,6 +1,7 @@
 """Contact onset: the forcing at which the steady film first touches, by continuation of the periodic orbit."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -9,8 +10,8 @@ from ..analysis.shooting import NoOrbit, Shooter
 from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..scenario.reader import parse_scenario
 from ..scenario.settings import with_values
+from ..scene import variants
 
 units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
 
@@ -34,12 +35,12 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
     key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
-    base = {"text": scenario.text, "name": scenario.name, "overrides": scenario.overrides, "key": key,
-            "margin": settings.margin, "tolerance": settings.tolerance, "set": {}, "floor": False}  # fmt: skip
+    base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance}
     # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
     floors = [False, True] if settings.floor else [False]
     sets = [{}, *({settings.over: value} for value in settings.values if settings.over)]
-    rows = tools.map(onset, [{**base, "set": s, "floor": f} for s in sets for f in floors], "onset")
+    points = [{**base, "set": s, "floor": f} for s in sets for f in floors]
+    rows = tools.map(partial(onset, scenario), points, "onset")
     plain, floored = rows[:: len(floors)], rows[1::2] if settings.floor else [None] * len(sets)
     curve = [
         {"value": value, **row} | ({"floored": brief(below)} if below else {})
@@ -57,17 +58,14 @@ def brief(row: dict) -> dict:
     return {k: row[k] for k in ("nonlinear", "ratio", "cavitation_pressure", "failed") if k in row}
 
 
-def onset(point: dict) -> dict:
+def onset(scenario, point: dict) -> dict:
     """Linear and nonlinear onset of one scenario; `path` the orbits on the way."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
-    for key, value in point["set"].items():
-        scenario = with_values(scenario, {key: value})
+    scenario = with_values(scenario, point["set"])
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
     key = point["key"]
 
     def scene(value):
-        made = with_values(scenario, {key: value, "film.floor": floor, "run.start": '"steady"'}).scene
-        return made
+        return with_values(scenario, {key: value, "film.floor": floor, "run.start": "steady"}).scene
 
     formula, touching = linear_onset(scene, key)
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7))
@@ -97,17 +95,15 @@ def onset(point: dict) -> dict:
     if point["floor"]:
         film = scenario.scene.film
         lowest = min(float(film.inner_pressure), float(film.outer_pressure))
-        with_floor = Follower(
-            lambda v: _floored(scene(v), lowest), point["margin"], 1e-4, follower.monodromy, follower.start
-        )
+
+        def floored(value):
+            return variants.with_values(scene(value), {"film.cavitation_pressure": lowest})
+
+        with_floor = Follower(floored, point["margin"], 1e-4, follower.monodromy, follower.start)
         result["nonlinear"] = with_floor.close(value, 1e-4)
         result["ratio"] = result["nonlinear"] / formula
         result["cavitation_pressure"] = lowest
     return result
-
-
-def _floored(scene, pressure):
-    return replace(scene, film=replace(scene.film, cavitation_pressure=pressure))
 
 
 def linear_onset(scene, key: str) -> tuple[float, float]:

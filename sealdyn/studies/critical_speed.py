@@ -5,6 +5,7 @@ Beyond: the family of circular whirls that leaves the threshold (whirl.py), and 
 """
 
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -22,7 +23,6 @@ from ..analysis.whirl import (
 )
 from ..dynamics import modes
 from ..dynamics.equilibrium import initially
-from ..scenario.reader import parse_scenario
 from ..scene.rings import ROTOR, STATOR
 
 units = {
@@ -57,12 +57,11 @@ def run(scenario, settings, tools) -> dict:
     pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
     eigenvalue = modes.critical_speed(lambda w: model.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
     formula, why = by_formula(model)
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
-    base |= {"method": "ida" if model.unknowns.massless else settings.method, "accuracy": settings.accuracy}
-    base |= {"turns": settings.turns}
+    method = "ida" if model.unknowns.massless else settings.method
+    how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
-    answer |= in_time(model, eigenvalue, base, tools, pace)
-    answer["nonlinear"] = beyond(model, scene, eigenvalue, base, settings, tools)
+    answer |= in_time(scene, eigenvalue, how, tools, pace)
+    answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     return {**answer, "verdict": sentences(answer)}
 
 
@@ -92,17 +91,16 @@ def by_formula(model) -> tuple[float | None, str]:
     return speed, "" if speed is not None else f"{kind.upper()}: stable at every speed"
 
 
-def growth(point: dict) -> dict:
+def growth(scene, point: dict) -> dict:
     """Growth rate of a small disturbance at one speed, by eigenvalues and in the time domain."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
     return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
 
 
-def in_time(model, eigenvalue, base, tools, pace) -> dict:
+def in_time(scene, eigenvalue, how, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
     if eigenvalue is None:
         speeds = [factor * pace for factor in (0.3, 1.0, 3.0, 10.0)]
-        rows = tools.map(growth, [{**base, "speed": w} for w in speeds], "growth")
+        rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
         signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
         said = "a disturbance grows at some of the speeds tried"
         if len(signs) == 1:
@@ -111,7 +109,7 @@ def in_time(model, eigenvalue, base, tools, pace) -> dict:
             said = "neither growth nor decay beyond the method's own"
         return {"time_domain": {"value": None, "uncertainty": None, "reason": said}, "growth": columns(rows, speeds)}
     speeds = [share * eigenvalue for share in SHARES]
-    rows = tools.map(growth, [{**base, "speed": w} for w in speeds], "growth")
+    rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
     if around is None:
         reason = "growth does not change sign within 5 % of the eigenvalues' threshold"
@@ -119,13 +117,13 @@ def in_time(model, eigenvalue, base, tools, pace) -> dict:
     # Two more on either side of where the line between them crosses zero: a bracket of a few hundred-thousandths.
     crossing, _ = line_crossing(*around)
     near = [crossing * (1 - NARROW), crossing * (1 + NARROW)]
-    closer = tools.map(growth, [{**base, "speed": w} for w in near], "growth")
+    closer = tools.map(partial(growth, scene), [{**how, "speed": w} for w in near], "growth")
     last = between(closer, near) or around
     value, uncertainty = line_crossing(*last)
     order = np.argsort([*speeds, *near])
     speeds, rows = [[*speeds, *near][i] for i in order], [[*rows, *closer][i] for i in order]
     bracket = [last[0][0], last[1][0]]
-    found = {"value": value, "uncertainty": uncertainty, "bracket": bracket, "method": base["method"]}
+    found = {"value": value, "uncertainty": uncertainty, "bracket": bracket, "method": how["method"]}
     ends = [row for _, row in last]
     found["accuracy"] = min(row["accuracy"] for row in ends)
     found["numerical_damping"] = max(row["numerical_damping"] for row in ends)
@@ -159,19 +157,17 @@ def columns(rows, speeds) -> dict:
 # --- beyond linear ------------------------------------------------------------------------------------
 
 
-def tipping(point: dict) -> dict:
+def tipping(scene, point: dict) -> dict:
     """The disturbance that tips the seal at one speed, and the whirl it passes on the way."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
     return tipping_disturbance(scene, point["speed"])
 
 
-def fate(point: dict) -> dict:
+def fate(scene, point: dict) -> dict:
     """What becomes of a small or large whirl at one speed."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
     return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
 
 
-def beyond(model, scene, threshold, base, settings, tools) -> dict | None:
+def beyond(model, scene, threshold, settings, tools) -> dict | None:
     """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
     if not settings.beyond:
         return None
@@ -188,19 +184,18 @@ def beyond(model, scene, threshold, base, settings, tools) -> dict | None:
     ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
     found["contact_speed"] = family[-1].speed if ends_in_contact else None
     low, high = min(w.speed for w in family), max(w.speed for w in family)
-    own = {k: base[k] for k in ("text", "name", "overrides")}
     inner = ((np.arange(settings.speeds) + 0.5) / settings.speeds).tolist()
     below = [threshold - (threshold - low) * x for x in inner] if low < 0.9995 * threshold else []
-    rows = tools.map(tipping, [{**own, "speed": w} for w in below], "tipping")
+    rows = tools.map(partial(tipping, scene), [{"speed": w} for w in below], "tipping")
     found["tipping"] = [compared({"speed": w, **row}, family, False) for w, row in zip(below, rows, strict=True)]
     above = [threshold + (high - threshold) * x for x in inner] if high > 1.0005 * threshold else []
     outside = [min(low - 0.005 * threshold, 0.998 * threshold), max(high + 0.005 * threshold, 1.002 * threshold)]
     points = []
     for w in sorted([*below, *above, *outside]):
-        points += [{**own, "speed": w, "start": "small", "shape": None, "frequency": None}]
-        points += [{**own, "speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
+        points += [{"speed": w, "start": "small", "shape": None, "frequency": None}]
+        points += [{"speed": w, "start": "large", "shape": (0.97 * family[-1].q).tolist(),
                     "frequency": family[-1].frequency}]  # fmt: skip
-    rows = tools.map(fate, points, "fate")
+    rows = tools.map(partial(fate, scene), points, "fate")
     found["directions"] = [
         compared({"speed": p["speed"], "start": p["start"], **row}, family, True)
         for p, row in zip(points, rows, strict=True)

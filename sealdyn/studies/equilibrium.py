@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis.arrangements import frozen_at_start
 from ..dynamics.equilibrium import ClosingForce, closed_below, equilibria, initially, rise, settle
 from ..films import film_module
 from ..scene.scene import SceneError
+from ..scene.variants import frozen_at_start
 from ..units import Length
 
 units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/stiffness": "N/m"}

@@ -6,16 +6,17 @@ A ring that precesses freely without damping keeps its energy and angular moment
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from ..analysis.whirl import free_model, growth_rate, unforced
+from ..analysis.whirl import free_model, growth_rate
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..scenario.reader import parse_scenario
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing, SceneError
+from ..scene.variants import unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
 from .failures.cases import neutral_stability as exhibit
@@ -27,6 +28,8 @@ EDGE, STUDY_TURNS, STUDY_ACCURACY, MARGIN = 2e-5, 200, 1e-7, 100.0
 MOST_CALLS = 600_000
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
 units = {"resolved/rate": "1/s", "resolved/uncertainty": "1/s", "resolved/numerical_damping": "1/s"}
+
+LINEAR = {"film.model": "linear"}
 
 
 @dataclass(frozen=True)
@@ -43,8 +46,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Numerical damping and drift of every method, and whether the default one is fine enough."""
-    linear = replace(scenario.scene, film=replace(scenario.scene.film, model="linear"))
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    linear = with_values(scenario.scene, LINEAR)
     speed, why = None, ""
     try:
         speed = exhibit.threshold(linear)
@@ -55,18 +57,18 @@ def run(scenario, settings, tools) -> dict:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
     damping, resolved = [], None
     if speed:
-        points = [{**base, "speed": speed, "turns": settings.turns, "method": m, "accuracy": a}
+        points = [{"speed": speed, "turns": settings.turns, "method": m, "accuracy": a}
                   for m in METHODS for a in settings.accuracies]  # fmt: skip
-        damping = joined(points, tools.map(damped, points, "damping"))
-        (resolved,) = tools.map(resolution, [{**base, "speed": speed}], "resolution")
+        damping = joined(points, tools.map(partial(damped, scenario.scene), points, "damping"))
+        (resolved,) = tools.map(partial(resolution, scenario.scene), [{"speed": speed}], "resolution")
     drift, drift_why = [], ""
     try:
         free_ring(scenario.scene)
-        points = [{**base, "turns": settings.turns, "method": m, "accuracy": a}
+        points = [{"turns": settings.turns, "method": m, "accuracy": a}
                   for m in METHODS for a in settings.accuracies]  # fmt: skip
         if settings.long:
-            points.append({**base, "turns": settings.long, "method": DEFAULT, "accuracy": 1e-6})
-        drift = joined(points, tools.map(drifted, points, "drift"))
+            points.append({"turns": settings.long, "method": DEFAULT, "accuracy": 1e-6})
+        drift = joined(points, tools.map(partial(drifted, scenario.scene), points, "drift"))
         if all("failed" in row for row in drift):
             drift, drift_why = [], drift[0]["failed"]
     except SceneError as error:
@@ -86,19 +88,13 @@ def tolerance(method, accuracy, memory) -> float:
     return tolerance_for("dop853" if method == "rk45" else method, accuracy, memory)
 
 
-def scene_of(point):
-    """The point's scene, and the same with a linear film."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
-    return scene, replace(scene, film=replace(scene.film, model="linear"))
-
-
 # --- at the threshold ------------------------------------------------------------------------------------
 
 
-def damped(point: dict) -> dict:
+def damped(scene, point: dict) -> dict:
     """Growth per turn that a method gives the neutral whirl, and right-hand sides per turn."""
     speed, turns, method = point["speed"], point["turns"], point["method"]
-    run, whirling = exhibit.neutral_run(scene_of(point)[1], speed, turns)
+    run, whirling = exhibit.neutral_run(with_values(scene, LINEAR), speed, turns)
     held = tolerance(method, point["accuracy"], run.memory)
     try:
         rate, calls = exhibit.growth(run, whirling, method, held, MOST_CALLS)
@@ -107,10 +103,10 @@ def damped(point: dict) -> dict:
     return {"growth": rate * 2 * math.pi / speed, "cost": calls / turns, "reason": None, "tolerance": held}
 
 
-def resolution(point: dict) -> dict:
+def resolution(scene, point: dict) -> dict:
     """What the critical-speed study resolves at the edge of its bracket, and the default method's own growth at the
     threshold under the same accuracy and turns (1/s)."""
-    speed, (_, linear) = point["speed"], scene_of(point)
+    speed, linear = point["speed"], with_values(scene, LINEAR)
     found = growth_rate(linear, speed * (1 + EDGE), STUDY_TURNS, DEFAULT, STUDY_ACCURACY)
     run, whirling = exhibit.neutral_run(linear, speed, STUDY_TURNS, found["accuracy"])
     own, _ = exhibit.growth(run, whirling, DEFAULT, tolerance(DEFAULT, found["accuracy"], run.memory))
@@ -144,12 +140,12 @@ def free_ring(scene):
     return replace(still, film=film, closing=Closing(), contact=None, **parts), name
 
 
-def drifted(point: dict) -> dict:
+def drifted(scene, point: dict) -> dict:
     """Drift per turn of energy and angular momentum, relative, over the point's turns, and right-hand sides per turn.
 
     The ring carries a forward and a backward circle of 0.15 and 0.05 of the clearance at the outer radius.
     """
-    scene, name = free_ring(scene_of(point)[0])
+    scene, name = free_ring(scene)
     turn = 2 * math.pi / abs(scene.shaft.speed)
     run = RunState(Model(scene, point["accuracy"]), point["turns"] * turn)
     ring, side = getattr(scene, name), ROTOR if name == "rotor" else STATOR

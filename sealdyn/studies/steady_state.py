@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -10,7 +11,6 @@ from ..dynamics import modes
 from ..dynamics.equilibrium import initially
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..scenario.reader import parse_scenario
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
 from ..solvers.contract import Status
@@ -109,19 +109,16 @@ def _verdict(answer) -> list[str]:
 
 def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
     points = [
-        {"text": scenario.text, "name": scenario.name, "overrides": scenario.overrides, "part": part,
-         "speed": part * critical, "turns": settings.turns, "longest": settings.longest}
+        {"part": part, "speed": part * critical, "turns": settings.turns, "longest": settings.longest}
         for part in settings.approach
-    ]  # fmt: skip
-    return tools.map(cost, points, "cost")
+    ]
+    return tools.map(partial(cost, scenario), points, "cost")
 
 
-def cost(point: dict) -> dict:
+def cost(scenario, point: dict) -> dict:
     """Periods of integration that shooting needs at one speed, and periods until a transient from rest repeats
     itself within the accuracy (None: not within `longest`)."""
-    scenario = with_values(
-        parse_scenario(point["text"], point["name"], point["overrides"]), {"shaft.speed": point["speed"]}
-    )
+    scenario = with_values(scenario, {"shaft.speed": point["speed"]})
     shooter = Shooter(scenario.scene, scenario.run.accuracy, point["turns"])
     row = {"part": point["part"], "speed": point["speed"]}
     orbit = shooter.find()

@@ -4,9 +4,9 @@ import contextlib
 import difflib
 import itertools
 from dataclasses import dataclass
+from functools import partial
 
 from ..scenario.errors import ScenarioError
-from ..scenario.reader import parse_scenario
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..simulation.simulate import prepare_run, simulate_in_memory
@@ -55,18 +55,16 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
     grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
     make_ready(scenario, grid)
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "outputs": outputs}
-    found = tools.map(one_run, [{**base, "set": values} for values in grid], "runs")
+    found = tools.map(partial(one_run, scenario), [{"outputs": outputs, "set": values} for values in grid], "runs")
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
     answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
     return {**answer, "rows": rows, "verdict": sentences(keys, outputs, rows)}
 
 
-def one_run(point: dict) -> dict:
+def one_run(scenario, point: dict) -> dict:
     """The outputs of one point's run, its status, and its message when it did not end well."""
-    scenario = with_values(parse_scenario(point["text"], point["name"], point["overrides"]), point["set"])
-    summary = simulate_in_memory(scenario)
+    summary = simulate_in_memory(with_values(scenario, point["set"]))
     row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
     return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
 

@@ -9,6 +9,7 @@ Three roads: formula, harmonic balance, and the equations of motion in time.
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 from typing import Literal
 
@@ -16,15 +17,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .. import closed_form as cf
-from ..analysis.arrangements import SEALS, Arrangement, arrangement, frozen_at_start, seals_of
+from ..analysis.arrangements import SEALS, Arrangement, seals_of
 from ..dynamics import modes
 from ..dynamics.extrema import MOST
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
-from ..scenario.reader import parse_scenario
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import Scene
+from ..scene.variants import arrangement, frozen_at_start
 from ..simulation.method_selection import choose_method
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
@@ -71,7 +72,7 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Transmissibilities of both arrangements by three roads, the speeds at which they cross, and the table."""
-    seals = seals_of(scenario)
+    seals = seals_of(scenario.scene)
     own_speed = abs(frozen_at_start(scenario.scene).shaft.speed)
     top = settings.speed_to if settings.speed_to is not None else 3 * own_speed or 3000.0
     speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
@@ -164,21 +165,19 @@ def _in_time(scenario, settings, speeds, own_speed, tools) -> list[dict]:
         return []
     chosen = np.linspace(speeds[0], speeds[-1], settings.time_points + (speeds[0] == 0))
     chosen = sorted({float(w) for w in [*chosen, own_speed] if w != 0})
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
     points = [
-        {**base, "seal": seal, "speed": w, "accuracy": settings.accuracy, "longest": settings.longest}
+        {"seal": seal, "speed": w, "accuracy": settings.accuracy, "longest": settings.longest}
         for w in chosen
         for seal in SEALS
     ]
-    rows = tools.map(measured, points, "time domain")
+    rows = tools.map(partial(measured, scenario.scene), points, "time domain")
     return [{"seal": p["seal"], "speed": p["speed"], **row} for p, row in zip(points, rows, strict=True)]
 
 
-def measured(point: dict) -> dict:
+def measured(scene, point: dict) -> dict:
     """Static, dynamic and total of one arrangement at one speed, from a run on the linear film in the film's own
     coefficients; `error`: the difference to a run at a hundred times coarser accuracy."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
-    seal = seals_of(scenario)[point["seal"]]
+    seal = seals_of(scene)[point["seal"]]
     decay = -seal.growth(point["speed"])
     if point["speed"] == seal.stator_speed:
         raise ValueError("the stator turns with the shaft: static and dynamic are one")

@@ -27,9 +27,8 @@ CASES = {
 def found(request):
     name, key, overrides = CASES[request.param]
     scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
-    point = {"text": scenario.text, "name": name, "overrides": overrides, "key": key, "margin": 1e-3,
-             "tolerance": 1e-5, "set": {}, "floor": False}  # fmt: skip
-    return request.param, scenario, key, onset(point)
+    point = {"key": key, "margin": 1e-3, "tolerance": 1e-5, "set": {}, "floor": False}
+    return request.param, scenario, key, onset(scenario, point)
 
 
 def test_linear_onset_is_the_formula(found):
@@ -64,7 +63,7 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
     """From the touching orbit itself, so that no start-up transient decides."""
     _, scenario, key, answer = found
     for part, status in ((0.995, "ok"), (1.005, "collapsed")):
-        scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": '"steady"'}).scene
+        scene = with_values(scenario, {key: part * answer["nonlinear"], "run.start": "steady"}).scene
         shooter = Shooter(scene, 1e-6, tight=1e-9)
         ready = started(scene, 40 * shooter.period, 1e-6)
         start = np.array(answer["start"])
@@ -84,7 +83,7 @@ class Tools:
     """Answers made up from what is asked, so that what belongs to which point shows; two of them fail."""
 
     def map(self, function, points, what="points"):
-        assert function is onset
+        assert function.func is onset
         return [self.row(p["set"].get("film.coning", 1.0), p["floor"]) for p in points]
 
     @staticmethod

@@ -17,6 +17,7 @@ from sealdyn.analysis.whirl.rubbing import settles
 from sealdyn.numerics import time_series
 from sealdyn.report.charts import study_rub
 from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scene.variants import with_values
 from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -57,7 +58,7 @@ def test_exponent_of_a_periodic_rub_is_its_floquet_multiplier(reference):
     two trajectories (Adams) grow by."""
     answer, _ = reference
     row = [row for row in answer["rows"] if row["direction"] == "up"][-1]
-    scene = continuation.with_part(continuation.frozen_at_end(read("rub").scene), "rotor.runout", row["value"])
+    scene = with_values(continuation.frozen_at_end(read("rub").scene), {"rotor.runout": row["value"]})
     orbit = Shooter(scene, 1e-6, tight=1e-9).find(np.array(row["end"]), target=1e-6)
     assert row["exponent"] == pytest.approx(math.log(np.abs(orbit.multipliers).max()), abs=row["uncertainty"] + 0.1)
     assert orbit.extremes["h_min"]["value"] == pytest.approx(min(row["h_min"]), abs=2e-9)
@@ -88,7 +89,7 @@ def test_a_seal_without_contact_table_is_refused(tmp_path):
 def test_impulse_share_and_film_do_not_depend_on_sampling():
     """Impulse integrated with the motion against samples of the force; located contacts against the sampled film."""
     scene = continuation.frozen_at_end(read("rub_chaotic").scene)
-    scene = continuation.with_part(scene, "rotor.runout", 0.33e-3)
+    scene = with_values(scene, {"rotor.runout": 0.33e-3})
     stroboscope = PeriodMap(scene, 1e-7)
     x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
     turns = stroboscope.run(x, 24)
@@ -102,7 +103,7 @@ def test_impulse_share_and_film_do_not_depend_on_sampling():
 
 
 def test_tangents_are_differences_of_the_map():
-    scene = continuation.with_part(continuation.frozen_at_end(read("rub_chaotic").scene), "rotor.runout", 0.33e-3)
+    scene = with_values(continuation.frozen_at_end(read("rub_chaotic").scene), {"rotor.runout": 0.33e-3})
     x = continuation.ramp_to(scene, "rotor.runout", None, None, {"ramp": 15, "accuracy": 1e-6})
     stroboscope, q = PeriodMap(scene, 1e-8, "dop853"), np.eye(6)[:, [1, 5]]
     samples = []

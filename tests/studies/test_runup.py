@@ -151,11 +151,11 @@ def test_no_finished_run_is_repeated(tmp_path, monkeypatch):
     scenario = read("runup_past_threshold", "film.model=linear")
     ran, whole = [], runup.passage
 
-    def counted(point):
+    def counted(scenario, point):
         ran.append(point["rate"])
         if len(ran) == 2:
             raise KeyboardInterrupt
-        return whole(point)
+        return whole(scenario, point)
 
     monkeypatch.setattr(runup, "passage", counted)
     with pytest.raises(KeyboardInterrupt):

@@ -7,11 +7,11 @@ import pytest
 from in_process import InProcess
 
 from sealdyn import read_scenario
-from sealdyn.analysis.arrangements import frozen_at_start
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
+from sealdyn.scene.variants import frozen_at_start
 from sealdyn.studies.stability import study as stability
 from sealdyn.studies.stability.grid import Grid, growth_rates
 from sealdyn.studies.stability.study import Settings
@@ -27,7 +27,7 @@ def one_by_one(scenario, values) -> tuple[float, float]:
         for ring in ("rotor", "stator"):
             if getattr(scenario.scene, ring).support:
                 values[f"{ring}.polar_inertia"] = getattr(scenario.scene, ring).transverse_inertia / c
-    changed = with_values(scenario, {**values, "run.start": '"steady"'})
+    changed = with_values(scenario, {**values, "run.start": "steady"})
     modes = Model(frozen_at_start(changed.scene)).linear_scene().modes()
     return modes[0].value.real, max(m.value.real for m in modes if m.kind == "tilt")
 

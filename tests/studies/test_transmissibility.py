@@ -10,10 +10,10 @@ from scenes import started
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
-from sealdyn.analysis.arrangements import counterpart, frozen_at_start, with_single_flexible_ring
 from sealdyn.closed_form import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scene.variants import counterpart, frozen_at_start, with_single_flexible_ring
 from sealdyn.studies import transmissibility
 from sealdyn.studies.transmissibility import Settings
 

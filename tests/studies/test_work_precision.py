@@ -143,8 +143,7 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
 def test_judges_agree_where_a_ring_sticks():
     """hang_up: stuck and slipping once a turn; leakage follows the axial speed up to each capture."""
     asked = scenario("hang_up", "run.turns=3")
-    point = {"text": asked.text, "name": asked.name, "overrides": list(asked.overrides), "samples": 200, "limit": 60.0}
-    exact, band, judges = study.reference(json.dumps(point))
+    exact, band, judges = study.reference(asked, 200, 60.0)
     assert exact.status == "ok" and judges["second"] and exact.impulse > 0
     assert max(band.values()) < 3e-7
     # A judged method, whose steps are its own, agrees as well.

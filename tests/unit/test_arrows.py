@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Rooms, lowest first: a room may import only rooms of the lines above its own.
 ORDER = (
-    ("numerics", "closed_form", "archive", "kernel_cache", "unit_names"),
+    ("numerics", "closed_form", "archive", "kernel_cache", "toml_line", "unit_names"),
     ("units", "solvers", "report"),
     ("scene",),
     ("faces",),
@@ -28,6 +28,7 @@ ONLY_IN = {
     "sksundae": ("solvers", "studies/failures/cases"),
     "h5py": ("archive",),
     "tomllib": ("scenario",),
+    "tomlkit": ("toml_line.py",),
     "pint": ("unit_names.py",),
     "matplotlib": ("report/charts",),
     "typer": ("cli.py",),
@@ -82,6 +83,13 @@ def test_each_outside_library_has_one_room(path):
     for module, _ in imports(path):
         allowed = ONLY_IN.get(module.split(".")[0])
         assert allowed is None or place.startswith(allowed), f"{module} is imported in {place}"
+
+
+def test_text_is_read_once():
+    """Scenes are handed on, not text: whoever parses it stands at the door."""
+    for path in FILES:
+        at_the_door = room(path) in ("scenario", "cli")
+        assert at_the_door or "parse_scenario" not in path.read_text(), path
 
 
 def test_no_film_imports_another():

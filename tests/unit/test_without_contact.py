@@ -21,11 +21,18 @@ def test_tables_are_left_out_and_the_rest_stays():
     assert without_contact(film) == (film, [])
 
 
-def test_keys_outside_a_table_are_refused_by_name():
-    whole = parse_scenario('contact.roughness = "0.1 um"\ncontact.compressive_strength = 3e8\n' + TEXT, "x")
-    with pytest.raises(ScenarioError) as refused:
-        without_contact(whole)
-    assert "contact" in refused.value.key
+def test_however_the_tables_are_written():
+    dotted = 'contact.roughness = "0.1 um"\ncontact.compressive_strength = 3e8\n'
+    film, names = without_contact(parse_scenario(dotted + TEXT, "x"))
+    assert names == ["contact"] and film.scene == parse_scenario(TEXT, "x").scene
+
+
+def test_faces_that_touch_at_the_start_are_none_without_contact():
+    """10 um less 0.322 mrad times 32 mm: closed by 0.3 um, which rough faces (2 um) carry and a film alone does not."""
+    contact = '[contact]\nroughness = "2 um"\ncompressive_strength = "300 MPa"\n'
+    touching = parse_scenario(TEXT + contact, "x", ["stator.misalignment=0", "rotor.runout=0.322 mrad"])
+    with pytest.raises(ScenarioError, match="film closed at the start"):
+        without_contact(touching)
 
 
 def test_the_verdict_says_what_was_left_out(tmp_path):

@@ -1,7 +1,7 @@
 """Whirl of the aligned seal free of forcing: as a relative equilibrium (rotating_wave.py), and in the time domain
 (time_domain.py)."""
 
-from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped, unforced
+from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped
 from .time_domain import bounded_or_not, followed, growth_rate, tipping_disturbance
 
 __all__ = [
@@ -15,5 +15,4 @@ __all__ = [
     "growth_rate",
     "least_damped",
     "tipping_disturbance",
-    "unforced",
 ]

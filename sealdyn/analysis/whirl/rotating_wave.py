@@ -8,7 +8,7 @@ aligned seal at the stability threshold (a Hopf bifurcation): falling speed mean
 **Valid** rings, supports and film alike in all directions (all of this package's), constant parameters.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq, root
@@ -17,9 +17,7 @@ from ...dynamics import equations
 from ...dynamics.imposed_motion import ROTOR_SPEED
 from ...dynamics.model import Model
 from ...faces.geometry import smallest_gap
-from ...numerics.piecewise_linear import PiecewiseLinear
-from ...scene.excitation import Housing, Shaft
-from ...scene.scene import Initial, RingStart
+from ...scene.variants import unforced
 
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.
@@ -40,28 +38,6 @@ class Whirl:
     growth: float
     q: np.ndarray
     y: np.ndarray
-
-
-def unforced(scene, speed: float):
-    """The scene aligned and free of forcing, at constant conditions (tables at time zero) and one shaft speed
-    (rad/s), with a tilt to start from so that its tilts are unknowns."""
-
-    def first(table):
-        now = {n: v.at(0.0) for n, v in vars(table).items() if isinstance(v, PiecewiseLinear)}
-        return replace(table, **now)
-
-    still = dict(misalignment=0.0)
-    nudge = RingStart(tilt_x=1e-6)
-    return replace(
-        scene,
-        shaft=Shaft(speed=speed),
-        film=first(scene.film),
-        closing=first(scene.closing),
-        rotor=replace(first(scene.rotor), **still, runout=0.0, axial_runout=[]),
-        stator=replace(first(scene.stator), **still),
-        housing=Housing(),
-        initial=Initial(rotor=nudge, stator=nudge),
-    )
 
 
 def free_model(scene, speed: float, accuracy: float = 1e-8) -> Model:

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
+from ...scene.variants import unforced
 from ..poincare_map import PIECE, PeriodMap
-from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped, unforced
+from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
 
 # Start as a share of the tilt of contact; amplitudes that change less from piece to piece have settled.
 SMALL, STEADY = 0.02, 1e-3

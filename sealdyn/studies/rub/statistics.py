@@ -8,21 +8,20 @@ import time as clock
 
 import numpy as np
 
-from ...analysis.continuation import FilmCollapsed, frozen_at_end, neighbours, with_part
+from ...analysis.continuation import FilmCollapsed, frozen_at_end, neighbours
 from ...analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from ...numerics import time_series
 from ...numerics.lyapunov import tangent_product
-from ...scenario.reader import parse_scenario
 from ...scene.contact import contact_thresholds
+from ...scene.variants import with_values
 
 # Separation that makes a forecast worthless, in units of the attractor's spread; the tighter of two correct runs.
 LOST, TIGHTER = 0.3, 100.0
 
 
-def evaluate_point(point: dict) -> dict:
+def evaluate_point(scene, point: dict) -> dict:
     """Exponent and averages at one point by one method; "both": how two correct runs part."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
-    scene, x = with_part(frozen_at_end(scenario.scene), point["key"], point["value"]), np.array(point["start"])
+    scene, x = with_values(frozen_at_end(scene), {point["key"]: point["value"]}), np.array(point["start"])
     if point["method"] == "both":
         return divergence(scene, x, point)
     begun, turns = clock.perf_counter(), point["turns"]

@@ -5,10 +5,11 @@ two methods that share neither integrator nor differencing must agree on them.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from ...analysis.continuation import frozen_at_end, part, sweep_branch
+from ...analysis.continuation import frozen_at_end, sweep_branch
 from ...analysis.whirl import free_model
 from ...analysis.whirl.rubbing import settles
 from ...dynamics import modes
@@ -16,8 +17,8 @@ from ...dynamics.equilibrium import initially
 from ...numerics import time_series
 from ...numerics.lyapunov import horizon
 from ...scenario.errors import ScenarioError
-from ...scenario.reader import parse_scenario
 from ...scenario.settings import axis
+from ...scene.variants import part
 from ...unit_names import dimension_and_factor
 from ...units import Speed
 from .statistics import evaluate_point, touch_level
@@ -46,7 +47,7 @@ class Settings:
     drop: int = 80
     keep: int = 96
     exponent_turns: int = 200
-    evaluate_point: float | str | None = None
+    judge: float | str | None = None
     judge_turns: int = 600
     accuracy: float = 1e-6
     whirl: bool = False
@@ -59,12 +60,11 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "contact", "nothing", "a [contact] table: there is no rub without")
     key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
     values = _values(scenario, key, settings)
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "key": key}
-    base |= {n: getattr(settings, n) for n in ("ramp", "drop", "keep", "exponent_turns", "accuracy")}
+    base = {"key": key} | {n: getattr(settings, n) for n in ("ramp", "drop", "keep", "exponent_turns", "accuracy")}
     chains = [{**base, "direction": "up", "values": values}]
     if settings.down:
         chains.append({**base, "direction": "down", "values": values[::-1]})
-    found = tools.map(sweep_branch, chains, "chain")
+    found = tools.map(partial(sweep_branch, scenario.scene), chains, "chain")
     failed = [row["failed"] for row in found if "failed" in row]
     rows = [row for part in found for row in part.get("rows", [])]
     answer = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
@@ -110,7 +110,8 @@ def _judged(base, rows, settings, scenario, tools) -> dict:
         (wanted,) = _in_si(scenario, base["key"], str(settings.judge), "study.rub.judge")
         row = min(good, key=lambda row: abs(row["value"] - wanted))
     point = {**base, "value": row["value"], "start": row["end"], "turns": settings.judge_turns}
-    found = tools.map(evaluate_point, [{**point, "method": m} for m in ("adams", "dop853", "both")], "judge")
+    methods = [{**point, "method": m} for m in ("adams", "dop853", "both")]
+    found = tools.map(partial(evaluate_point, scenario.scene), methods, "judge")
     if any("failed" in part for part in found):
         return {**nothing, "judge": {"value": row["value"], "failed": [p["failed"] for p in found if "failed" in p]}}
     one, other, separation = found
@@ -135,13 +136,12 @@ def _whirled(base, scenario, settings, tools) -> dict:
     if critical is None and not settings.whirl_speeds:
         return {"critical_speed": None, "rows": []}
     speeds = list(settings.whirl_speeds) or [float(f"{f * critical:.6g}") for f in ABOVE]
-    rows = tools.map(whirl, [{**base, "speed": w} for w in speeds], "whirl")
+    rows = tools.map(partial(whirl, scenario.scene), [{**base, "speed": w} for w in speeds], "whirl")
     return {"critical_speed": critical, "rows": [{"speed": w, **row} for w, row in zip(speeds, rows, strict=True)]}
 
 
-def whirl(point: dict) -> dict:
+def whirl(scene, point: dict) -> dict:
     """Fate of a small whirl at one speed."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
     return settles(frozen_at_end(scene), point["speed"], point["accuracy"])
 
 

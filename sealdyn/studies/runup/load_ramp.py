@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...analysis.continuation import with_part
 from ...dynamics.intervals import constant_and_slope
 from ...dynamics.model import Model
 from ...dynamics.modes import steady_extremes
@@ -23,7 +22,7 @@ from ...faces.geometry import (
     edge_gaps,
 )
 from ...numerics.piecewise_linear import PiecewiseLinear
-from ...scenario.reader import parse_scenario
+from ...scene.variants import with_values
 from ...simulation.simulate import prepare_run
 from ...solvers.integrate import solve
 from ..work_precision.errors import Sampler
@@ -50,11 +49,11 @@ def _visited(scenario, key, values) -> tuple[RunState, list[int]]:
     """The scene with its own tables and behind them a staircase of values of the key, and the segments that begin
     there:
     the closing force stays the law that the scene's start decides, as it does on a trip."""
-    first = tables_end(with_part(scenario.scene, key, float(values[0])))
+    first = tables_end(with_values(scenario.scene, {key: float(values[0])}))
     times = [first + n for n in range(len(values))]
     points = [(0.0, values[0])] * (first > 0.0) + list(zip(times, values, strict=True))
     stairs = PiecewiseLinear(*(tuple(map(float, column)) for column in zip(*points, strict=True)))
-    run = RunState(Model(with_part(scenario.scene, key, stairs)), times[-1] + 1e-3)
+    run = RunState(Model(with_values(scenario.scene, {key: stairs})), times[-1] + 1e-3)
     return run, [next(k for k, part in enumerate(run.intervals) if part.time >= t - 1e-6) for t in times]
 
 
@@ -122,9 +121,8 @@ def instants(trip: RampCycle) -> np.ndarray:
     return np.unique(np.concatenate(parts))
 
 
-def load_trip(point: dict) -> dict:
+def load_trip(scenario, point: dict) -> dict:
     """A ramp (or with `rate` None a step) there and back: extremes, what it settles at, and the series."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
     trip = RampCycle(**{n: point[n] for n in names})
     run, method, *_ = prepare_run(trip.on(scenario))

@@ -5,12 +5,14 @@ from typing import get_args, get_type_hints
 
 import numpy as np
 
-from ...analysis.continuation import frozen_at_end, part, with_part
+from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
 from ...dynamics import modes
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import axis, with_values
+from ...scene import variants
+from ...scene.variants import part
 from ...unit_names import dimension_and_factor
 from .speed_ramp import Steady, followed_mode, touch_tilt
 
@@ -44,7 +46,7 @@ def checked(scenario, settings):
         raise wrong(scenario, "key", repr(key), 'a quantity of the scene that may change, e.g. "film.outer_pressure"')
     value = now.value[0] if isinstance(now, PiecewiseLinear) else float(now)
     try:
-        with_values(scenario, {key: f"{{ time = [0, 1], value = [{value!r}, {value!r}] }}", "run.duration": 1.0})
+        with_values(scenario, {key: PiecewiseLinear((0.0, 1.0), (value, value)), "run.duration": 1.0})
     except ScenarioError as error:
         raise wrong(scenario, "key", repr(key), f"a quantity that may change in time ({error})") from None
     for name, least in (("window", 2), ("samples_per_turn", 8)):
@@ -159,16 +161,17 @@ def planned(scenario, settings) -> dict:
         least = _turns(begin, end, 1.0) / MOST_TURNS
         raise wrong(scenario, "rates", f"{rates[0]:.4g} rad/s^2: {slow:.3g} turns each way",
                     f"a rate above {least:.3g} rad/s^2, or a shorter way from begin to end")  # fmt: skip
-    settle = max(tables_end(with_part(scenario.scene, SPEED, begin)), SETTLE * 2 * math.pi / max(begin, 0.05 * end))
-    overrides = _tilted(scenario, steady, crossing)
+    still = tables_end(variants.with_values(scenario.scene, {SPEED: begin}))
+    settle = max(still, SETTLE * 2 * math.pi / max(begin, 0.05 * end))
+    changed = _tilted(scenario, steady, crossing)
     needed = max(FINE * disturbance / scale, FINEST)
     if crossing is not None and scenario.run.accuracy > needed:
-        overrides.append(f"run.accuracy={needed:.3g}")
+        changed["run.accuracy"] = float(f"{needed:.3g}")
         warnings.append(f"accuracy {needed:.2g} instead of {scenario.run.accuracy:.2g}, for so small a whirl")
-    base = {"text": scenario.text, "name": scenario.name, "overrides": overrides}
-    base |= {"begin": begin, "end": end, "hold": hold, "crossing": crossing, "disturbance": disturbance}
+    base = {"begin": begin, "end": end, "hold": hold, "crossing": crossing, "disturbance": disturbance}
     base |= {"settle": settle, "per_turn": per_turn, "window": settings.window, "order": order}
-    return {"base": base, "rates": rates, "mode": mode, "crossing": crossing, "steady": steady, "chosen": chosen,
+    return {"scenario": with_values(scenario, changed), "base": base, "rates": rates, "mode": mode,
+            "crossing": crossing, "steady": steady, "chosen": chosen,
             "threshold": threshold, "resonances": resonances, "tilt_scale": scale, "touch_tilt": limit,
             "forced": forced, "rate_foretold": foretold, "warnings": warnings}  # fmt: skip
 
@@ -267,10 +270,9 @@ def _per_turn(scene, settings, begin) -> tuple[int, list[str]]:
     return count, [] if enough else [said]
 
 
-def _tilted(scenario, steady, crossing) -> list[str]:
-    """Overrides that give an undriven scene its tilts as unknowns, by a tilt of nothing, where a whirl is to be met."""
-    overrides = list(scenario.overrides)
+def _tilted(scenario, steady, crossing) -> dict:
+    """Values that give an undriven scene its tilts as unknowns, by a tilt of nothing, where a whirl is to be met."""
     if crossing is None or steady.orders or steady.model.unknowns.with_tilt:
-        return overrides
+        return {}
     ring = "stator" if scenario.scene.stator.support else "rotor"
-    return [*overrides, f"initial.{ring}.tilt_x=1e-18"]
+    return {f"initial.{ring}.tilt_x": 1e-18}

@@ -79,12 +79,10 @@ class RampCycle:
 
     def on(self, scenario, **overrides):
         """The scenario on this trip, begun from its linear steady state.  Raises ScenarioError."""
-        table = self.table()
-        words = f"{{ time = {list(table.time)!r}, value = {list(table.value)!r} }}"
-        start = {} if scenario.run.start.endswith(".h5") else {"run.start": '"steady"'}
+        start = {} if scenario.run.start.endswith(".h5") else {"run.start": "steady"}
         # Few samples: what is looked at is sampled by sinks of its own.
         return with_values(
-            scenario, {self.key: words, "run.duration": self.duration, "run.samples": 16} | start | overrides
+            scenario, {self.key: self.table(), "run.duration": self.duration, "run.samples": 16} | start | overrides
         )
 
 

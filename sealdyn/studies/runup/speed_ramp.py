@@ -12,7 +12,6 @@ from ...analysis.whirl.mode_over_speed import along
 from ...dynamics.model import Model
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
 from ...numerics.order_tracking import centres, peak, resolution, tracked, waterfall
-from ...scenario.reader import parse_scenario
 from ...scene.excitation import Housing
 from .ramp_run import RampCycle, run_cycle
 
@@ -150,9 +149,8 @@ def trip_of(point: dict) -> RampCycle:
     return RampCycle("shaft.speed", begin, point["end"], rate, settle, point["hold"], 0.5 * settle, crossing)
 
 
-def short_pass(point: dict) -> dict:
+def short_pass(scenario, point: dict) -> dict:
     """Only past the threshold and back at one rate: what the whirl comes to."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     trip = trip_of({**point, "short": True})
     mode = followed_mode(scenario.scene, trip.begin, trip.end, trip.crossing)
     run = run_cycle(scenario, trip, point["per_turn"], mode, point["disturbance"], twin=False)
@@ -179,9 +177,8 @@ def extremes(run) -> dict:
     }
 
 
-def passage(point: dict) -> dict:
+def passage(scenario, point: dict) -> dict:
     """A ramp to the end and back at one rate: the order tracked both ways, waterfall, growth, extremes."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     trip, steady = trip_of(point), Steady(scenario.scene)
     mode = followed_mode(scenario.scene, trip.begin, trip.end, trip.crossing)
     run = run_cycle(scenario, trip, point["per_turn"], mode, point["disturbance"])

@@ -7,11 +7,12 @@ how fast one must pass to stay below touch.  Anything else: film, misalignment a
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from ...analysis.continuation import part, with_part
 from ...numerics.piecewise_linear import PiecewiseLinear
+from ...scene.variants import part, with_values
 from ...units import Angle, Time
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
@@ -67,7 +68,7 @@ def speed_ramps(scenario, settings, tools) -> dict:
     plan = planned(scenario, settings)
     base, mode, crossing = plan["base"], plan["mode"], plan["crossing"]
     begin, end, order = base["begin"], base["end"], base["order"]
-    rows = tools.map(passage, [{**base, "rate": rate} for rate in plan["rates"]], "passage")
+    rows = tools.map(partial(passage, plan["scenario"]), [{**base, "rate": rate} for rate in plan["rates"]], "passage")
     rows = [{"rate": rate, **row} for rate, row in zip(plan["rates"], rows, strict=True)]
     speeds = np.linspace(begin, end, 161)
     linear = plan["steady"].curve(speeds, order)
@@ -108,7 +109,8 @@ def touching(plan, rows, settings, tools) -> dict:
     if plan["crossing"] is not None and settings.touch:
         middle = plan["rate_foretold"]
         rates = [float(f"{middle * share:.4g}") for share in CURVE] if middle else []
-        found = tools.map(short_pass, [{**plan["base"], "rate": rate} for rate in rates], "short passes")
+        points = [{**plan["base"], "rate": rate} for rate in rates]
+        found = tools.map(partial(short_pass, plan["scenario"]), points, "short passes")
         done += [row for row in found if row.get("status") in ("ok", "collapsed")]
         done, said = _closer(plan, done, tools)
     done.sort(key=lambda row: row["rate"])
@@ -132,7 +134,7 @@ def _closer(plan, done, tools):
         if high < (1 + CLOSE) * low:
             break
         rate = float(f"{math.sqrt(low * high):.5g}")
-        (row,) = tools.map(short_pass, [{**plan["base"], "rate": rate}], "touching rate")
+        (row,) = tools.map(partial(short_pass, plan["scenario"]), [{**plan["base"], "rate": rate}], "touching rate")
         if row.get("status") not in ("ok", "collapsed"):
             return done, {"value": None, "bracket": [low, high], "said": row.get("failed") or row["message"]}
         done.append(row)
@@ -158,14 +160,13 @@ def load_ramps(scenario, settings, tools) -> dict:
     if rates is None:
         rates = [float(f"{abs(end - begin) / (times * decay):.4g}") for times in RAMPS]
         rates += [] if jumps(scenario.scene, key) else [None]
-    settle = wait + tables_end(with_part(scenario.scene, key, begin))
+    settle = wait + tables_end(with_values(scenario.scene, {key: begin}))
     hold = wait if settings.hold is None else settings.hold
     if None in rates and not hold:
         raise wrong(scenario, "hold", "0 s with a step", "a time above zero: a step there and back at once is none")
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides), "key": key,
-            "begin": begin, "end": end, "settle": settle, "hold": hold, "rest": wait}  # fmt: skip
+    base = {"key": key, "begin": begin, "end": end, "settle": settle, "hold": hold, "rest": wait}
     slow = quasi_static(scenario, key, begin, end)
-    rows = tools.map(load_trip, [{**base, "rate": rate} for rate in rates], "ramps")
+    rows = tools.map(partial(load_trip, scenario), [{**base, "rate": rate} for rate in rates], "ramps")
     rows = [{"rate": rate, **row} for rate, row in zip(rates, rows, strict=True)]
     for row in rows:
         row["overshoot"] = overshoot(row, slow) if "failed" not in row else None

@@ -2,6 +2,7 @@
 the actual film, the same in time, and the ring let go, over F_s/F_d."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
@@ -11,7 +12,6 @@ from ...closed_form import ludwig_allen as closed
 from ...closed_form import released_ring
 from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
-from ...scenario.reader import parse_scenario
 from . import quasi_static
 from . import released as free
 
@@ -42,14 +42,14 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Closed form, static root, quasi-static and released films over the force ratio."""
-    ring = free.ring_of(scenario.scene)
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
+    scene = scenario.scene
+    ring = free.ring_of(scene)
     how = {name: getattr(settings, name) for name in ("turns", "last", "accuracy")}
     ratios, starts, inertias = (
         np.atleast_1d(x).tolist() for x in (settings.force_ratios, settings.starts, settings.inertia)
     )
     ratios = sorted(set(ratios))
-    balances = tools.map(balance, [{**base, "force_ratio": q} for q in ratios], "balance")
+    balances = tools.map(partial(balance, scene), [{"force_ratio": q} for q in ratios], "balance")
     points = [
         {"force_ratio": q, "support": support, "start": start, "inertia": inertia}
         for q in ratios
@@ -58,10 +58,10 @@ def run(scenario, settings, tools) -> dict:
         for inertia in inertias
         if support == OWN or q > closed.LEAST_FORCE_RATIO
     ]
-    released = tools.map(release, [{**base, **how, **point} for point in points], "released")
+    released = tools.map(partial(release, scene), [{**how, **point} for point in points], "released")
     answer = {
         "seal": {**vars(ring), "sliding_speed": ring.sliding_speed, "spring_force": ring.spring_force},
-        "guide": own_guide(scenario.scene, ring),
+        "guide": own_guide(scene, ring),
         "least_force_ratio": closed.LEAST_FORCE_RATIO,
         "least_attracting_force_ratio": closed.LEAST_ATTRACTING_FORCE_RATIO,
         "balance": [{"force_ratio": q, **row} for q, row in zip(ratios, balances, strict=True)],
@@ -70,7 +70,7 @@ def run(scenario, settings, tools) -> dict:
                        "sealing_number": row.mean_film**2 / closed.LUDWIG_ALLEN_GROUP}
                       for row in closed.LUDWIG_ALLEN],
         "line": _line(max(ratios)),
-        "foreseen": _foreseen_line(scenario.scene, ring, max(ratios)),
+        "foreseen": _foreseen_line(scene, ring, max(ratios)),
         "map": _map(max(ratios)),
     }  # fmt: skip
     return {**answer, "verdict": sentences(answer)}
@@ -120,9 +120,9 @@ def _films(mean, amplitude, ring) -> dict:
             "sealing_number": float(mean) ** 2 / ring.group}  # fmt: skip
 
 
-def balance(point: dict) -> dict:
+def balance(scene, point: dict) -> dict:
     """Ludwig & Allen's balance at one force ratio: closed form, root on the actual film, and in time."""
-    ring = free.ring_of(parse_scenario(point["text"], point["name"], point["overrides"]).scene)
+    ring = free.ring_of(scene)
     q = point["force_ratio"]
     row = {"closed_form": None, "static": None, "static_said": ""}
     start = np.array(free.start_film(q, ring))
@@ -140,9 +140,8 @@ def balance(point: dict) -> dict:
     return row
 
 
-def release(point: dict) -> dict:
+def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
-    scene = parse_scenario(point["text"], point["name"], point["overrides"]).scene
     ring, q = free.ring_of(scene), point["force_ratio"]
     scene = replace(scene, rotor=_heavier(scene.rotor, point["inertia"]))
     guide = None if point["support"] == OWN else released_ring.closed_form_guide(q)

@@ -13,12 +13,12 @@ import numpy as np
 from scipy.linalg import eigvals
 
 from ... import closed_form as cf
-from ...analysis.arrangements import frozen_at_start
 from ...dynamics.model import Model
 from ...dynamics.modes import NEUTRAL
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
+from ...scene.variants import frozen_at_start
 
 INERTIA_RATIO = "inertia_ratio"
 BLOCK = 100_000
@@ -172,7 +172,7 @@ class Grid:
 
     def _coefficients(self, values) -> list[float]:
         try:
-            model = Model(frozen_at_start(with_values(self.scenario, {**values, "run.start": '"steady"'}).scene))
+            model = Model(frozen_at_start(with_values(self.scenario, {**values, "run.start": "steady"}).scene))
         except (ScenarioError, SceneError):
             return [np.nan] * 4
         k, d = model.film_matrices()

@@ -3,21 +3,22 @@
 import difflib
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ... import closed_form as cf
-from ...analysis.arrangements import arrangement, frozen_at_start
 from ...analysis.validation import growth_rate
 from ...dynamics import modes
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...scenario.errors import ScenarioError, tables
-from ...scenario.reader import ScenarioFile, parse_scenario
+from ...scenario.reader import ScenarioFile
 from ...scenario.settings import axis, with_values
 from ...scene.excitation import Housing, Shaft
 from ...scene.scene import SceneError
+from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.method_selection import choose_method
 from .grid import INERTIA_RATIO, Grid
 
@@ -191,13 +192,12 @@ def unconditional(scene) -> dict:
 def _confirmed(scenario, axes, tilt, count, tools) -> list[dict]:
     """Points on both sides of the threshold (of the least damped, if there is none), run in time."""
     chosen = _beside_threshold(tilt, count)
-    base = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
     keys = [a["key"] for a in axes]
     points = [
-        {**base, "values": {keys[0]: axes[0]["values"][i], keys[1]: axes[1]["values"][j]}, "rate": float(tilt[j, i])}
+        {"values": {keys[0]: axes[0]["values"][i], keys[1]: axes[1]["values"][j]}, "rate": float(tilt[j, i])}
         for j, i in chosen
     ]
-    rows = tools.map(confirmed, points, "confirm")
+    rows = tools.map(partial(confirmed, scenario), points, "confirm")
     return [
         {"x": p["values"][keys[0]], "y": p["values"][keys[1]], "growth_rate": p["rate"], **row}
         for p, row in zip(points, rows, strict=True)
@@ -217,11 +217,10 @@ def _beside_threshold(tilt, count) -> list[tuple[int, int]]:
     return [(int(rows[k]), int(columns[k]) + side) for k in picked for side in (0, 1)][:count]
 
 
-def confirmed(point: dict) -> dict:
+def confirmed(scenario, point: dict) -> dict:
     """Growth rate of a small tilt in the time domain at one point of the map, nothing imposed."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
     scene = frozen_at_start(
-        with_values(scenario, {**_scenario_keys(scenario.scene, point["values"]), "run.start": '"steady"'}).scene
+        with_values(scenario, {**_scenario_keys(scenario.scene, point["values"]), "run.start": "steady"}).scene
     )
     scene = replace(
         scene,
@@ -293,7 +292,7 @@ def _reason(scenario, axes, possible) -> str:
     try:
         Model(
             frozen_at_start(
-                with_values(scenario, {**_scenario_keys(scenario.scene, values), "run.start": '"steady"'}).scene
+                with_values(scenario, {**_scenario_keys(scenario.scene, values), "run.start": "steady"}).scene
             ),
             1.0,
         )

@@ -4,15 +4,13 @@ How much solver does this scene need: every method over a range of tolerances ag
 How much model: every rung of the ladder of films, and the harmonic balance, against the highest rung.
 """
 
-import json
 import math
 import os
 import platform
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import partial
 from importlib.metadata import version
 
-from ...scenario.reader import parse_scenario
 from ...scenario.settings import with_values
 from ...simulation.method_selection import choose_method
 from ...simulation.simulate import prepare_run
@@ -67,22 +65,21 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Methods, their judge, models, and who is fastest at which accuracy."""
-    point = {"text": scenario.text, "name": scenario.name, "overrides": list(scenario.overrides)}
     run = ready(scenario)
     chosen = [m for m in (*FAST, *SLOW) if not settings.methods or m in settings.methods]
     chosen = [m for m in chosen if m != "expm" or (run.model.unknowns.linear and run.model.unknowns.constant)]
-    judging = {"samples": settings.samples, "limit": settings.judging}
-    exact, band, judges = reference(json.dumps({**point, **judging}))
+    exact, band, judges = reference(scenario, settings.samples, settings.judging)
     tools.say(0.1)
-    shared = {**point, "tolerances": tolerances(settings), "repeats": settings.repeats, "judging": judging}
+    shared = {"tolerances": tolerances(settings), "repeats": settings.repeats, "samples": settings.samples}
+    judged = partial(judge, scenario, exact, judges)
     # One at a time: runs beside each other would disturb each other's clocks.
     alone = replace(tools, workers=1, progress=None) if hasattr(tools, "workers") else tools
     first = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in FAST]
-    rows = alone.map(judge, first, "methods")
+    rows = alone.map(judged, first, "methods")
     tools.say(0.4)
     shared |= {"front": front(rows, settings.where), "slowest": settings.slowest, "where": settings.where}
     later = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in SLOW]
-    rows += alone.map(judge, later, "methods")
+    rows += alone.map(judged, later, "methods")
     tools.say(0.8)
     methods = dict(zip([m for g in (FAST, SLOW) for m in chosen if m in g], rows, strict=True))
     methods = {name: row for name, row in methods.items() if "failed" not in row}
@@ -121,14 +118,12 @@ def tolerances(settings) -> list[float]:
     return [float(f"{settings.loosest * 10 ** (ratio * k):.4g}") for k in range(settings.tolerances)]
 
 
-@lru_cache(maxsize=2)
-def reference(point: str):
-    """The exact run, how far a second judge is from it (`{where: error}` or None), and the names of both.
+def reference(scenario, samples: int, limit: float):
+    """The exact run at so many `samples` within `limit` seconds, how far a second judge is from it (`{where: error}`
+    or None), and the names of both.
 
     Judges in order: collocation at Gauss or at Radau nodes, whichever suits the scene, then the matrix exponential or
     DOP853 at 1e-13 where they can, then the other nodes."""
-    asked = json.loads(point)
-    scenario = parse_scenario(asked["text"], asked["name"], asked["overrides"])
     run = ready(scenario)
     stiff = choose_method(run)[0] == "bdf"
     own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
@@ -146,7 +141,7 @@ def reference(point: str):
     ]
     good = []
     for name, steps, tolerance in trials:
-        found = observe(ready(scenario), steps, name, tolerance, asked["limit"], asked["samples"])
+        found = observe(ready(scenario), steps, name, tolerance, limit, samples)
         if found.status in ("ok", "collapsed") and name not in [n for n, _ in good]:
             good.append((name, found))
         if len(good) == 2:
@@ -160,14 +155,11 @@ def reference(point: str):
                          "status": exact.status}  # fmt: skip
 
 
-def judge(point: dict) -> dict:
-    """One method over all tolerances: columns of wall time, counts, errors, status and reason."""
-    scenario = parse_scenario(point["text"], point["name"], point["overrides"])
-    shared = {key: point[key] for key in ("text", "name", "overrides")}
-    exact, _, judges = reference(json.dumps({**shared, **point["judging"]}))
+def judge(scenario, exact, judges: dict, point: dict) -> dict:
+    """One method over all tolerances against the exact run: columns of wall time, counts, errors, status and reason."""
     method, rows = point["method"], []
     # What is compiled is loaded before the clock starts.
-    observe(ready(scenario), REFERENCE_METHODS[method], method, 1e-2, 0.05, point["judging"]["samples"])
+    observe(ready(scenario), REFERENCE_METHODS[method], method, 1e-2, 0.05, point["samples"])
     for tolerance in point["tolerances"]:
         limit, expected = _allowed(point, rows, tolerance)
         rows.append({**_measured(scenario, method, tolerance, point, exact, limit), "expected": expected})
@@ -200,7 +192,7 @@ def judge(point: dict) -> dict:
 
 
 def _run(scenario, method, tolerance, point, limit):
-    return observe(ready(scenario), REFERENCE_METHODS[method], method, tolerance, limit, point["judging"]["samples"])
+    return observe(ready(scenario), REFERENCE_METHODS[method], method, tolerance, limit, point["samples"])
 
 
 def _measured(scenario, method, tolerance, point, exact, limit) -> dict:

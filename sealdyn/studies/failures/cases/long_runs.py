@@ -16,9 +16,11 @@ from ....dynamics.imposed_motion import (
     imposed_state,
 )
 from ....dynamics.intervals import LONGEST, TURN, split_at_breaks
-from ....scenario.reader import parse_scenario
-from ....scene.excitation import Housing, Shaft
-from ....scene.rings import ROTOR, Rotor, Stator
+from ....scenario.reader import Run, Scenario
+from ....scene.excitation import AxialVibration, Housing, Shaft
+from ....scene.film import Film
+from ....scene.rings import ROTOR, Rotor, Stator, Support
+from ....scene.scene import Scene
 from ....simulation.simulate import prepare_run
 from ._common import row
 
@@ -26,33 +28,14 @@ ITEM = 10
 SPEED, TURNS, STEPS_PER_TURN = 1047.1975511965977, 1e6, 4
 TONE, SHAFT, SAMPLES = 5400.0, 16.0, 36
 
-SCENE = f"""
-[shaft]
-speed = {2 * math.pi * SHAFT!r}
-[film]
-model = "linear"
-inner_radius = 0.032
-outer_radius = 0.040
-clearance = 1e-5
-coning = 3.125e-3
-viscosity = 0.5e-3
-outer_pressure = 5e5
-inner_pressure = 0
-[stator]
-mass = 1
-transverse_inertia = 8e-4
-polar_inertia = 16e-4
-[stator.support]
-axial_stiffness = 5e5
-axial_damping = 300
-radius = 0.04
-[[housing.axial]]
-frequency = {TONE!r}
-displacement = 1e-8
-[run]
-turns = 8
-samples_per_turn = PER
-"""
+SCENE = Scene(
+    shaft=Shaft(speed=2 * math.pi * SHAFT),
+    film=Film(model="linear", inner_radius=0.032, outer_radius=0.040, clearance=1e-5, coning=3.125e-3,
+              viscosity=0.5e-3, outer_pressure=5e5, inner_pressure=0.0),
+    stator=Stator(mass=1.0, transverse_inertia=8e-4, polar_inertia=16e-4,
+                  support=Support(axial_stiffness=5e5, axial_damping=300.0, radius=0.04)),
+    housing=Housing(axial=[AxialVibration(frequency=TONE, displacement=1e-8)]),
+)  # fmt: skip
 
 
 def kernel_phase(leg, tau: float) -> complex:
@@ -100,7 +83,7 @@ def apparent(per_turn: int) -> float:
 
 def warns(per_turn: int) -> bool:
     """Whether a run with so many samples a turn is warned of."""
-    run, *_ = prepare_run(parse_scenario(SCENE.replace("PER", str(per_turn)), "tone"))
+    run, *_ = prepare_run(Scenario(SCENE, Run(turns=8, samples_per_turn=per_turn)))
     return any(warning.startswith("aliasing") for warning in run.warnings)
 
 

@@ -1,0 +1,165 @@
+"""Scenes made of a scene: other values at dotted keys, everything held constant, nothing imposed, the other ring
+flexible.
+
+The counterpart carries the same ring on the other side: mass, inertias, support and own misalignment move over; the
+rigid partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film stays.
+"""
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from typing import Any
+
+from ..numerics.piecewise_linear import PiecewiseLinear
+from .excitation import Housing, Shaft
+from .rings import Rotor, Stator
+from .scene import Closing, Initial, RingStart, Scene, SceneError
+
+# A key that is given takes its alternatives in the same table away.
+ALTERNATIVES = {
+    "turns": ("duration",),
+    "duration": ("turns",),
+    "samples": ("samples_per_turn",),
+    "samples_per_turn": ("samples",),
+    "displacement": ("acceleration",),
+    "acceleration": ("displacement",),
+    "radius": ("tilt_stiffness", "tilt_damping"),
+    "tilt_stiffness": ("radius",),
+    "tilt_damping": ("radius",),
+}
+# Tables that may hold functions of time; tables of what is not smooth.
+VARYING = ("shaft", "film", "rotor", "stator", "closing")
+NOT_SMOOTH = ("contact", "stator.secondary_seal", "rotor.secondary_seal")
+CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support",
+           "secondary_seal")  # fmt: skip
+
+
+def part(scene, key: str) -> Any:
+    """The value at a dotted key, "rotor.runout" or "housing.axial.0.frequency".  Raises AttributeError, IndexError."""
+    for step in key.split("."):
+        scene = scene[int(step)] if isinstance(scene, list | tuple) else getattr(scene, step)
+    return scene
+
+
+def with_values(scene, values: dict[str, Any]):
+    """The scene (or another frozen table) with other values at dotted keys.
+
+    `values` {"rotor.runout": 2e-4, "housing.axial.0.frequency": 50.0}: SI numbers, `PiecewiseLinear`, whole tables, or
+    None for nothing, one after the other; each takes its ALTERNATIVES away.  What it gives is not checked here
+    (`checks.check_scene`).  Raises SceneError for keys that the scene does not have.
+    """
+    for key, value in values.items():
+        scene = _with_value(scene, key.split("."), value, key)
+    return scene
+
+
+def _with_value(table, path: list[str], value, key: str):
+    step, *rest = path
+    if isinstance(table, list | tuple):
+        if not step.isdecimal() or int(step) >= len(table):
+            raise SceneError(key, f"entry {step} of {len(table)}", f"0 to {len(table) - 1}" if table else "no entry")
+        new = _with_value(table[int(step)], rest, value, key) if rest else value
+        return type(table)(new if n == int(step) else entry for n, entry in enumerate(table))
+    known = [f.name for f in fields(table)] if hasattr(table, "__dataclass_fields__") else []
+    if step not in known:
+        raise SceneError(key, f"no {step}", f"one of {', '.join(known)}" if known else "a table above it")
+    if rest:
+        return replace(table, **{step: _with_value(getattr(table, step), rest, value, key)})
+    dropped = {name: None for name in ALTERNATIVES.get(step, ()) if name in known}
+    return replace(table, **dropped, **{step: value})
+
+
+# --- without what is not smooth -----------------------------------------------------------------------
+
+
+def not_smooth(scene: Scene) -> list[str]:
+    """Dotted names of the tables that the scene has of contact and secondary seals."""
+    return [name for name in NOT_SMOOTH if part(scene, name)]
+
+
+def without_contact(scene: Scene) -> Scene:
+    """The scene without contact and secondary seals, for questions about the film alone."""
+    return with_values(scene, dict.fromkeys(not_smooth(scene)))
+
+
+# --- constant in time, and free of forcing ------------------------------------------------------------
+
+
+def tables_at_end(scene: Scene) -> Scene:
+    """The scene with every function of time at its last value."""
+    return _constant(scene, lambda table: float(table.value[-1]))
+
+
+def frozen_at_start(scene: Scene, speed: float | None = None, clearance: float | None = None) -> Scene:
+    """The scene with every function of time at its initial value, and at another shaft speed (rad/s) or clearance (m)
+    if given; with a clearance, the closing force is what holds it."""
+    scene = _constant(scene, lambda table: table.at(0.0))
+    if speed is not None:
+        scene = with_values(scene, {"shaft.speed": float(speed)})
+    return scene if clearance is None else with_values(scene, {"film.clearance": clearance, "closing": Closing()})
+
+
+def unforced(scene: Scene, speed: float) -> Scene:
+    """The scene aligned and free of forcing, at constant conditions (functions of time at zero) and one shaft speed
+    (rad/s), with a tilt to start from so that its tilts are unknowns."""
+    scene, nudge = frozen_at_start(scene), RingStart(tilt_x=1e-6)
+    return replace(
+        scene,
+        shaft=Shaft(speed=speed),
+        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
+        stator=replace(scene.stator, misalignment=0.0),
+        housing=Housing(),
+        initial=Initial(rotor=nudge, stator=nudge),
+    )
+
+
+def _constant(scene: Scene, value_of: Callable[[PiecewiseLinear], float]) -> Scene:
+    for name in VARYING:
+        table = getattr(scene, name)
+        constant = {key: value_of(held) for key, held in vars(table).items() if isinstance(held, PiecewiseLinear)}
+        scene = replace(scene, **{name: replace(table, **constant)})
+    return scene
+
+
+# --- the other ring flexible --------------------------------------------------------------------------
+
+
+def arrangement(scene: Scene) -> str:
+    """ "FMR", "FMS" or "FMSR": which rings float."""
+    if scene.stator.support and scene.rotor.support:
+        return "FMSR"
+    return "FMR" if scene.rotor.support else "FMS"
+
+
+def counterpart(scene: Scene) -> Scene:
+    """The same seal with the other ring flexible.
+
+    **Source** Green (1989), who compares the two arrangements of one seal this way.
+    Raises SceneError when both rings float: there is no rigid partner to change places with.
+    """
+    rotor, stator = scene.rotor, scene.stator
+    if rotor.support and stator.support:
+        raise SceneError("stator.support", "a support under both rings", "one flexible ring, to have a twin")
+    if rotor.support:
+        moved = {name: getattr(rotor, name) for name in CARRIED}
+        new_stator = Stator(**moved, misalignment_direction=rotor.misalignment_phase, speed=stator.speed)
+        new_rotor = Rotor(
+            runout=stator.misalignment, runout_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout
+        )
+    else:
+        moved = {name: getattr(stator, name) for name in CARRIED}
+        new_rotor = Rotor(**moved, misalignment_phase=stator.misalignment_direction, axial_runout=rotor.axial_runout)
+        new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed)
+    start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
+    return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
+
+
+def with_single_flexible_ring(scene: Scene, wanted: str) -> Scene:
+    """The scene as FMR or FMS (`wanted`): itself, its counterpart, or, of two floating rings, the other held rigid."""
+    present = arrangement(scene)
+    if present == wanted:
+        return scene
+    if present != "FMSR":
+        return counterpart(scene)
+    if wanted == "FMR":
+        return with_values(scene, {"stator.support": None})
+    return with_values(scene, {"rotor.support": None, "rotor.runout": scene.rotor.misalignment})
