@@ -5,7 +5,9 @@ import math
 import numpy as np
 
 from ..faces import contact
-from ..faces.geometry import COLLAPSE, DZ, FACE_SIZE, FLOOR, GAP_STATE_SIZE, GX, GY, TOUCH, h_min
+from ..faces.film_thickness import h_min
+from ..faces.geometry import COLLAPSE, DZ, FACE_SIZE, FLOOR, GAP_STATE_SIZE, TOUCH, WAVES
+from ..faces.waviness import highest_orders
 from ..scene.scene import Scene, SceneError
 from . import equations, extrema, linearisation
 from .contact_events import (
@@ -23,7 +25,7 @@ from .contact_events import ROW as TOUCH_ROW
 from .imposed_motion import harmonics_of_segment
 from .interface import Interface
 from .modes import common_period
-from .segments import Segment, constant_and_slope, split_at_breaks
+from .segments import Segment, constant_and_slope, modulo_turn, split_at_breaks
 from .stick_slip import FADES, StickSlip
 from .unknowns import Unknowns
 
@@ -55,6 +57,8 @@ class Model:
         self.layout = layout = Unknowns(scene, self.legs, self.closing, self.film_name == "linear")
         self.names, self.n, self.rate_places = layout.names, layout.n, layout.rate_places
         self.n_mechanical, self.size, self.reasons = layout.n_mechanical, layout.size, layout.reasons
+        if self.face[WAVES]:
+            self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         self.floats, self.massless, self.linear, self.constant = (
             layout.floats, layout.massless, layout.linear, layout.constant
         )  # fmt: skip
@@ -124,10 +128,14 @@ class Model:
             )
         ]
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, leg)
-        head = np.array([x for pair in [*varying, closing] for x in pair] + [len(rows)])
+        head = np.array([x for pair in [*varying, closing] for x in pair]
+                        + [modulo_turn(leg.rotor_angle), modulo_turn(leg.stator_angle), len(rows)])  # fmt: skip
         self.p = np.concatenate([self.layout.ring_block, head, rows.ravel()])
         self.leg, self.leg_index, self.rows = leg, index, rows
         self.leg_pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * leg.length)) for r in rows), default=0.0)
+        if self.face[WAVES]:
+            spins = [[w, w + slope * leg.length] for w, slope in (varying[1], varying[0])]
+            self.leg_pace = extrema.scan_pace(self.face, self.leg_pace, 2 * math.pi / self.fast_time, spins)
         self._bind()
         return leg
 
@@ -224,9 +232,11 @@ class Model:
         return np.ascontiguousarray(ys[:, self.layout.impulse]) if self.layout.extended else np.zeros(len(ys))
 
     def longest_step(self) -> float:
-        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do, else any."""
+        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; no longer than its scan
+        can see waves pass; else any."""
         held = self.sticking is not None and any(self.sticking.stuck.values())
-        return self.fast_time / PER_PERIOD if held else math.inf
+        longest = self.fast_time / PER_PERIOD if held else math.inf
+        return min(longest, extrema.longest_scan(self.leg_pace)) if self.face[WAVES] else longest
 
     def energies(self, taus, ys) -> np.ndarray:
         """Kinetic and spring energy (J) at stored steps."""
@@ -338,7 +348,7 @@ class Model:
         if self.leg_index:
             self.begin(0)
         equations.kinematics(0.0, self.y0, np.zeros(self.size), self.p, self.w, self.s)
-        return float(h_min(self.face, self.s[DZ], self.s[GX], self.s[GY])[0])
+        return float(h_min(self.face, self.s)[0])
 
     def check_start(self):
         """Raises ImpossibleScene if the film is closed at the start."""
@@ -347,7 +357,7 @@ class Model:
             raise SceneError(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
-                f"more than the floor, {self.face[COLLAPSE] * 1e6:.3g} um: less tilt, more clearance, "
+                f"more than the floor, {self.face[COLLAPSE] * 1e6:.3g} um: less tilt or waviness, more clearance, "
                 'or run.start = "steady"',
             )
 
@@ -360,6 +370,9 @@ class Model:
         if slope:
             return None
         moving = [w for w in self.rows[:, 7] if w != 0.0]
+        if highest_orders(self.face)[0] and self.scene.stator.speed:
+            # A wave of the stator's face comes round with its ring.
+            moving.append(constant_and_slope(self.scene.stator.speed, self.leg)[0])
         if not moving and not speed:
             # Nothing moves: any stretch of time is a period.
             return self.duration / 4

@@ -19,10 +19,13 @@ from ..faces.geometry import (
     GY,
     MOMENT_X,
     MOMENT_Y,
+    ORDER_LIST,
+    ORDERS,
     SPIN_DIFFERENCE,
     TORQUE,
     WEAR,
 )
+from ..faces.waviness import wave_parts_along
 from ..scene.rings import RING_NAMES
 from . import equations
 from .segments import constant_and_slope, modulo_turn
@@ -38,6 +41,12 @@ CONTACT_SIGNALS = {
     "wear_rate": WEAR,
 }
 PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
+
+
+def wave_names(face) -> list[tuple[str, str]]:
+    """Names of the cosine and of the sine part of the gap's waves, per order."""
+    orders = face[ORDER_LIST : ORDER_LIST + int(face[ORDERS])]
+    return [(f"gap_cos_{n:.0f}", f"gap_sin_{n:.0f}") for n in orders]
 
 
 def signals(problem, taus, q, q_rate) -> dict[str, np.ndarray]:
@@ -84,6 +93,10 @@ def _columns(problem, taus, gap, scratch, low):
     torque = gap[:, TORQUE] + gap[:, CONTACT_TORQUE]
     columns["friction_torque"], columns["friction_power"] = torque, torque * gap[:, SPIN_DIFFERENCE]
     columns["cavitated_fraction"] = gap[:, CAVITATED]
+    if problem.face[ORDERS]:
+        parts = wave_parts_along(problem.face, gap)
+        for j, names in enumerate(wave_names(problem.face)):
+            columns |= {name: parts[:, j, i] for i, name in enumerate(names)}
     if problem.contact is not None:
         for name, slot in CONTACT_SIGNALS.items():
             columns[name] = gap[:, slot]

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from ..units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
 from .secondary_seal import SecondarySeal
+from .waviness import Waviness
 
 STATOR, ROTOR = 0, 1
 RING_NAMES = ("stator", "rotor")
@@ -60,6 +61,7 @@ class Stator:
     misalignment: Varying[Angle] = 0.0
     misalignment_direction: Angle = 0.0
     speed: Varying[Speed] = 0.0
+    waviness: list[Waviness] = field(default_factory=list)
     support: Support | None = None
     secondary_seal: SecondarySeal | None = None
 
@@ -80,5 +82,6 @@ class Rotor:
     runout: Varying[Angle] = 0.0
     runout_phase: Angle = 0.0
     axial_runout: list[AxialRunout] = field(default_factory=list)
+    waviness: list[Waviness] = field(default_factory=list)
     support: Support | None = None
     secondary_seal: SecondarySeal | None = None

@@ -13,6 +13,7 @@ from scipy.linalg import expm
 
 from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 from ..films import film_module
+from ..scene.waviness import waves_of
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
@@ -33,6 +34,8 @@ def model_errors(problem, higher: str = "radial", enough: float = math.inf) -> n
     where it cannot be estimated.
     """
     if problem.massless or not problem.constant or not problem.linear:
+        return None
+    if film_module(higher).accepts(replace(problem.scene.film, model=higher), waves_of(problem.scene)):
         return None
     _, answers, linear = problem.steady_motion()
     matrix = linear.state_matrix()

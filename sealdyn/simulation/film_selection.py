@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 from ..dynamics.model import Model
+from ..films import film_names
+from ..scene.waviness import waves_of
 from .film_error import model_error
 
 
@@ -14,11 +16,12 @@ def select_film(scene, duration: float, accuracy: float, start) -> tuple[Model, 
     below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises ImpossibleScene.
     """
     film = scene.film
-    if film.model != "auto" or film.profile is not None:
+    if film.model != "auto" or not {"linear", "radial"} <= set(film_names(film, waves_of(scene))):
         problem = Model(scene, duration, accuracy)
         start(problem)
         if film.model == "auto":
-            problem.reasons.append("film auto: the profiled film; the faces have a profile, others know cones only")
+            said = f"film auto: the {problem.film_name} film; the faces have a profile, others know cones only"
+            problem.reasons.append(said)
         return problem, model_error(problem) if problem.film_name == "linear" else None
     radial = Model(replace(scene, film=replace(film, model="radial")), duration, accuracy)
     start(radial)

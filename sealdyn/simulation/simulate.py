@@ -16,7 +16,7 @@ import numpy as np
 from .. import __version__, archive
 from ..archive import ArchiveWriter, Series, partial_path
 from ..dynamics.segments import time_of_angle
-from ..dynamics.signals import signals
+from ..dynamics.signals import signals, wave_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
@@ -403,6 +403,9 @@ def _series(problem) -> dict[str, Series]:
         for part in list(PARTS)[: 6 if problem.floats[k] else 3]:
             units, long_name = PARTS[part]
             series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
+    for names in wave_names(problem.face):
+        for name, part in zip(names, ("cosine", "sine"), strict=True):
+            series[name] = Series("m", f"{part} part of the gap's wave of order {name.rpartition('_')[2]}, from xi")
     if problem.contact is not None:
         series |= CONTACT_SERIES
     for k in problem.layout.seals:

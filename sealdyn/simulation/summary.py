@@ -11,6 +11,7 @@ from ..dynamics.segments import constant_and_slope
 from ..faces.geometry import TOUCH
 from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.waviness import waves_of
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
@@ -232,8 +233,8 @@ def _linear_steady(problem, linear):
 
 
 def _contact_margin(problem, linear, tilt):
-    """Factor on the forcing at which linear theory closes the gap at either edge."""
-    if tilt is None or modes.verdict(linear.modes()) != "stable":
+    """Factor on the forcing at which linear theory closes the gap at either edge; unknown of wavy faces."""
+    if tilt is None or waves_of(problem.scene) or modes.verdict(linear.modes()) != "stable":
         return math.nan
     face, (most, _, closing, _) = problem.face, tilt
     inner = problem.clearance + problem.axial_shift(problem.leg_index)

@@ -18,6 +18,7 @@ def expm(problem, leg, tau, y, method, tolerance, counts):
     while tau < leg.length:
         free = y[:n] - motion.forced([tau])[0]
         step, count = _exact_step(*motion.parts(free, problem.scales[:n]), tolerance)
+        step = min(step, problem.longest_step())
         widths = _widths(leg.length - tau, step, AT_ENDS if fresh else count, fresh)
         times, fresh = tau + np.cumsum(widths), False
         if leg.length - times[-1] < 0.5 * widths[-1]:

@@ -8,7 +8,7 @@ from scenes import fmr, fms, fmsr, housing_vibration, prepared
 
 from sealdyn.dynamics import equations
 from sealdyn.dynamics.signals import signals
-from sealdyn.faces.geometry import h_min
+from sealdyn.faces.film_thickness import h_min
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.secondary_seal import SecondarySeal
 
@@ -56,7 +56,7 @@ def test_signals_are_those_of_each_instant(drawn):
         assert all(together[name][k] == alone[name][0] for name in alone)
         equations.kinematics(taus[k], problem.unknowns(q[k], rate[k]), np.zeros(problem.size), problem.p, problem.w,
                             problem.s)  # fmt: skip
-        low = h_min(problem.face, *problem.s[:3])
+        low = h_min(problem.face, problem.s)
         assert together["h_min"][k] == low[0] and together["axial_gap_change"][k] == problem.s[0]
     assert signals(problem, taus[:0], q[:0], rate[:0])["h_min"].shape == (0,)
 

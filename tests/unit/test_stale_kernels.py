@@ -26,7 +26,7 @@ def test_changed_constant_drops_every_kernel(tmp_path):
     python(TOUCH, tmp_path)
     assert kept.exists()
     gap = copy / "faces/geometry.py"
-    gap.write_text(gap.read_text().replace("GAP_STATE_SIZE = 26", "GAP_STATE_SIZE = 27"))
+    gap.write_text(gap.read_text().replace("GAP_STATE_SIZE = 28", "GAP_STATE_SIZE = 29"))
     python(TOUCH, tmp_path)
     assert not kept.exists()
 

@@ -72,6 +72,11 @@ RUNG = 2
 UNKNOWNS = 0
 
 
+def accepts(film, waves=()) -> str:
+    """What faces it takes, "" if it can take these."""
+    return "plain cones only" if waves or (film is not None and film.profile is not None) else ""
+
+
 def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
     """Opening force (N) of the aligned film at rest; pressures absolute (Pa), clearance in m."""
     s = np.zeros(GAP_STATE_SIZE)
