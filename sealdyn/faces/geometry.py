@@ -62,8 +62,8 @@ def face_parameters(film, clearance: float) -> np.ndarray:
     if film.profile is not None:
         count = len(film.profile.radius)
         f[PROFILE] = count
-        f[PROFILE_RADII : PROFILE_RADII + count] = film.profile.radius
-        f[PROFILE_DEPTHS : PROFILE_DEPTHS + count] = film.profile.depth
+        f[PROFILE_RADII:PROFILE_DEPTHS][:count] = film.profile.radius
+        f[PROFILE_DEPTHS:WAVES][:count] = film.profile.depth
     return f
 
 

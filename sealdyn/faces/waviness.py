@@ -16,6 +16,7 @@ import numpy as np
 from numba import njit
 
 from .geometry import (
+    FACE_SIZE,
     MEAN_SPIN,
     ORDER_LIST,
     ORDERS,
@@ -35,10 +36,9 @@ def lay_waves(f, stator, rotor) -> None:
     waves = [(sign, w) for sign, face in ((1.0, stator), (-1.0, rotor)) for w in face if w.amplitude != 0.0]
     orders = sorted({wave.order for _, wave in waves})
     f[WAVES], f[ORDERS] = len(waves), len(orders)
-    f[ORDER_LIST : ORDER_LIST + len(orders)] = orders
-    for k, (sign, wave) in enumerate(waves):
-        row = sign, wave.order, wave.amplitude, wave.phase, orders.index(wave.order)
-        f[WAVE_ROWS + WAVE_ROW * k : WAVE_ROWS + WAVE_ROW * (k + 1)] = row
+    f[ORDER_LIST:WAVE_ROWS][: len(orders)] = orders
+    rows = [(sign, wave.order, wave.amplitude, wave.phase, orders.index(wave.order)) for sign, wave in waves]
+    f[WAVE_ROWS:FACE_SIZE][: WAVE_ROW * len(rows)] = np.array(rows).ravel()
 
 
 def highest_orders(f) -> tuple[int, int]:
