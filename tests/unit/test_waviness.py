@@ -9,6 +9,7 @@ import pytest
 from scenes import CLEARANCE, NOTHING, R_I, R_O, SPEED, film, fmr, fms, prepared, ring, run
 
 import sealdyn
+from sealdyn.dynamics import equations
 from sealdyn.dynamics.contact_events import (
     DEEPEST,
     DEPTH_H,
@@ -25,6 +26,7 @@ from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, film_thickness_rate, h_min
 from sealdyn.faces.waviness import lay_waves, wave_parts_along
 from sealdyn.films import all_film_names, film_module, linear
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.report.charts import film as film_chart
 from sealdyn.report.charts.record import Run
 from sealdyn.scenario.reader import ScenarioError, json_schema, parse_scenario
@@ -207,6 +209,7 @@ def test_leakage_of_a_wavy_film():
 # --- in time --------------------------------------------------------------------------------------------
 
 RUNOUT, WHIRL, RATIO = 60e-6, 25e-6, 0.42
+RAMPS = PiecewiseLinear((0.0, 5.0, 30.0), (1000.0, 400.0, 1200.0))
 PASSING = {
     "rotor past a tilt": ([], [Waviness(3, 2 * UM, 0.3)]),
     "stator under a turning tilt": ([Waviness(4, 2 * UM, 1.0)], []),
@@ -268,6 +271,23 @@ def test_waves_that_pass_between_steps(waves, method):
     here = thickness(R_I, record[H_THETA], *waves, passing_gap(record[H_TAU], speed))
     assert here == pytest.approx(record[H], abs=1e-7 * CLEARANCE)
     assert abs(record[H_TAU] - when) < 1e-3 * TURN and abs(np.exp(1j * (record[H_THETA] - where)) - 1) < 1e-2
+
+
+@pytest.mark.parametrize("speed", [SPEED, RAMPS], ids=["even", "ramps"])
+def test_rings_have_turned_by_the_integral_of_their_speed(speed):
+    """After thousands of turns, and two stretches of time or more, to the rounding of one stretch."""
+    scene = replace(passing(*PASSING["5 past 7"], -123.4), shaft=Shaft(speed=speed))
+    problem, y = prepared(scene, 25.0, 1e-6), np.zeros(50)
+    assert len(problem.legs) > 1
+    for k, leg in enumerate(problem.legs):
+        problem.begin(k)
+        equations.kinematics(0.6 * leg.length, y[: problem.size], y[: problem.size], problem.p, problem.w, problem.s)
+        t = leg.time + 0.6 * leg.length
+        turned = SPEED * t
+        if speed is not SPEED:
+            turned = 1000.0 * t - 60.0 * t * t if t < 5.0 else 3500.0 + 400.0 * (t - 5.0) + 16.0 * (t - 5.0) ** 2
+        for slot, angle in ((G.ROTOR_ANGLE, turned), (G.STATOR_ANGLE, -123.4 * t)):
+            assert abs(np.exp(1j * (problem.s[slot] - angle)) - 1.0) < 1e-10
 
 
 def test_signals_show_the_waves():
