@@ -20,7 +20,7 @@ from sealdyn.dynamics.contact_events import (
     locate_contacts,
     no_contact,
 )
-from sealdyn.dynamics.extrema import H_TAU, H_THETA, H
+from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, film_thickness_rate, h_min
@@ -36,6 +36,8 @@ from sealdyn.scene.film import Profile
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.waviness import Waviness
+from sealdyn.solvers.contract import Counts
+from sealdyn.solvers.methods import METHODS
 from sealdyn.studies._runner import run_study
 
 UM = 1e-6
@@ -271,6 +273,26 @@ def test_waves_that_pass_between_steps(waves, method):
     here = thickness(R_I, record[H_THETA], *waves, passing_gap(record[H_TAU], speed))
     assert here == pytest.approx(record[H], abs=1e-7 * CLEARANCE)
     assert abs(record[H_TAU] - when) < 1e-3 * TURN and abs(np.exp(1j * (record[H_THETA] - where)) - 1) < 1e-2
+
+
+@pytest.mark.parametrize("waves", PASSING.values(), ids=PASSING)
+def test_waves_that_pass_within_a_step(waves):
+    """Two steps over one and a third turns: nothing but the scan shows the dips."""
+    speed = -0.37 * SPEED if waves[0] else 0.0
+    problem = prepared(passing(*waves, speed), 1.3 * TURN, 1e-8)
+    t, rest = np.linspace(0.0, 1.3 * TURN, 3), np.zeros((3, problem.n))
+    assert problem.watch(0, t, rest, rest, np.zeros(3), 3, 0, 2) < 0
+    assert problem.records[0, H] == pytest.approx(zoomed(*waves, 0.0, 1.3 * TURN, speed)[0], abs=1e-7 * CLEARANCE)
+
+
+def test_no_step_is_longer_than_its_scan_can_see():
+    fine = prepared(passing([], [Waviness(100, UM)]), 60 * TURN, 1e-6)
+    longest = fine.longest_step()
+    assert int(PER_RADIAN * fine.leg_pace * longest) <= MOST_SCAN and longest < 3 * TURN
+    steps = METHODS["expm"](fine, fine.leg, 0.0, fine.y0, "expm", 1e-6, Counts())
+    times = np.concatenate([[0.0], *(times for times, _, _ in steps)])
+    assert times[-1] == pytest.approx(60 * TURN) and np.max(np.diff(times)) <= longest * (1 + 1e-9)
+    assert prepared(passing([], []), 60 * TURN, 1e-6).longest_step() == math.inf
 
 
 @pytest.mark.parametrize("speed", [SPEED, RAMPS], ids=["even", "ramps"])
