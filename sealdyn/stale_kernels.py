@@ -21,7 +21,9 @@ def sources() -> list[Path]:
 def kept_kernels() -> list[Path]:
     """Files of kept kernels, beside their sources or where NUMBA_CACHE_DIR says."""
     elsewhere = os.environ.get("NUMBA_CACHE_DIR")
-    folders = [PACKAGE] if not elsewhere else [f for n in ("sealdyn_*", "films_*") for f in Path(elsewhere).glob(n)]
+    # There a folder is named after the one that its sources are in.
+    rooms = {path.parent.name for path in sources()}
+    folders = [PACKAGE] if not elsewhere else [f for room in rooms for f in Path(elsewhere).glob(f"{room}_*")]
     return [kept for folder in folders for kept in folder.rglob("*.nb[ic]")]
 
 
