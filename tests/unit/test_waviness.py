@@ -275,14 +275,17 @@ def test_waves_that_pass_between_steps(waves, method):
     assert abs(record[H_TAU] - when) < 1e-3 * TURN and abs(np.exp(1j * (record[H_THETA] - where)) - 1) < 1e-2
 
 
-@pytest.mark.parametrize("waves", PASSING.values(), ids=PASSING)
-def test_waves_that_pass_within_a_step(waves):
-    """Two steps over one and a third turns: nothing but the scan shows the dips."""
-    speed = -0.37 * SPEED if waves[0] else 0.0
+@pytest.mark.parametrize("phase", [0.4, 3.0, 5.0])
+def test_waves_that_pass_within_a_step(phase):
+    """Two steps over one and a third turns: nothing but the scan shows the dips.  At the pace of the tilt alone it
+    misses the deepest by 0.7 % of the clearance at two of these phases."""
+    waves, speed = ([Waviness(5, 2 * UM)], [Waviness(7, 1.5 * UM, phase)]), -0.37 * SPEED
     problem = prepared(passing(*waves, speed), 1.3 * TURN, 1e-8)
     t, rest = np.linspace(0.0, 1.3 * TURN, 3), np.zeros((3, problem.n))
     assert problem.watch(0, t, rest, rest, np.zeros(3), 3, 0, 2) < 0
-    assert problem.records[0, H] == pytest.approx(zoomed(*waves, 0.0, 1.3 * TURN, speed)[0], abs=1e-7 * CLEARANCE)
+    above = problem.records[0, H] - zoomed(*waves, 0.0, 1.3 * TURN, speed)[0]
+    # The grid of the other may not have its very bottom.
+    assert -1e-8 * CLEARANCE < above < 1e-11 * CLEARANCE
 
 
 def test_no_step_is_longer_than_its_scan_can_see():
