@@ -34,7 +34,9 @@ from ..faces.geometry import (
     MOMENT_X,
     MOMENT_Y,
     OUTER_PRESSURE,
+    ROTOR_ANGLE,
     SPIN_DIFFERENCE,
+    STATOR_ANGLE,
     VISCOSITY,
 )
 from .imposed_motion import (
@@ -46,7 +48,9 @@ from .imposed_motion import (
     OWN_Y,
     OWN_Y_RATE,
     PER_RING,
+    ROTOR_ANGLE_AT,
     ROTOR_SPEED,
+    STATOR_ANGLE_AT,
     STATOR_SPEED,
     TILT_X,
     TILT_X_ACCELERATION,
@@ -117,6 +121,8 @@ def kinematics(tau, y, yp, p, w, s):
     s[GY], s[GY_RATE] = w[a + TILT_Y] - w[b + TILT_Y], w[a + TILT_Y_RATE] - w[b + TILT_Y_RATE]
     spin_s = leg[STATOR_SPEED] + leg[STATOR_SPEED + 1] * tau
     spin_r = leg[ROTOR_SPEED] + leg[ROTOR_SPEED + 1] * tau
+    s[STATOR_ANGLE] = leg[STATOR_ANGLE_AT] + tau * (leg[STATOR_SPEED] + 0.5 * leg[STATOR_SPEED + 1] * tau)
+    s[ROTOR_ANGLE] = leg[ROTOR_ANGLE_AT] + tau * (leg[ROTOR_SPEED] + 0.5 * leg[ROTOR_SPEED + 1] * tau)
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (spin_s + spin_r), spin_r - spin_s
     s[VISCOSITY] = leg[VISCOSITY_AT] + leg[VISCOSITY_AT + 1] * tau
     s[INNER_PRESSURE] = leg[INNER_AT] + leg[INNER_AT + 1] * tau

@@ -10,8 +10,9 @@ import math
 import numpy as np
 from numba import njit
 
-from ..faces.geometry import COLLAPSE, DZ, GX, GY, INNER_RADIUS, OUTER_RADIUS
-from ..faces.geometry import h_min as smallest
+from ..faces.film_thickness import h_min
+from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS
+from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
@@ -34,12 +35,29 @@ def empty_records() -> np.ndarray:
     return records
 
 
+def scan_pace(face, imposed: float, fastest: float, spins) -> float:
+    """Pace (rad/s) of the scan: of the `imposed` motion, or of waves that pass each other or the tilt, if faster.
+
+    `fastest` motion of the rings (rad/s), `spins` of stator and rotor (rad/s), each at the ends of a stretch of time.
+    Waves of m and n to the circle are crest to trough at up to m n places a turn; a tilt is one wave.
+    """
+    orders, turning = highest_orders(face), max(imposed, fastest)
+    past_tilt = max(n * (np.max(np.abs(w)) + turning) if n else 0.0 for n, w in zip(orders, spins, strict=True))
+    past_waves = orders[0] * orders[1] * np.max(np.abs(np.subtract(*spins)))
+    return float(max(imposed, past_tilt, past_waves))
+
+
+def longest_scan(pace: float) -> float:
+    """Longest step (s) that can be scanned at a pace (rad/s)."""
+    return MOST_SCAN / (PER_RADIAN * pace) if pace else math.inf
+
+
 @njit(cache=True)
 def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
     """The three measures at displacements q and leg time tau, into `out`; returns angle and radius of h_min."""
     y[: len(q)] = q
     kinematics(tau, y, yp, p, w, s)
-    out[THICKNESS], theta, radius = smallest(f, s[DZ], s[GX], s[GY])
+    out[THICKNESS], theta, radius = h_min(f, s)
     out[TILT] = s[GX] ** 2 + s[GY] ** 2
     out[MINUS_TILT] = -out[TILT]
     return theta, radius

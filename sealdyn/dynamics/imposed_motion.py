@@ -1,8 +1,8 @@
 """Imposed motion in the solver's inner loop: one block per leg, one compiled kernel.
 
-Block layout: for each varying quantity its value and slope over the leg, then the oscillators, one row
-each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2` with the phase
-`a0 + a1 tau + a2 tau^2`.
+Block layout: for each varying quantity its value and slope over the leg, then both rings' angles at its start, then
+the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2` with
+the phase `a0 + a1 tau + a2 tau^2`.
 """
 
 import math
@@ -15,8 +15,8 @@ from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
-OSCILLATOR_COUNT = 12
-OSCILLATORS = 13
+# Angles (rad, modulo one turn) of both rings at the leg's start.
+ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 12, 13, 14, 15
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about

@@ -25,10 +25,12 @@ from ..faces.geometry import (
     VISCOSITY,
     face_parameters,
 )
-from ..films import film_module, film_name
+from ..faces.waviness import lay_waves
+from ..films import check_film, film_module, film_name
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, profile_errors
 from ..scene.scene import SceneError
+from ..scene.waviness import waves_of, waviness_errors
 from .equilibrium import initially, settle
 from .intervals import constant_and_slope
 from .modes import linearise
@@ -43,10 +45,14 @@ class Interface:
         self.scene, self._asperities = scene, None
         for key, found, expected in profile_errors(scene.film):
             raise SceneError(f"film.{key}", found, expected)
-        self.film = film_module(scene.film.model, scene.film.profile)
+        for key, found, expected in waviness_errors(scene):
+            raise SceneError(key, found, expected)
+        check_film(scene.film, waves_of(scene))
+        self.film = film_module(scene.film.model, scene.film)
         self.name = film_name(self.film)
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
+        lay_waves(self.f, scene.stator.waviness, scene.rotor.waviness)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):

@@ -8,7 +8,7 @@ from functools import lru_cache
 from numba import boolean, float64, njit, types
 
 from ..faces.contact import contact_load, contact_load_and_friction
-from ..faces.geometry import DZ, GX, GY, h_min
+from ..faces.film_thickness import h_min
 from .equations import kinematics, rates
 
 VECTOR, MATRIX = float64[::1], float64[:, ::1]
@@ -62,7 +62,7 @@ def states_along(flow, f, block, seals, p, w, s, taus, ys, yps, face, gaps, scra
         if seals:
             rates(taus[i], ys[i], p, w, s, out)
         gaps[i], scratch[i] = s, w
-        low[i, 0], low[i, 1], low[i, 2] = h_min(face, s[DZ], s[GX], s[GY])
+        low[i, 0], low[i, 1], low[i, 2] = h_min(face, s)
 
 
 @njit(types.void(KERNEL, VECTOR, MATRIX), cache=True)

@@ -4,7 +4,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..faces.geometry import COLLAPSE, DZ, GX, GY, h_min
+from ..faces.film_thickness import h_min
+from ..faces.geometry import COLLAPSE
 from ..scene.scene import SceneError
 from .contact_events import ContactEvents
 from .extrema import ExtremaTracker
@@ -17,8 +18,8 @@ from .stick_slip import StickSlip
 
 class RunState:
     """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`,
-    `stick_slip` or
-    None), `reasons` and `warnings` (sentences), and `last`, the segment's index, time and unknowns reached so far."""
+    `stick_slip` or None), `reasons` and `warnings` (sentences), and `last`, the segment's index, time and unknowns
+    reached so far."""
 
     def __init__(self, model: Model, duration: float):
         self.model, self.duration = model, duration
@@ -74,7 +75,7 @@ class RunState:
     def start_film(self) -> float:
         """Thinnest film (m) at the start."""
         s = self.segment(0).gap_state(0.0, self.y0)
-        return float(h_min(self.model.face, s[DZ], s[GX], s[GY])[0])
+        return float(h_min(self.model.face, s)[0])
 
     def check_start(self):
         """Raises SceneError if the film is closed at the start."""
@@ -83,7 +84,8 @@ class RunState:
             raise SceneError(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
-                f'more than the floor, {floor * 1e6:.3g} um: less tilt, more clearance, or run.start = "steady"',
+                f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance, or "
+                'run.start = "steady"',
             )
 
     def check_loads(self):

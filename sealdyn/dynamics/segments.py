@@ -6,10 +6,12 @@ import math
 import numpy as np
 
 from ..faces import contact
-from ..faces.geometry import GAP_STATE_SIZE
+from ..faces.geometry import GAP_STATE_SIZE, WAVES
+from ..faces.waviness import highest_orders
 from . import equations, linearisation
+from .extrema import longest_scan, scan_pace
 from .imposed_motion import harmonics_of_segment
-from .intervals import Interval, constant_and_slope
+from .intervals import Interval, constant_and_slope, modulo_turn
 from .modes import common_period
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
@@ -34,7 +36,7 @@ class Segment:
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
         self.may_change = bool(unknowns.coulomb_rings)
         self.p, self.rows = self._parameters()
-        self.pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
+        self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
         self._bind()
 
@@ -45,11 +47,25 @@ class Segment:
         varying = (scene.shaft.speed, scene.stator.speed, film.viscosity, film.inner_pressure, film.outer_pressure)
         pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
-        head = np.array([x for pair in pairs for x in pair] + [len(rows)])
+        angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
+        head = np.array([x for pair in pairs for x in pair] + [*angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, head, rows.ravel()])
         for k, held in self.stuck.items():
             p[equations.RING * k + equations.STUCK] = held
         return p, rows
+
+    def _pace(self) -> float:
+        """Fastest imposed motion (rad/s); of wavy faces also their waves as they pass."""
+        fastest = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
+        if not self.model.face[WAVES]:
+            return fastest
+        speeds = (constant_and_slope(ring, self.interval) for ring in self._speeds())
+        spins = [[w, w + slope * self.length] for w, slope in speeds]
+        return scan_pace(self.model.face, fastest, 2 * math.pi / self.shortest_period, spins)
+
+    def _speeds(self):
+        """Speeds (rad/s) of stator and rotor."""
+        return self.model.scene.stator.speed, self.model.scene.shaft.speed
 
     def _bind(self):
         """Right-hand side and residual as plain functions over this segment's arrays."""
@@ -126,8 +142,10 @@ class Segment:
         return yp
 
     def longest_step(self) -> float:
-        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do, else any."""
-        return self.shortest_period / PER_PERIOD if any(self.stuck.values()) else math.inf
+        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; no longer than its scan
+        can see waves pass; else any."""
+        longest = self.shortest_period / PER_PERIOD if any(self.stuck.values()) else math.inf
+        return min(longest, longest_scan(self.pace)) if self.model.face[WAVES] else longest
 
     def exact_motion(self):
         """Exact solution of a linear scene (linearisation.py)."""
@@ -179,6 +197,9 @@ class Segment:
         if slope:
             return None
         moving = [w for w in self.rows[:, 7] if w != 0.0]
+        if highest_orders(self.model.face)[0] and self.model.scene.stator.speed:
+            # A wave of the stator's face comes round with its ring.
+            moving.append(constant_and_slope(self.model.scene.stator.speed, self.interval)[0])
         if not moving and not speed:
             return 0.0
         return common_period([*moving, speed] if speed else moving)

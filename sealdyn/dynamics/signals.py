@@ -19,10 +19,13 @@ from ..faces.geometry import (
     GY,
     MOMENT_X,
     MOMENT_Y,
+    ORDER_LIST,
+    ORDERS,
     SPIN_DIFFERENCE,
     TORQUE,
     WEAR,
 )
+from ..faces.waviness import wave_parts_along
 from ..scene.rings import RING_NAMES
 from . import equations
 from .intervals import constant_and_slope, modulo_turn
@@ -38,6 +41,12 @@ CONTACT_SIGNALS = {
     "wear_rate": WEAR,
 }
 PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
+
+
+def wave_names(face) -> list[tuple[str, str]]:
+    """Names of the cosine and of the sine part of the gap's waves, per order."""
+    orders = face[ORDER_LIST : ORDER_LIST + int(face[ORDERS])]
+    return [(f"gap_cos_{n:.0f}", f"gap_sin_{n:.0f}") for n in orders]
 
 
 def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
@@ -85,6 +94,10 @@ def _columns(segment, taus, gap, scratch, low):
     torque = gap[:, TORQUE] + gap[:, CONTACT_TORQUE]
     columns["friction_torque"], columns["friction_power"] = torque, torque * gap[:, SPIN_DIFFERENCE]
     columns["cavitated_fraction"] = gap[:, CAVITATED]
+    if model.face[ORDERS]:
+        parts = wave_parts_along(model.face, gap)
+        for j, names in enumerate(wave_names(model.face)):
+            columns |= {name: parts[:, j, i] for i, name in enumerate(names)}
     if model.contact is not None:
         for name, slot in CONTACT_SIGNALS.items():
             columns[name] = gap[:, slot]

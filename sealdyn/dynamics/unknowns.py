@@ -6,6 +6,7 @@ import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.waviness import waves_of
 from . import equations
 from .imposed_motion import AXIAL, harmonics_of_segment
 from .intervals import largest_value
@@ -51,6 +52,8 @@ class Unknowns:
             self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
             for k, r in rings.items()
         )
+        if waves_of(scene):
+            self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         self._place((scene.stator, scene.rotor))

@@ -1,22 +1,23 @@
-"""The gap between the faces: axes, signs, film thickness, its smallest value, and the gap-state array.
+"""The gap between the faces: axes, signs, gap-state array, face block, closed forms of faces the same all around.
 
 Axes (see README): zeta is the shaft axis, theta is measured from xi.  The stator faces the rotor from
 above, `gap = stator surface - rotor surface`; the tilt of a ring is a small rotation vector, and
 `g = tilt of stator - tilt of rotor`.  Film thickness of two rigid coned faces:
 
-    h(r, theta) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta))
+    h(r, theta, t) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta)) + waves(theta, t)
 
 where `depth` is what faces that are not plain cones (worn ones) are wider apart, linear between the radii of a
-profile, 0 without one.  With `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted
-from there: h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).
+profile, 0 without one, and `waves` what turns with either ring (faces/waviness.py).  Without waves and with
+`g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from there:
+h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).  Here are the slots and the closed forms of such faces; h
+itself, its rate and its smallest value are in faces/film_thickness.py.
 """
-
-import math
 
 import numpy as np
 from numba import njit
 
 from ..scene.film import MOST_NODES
+from ..scene.waviness import MOST_WAVES
 
 # Slots of the gap-state array `s`, which the scene fills and the film kernels read and complete.
 DZ, GX, GY, DZ_RATE, GX_RATE, GY_RATE = range(6)
@@ -25,20 +26,27 @@ FORCE, MOMENT_X, MOMENT_Y = range(11, 14)
 FLOW_INNER, FLOW_OUTER, TORQUE, CAVITATED = range(14, 18)
 CONTACT_FORCE, CONTACT_X, CONTACT_Y = range(18, 21)
 CONTACT_TORQUE, CONTACT_AREA, CONTACT_PRESSURE, CONTACT_ENERGY, WEAR = range(21, 26)
-GAP_STATE_SIZE = 26
+# Angle (rad) each ring has turned, less whole turns before the present stretch of time.
+STATOR_ANGLE, ROTOR_ANGLE = 26, 27
+GAP_STATE_SIZE = 28
 
 # Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
 INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE = range(9)
 # The profile: how many radii (0: none), and room for the radii and the depths.
 PROFILE, PROFILE_RADII = 9, 10
 PROFILE_DEPTHS = PROFILE_RADII + MOST_NODES
-FACE_SIZE = PROFILE_DEPTHS + MOST_NODES
+# The waves (faces/waviness.py): how many (0: none), how many different orders, room for these, and a row per wave.
+WAVES = PROFILE_DEPTHS + MOST_NODES
+ORDERS, ORDER_LIST = WAVES + 1, WAVES + 2
+WAVE_ROWS, WAVE_ROW = ORDER_LIST + MOST_WAVES, 5
+FACE_SIZE = WAVE_ROWS + WAVE_ROW * MOST_WAVES
 
 
 def face_parameters(film, clearance: float) -> np.ndarray:
     """The face part of a film's parameter block, shape (FACE_SIZE,): radii and clearance in m, coning in
     rad, the floor of the film thickness in m, two flags, the thickness at which the faces touch and the one at
-    which the run ends (m), the profile (m); faces/contact.py moves the floor and the two thicknesses."""
+    which the run ends (m), the profile (m); faces/contact.py moves the floor and the two thicknesses, faces/waviness.py
+    lays the waves."""
     f = np.zeros(FACE_SIZE)
     f[:PROFILE] = (
         film.inner_radius,
@@ -54,8 +62,8 @@ def face_parameters(film, clearance: float) -> np.ndarray:
     if film.profile is not None:
         count = len(film.profile.radius)
         f[PROFILE] = count
-        f[PROFILE_RADII : PROFILE_RADII + count] = film.profile.radius
-        f[PROFILE_DEPTHS : PROFILE_DEPTHS + count] = film.profile.depth
+        f[PROFILE_RADII:PROFILE_DEPTHS][:count] = film.profile.radius
+        f[PROFILE_DEPTHS:WAVES][:count] = film.profile.depth
     return f
 
 
@@ -64,7 +72,7 @@ def edge_gaps(f, dz, tilt):
     """Smallest film thickness (m) over the circle at the inner and at the outer edge.
 
     `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
-    **Valid** rigid faces; without a profile the minimum over the face is the smaller of the two.
+    **Valid** rigid faces without waves; without a profile the minimum over the face is the smaller of the two.
     """
     r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
     a_i, a_o = r_i, r_o
@@ -88,7 +96,7 @@ def node_gap(f, node, dz, tilt):
 
 @njit(cache=True)
 def smallest_gap(f, dz, tilt):
-    """Smallest film thickness over the face (m), and its radius (m)."""
+    """Smallest film thickness over a face without waves (m), and its radius (m)."""
     if f[PROFILE] == 0.0:
         inner, outer = edge_gaps(f, dz, tilt)
         if inner <= outer:
@@ -101,16 +109,6 @@ def smallest_gap(f, dz, tilt):
         if gap < least:
             least, at = gap, node
     return least, f[PROFILE_RADII + at]
-
-
-@njit(cache=True)
-def h_min(f, dz, g_x, g_y):
-    """Smallest film thickness over the face (m), its angle (rad, from xi) and radius (m)."""
-    least, radius = smallest_gap(f, dz, math.hypot(g_x, g_y))
-    theta = math.atan2(g_y, g_x) - 0.5 * math.pi
-    if theta < -math.pi:
-        theta += 2.0 * math.pi
-    return least, theta, radius
 
 
 @njit(cache=True)

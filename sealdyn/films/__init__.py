@@ -3,6 +3,10 @@
 What every film module offers (the contract):
 
 `RUNG`            int, its place on the ladder (1 linear, 2 radial, ...); "auto" climbs it.
+`GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
+`accepts(film, waves)`
+                  "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
+                  can take, as words that go after the film's name.
 `UNKNOWNS`        number of unknowns the film owns; 0 for an algebraic law.
 `parameters(film, clearance)`
                   float64 array: the film's block of the parameter array, for a `Film` table and the
@@ -18,13 +22,16 @@ A film never asks which ring floats, and imports no other film.
 
 import importlib
 import pkgutil
+from functools import cache
+
+from ..scene.scene import SceneError
 
 
-def film_module(name: str, profile=None):
-    """The film called `name`, found by file (or folder) name; "auto" is the radial film until a choice is certified, of
-    faces with a profile the profiled film."""
+def film_module(name: str, film=None):
+    """The film called `name`, found by file (or folder) name; "auto" is the highest film that takes the faces of a
+    `Film` table (None: plain cones), until a choice is certified."""
     if name == "auto":
-        name = "radial" if profile is None else "profiled"
+        name = max(film_names(film), key=lambda n: film_module(n).RUNG)
     found = importlib.import_module(f"{__name__}.{name}")
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 
@@ -34,14 +41,27 @@ def film_name(module) -> str:
     return module.__name__.removeprefix(f"{__name__}.").split(".")[0]
 
 
+@cache
 def all_film_names() -> list[str]:
     """Names of all films, sorted."""
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 
 
-def film_names(film=None) -> list[str]:
-    """Names of the films that can take a film's faces: of a profile the profiled film alone, which between plain
-    cones (`film` without a profile, or None) is the radial film once more and is left out."""
-    if film is not None and film.profile is not None:
-        return ["profiled"]
-    return [name for name in all_film_names() if name != "profiled"]
+def film_names(film=None, waves=()) -> list[str]:
+    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves, without those
+    that are another one of them once more."""
+    able = [name for name in all_film_names() if not film_module(name).accepts(film, waves)]
+    return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
+
+
+def check_film(film, waves=()) -> None:
+    """Raises SceneError if the film that a `Film` table asks for cannot take its faces with these waves."""
+    able = film_names(film, waves)
+    said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
+    if able if film.model == "auto" else not said[film.model]:
+        return
+    faces = "wavy faces" if waves else "a profile"
+    expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
+    if not able:
+        expected = "a film that takes them: " + "; ".join(f"{name} takes {words}" for name, words in said.items())
+    raise SceneError("film.model", f'"{film.model}" with {faces}', expected)

@@ -7,7 +7,8 @@ the user's own.  The term with the mean spin wm is the wedge (half-speed entrain
 destabilising one.  Green's stiffness follows the pressure drop and his damping the viscosity, so both
 follow tables over time; the user's own numbers stay as given.
 **Valid** small motion: |g| r_o and dz well below the clearance; then it costs nothing.
-Leakage and drag are those of the narrow seal at the tilted film, angle by angle, without squeeze.
+Leakage and drag are those of the narrow seal at the tilted and wavy film, angle by angle, without squeeze and without
+what the pressure does on the slope of a wave.
 """
 
 import math
@@ -16,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from ..closed_form import film_coefficients, narrow_seal_opening_force
+from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
     CAVITATED,
     CLEARANCE,
@@ -36,18 +38,31 @@ from ..faces.geometry import (
     MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
+    ORDER_LIST,
+    ORDERS,
     OUTER_PRESSURE,
     OUTER_RADIUS,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
+    WAVES,
     face_parameters,
     regularised_thickness,
 )
+from ..scene.film import Coefficients
 
 RUNG = 1
 UNKNOWNS = 0
+
+
+def accepts(film, waves=()) -> str:
+    """What faces it takes, "" if it can take these: waves under the user's own numbers, if it is asked for by name."""
+    if film is not None and film.profile is not None:
+        return "plain cones only"
+    own = film is not None and film.model == "linear" and isinstance(film.coefficients, Coefficients)
+    return "" if own or not waves else 'waves, with model = "linear" and a table film.coefficients of your own numbers'
+
 
 # Block layout after the faces: each coefficient is a constant plus a part per pressure drop or viscosity.
 TILT_K, TILT_K_DP, TILT_D, TILT_D_MU, AXIAL_K, AXIAL_K_DP, AXIAL_D, AXIAL_D_MU, FORCE_I, FORCE_O = range(
@@ -123,14 +138,23 @@ def flow(f, s):
     if f[TILT_AT_MEAN] != 0.0:
         swing_i = swing_o = r_m * tilt
     conductance = drag = 0.0
-    for j in range(FLOW_ANGLES):
-        cos_b = math.cos(2.0 * math.pi * j / FLOW_ANGLES)
-        h_i = regularised_thickness(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
-        h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
+    angles = FLOW_ANGLES
+    if f[WAVES] != 0.0:
+        angles *= int(f[ORDER_LIST + int(f[ORDERS]) - 1])
+    for j in range(angles):
+        angle = 2.0 * math.pi * j / angles
+        if f[WAVES] == 0.0:
+            # Counted from the thinnest place.
+            cos_b = math.cos(angle)
+            h_i = regularised_thickness(f[CLEARANCE] + s[DZ] - swing_i * cos_b, floor)
+            h_o = regularised_thickness(f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o * cos_b, floor)
+        else:
+            h_i = regularised_thickness(film_thickness(f, s, r_i, angle), floor)
+            h_o = regularised_thickness(film_thickness(f, s, r_o, angle), floor)
         conductance += 2.0 * (h_i * h_o) ** 2 / (width * (h_i + h_o))
         change = (h_o - h_i) / h_i
         drag += width / h_i * (math.log1p(change) / change if abs(change) > 1e-9 else 1.0)
-    d_theta = 2.0 * math.pi / FLOW_ANGLES
+    d_theta = 2.0 * math.pi / angles
     drop = s[OUTER_PRESSURE] - s[INNER_PRESSURE]
     s[FLOW_INNER] = s[FLOW_OUTER] = -r_m * drop * d_theta * conductance / (12.0 * s[VISCOSITY])
     twist = 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])

@@ -7,12 +7,15 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from . import contact, secondary_seal
 from . import film as film_table
 from .scene import SceneError
+from .waviness import waves_of, waviness_errors
 
 
 def check_scene(scene, run) -> None:
     """Raises `ImpossibleScene` with the first rule that the scene breaks."""
     _film(scene.film)
     _profile(scene)
+    for key, found, expected in waviness_errors(scene):
+        raise SceneError(key, found, expected)
     _closing(scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         _ring(name, ring)
@@ -173,7 +176,8 @@ def _run(shaft, run) -> None:
 def _open_at_start(scene) -> None:
     """The flexible ring starts where [initial] says, else untilted at the clearance."""
     film = scene.film
-    if film.clearance is None:
+    if film.clearance is None or waves_of(scene):
+        # Among waves the model's own start looks for the thinnest place.
         return
     rotor, stator = _start(scene.initial.rotor), _start(scene.initial.stator)
     if scene.rotor.support is None:

@@ -125,10 +125,6 @@ class Film:
     """Faces that are no plain cones."""
 
 
-# Films that know a coned face only.
-CONES_ONLY = ("linear", "radial")
-
-
 def profile_errors(film) -> list[tuple[str, str, str]]:
     """What cannot be in a `[film]` with a profile: (key below film, found, expected)."""
     profile = film.profile
@@ -151,8 +147,6 @@ def profile_errors(film) -> list[tuple[str, str, str]]:
         if not found or abs(found[0] - edge) > 1e-12 * edge:
             words = "first" if key == "inner_radius" else "last"
             bad.append(("profile.radius", f"{found[0] if found else 0:g} m {words}", f"{key} = {edge:g} m {words}"))
-    if film.model in CONES_ONLY:
-        bad.append(("model", f'"{film.model}" with a profile', '"profiled" or "auto": the faces are no plain cones'))
     if film.cavitation_pressure is not None:
         bad.append(("cavitation_pressure", "a value with a profile", "nothing: a film with a profile has no floor"))
     return bad

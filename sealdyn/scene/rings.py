@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from ..units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
 from .secondary_seal import SecondarySeal
+from .waviness import Waviness
 
 STATOR, ROTOR = 0, 1
 RING_NAMES = ("stator", "rotor")
@@ -75,6 +76,8 @@ class Stator:
     """Of the axis of that tilt, fixed in space, from the x axis."""
     speed: Varying[Speed] = 0.0
     """Of a stator that turns with a carrier of its own (counter-rotation: negative)."""
+    waviness: list[Waviness] = field(default_factory=list)
+    """Waves around its face, which turn with it."""
     support: Support | None = None
     """Springs and dampers to the housing: the stator floats."""
     secondary_seal: SecondarySeal | None = None
@@ -106,6 +109,8 @@ class Rotor:
     """Of the axis of that tilt, at the start, from the x axis."""
     axial_runout: list[AxialRunout] = field(default_factory=list)
     """Harmonics of the axial motion of the rotor's carrier."""
+    waviness: list[Waviness] = field(default_factory=list)
+    """Waves around its face, which turn with it."""
     support: Support | None = None
     """Springs and dampers to the shaft: the rotor floats."""
     secondary_seal: SecondarySeal | None = None

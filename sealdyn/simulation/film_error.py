@@ -13,6 +13,7 @@ from scipy.linalg import expm
 
 from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 from ..films import film_module
+from ..scene.waviness import waves_of
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
@@ -34,6 +35,8 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     """
     model, unknowns = run.model, run.model.unknowns
     if unknowns.massless or not unknowns.constant or not unknowns.linear:
+        return None
+    if film_module(higher).accepts(replace(model.scene.film, model=higher), waves_of(model.scene)):
         return None
     segment = run.segment(0)
     _, answers, linear = segment.steady_motion()

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..films import film_names
+from ..scene.waviness import waves_of
 from .film_error import model_error
 
 
@@ -24,11 +26,12 @@ def select_film(
         start(run)
         return run
 
-    if film.model != "auto" or film.profile is not None:
+    if film.model != "auto" or not {"linear", "radial"} <= set(film_names(film, waves_of(scene))):
         run = started(Model(scene, accuracy))
+        name = run.model.interface.name
         if film.model == "auto":
-            run.reasons.append("film auto: the profiled film; the faces have a profile, others know cones only")
-        return run, model_error(run) if run.model.interface.name == "linear" else None
+            run.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
+        return run, model_error(run) if name == "linear" else None
     radial = started(Model(replace(scene, film=replace(film, model="radial")), accuracy))
     why = _why_not_linear(scene, radial)
     if why is None:

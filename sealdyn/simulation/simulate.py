@@ -16,6 +16,7 @@ from .. import __version__, archive
 from ..archive import ArchiveWriter, Series, partial_path
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import time_of_angle
+from ..dynamics.signals import wave_names
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
@@ -273,6 +274,9 @@ def _series(model) -> dict[str, Series]:
         for part in list(PARTS)[: 6 if model.unknowns.floats[k] else 3]:
             units, long_name = PARTS[part]
             series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
+    for names in wave_names(model.face):
+        for name, part in zip(names, ("cosine", "sine"), strict=True):
+            series[name] = Series("m", f"{part} part of the gap's wave of order {name.rpartition('_')[2]}, from xi")
     if model.contact is not None:
         series |= CONTACT_SERIES
     for k in model.unknowns.seals:

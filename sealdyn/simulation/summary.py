@@ -11,6 +11,7 @@ from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import TOUCH
 from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.waviness import waves_of
 from ..solvers.contract import Status
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
@@ -237,8 +238,9 @@ def _linear_steady(segment, linear, period):
 
 
 def _contact_margin(segment, linear, tilt):
-    """Factor on the forcing at which linear theory closes the gap at either edge."""
-    if tilt is None or modes.verdict(linear.modes()) != "stable":
+    """Factor on the forcing at which linear theory closes the gap at either edge; unknown of wavy faces."""
+    waves = waves_of(segment.model.scene)
+    if tilt is None or waves or modes.verdict(linear.modes()) != "stable":
         return math.nan
     model = segment.model
     face, (most, _, closing, _) = model.face, tilt

@@ -18,6 +18,7 @@ def expm(segment, tau, y, method, tolerance, counts):
     while tau < segment.length:
         free = y[:n] - motion.forced([tau])[0]
         step, count = _exact_step(*motion.parts(free, segment.scales[:n]), tolerance)
+        step = min(step, segment.longest_step())
         widths = _widths(segment.length - tau, step, AT_ENDS if fresh else count, fresh)
         times, fresh = tau + np.cumsum(widths), False
         if segment.length - times[-1] < 0.5 * widths[-1]:

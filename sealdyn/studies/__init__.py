@@ -11,6 +11,7 @@ What every study module offers (the contract):
             or `{"failed": reason}`.  `tools.say(fraction)` reports progress of anything else.
 `WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without
             them, and its verdict says so.
+`WITH_WAVES`    True if the study reckons with wavy faces, or does not ask how thin the film is; else it refuses them.
 `units`     dict: result key (dotted) -> units, for the archive.
 
 The chart of a study has the same name in `charts` with the prefix `study_`, and draws from the study's archive only.

@@ -12,6 +12,8 @@ from .. import __version__, studies
 from ..archive import write_study
 from ..numerics.parallel import Checkpoint, evaluate
 from ..scenario.settings import study_settings, without_contact
+from ..scene.scene import SceneError
+from ..scene.waviness import waves_of
 
 
 def study_names() -> list[str]:
@@ -49,6 +51,9 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     """
     name = name.replace("-", "_")
     module = study_module(name)
+    if waves_of(scenario.scene) and not getattr(module, "WITH_WAVES", False):
+        key = "rotor.waviness" if scenario.scene.rotor.waviness else "stator.waviness"
+        raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
     plain = json.loads(json.dumps(asdict(settings), default=str))

@@ -11,6 +11,7 @@ from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length
 
+WITH_WAVES = True
 units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/stiffness": "N/m"}
 
 
@@ -29,7 +30,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_module(scene.film.model, scene.film.profile).opening_force
+    film, opening = scene.film, film_module(scene.film.model, scene.film).opening_force
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))

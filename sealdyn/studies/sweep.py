@@ -11,7 +11,7 @@ from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..simulation.simulate import prepare_run, simulate_in_memory
 
-WITH_CONTACT = True
+WITH_CONTACT = WITH_WAVES = True
 OUTPUTS = (
     "h_min.value",
     "h_min.of_clearance",

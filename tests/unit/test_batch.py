@@ -7,7 +7,7 @@ import pytest
 from scenes import fmr, fms, fmsr, housing_vibration, prepared
 
 from sealdyn.dynamics.signals import signals
-from sealdyn.faces.geometry import h_min
+from sealdyn.faces.film_thickness import h_min
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.secondary_seal import SecondarySeal
 
@@ -55,7 +55,7 @@ def test_signals_are_those_of_each_instant(drawn):
         alone = signals(segment, taus[k : k + 1], q[k : k + 1], rate[k : k + 1])
         assert all(together[name][k] == alone[name][0] for name in alone)
         s = segment.gap_state(taus[k], segment.model.vector(q[k], rate[k]))
-        assert together["h_min"][k] == h_min(face, *s[:3])[0] and together["axial_gap_change"][k] == s[0]
+        assert together["h_min"][k] == h_min(face, s)[0] and together["axial_gap_change"][k] == s[0]
     assert signals(segment, taus[:0], q[:0], rate[:0])["h_min"].shape == (0,)
 
 

@@ -4,9 +4,17 @@ import numpy as np
 import pytest
 from scenes import CLEARANCE, R_I, R_O, film
 
-from sealdyn.faces.geometry import FLOOR, edge_gaps, face_parameters, h_min, regularised_thickness
+from sealdyn.faces.film_thickness import h_min
+from sealdyn.faces.geometry import FLOOR, GAP_STATE_SIZE, edge_gaps, face_parameters, regularised_thickness
 
 CONINGS = {"converging": 3.125e-3, "flat": 0.0, "diverging": -1.1e-3}
+
+
+def gap(dz=0.0, g_x=0.0, g_y=0.0):
+    """A gap state; of faces without waves nothing else is asked."""
+    s = np.full(GAP_STATE_SIZE, np.nan)
+    s[:3] = dz, g_x, g_y
+    return s
 
 
 def thickness(r, theta, coning, dz, g_x, g_y, mean=False):
@@ -31,7 +39,7 @@ def test_smallest_thickness_against_a_search(coning, mean):
     theta, r = np.meshgrid(2 * np.pi * np.arange(count) / count, np.linspace(R_I, R_O, 9))
     sides = set()
     for dz, g_x, g_y in states():
-        low, at, radius = h_min(f, dz, g_x, g_y)
+        low, at, radius = h_min(f, gap(dz, g_x, g_y))
         searched = thickness(r, theta, coning, dz, g_x, g_y, mean).min()
         # Half a grid step from the minimum the cosine has risen by (pi/count)^2 / 2.
         slack = R_O * np.hypot(g_x, g_y) * (np.pi / count) ** 2 / 2
@@ -49,11 +57,11 @@ def test_thinnest_edge_changes_at_the_critical_coning():
     critical, touching = CLEARANCE / R_I, CLEARANCE / R_I
     for share, edge in ((0.99, R_O), (1.01, R_I)):
         f = face_parameters(film(coning=share * critical), CLEARANCE)
-        assert h_min(f, 0.0, 0.0, touching)[2] == edge
+        assert h_min(f, gap(g_y=touching))[2] == edge
 
 
 def test_untilted_faces_have_a_finite_place():
-    low, at, radius = h_min(face_parameters(film(), CLEARANCE), 1e-6, 0.0, 0.0)
+    low, at, radius = h_min(face_parameters(film(), CLEARANCE), gap(1e-6))
     assert low == pytest.approx(CLEARANCE + 1e-6, rel=1e-15) and np.isfinite(at) and radius == R_I
 
 

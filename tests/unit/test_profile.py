@@ -10,6 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from sealdyn.faces import contact, geometry
+from sealdyn.faces.film_thickness import h_min
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Film, Profile
 
@@ -123,7 +124,7 @@ def test_smallest_film_is_the_least_of_a_fine_scan(shape, mean, coning):
     f, seen = face(shape, mean, coning), set()
     theta, r = np.linspace(-np.pi, np.pi, 3601)[:, None], np.unique(np.r_[np.linspace(R_I, R_O, 400), shape[0]])
     for at in states(shape, 1, 25, mean, coning, -20.0):
-        low, angle, radius = geometry.h_min(f, *at)
+        low, angle, radius = h_min(f, state(*at))
         scanned = thickness(shape, r, theta, at, mean, coning).min()
         slack = R_O * np.hypot(*at[1:]) * (np.pi / 3600) ** 2 / 2
         assert low - 1e-18 <= scanned <= low + slack + 1e-18
@@ -143,7 +144,7 @@ def test_a_linear_profile_is_coning_and_zeros_are_nothing(coning, mean):
         straight = r, coning * (r - R_I)
         for f in (face((r, np.zeros(n)), mean, coning), face(straight, mean)):
             for at in states(straight, 2, 20, mean):
-                assert geometry.h_min(f, *at)[:2] == pytest.approx(geometry.h_min(plain, *at)[:2], abs=1e-20, rel=1e-13)
+                assert h_min(f, state(*at))[:2] == pytest.approx(h_min(plain, state(*at))[:2], abs=1e-20, rel=1e-13)
                 # The law's own points around the circle leave 1e-9 of a shallow load; with twice as many, rounding.
                 for law, points, allowed in ((LAW, None, 1e-9), (LAW, 30, 1e-12), (GAUSSIAN, 40, 1e-12)):
                     expected = rub(plain, at, law, points)

@@ -47,7 +47,13 @@ from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES
 from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, nodes_of, phi, pieces_of, plain_ratios, sums
 
 RUNG = 2
+GENERALISES = "radial"
 UNKNOWNS = 0
+
+
+def accepts(film, waves=()) -> str:
+    """What faces it takes, "" if it can take these."""
+    return "faces that are the same all around" if waves else ""
 
 
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:

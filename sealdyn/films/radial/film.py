@@ -76,6 +76,11 @@ LANES, ROWS = 16, 16
 T, REACH, SCALE, U_I, H_G, EVEN, A0, AE, A1, B0, BE, B1, C0, CE, C1, D0 = range(ROWS)
 
 
+def accepts(film, waves=()) -> str:
+    """What faces it takes, "" if it can take these."""
+    return "plain cones only" if waves or (film is not None and film.profile is not None) else ""
+
+
 def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
     """Opening force (N) of the aligned film at rest; pressures absolute (Pa), clearance in m."""
     s = np.zeros(GAP_STATE_SIZE)

@@ -9,7 +9,8 @@ from .palette import CONTACT, THICKNESS
 from .record import BLOCK, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
-AROUND = np.linspace(0, 2 * np.pi, 181)
+# Angles around the circle, at least, and per wave of the highest order.
+ANGLES, PER_WAVE = 180, 16
 
 
 def draw(archive_path, out_path, turns: float = 6.0):
@@ -34,8 +35,7 @@ def draw(archive_path, out_path, turns: float = 6.0):
 def thickness(run: Run, radius, angle, first: int, stop: int):
     """Film thickness (m): rows first to stop along axis 0, then broadcast over `radius` and `angle`.
 
-    h = C + dz + r (g_x sin - g_y cos) + shape(r); no tilt in the archive: aligned faces.
-    **Valid** for faces that are the same all around; waviness is not in it.
+    h = C + dz + r (g_x sin - g_y cos) + shape(r) + waves; no tilt in the archive: aligned faces.
     """
 
     def rows(name):
@@ -43,14 +43,22 @@ def thickness(run: Run, radius, angle, first: int, stop: int):
         return values.reshape(-1, *([1] * np.broadcast(radius, angle).ndim))
 
     wedge = rows("relative_tilt_x") * np.sin(angle) - rows("relative_tilt_y") * np.cos(angle)
-    return run.clearance + rows("axial_gap_change") + radius * wedge + run.shape(radius)
+    waves = sum(
+        rows(f"gap_cos_{n}") * np.cos(n * angle) + rows(f"gap_sin_{n}") * np.sin(n * angle) for n in run.wave_orders
+    )
+    return run.clearance + rows("axial_gap_change") + radius * wedge + run.shape(radius) + waves
+
+
+def around(run: Run) -> np.ndarray:
+    """Angles (rad) of a full circle, fine enough for the waves."""
+    return np.linspace(0, 2 * np.pi, max(ANGLES, PER_WAVE * max(run.wave_orders, default=0)) + 1)
 
 
 def map_over_turns(ax, run: Run, turns: float):
     """Angle against turns; the line follows the smallest film thickness."""
     first = run.last(turns, MOST_COLUMNS)
     radius = _edge(run, first)
-    over = 1e6 * thickness(run, radius, AROUND, first, run.rows)
+    over = 1e6 * thickness(run, radius, around(run), first, run.rows)
     progress = run.progress[first:]
     even = np.linspace(progress[0], progress[-1], len(progress))
     over = over[np.clip(np.searchsorted(progress, even), 0, len(progress) - 1)]
@@ -84,11 +92,11 @@ def face_at_minimum(figure, ax, run: Run) -> None:
     if not (inner and outer):
         absent(ax, "Thinnest moment")
         return
-    radius = np.linspace(inner, outer, 12)
-    over = 1e6 * thickness(run, radius[:, None], AROUND, at, at + 1)[0]
-    over = np.broadcast_to(over, (len(radius), len(AROUND)))
+    radius, angle = np.linspace(inner, outer, 12), around(run)
+    over = 1e6 * thickness(run, radius[:, None], angle, at, at + 1)[0]
+    over = np.broadcast_to(over, (len(radius), len(angle)))
     image = ax.pcolormesh(
-        AROUND,
+        angle,
         1e3 * radius,
         over,
         shading="gouraud",
@@ -97,7 +105,7 @@ def face_at_minimum(figure, ax, run: Run) -> None:
     )
     low = np.unravel_index(over.argmin(), over.shape)
     if np.ptp(over[low[0]]) > 1e-6:
-        ax.plot(AROUND[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+        ax.plot(angle[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     ax.set(ylim=(0, 1e3 * outer), yticks=[])
     ax.grid(False)
     unit = "turn" if run.turning else "ms"

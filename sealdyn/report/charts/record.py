@@ -98,7 +98,7 @@ class Run:
 
     @cached_property
     def clearance(self) -> float | None:
-        """Design clearance (m): given, or from the first row's h_min = C + dz + shape(r) - r tilt."""
+        """Design clearance (m): given, or from the first row's h_min = C + dz + shape(r) - r tilt + waves."""
         if self.film("clearance"):
             return self.film("clearance")
         if not self.has("h_min", "axial_gap_change"):
@@ -106,6 +106,11 @@ class Run:
         first = {n: self.values(n, 0, 1)[0] for n in self.info["series"]}
         radius = first.get("h_min_radius", self.film("inner_radius") or 0.0)
         wedge = radius * first.get("relative_misalignment", 0)
+        if self.wave_orders:
+            angle = first["h_min_angle"]
+            wedge = radius * (first["relative_tilt_y"] * np.cos(angle) - first["relative_tilt_x"] * np.sin(angle))
+            for n in self.wave_orders:
+                wedge -= first[f"gap_cos_{n}"] * np.cos(n * angle) + first[f"gap_sin_{n}"] * np.sin(n * angle)
         return first["h_min"] - first["axial_gap_change"] - float(self.shape(radius)) + wedge
 
     def shape(self, radius):
@@ -113,6 +118,11 @@ class Run:
         profile = self.resolved.get("film", {}).get("profile")
         depth = np.interp(radius, profile["radius"], profile["depth"]) if profile else 0.0
         return (self.film("coning") or 0.0) * (radius - (self.film("inner_radius") or 0.0)) + depth
+
+    @cached_property
+    def wave_orders(self) -> list[int]:
+        """Orders of the waves between the faces: those of the series gap_cos_n and gap_sin_n."""
+        return sorted(int(name.removeprefix("gap_cos_")) for name in self.info["series"] if name.startswith("gap_cos_"))
 
     @property
     def touch_at(self) -> float:
@@ -127,9 +137,9 @@ class Run:
 
     @cached_property
     def contact_tilt(self) -> float | None:
-        """Relative misalignment (rad) at which the faces touch at the design clearance."""
+        """Relative misalignment (rad) at which faces without waves touch at the design clearance."""
         inner, outer = self.film("inner_radius"), self.film("outer_radius")
-        if not (self.clearance and inner and outer):
+        if not (self.clearance and inner and outer) or self.wave_orders:
             return None
         profile = self.resolved.get("film", {}).get("profile")
         radii = np.array(profile["radius"] if profile else [inner, outer])

@@ -19,7 +19,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
-from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, h_min
+from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
 from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
@@ -144,7 +144,7 @@ class ShortRunAverages:
         if here == 0.0:
             return 0.0
         side, near = math.copysign(step, here), 0.0
-        lowest = h_min(run.model.face, 0.0, 0.0, 0.0)[0]
+        lowest = smallest_gap(run.model.face, 0.0, 0.0)[0]
         while True:
             far = near + side
             if excess(far) * here <= 0.0:

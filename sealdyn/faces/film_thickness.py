@@ -1,0 +1,77 @@
+"""Film thickness h(r, theta, t) between the faces, its rate, and its smallest value with where it is.
+
+Axes and signs: faces/geometry.py.  `f` is a face block (the leading slots of any film's), `s` a gap state.
+**Valid** rigid faces: cones, a profile over the radius, waves around the circle, tilt.
+"""
+
+import math
+
+from numba import njit
+
+from .geometry import (
+    CLEARANCE,
+    CONING,
+    DZ,
+    DZ_RATE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_RADIUS,
+    OUTER_RADIUS,
+    PROFILE,
+    PROFILE_DEPTHS,
+    PROFILE_RADII,
+    TILT_AT_MEAN,
+    WAVES,
+    smallest_gap,
+)
+from .thinnest import thinnest_of_waves
+from .waviness import waves, waves_rate
+
+
+@njit(cache=True)
+def _arm(f, r):
+    """Arm (m) of the tilt at radius r."""
+    return 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else r
+
+
+@njit(cache=True)
+def _depth(f, r):
+    """Depth (m) of the profile at radius r, 0 without one; beyond its ends as there."""
+    count = int(f[PROFILE])
+    if count == 0 or r <= f[PROFILE_RADII]:
+        return f[PROFILE_DEPTHS] if count else 0.0
+    for k in range(1, count):
+        before, here = f[PROFILE_RADII + k - 1], f[PROFILE_RADII + k]
+        if r <= here:
+            share = (r - before) / (here - before)
+            return f[PROFILE_DEPTHS + k - 1] + share * (f[PROFILE_DEPTHS + k] - f[PROFILE_DEPTHS + k - 1])
+    return f[PROFILE_DEPTHS + count - 1]
+
+
+@njit(cache=True)
+def film_thickness(f, s, r, theta):
+    """Film thickness (m) at radius r (m) and angle theta (rad, from xi)."""
+    aligned = f[CLEARANCE] + s[DZ] + f[CONING] * (r - f[INNER_RADIUS]) + _depth(f, r)
+    return aligned + _arm(f, r) * (s[GX] * math.sin(theta) - s[GY] * math.cos(theta)) + waves(f, s, theta)
+
+
+@njit(cache=True)
+def film_thickness_rate(f, s, r, theta):
+    """Its rate (m/s) at a fixed place: the rings' own rates, and the waves that pass with them."""
+    tilting = s[GX_RATE] * math.sin(theta) - s[GY_RATE] * math.cos(theta)
+    return s[DZ_RATE] + _arm(f, r) * tilting + waves_rate(f, s, theta)
+
+
+@njit(cache=True)
+def h_min(f, s):
+    """Smallest film thickness over the face (m), its angle (rad, from xi, within a half turn) and radius (m)."""
+    if f[WAVES] != 0.0:
+        return thinnest_of_waves(f, s)
+    # h = C + dz + ... - r G cos(beta): beta counts from the thinnest place (faces/geometry.py).
+    least, radius = smallest_gap(f, s[DZ], math.hypot(s[GX], s[GY]))
+    theta = math.atan2(s[GY], s[GX]) - 0.5 * math.pi
+    if theta < -math.pi:
+        theta += 2.0 * math.pi
+    return least, theta, radius
