@@ -26,8 +26,10 @@ def drawn(chart, archive, out, written=True):
 
 
 def panel(figure, title):
-    """The axes whose title begins so."""
-    (found,) = [ax for ax in figure.axes if any(ax.get_title(loc).startswith(title) for loc in ("left", "center"))]
+    """The axes of this title, or the one whose title begins so."""
+    titled = [(ax.get_title("left") or ax.get_title("center"), ax) for ax in figure.axes]
+    exact = [ax for words, ax in titled if words == title]
+    (found,) = exact or [ax for words, ax in titled if words.startswith(title)]
     return found
 
 

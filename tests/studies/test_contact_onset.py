@@ -23,7 +23,7 @@ CASES = {
 }
 
 
-@pytest.fixture(scope="module", params=sorted(CASES))
+@pytest.fixture(scope="module", params=["fmr", pytest.param("fms", marks=pytest.mark.slow)])
 def found(request):
     name, key, overrides = CASES[request.param]
     scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
