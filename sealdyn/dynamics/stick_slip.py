@@ -9,7 +9,7 @@ import numpy as np
 
 from ..numerics.hermite import NODES, fit, value
 from ..scene.rings import RING_NAMES
-from ..solvers.contract import Change
+from ..solvers.contract import Change, Transition
 from .equations import (
     AT_TILT_RATE,
     AT_Z_RATE,
@@ -87,10 +87,10 @@ class StickSlip:
         self.stuck = {int(k): v for k, v in state["stuck"].items()}
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
-    def accept(self, block, advance) -> Change | None:
-        """The first change in a block of steps.  `advance(tau, y, until)` integrates."""
+    def accept(self, block, advance) -> Transition | None:
+        """The first transition in a block of steps.  `advance(tau, y, until)` integrates."""
         found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
-        return self._transition(*found) if found else None
+        return Transition(found[0], float(found[1]), *found[2:]) if found else None
 
     def _next_transition(self, t, ys, begin: int, end: int, advance):
         """First change in steps [begin, end]: (step, time, unknowns, ring) or None."""
@@ -115,21 +115,22 @@ class StickSlip:
                 return step, *found
         return None
 
-    def _transition(self, step: int, tau: float, y, k: int) -> Change:
-        """Ring k sticks or slips at time tau."""
-        name, tau = RING_NAMES[k], float(tau)
+    def make(self, transition: Transition) -> Change:
+        """Let the ring of a transition stick or slip."""
+        k, tau, y = transition.what, transition.time, transition.y
+        name = RING_NAMES[k]
         if self.stuck[k]:
             self.stuck[k], self.leaving[k] = False, True
             self.slips += 1
             event = {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
-            return Change(step, tau, y, y, dict(self.stuck), event)
+            return Change(y, dict(self.stuck), event)
         after = self._carried_along(k, tau, y)
         lost = -float(np.diff(self.segment.energies(np.array([tau, tau]), np.vstack([y, after])))[0])
         self.stuck[k] = True
         self.sticks += 1
         self.dropped += lost
         event = {"kind": "stick", "value": lost, "text": f"the {name} sticks on its secondary seal"}
-        return Change(step, tau, y, after, dict(self.stuck), event)
+        return Change(after, dict(self.stuck), event)
 
     # --- a stuck ring -------------------------------------------------------------------------------
 

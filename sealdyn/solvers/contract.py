@@ -7,7 +7,8 @@ A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over
 `shortest_period`, `massless`, `algebraic`, and `may_change`: whether its equations may, at any step.
 
 An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
-returns None or a Stop, Change or Retry; `state()` and `restore(state)` for a run that is continued.
+returns None, a Stop, a Retry or a Transition (which `make` turns into a Change); `state()` and `restore(state)` for a
+run that is continued.
 """
 
 from dataclasses import dataclass
@@ -61,14 +62,21 @@ class Stop:
 
 
 @dataclass(frozen=True)
-class Change:
-    """The equations change at `time` (s, of the segment), after step `step`: unknowns `before` and `after`, the new
-    `modes` of the segment, and the `event` to log."""
+class Transition:
+    """Where the equations are about to change: at `time` (s, of the segment), after step `step`, with the unknowns
+    `y` (size,) there; `what` changes is the observer's own affair."""
 
     step: int
     time: float
-    before: np.ndarray
-    after: np.ndarray
+    y: np.ndarray
+    what: object
+
+
+@dataclass(frozen=True)
+class Change:
+    """The equations have changed: unknowns `y` after it, the new `modes` of the segment, and the `event` to log."""
+
+    y: np.ndarray
     modes: dict
     event: dict
 

@@ -71,7 +71,7 @@ def solve(
             if isinstance(found, Retry):
                 tolerance = found.tolerance
             elif isinstance(found, Change):
-                segment, y = run.segment(index, found.modes), found.after
+                segment, y = run.segment(index, found.modes), found.y
                 sink.event(segment, tau, found.event)
             elif segment.last:
                 break
@@ -95,7 +95,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     def method_over(segment, tau, y):
         return steps(segment, tau, y, method, tolerance, counts)
 
-    sticking, change = run.stick_slip, None
+    sticking, transition = run.stick_slip, None
     for observer in (*observers, *([sticking] if sticking else [])):
         observer.begin(segment, tau, y)
     t, ys = np.array([tau]), y[None, :].copy()
@@ -110,16 +110,17 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
         if sticking:
             # It cuts the steps before anybody else sees them.
-            change = sticking.accept(
+            transition = sticking.accept(
                 Block(segment, t, ys, yps, looked, len(t) - 1),
                 lambda tau, y, until: _advanced(method_over, segment, tau, y, until),
             )
-            if change:
-                t, ys = np.append(t[: change.step + 1], change.time), np.vstack([ys[: change.step + 1], change.before])
+            if transition:
+                upto = transition.step + 1
+                t, ys = np.append(t[:upto], transition.time), np.vstack([ys[:upto], transition.y])
                 yps, failed = np.zeros_like(ys), []
             looked = len(t) - 1
         count = len(t)
-        last_block = t[-1] >= segment.length or bool(failed) or change is not None
+        last_block = t[-1] >= segment.length or bool(failed) or transition is not None
         # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
         upto = count - 1 if last_block else count - 1 - OVERLAP
         if upto > watched:
@@ -136,8 +137,9 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
                 return stop
             run.last = (segment.index, float(t[upto]), ys[upto].copy())
             sink.state(segment, *run.last[1:])
-        if change:
-            return change
+        if transition:
+            # Made only now: what the sink keeps to go on from is still the state before it.
+            return sticking.make(transition)
         # Keep neighbours to the left of what comes next.
         keep = max(0, upto - OVERLAP)
         t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep

@@ -15,7 +15,7 @@ AMPLITUDE, MASS, SPEED, STIFFNESS, FRICTION = 20e-6, 1.0, 1000.0, 2e5, 15.0
 
 
 def rule(*changes):
-    return followability(prepare_run(read_scenario(SCENARIO, changes))[0])
+    return followability(prepare_run(read_scenario(SCENARIO, changes))[0].model)
 
 
 def test_the_rule_is_spring_against_friction_and_inertia():
@@ -28,7 +28,7 @@ def test_the_rule_is_spring_against_friction_and_inertia():
 
 
 def test_nothing_to_follow_no_rule():
-    assert followability(prepare_run(read_scenario(SCENARIO.parent / "fms_reference.toml"))[0]) == []
+    assert followability(prepare_run(read_scenario(SCENARIO.parent / "fms_reference.toml"))[0].model) == []
 
 
 @pytest.mark.parametrize("share,together", [(0.9, False), (1.1, True)])

@@ -261,7 +261,7 @@ def test_the_tilt_that_touches_whatever_the_profile():
     film = "film.profile={ radius = ['32 mm', '40 mm'], depth = ['25 um', '25 um'] }"
     scene = read("fms_reference", film, "film.clearance=5 um", "film.coning=0 rad", "film.model=auto").scene
     ready = Model(scene)
-    assert touch_tilt(ready) == pytest.approx((30e-6 - ready.model.face[COLLAPSE]) / 40e-3, rel=1e-9)
+    assert touch_tilt(ready) == pytest.approx((30e-6 - ready.face[COLLAPSE]) / 40e-3, rel=1e-9)
 
 
 # --- errors -----------------------------------------------------------------------------------------------

@@ -145,7 +145,7 @@ def _both(answer) -> list[float]:
 
 def test_kernel_s_hats_are_the_slow_scale_s():
     runs = ShortRunAverages(pressed(), RADIUS)
-    ready = runs.ready(np.zeros(17), 0.0, 1.0)
+    ready = runs.run(np.zeros(17), 0.0)
     assert contact.hat_areas(ready.model.face) == pytest.approx(HatBasis(RADIUS).areas, rel=1e-13, abs=0.0)
 
 
@@ -379,14 +379,14 @@ def test_a_contact_on_one_side_is_said(tmp_path):
 SLOWLY = """
 import sys, time
 import sealdyn
-from sealdyn.investigate import investigate
-from sealdyn.worn_runs import WornRuns
-found = WornRuns.__call__
+from sealdyn.studies._runner import run_study
+from sealdyn.studies.wear.averages import ShortRunAverages
+found = ShortRunAverages.__call__
 def slowly(self, depth, motion=None):
     time.sleep(0.05)
     return found(self, depth, motion)
-WornRuns.__call__ = slowly
-investigate("wear", sealdyn.read_scenario(sys.argv[1]), sys.argv[2], workers=1)
+ShortRunAverages.__call__ = slowly
+run_study("wear", sealdyn.read_scenario(sys.argv[1]), sys.argv[2], workers=1)
 """
 
 

@@ -17,6 +17,7 @@ from sealdyn.scene.film import Coefficients
 from sealdyn.solvers.fixed_step import REFERENCE_METHODS
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.work_precision import errors, film_ladder, study
+from sealdyn.studies.work_precision.ranking import mark_slow_runs
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 60}
@@ -161,7 +162,7 @@ def test_a_run_that_takes_too_long_is_stopped(tmp_path):
 def test_a_hundred_times_slower_is_a_cross():
     fast = {"error": {"end": [1e-3, 1e-6]}, "wall": [0.01, 0.02], "status": ["ok", "ok"], "reason": ["", ""]}
     slow = {"error": {"end": [1e-3, 1e-5]}, "wall": [0.9, 3.0], "status": ["ok", "ok"], "reason": ["", ""]}
-    study.cross_the_slow({"a": fast, "b": slow}, "end", 100.0)
+    mark_slow_runs({"a": fast, "b": slow}, "end", 100.0)
     assert slow["status"] == ["ok", "slow"] and "150" in slow["reason"][1]
     assert fast["status"] == ["ok", "ok"]
 

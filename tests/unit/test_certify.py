@@ -115,7 +115,7 @@ def test_an_undamped_scene_adds_its_errors_up():
     short, long = (solver_error(prepared(scene, turns * TURN, 1e-3), "adams") for turns in (20, 2000))
     ways = ("adams", 1e-3), ("expm", 1e-9)
     true = [run(scene, turns=2000, accuracy=accuracy, method=method, per_turn=4) for method, accuracy in ways]
-    drift = np.max(np.abs(true[0].scaled() - true[1].scaled())[:, : true[0].problem.n])
+    drift = np.max(np.abs(true[0].scaled() - true[1].scaled())[:, : true[0].model.unknowns.n])
     assert 0 < short < 1e-3 and drift / 10 < long < 1e-3
 
 
@@ -246,7 +246,7 @@ def test_the_lowest_film_that_keeps_the_accuracy():
     gentle = SCENES["fms"]
     error = model_error(started(on(gentle, "linear", coefficients="radial"), 10 * TURN, 1e-6))
     assert choose(gentle, 2.2 * error).model.interface.name == "linear"
-    assert choose(gentle, 1.8 * error).film_name == "radial"
+    assert choose(gentle, 1.8 * error).model.interface.name == "radial"
     assert any("film auto" in reason for reason in choose(gentle, 1.8 * error).reasons)
 
 
@@ -261,18 +261,18 @@ def test_the_lowest_film_that_keeps_the_accuracy():
     ids=["contact", "cavitation", "run-up", "massless"],
 )
 def test_where_a_linear_film_has_no_place(scene):
-    assert choose(scene, 1e-2).film_name == "radial"
+    assert choose(scene, 1e-2).model.interface.name == "radial"
 
 
 def test_an_unstable_scene_is_not_linearised():
     scene = fmr(c=3.0, speed=1.1 * 8684.0, own=1e-3 * TILT_SCALE, fixed=0.0)
-    assert INERTIA > 0 and choose(scene, 1e-2).film_name == "radial"
+    assert INERTIA > 0 and choose(scene, 1e-2).model.interface.name == "radial"
 
 
 def test_leakage_of_a_chosen_linear_film_is_the_radial_films():
     """The motion may be linear; what leaks at a clearance is not for the narrow-seal formula to say."""
     ready = choose(SCENES["fmsr"], 1e-2)
-    assert ready.model.interface.name == "linear" and ready.model.observed[0].__module__.endswith("radial")
+    assert ready.model.interface.name == "linear" and ready.model.observed[0].__module__.endswith("radial.film")
 
 
 def test_the_sentence_says_what_was_asked_and_what_was_found():

@@ -26,8 +26,8 @@ SLOTS = {
 SLOTS["wear"] = geometry.WEAR
 
 
-def face(coning=CONING, tilt_radius="local", geometry="cylindrical", r_i=R_I):
-    film = Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning, tilt_radius=tilt_radius, geometry=geometry)
+def face(coning=CONING, tilt_radius="local", shape="cylindrical", r_i=R_I):
+    film = Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning, tilt_radius=tilt_radius, geometry=shape)
     return geometry.face_parameters(film, C0)
 
 
@@ -203,7 +203,7 @@ def test_friction_takes_the_sign_of_the_spin_and_either_law():
 
 def test_planar_film_has_the_same_contact():
     state = (0.0, C0 / R_I, 1e-5)
-    assert rub(CHRISTENSEN, face(), *state) == rub(CHRISTENSEN, face(geometry="planar"), *state)
+    assert rub(CHRISTENSEN, face(), *state) == rub(CHRISTENSEN, face(shape="planar"), *state)
 
 
 def test_closed_forms_against_the_density():

@@ -158,14 +158,15 @@ def test_residual_of_a_massless_ring_is_its_force_balance():
     """Mass times acceleration plus the massless residual is zero for the acceleration of the ring with mass."""
     massive = segment_of("FMR")
     light = started(
-        replace(massive.scene, rotor=replace(FLEXIBLE_R, mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)), 0.1
+        replace(massive.model.scene, rotor=replace(FLEXIBLE_R, mass=0.0, transverse_inertia=0.0, polar_inertia=0.0)),
+        0.1,
     )
     y, yp, res = random_state(massive, 2), np.empty(massive.size), np.empty(light.model.unknowns.size)
     massive.rhs(TAU, y, yp)
     q_rate = y[massive.rate_places]
     light.segment(0).residual(TAU, light.model.vector(y[:3], []), np.concatenate([q_rate, np.zeros(6)]), res)
     # The gyroscopic moment goes with the polar inertia.
-    body, i = massive.scene.rotor, massive.rate_places
+    body, i = massive.model.scene.rotor, massive.rate_places
     gyroscopic = 1j * body.polar_inertia * SPEED * complex(*q_rate[1:])
     assert res[0] == pytest.approx(body.mass * yp[i[0]], rel=1e-9)
     assert complex(*res[1:3]) == pytest.approx(body.transverse_inertia * complex(*yp[i[1:]]) - gyroscopic, rel=1e-10)

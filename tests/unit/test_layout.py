@@ -38,7 +38,7 @@ def test_aligned_scene_has_axial_unknowns_only(model):
 
 
 def test_both_rings_of_an_aligned_scene():
-    assert layout(fmsr(own=0.0, fixed=0.0)).names == ["stator_z", "rotor_z"]
+    assert layout(fmsr(own=0.0, fixed=0.0)).model.unknowns.names == ["stator_z", "rotor_z"]
 
 
 def driven():
@@ -79,7 +79,7 @@ def test_nonlinear_film_with_tilt_keeps_all():
 
 def test_a_start_of_a_rigid_ring_tilts_nothing():
     """Only a ring that floats can start anywhere."""
-    assert layout(fmr(**ALIGNED, initial=Initial(stator=RingStart(tilt_x=1e-6)))).names == ["rotor_z"]
+    assert layout(fmr(**ALIGNED, initial=Initial(stator=RingStart(tilt_x=1e-6)))).model.unknowns.names == ["rotor_z"]
 
 
 @pytest.mark.parametrize(
@@ -121,9 +121,9 @@ def test_mass_of_a_motion_that_is_not_integrated_does_not_matter():
 def test_massless_and_undamped_is_algebraic():
     spring = Support(axial_stiffness=5e5, radius=0.04)
     rotor = Rotor(**ring(**MASSLESS, support=spring), misalignment=1e-6)
-    assert layout(fmr("linear", film=film("linear", coefficients=NOTHING), rotor=rotor)).algebraic == [0, 1]
+    assert layout(fmr("linear", film=film("linear", coefficients=NOTHING), rotor=rotor)).model.algebraic == [0, 1]
     # The film's damping makes it first order again.
-    assert layout(fmr("linear", rotor=rotor)).algebraic == []
+    assert layout(fmr("linear", rotor=rotor)).model.algebraic == []
 
 
 # --- places and scales ---------------------------------------------------------------------------------

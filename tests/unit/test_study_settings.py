@@ -18,7 +18,8 @@ SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_referenc
 
 
 def settings(module, **flags):
-    return study_settings(SCENARIO, module.__name__.rpartition(".")[2], module.Settings, flags)
+    name = module.__name__.removesuffix(".study").rpartition(".")[2]
+    return study_settings(SCENARIO, name, module.Settings, flags)
 
 
 @pytest.mark.parametrize(
