@@ -284,7 +284,7 @@ def plot(
 
 @app.command()
 def validate(as_json: AsJson = False):
-    """Compare published numbers with three independent roads: formula, linear algebra, time domain."""
+    """Compare published numbers with three independent methods: formula, linear algebra, time domain."""
     from .analysis.validation import report, validate_all
 
     with _libraries_on_stderr():

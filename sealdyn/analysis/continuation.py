@@ -46,7 +46,7 @@ class FilmCollapsed(RuntimeError):
 
 def ramp_to(scene, key, last, x, point):
     """Unknowns (n,) after the ramp to the scene from the value `last` and its end `x`, or from a seal without any
-    misalignment (x None).  Raises Lost."""
+    misalignment (x None).  Raises FilmCollapsed."""
     starts = {key: last} if x is not None and key in LED else {}
     if x is None:
         starts = {k: 0.0 for k in LED[:3] if part(scene, k)}
@@ -92,7 +92,7 @@ def neighbours(scene, x, turns, accuracy, method=None):
 
 
 def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
-    """Where the motion ends up at one point: its last unknowns, and what it is like.  Raises Lost."""
+    """Where the motion ends up at one point: its last unknowns, and what it is like.  Raises FilmCollapsed."""
     stroboscope = PeriodMap(scene, point["accuracy"])
     for periods in (point["drop"], point["keep"]):
         turns = stroboscope.run(x, periods)

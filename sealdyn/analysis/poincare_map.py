@@ -56,7 +56,7 @@ class PeriodSamples:
 
 class PeriodMap:
     """The period map of a scene by one method at one accuracy; `method` None: what the scene wants.
-    Raises ImpossibleScene if there is no period."""
+    Raises SceneError if there is no period."""
 
     def __init__(self, scene, accuracy: float = 1e-6, method: str | None = None):
         self.scene, self.accuracy = scene, accuracy

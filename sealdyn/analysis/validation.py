@@ -1,4 +1,4 @@
-"""Published numbers against three independent roads: formula, linear algebra, time domain.
+"""Published numbers against three independent methods: formula, linear algebra, time domain.
 
 The formula is closed_form's, the linear algebra modes' harmonic balance and eigenvalues, the time domain CVODE
 on the compiled equations of motion.  Linear film, Green's coefficients, at accuracy 1e-8.
@@ -21,7 +21,7 @@ from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 
 ACCURACY = 1e-8
-# The three roads must agree to this, relative.
+# The three methods must agree to this, relative.
 ROADS_AGREE = {"critical_speed": 1e-3, "critical_misalignment": 1e-5}
 ROADS_AGREE_ELSE = 1e-5
 SPEED_EXPLAINED = (
@@ -65,7 +65,7 @@ def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float =
 
 
 def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, float]]:
-    """Each steady quantity by three roads (formula, linear algebra, time domain)."""
+    """Each steady quantity by three independent methods (formula, linear algebra, time domain)."""
     seal = cf.GREEN_1989_SEAL
     film = cf.film_coefficients(
         **{k: seal[k] for k in ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "pressure_drop")}
@@ -147,10 +147,10 @@ def _critical_speeds(arrangement: str, c: float):
 
 
 def validate_all() -> list[dict]:
-    """Every row of Green's Table 1: source, quantity, published, the three roads, deviation, verdict, remark.
+    """Every row of Green's Table 1: source, quantity, published, the three methods, deviation, verdict, remark.
 
     Verdicts: "agrees" (within one unit of the last printed digit), "rounding" (explained by the digits printed),
-    "print differs" (the print is wrong or unexplained, the roads agree), "FAILED" (the roads disagree).
+    "print differs" (the print is wrong or unexplained, the methods agree), "FAILED" (they disagree).
     """
     cases, rows = {}, []
     for entry in cf.GREEN_1989:
@@ -185,7 +185,7 @@ def _row(entry, roads) -> dict:
     apart = float(np.max(np.abs(values / formula - 1)))
     row |= {"deviation": formula / entry.value - 1, "roads_apart": apart}
     if not apart <= ROADS_AGREE.get(entry.quantity, ROADS_AGREE_ELSE):
-        return row | {"verdict": "FAILED", "remark": "the three roads disagree"}
+        return row | {"verdict": "FAILED", "remark": "the three methods disagree"}
     if abs(formula - entry.value) <= 1.0001 * entry.last_digit:
         return row | {"verdict": "agrees"}
     if entry.quantity == "critical_speed":

@@ -93,7 +93,7 @@ def _close(state, lifted, impulse, level, error, rows, count):
 def locate_contacts(
     t, q_all, q_rate_all, impulse, count, begin, end, reach, p, f, y, yp, w, s, start, pace, error, state, rows
 ):
-    """Contacts in steps [begin, end] of a leg that starts at `start` (s), into `rows`; returns how many ended.
+    """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows`; returns how many ended.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
     `reach` (count,) what no film of a step is thinner than (m);

@@ -93,7 +93,7 @@ PLAIN = 5
 
 @njit(cache=True)
 def kinematics(tau, y, yp, p, w, s):
-    """Imposed motion, ring states and the gap state `s` at leg time tau (s) and unknowns `y`.
+    """Imposed motion, ring states and the gap state `s` at segment time tau (s) and unknowns `y`.
     `yp` is read only for the rates of a massless ring."""
     leg = p[LEG_AT:]
     imposed_state(tau, leg, w[: 2 * PER_RING])

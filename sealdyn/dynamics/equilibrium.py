@@ -40,7 +40,7 @@ class ClosingForce:
         return self.area * (self.balance_ratio * high + (1 - self.balance_ratio) * low) + spring
 
     def over(self, leg: Interval, film) -> tuple[float, float]:
-        """Closing force (N) and its slope (N/s) over a leg."""
+        """Closing force (N) and its slope (N/s) over a segment."""
         inner, outer = (
             constant_and_slope(film.inner_pressure, leg),
             constant_and_slope(film.outer_pressure, leg),
@@ -60,7 +60,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     `opening_force(film, clearance, p_i, p_o)` is the film's.  Two of clearance, balance ratio and spring
     force decide the third; the clearance alone means: whatever holds it, counted as hydraulic closing; all three
     (no scenario has them): the closing force is as given, whether or not it balances at the clearance.
-    Raises ImpossibleScene if there is no stable equilibrium.
+    Raises SceneError if there is no stable equilibrium.
     """
     film, closing = scene.film, scene.closing
     inner, outer = initially(film.inner_pressure), initially(film.outer_pressure)

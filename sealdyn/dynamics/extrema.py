@@ -17,7 +17,7 @@ from ..numerics.hermite import NODES, fit, value
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 
-# One record per window: value, leg time, angle, radius of h_min; value and time of the largest and of the
+# One record per window: value, segment time, angle, radius of h_min; value and time of the largest and of the
 # smallest relative misalignment.  Windows: the whole run, the last forcing period, the one before.
 H, H_TAU, H_THETA, H_RADIUS, MOST, MOST_TAU, LEAST, LEAST_TAU, H_LEG, MOST_LEG, LEAST_LEG = range(11)
 RECORD = 11
@@ -54,7 +54,7 @@ def longest_scan(pace: float) -> float:
 
 @njit(cache=True)
 def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
-    """The three measures at displacements q and leg time tau, into `out`; returns angle and radius of h_min."""
+    """The three measures at displacements q and segment time tau, into `out`; returns angle and radius of h_min."""
     y[: len(q)] = q
     kinematics(tau, y, yp, p, w, s)
     out[THICKNESS], theta, radius = h_min(f, s)
@@ -149,7 +149,7 @@ def store(record, kind, out, at, theta, radius, leg):
 
 @njit(cache=True)
 def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach):
-    """Update the records over steps [begin, end]; returns the leg time of collapse (film at the floor), or -1.
+    """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
     `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the

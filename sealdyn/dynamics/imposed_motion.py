@@ -1,8 +1,8 @@
-"""Imposed motion in the solver's inner loop: one block per leg, one compiled kernel.
+"""Imposed motion in the solver's inner loop: one block per segment, one compiled kernel.
 
-Block layout: for each varying quantity its value and slope over the leg, then both rings' angles at its start, then
-the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2` with
-the phase `a0 + a1 tau + a2 tau^2`.
+Block layout: for each varying quantity its value and slope over the interval, then both rings' angles at its start,
+then the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2`
+with the phase `a0 + a1 tau + a2 tau^2`.
 """
 
 import math
@@ -15,7 +15,7 @@ from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
-# Angles (rad, modulo one turn) of both rings at the leg's start.
+# Angles (rad, modulo one turn) of both rings at the segment's start.
 ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 12, 13, 14, 15
 ROW = 9
 
@@ -30,7 +30,7 @@ PER_RING = 13
 
 
 def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.ndarray:
-    """All harmonic motions imposed during a leg, shape (n, ROW).
+    """All harmonic motions imposed during an interval, shape (n, ROW).
 
     A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or
     misalignment is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
@@ -74,7 +74,7 @@ def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.nda
 
 @njit(cache=True)
 def imposed_state(tau, p, c):
-    """Fill the imposed state `c` (2 x PER_RING: stator, rotor) at leg time tau from the block `p`."""
+    """Fill the imposed state `c` (2 x PER_RING: stator, rotor) at segment time tau from the block `p`."""
     c[:] = 0.0
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k

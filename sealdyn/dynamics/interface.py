@@ -107,7 +107,8 @@ class Interface:
 
 
 def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a segment's
+    start,
     the gap `shift` (m) wider than the clearance."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift

@@ -1,4 +1,4 @@
-"""Time cut into legs, on each of which every imposed quantity is linear in time.
+"""Time cut into intervals, on each of which every imposed quantity is linear in time.
 
 A leg starts at a break point (a kink or step of a table) or after `LONGEST` turns.  Within a leg the
 clock `tau` starts at zero, a table is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with
@@ -32,17 +32,17 @@ class Interval:
 
     @property
     def length(self) -> float:
-        """Length of the leg (s)."""
+        """Length of the interval (s)."""
         return float(self.span)
 
     @property
     def time(self) -> float:
-        """Start of the leg (s)."""
+        """Start of the interval (s)."""
         return float(self.start)
 
 
 def constant_and_slope(quantity, leg: Interval) -> tuple[float, float]:
-    """Value and slope over one leg of a number or a `Table` (which has no kink inside the leg)."""
+    """Value and slope over one interval of a number or a `Table` (which has no kink inside the interval)."""
     if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
     t0, t1 = leg.time, leg.time + leg.length
@@ -60,7 +60,7 @@ def modulo_turn(angle: Fraction) -> float:
 
 
 def angle_turned(speed, leg: Interval) -> Fraction:
-    """Exact integral of the speed (rad/s, number or table) over a leg."""
+    """Exact integral of the speed (rad/s, number or table) over a segment."""
     w, slope = constant_and_slope(speed, leg)
     return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
 

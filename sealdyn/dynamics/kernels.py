@@ -33,7 +33,8 @@ class Value(types.WrapperAddressProtocol):
 
 @njit(types.void(KERNEL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), cache=True)
 def rates_along(wrench, f, block, p, w, s, taus, ys, yps):
-    """Derivatives `yps` (m, unknowns) at leg times `taus` (m,) and unknowns `ys` (m, unknowns): film block `f`, contact
+    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) and unknowns `ys` (m, unknowns): film block `f`,
+    contact
     `block` (empty: none), parameters `p`, scratch `w` and `s` as in dynamics/equations.py."""
     for i in range(len(taus)):
         kinematics(taus[i], ys[i], yps[i], p, w, s)

@@ -1,4 +1,4 @@
-"""Lyapunov exponents of a map, by two roads that share nothing, with their uncertainty; and how far one can see.
+"""Lyapunov exponents of a map, by two methods that share nothing, with their uncertainty; and how far one can see.
 
 A map is a function of a point; a flow becomes one by integrating it over a fixed time.  Exponents are per iteration.
 **Source** Benettin, Galgani, Giorgilli & Strelcyn, *Meccanica* 15 (1980) 9 and 21: two neighbours pulled back together,

@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
 
 
@@ -64,8 +64,9 @@ def evaluate(function, points: list, journal: Checkpoint, workers: int | None, s
             journal.add(keys[i], _safe(function, points[i]))
             say(len(points) - len(todo) + todo.index(i) + 1, len(points))
     else:
-        # Forked workers inherit the compiled kernels; they are told one point at a time.
-        with ProcessPoolExecutor(min(workers, len(todo)), mp_context=get_context("fork")) as pool:
+        # Forked workers inherit the compiled kernels; where there is no fork they load them.  One point at a time.
+        way = "fork" if "fork" in get_all_start_methods() else "spawn"
+        with ProcessPoolExecutor(min(workers, len(todo)), mp_context=get_context(way)) as pool:
             waiting = {pool.submit(_safe, function, points[i]): i for i in todo}
             try:
                 for count, future in enumerate(as_completed(waiting), 1):

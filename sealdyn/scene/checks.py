@@ -11,7 +11,7 @@ from .waviness import waves_of, waviness_errors
 
 
 def check_scene(scene, run) -> None:
-    """Raises `ImpossibleScene` with the first rule that the scene breaks."""
+    """Raises `SceneError` with the first rule that the scene breaks."""
     _film(scene.film)
     _profile(scene)
     for key, found, expected in waviness_errors(scene):

@@ -100,7 +100,7 @@ def _march(matrix, start, pushes):
 
 
 def _forced(answers, times, n) -> np.ndarray:
-    """Linear steady displacements and rates (m, 2 n) at leg times."""
+    """Linear steady displacements and rates (m, 2 n) at segment times."""
     states = np.zeros((len(times), 2 * n))
     for harmonic, answer in answers:
         turned = np.exp(1j * harmonic.frequency * times)[:, None] * answer

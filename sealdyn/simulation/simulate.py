@@ -78,7 +78,8 @@ PARTS = {
 
 @dataclass(frozen=True)
 class Result:
-    """What a run leaves: status, a sentence, the summary of interface.md as a dict, and where the archive is."""
+    """What a run leaves: status, a sentence, the summary as a dict (as `run --json` prints it), and where the archive
+    is."""
 
     status: str
     message: str
@@ -122,7 +123,7 @@ def simulate(
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
     interrupted or killed run left off.  A run that fails is a result with its status.
-    Raises ImpossibleScene or ArchiveError for a scene or file that cannot be.
+    Raises SceneError or ArchiveError for a scene or file that cannot be.
     """
     begun = clock.perf_counter()
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
@@ -181,7 +182,7 @@ def certificate(run, method, outcome, errors, by_model) -> dict:
 
 
 def simulate_in_memory(scenario) -> dict:
-    """A run without an archive: the summary of interface.md.  Raises ImpossibleScene or ArchiveError."""
+    """A run without an archive: the summary as `run --json` prints it.  Raises SceneError or ArchiveError."""
     begun = clock.perf_counter()
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, trial = TallySink(run, interval, count), choose_tolerance(run, method)

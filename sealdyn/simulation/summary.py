@@ -1,4 +1,4 @@
-"""What a run amounts to: the numbers of interface.md, from the run, the outcome and the running tallies."""
+"""What a run amounts to: the numbers of `run --json`, from the run, the outcome and the running tallies."""
 
 import math
 
@@ -29,7 +29,7 @@ def model_chosen(scenario, run, method: str, why: str) -> dict:
 
 
 def summarise(scenario, run, outcome, tally, method, why) -> dict:
-    """The summary (interface.md, `run --json`) of a finished run, SI; no value is a NaN or infinite."""
+    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     steady, sentence = _steady(run, outcome, period)

@@ -5,7 +5,7 @@ What every study module offers (the contract):
 `Settings`  frozen dataclass: the keys of `[study.NAME]` with their defaults and units (types of units.py);
             flags `--key value` on the command line override.
 `run(scenario, settings, tools) -> dict`
-            the answer, JSON-ready, with the keys of interface.md and `verdict`, a list of sentences.
+            the answer, JSON-ready, with the keys of `study --json` and `verdict`, a list of sentences.
             `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
             cores, remembers finished points across interruptions, and returns a list of rows: the function's dict,
             or `{"failed": reason}`.  `tools.say(fraction)` reports progress of anything else.
@@ -15,5 +15,5 @@ What every study module offers (the contract):
 `units`     dict: result key (dotted) -> units, for the archive.
 
 The chart of a study has the same name in `charts` with the prefix `study_`, and draws from the study's archive only.
-A study knows scenarios, problems and solvers; it never opens a file or draws.
+A study knows scenarios, models and solvers; it never opens a file or draws.
 """

@@ -47,7 +47,7 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
-    Raises ScenarioError, ImpossibleScene.
+    Raises ScenarioError, SceneError.
     """
     name = name.replace("-", "_")
     module = study_module(name)

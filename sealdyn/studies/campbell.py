@@ -121,7 +121,7 @@ def _match(here, there) -> tuple[np.ndarray, float]:
 
 
 def described(values, shapes, speeds) -> list[dict]:
-    """Modes as interface.md wants them, from all eigenvalues (each twice, with its conjugate).
+    """Modes as the answer has them, from all eigenvalues (each twice, with its conjugate).
 
     Of a tilt pair the member that turns as x + i y is kept: its frequency is signed, positive forward.
     """

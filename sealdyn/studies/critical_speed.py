@@ -51,7 +51,7 @@ class Settings:
 
 
 def run(scenario, settings, tools) -> dict:
-    """The threshold by three roads, and the whirl beyond it."""
+    """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
     pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)

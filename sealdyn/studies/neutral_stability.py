@@ -120,7 +120,7 @@ def resolution(scene, point: dict) -> dict:
 
 def free_ring(scene):
     """The scene's first floating ring with inertia on undamped springs, the film off; and which ring that is.
-    Raises ImpossibleScene if there is none."""
+    Raises SceneError if there is none."""
     name = next((n for n, ring in (("rotor", scene.rotor), ("stator", scene.stator))
                  if ring.support and ring.transverse_inertia > 0), None)  # fmt: skip
     if name is None:

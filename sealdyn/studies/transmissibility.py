@@ -3,7 +3,7 @@
 Static: per unit misalignment fixed in space; dynamic: per unit misalignment turning with the shaft; total: both 1.
 Phase (deg): how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that
 forcing in the forcing's own frame, against the sense of the shaft's rotation; 0 where it follows at once.
-Three roads: formula, harmonic balance, and the equations of motion in time.
+Three independent methods: formula, harmonic balance, and the equations of motion in time.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients.
 """
 
@@ -71,7 +71,8 @@ class Settings:
 
 
 def run(scenario, settings, tools) -> dict:
-    """Transmissibilities of both arrangements by three roads, the speeds at which they cross, and the table."""
+    """Transmissibilities of both arrangements by three independent methods, the speeds at which they cross, and the
+    table."""
     seals = seals_of(scenario.scene)
     own_speed = abs(frozen_at_start(scenario.scene).shaft.speed)
     top = settings.speed_to if settings.speed_to is not None else 3 * own_speed or 3000.0
@@ -250,7 +251,7 @@ def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tupl
 
 
 def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: list[dict]) -> list[dict]:
-    """FMR against FMS in the form of Green's Table 1, at one speed (rad/s), by every road that goes there."""
+    """FMR against FMS in the form of Green's Table 1, at one speed (rad/s), by every method there is."""
     roads = {"formula": {}, "linear_algebra": {}, "time_domain": {}}
     for name, seal in seals.items():
         roads["linear_algebra"][name] = [*seal.algebra(speed)]

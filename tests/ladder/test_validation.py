@@ -12,7 +12,7 @@ def rows():
     return validate_all()
 
 
-# What Green prints and what the sheet computes from his formulas: (seal, c, quantity) -> printed, computed, verdict.
+# What Green prints and what is computed from his formulas: (seal, c, quantity) -> printed, computed, verdict.
 TABLE = {
     ("FMR", None, "static_transmissibility"): (0.071, 0.0707, "agrees"),
     ("FMR", 0.5, "dynamic_transmissibility"): (0.055, 0.0549, "agrees"),
@@ -79,5 +79,5 @@ def test_a_wrong_formula_fails(wrong, monkeypatch):
     monkeypatch.setattr(validation.cf, "GREEN_1989", [closed_form.GREEN_1989[WRONG[wrong]]])
     (row,) = validate_all()
     assert row["quantity"].startswith(wrong[4:]) and row["arrangement"] == wrong[:3].upper()
-    assert row["verdict"] == "FAILED" and row["remark"] == "the three roads disagree"
+    assert row["verdict"] == "FAILED" and row["remark"] == "the three methods disagree"
     assert row["roads_apart"] == pytest.approx(1 - 1 / 1.01, rel=1e-3)

@@ -1,4 +1,5 @@
-"""The threshold by three roads against printed numbers and roots written out here; the whirl beyond it."""
+"""The threshold by three independent methods against printed numbers and roots written out here; the whirl beyond
+it."""
 
 import math
 from pathlib import Path

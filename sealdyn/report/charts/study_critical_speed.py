@@ -1,4 +1,4 @@
-"""The stability threshold by three roads, and what becomes of the whirl beyond it."""
+"""The stability threshold by three independent methods, and what becomes of the whirl beyond it."""
 
 import textwrap
 

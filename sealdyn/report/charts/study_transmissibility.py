@@ -1,4 +1,5 @@
-"""Bode plot of the FMR and the FMS seal over speed, three roads on one chart: transmissibilities above, phases below
+"""Bode plot of the FMR and the FMS seal over speed, three independent methods on one chart: transmissibilities above,
+phases below
 them, and the table at the foot."""
 
 from textwrap import wrap
@@ -52,7 +53,7 @@ def draw(archive_path, out_path):
 
 
 def _roads(ax, answer, quantity: str):
-    """One column of both arrangements by three roads over speed."""
+    """One column of both arrangements by three independent methods over speed."""
     unit = answer["unit"]
     factor = RPM if unit == "rpm" else 1.0
     speed = factor * np.array(answer["speed"])

@@ -142,7 +142,7 @@ class EvenAngleSink:
 @dataclass
 class Passed:
     """A trip as it was run: run, how it ended, time reached (s), samples evenly over the angle (see
-    Evenly.arrays), the free whirl as (times, relative tilt) or None, thinnest film (m) and its time (s), largest
+    EvenAngleSink.arrays), the free whirl as (times, relative tilt) or None, thinnest film (m) and its time (s), largest
     relative misalignment (rad) and its time, whether the faces touched."""
 
     state: RunState
@@ -159,7 +159,7 @@ class Passed:
 def run_cycle(
     scenario, trip: RampCycle, per_turn: int, mode=None, disturbance: float = 0.0, twin: bool = True
 ) -> Passed:
-    """Run a trip.  With a `mode` (whirl.Along) a whirl of it of relative tilt `disturbance` (rad) is added at the
+    """Run a trip.  With a `mode` (ModeOverSpeed) a whirl of it of relative tilt `disturbance` (rad) is added at the
     trip's crossing, and unless `twin` is false the same run without it gives the free whirl."""
     run, method, *_ = prepare_run(trip.on(scenario))
     accuracy = run.model.accuracy

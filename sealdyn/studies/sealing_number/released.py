@@ -115,7 +115,7 @@ def ready_scene(ring: quasi_static.Ring | None = None, misalignment=2.5e-3, mass
 
 
 def ring_of(scene) -> quasi_static.Ring:
-    """The numbers of Ludwig & Allen of a scene.  **Raises** ImpossibleScene if it is not of their kind."""
+    """The numbers of Ludwig & Allen of a scene.  **Raises** SceneError if it is not of their kind."""
     f, rotor = scene.film, scene.rotor
     pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
     seat, none = initially(scene.stator.misalignment), "nothing"

@@ -44,7 +44,7 @@ class ShortRunAverages:
     at a time and at most `patience` times as many.  Called with the depth (n,) m worn off both faces together and a
     motion (None: from the start) it gives an Average.
 
-    Raises ImpossibleScene for a scene without a common period, NoAverage for a run that ends.
+    Raises SceneError for a scene without a common period, NoAverage for a run that ends.
     """
 
     def __init__(self, scene, radius, accuracy=1e-6, within=1e-3, turns=1, patience=40):

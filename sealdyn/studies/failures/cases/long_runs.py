@@ -48,7 +48,7 @@ def kernel_phase(leg, tau: float) -> complex:
 
 
 def phases() -> list[dict]:
-    """Shaft angle in the last 2000 of a million turns: one float product, floats added step by step, legs."""
+    """Shaft angle in the last 2000 of a million turns: one float product, floats added step by step, intervals."""
     leg = split_at_breaks(2 * math.pi * TURNS / SPEED, SPEED, 0.0, [])[-1]
     product = kept = added = 0.0
     with localcontext() as context:
