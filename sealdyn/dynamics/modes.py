@@ -224,20 +224,19 @@ def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, f
     Central differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates.  A film
     law is analytic in the gap, so the error is rounding (about 1e-11 relative at 2 % of the clearance).
     """
-    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    jacobian = np.zeros((3, 6))
-    sizes = [steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]]
-    for column in range(6):
-        for k, weight in enumerate(weights):
-            moved = s.copy()
-            moved[column] += (k - 4) * sizes[column]
-            wrench(f, moved)
-            jacobian[:, column] += weight * moved[FORCE : FORCE + 3] / sizes[column]
+    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+    offsets = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
+    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+    moved = np.empty((len(offsets), 6, len(s)))
+    moved[:] = s
+    moved[:, range(6), range(6)] += offsets[:, None] * sizes
+    for row in moved.reshape(-1, len(s)):
+        wrench(f, row)
+    jacobian = (weights[:, None, None] * moved[:, :, FORCE : FORCE + 3] / sizes[:, None]).sum(axis=0).T
     # What is below the rounding of the force is nothing.
     wrench(f, s)
-    for column in range(6):
-        noise = 1e-14 * np.array([abs(s[FORCE]), *[abs(s[FORCE]) * steps[0] / steps[1]] * 2]) / sizes[column]
-        jacobian[np.abs(jacobian[:, column]) < noise, column] = 0.0
+    noise = 1e-14 * abs(s[FORCE]) * np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
+    jacobian[np.abs(jacobian) < noise[:, None] / sizes] = 0.0
     return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
 
 
