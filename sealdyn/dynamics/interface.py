@@ -39,9 +39,9 @@ from .modes import linearise
 
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
-    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N) of
-    the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction and film
-    force are reported."""
+    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
+    is that of the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction
+    and film force are reported."""
 
     def __init__(self, scene, error: float):
         self.scene = scene

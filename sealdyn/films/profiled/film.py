@@ -71,8 +71,8 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
 
 
 def opening_law(film):
-    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`; pressures
-    absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
+    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
+    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
     return _radial_quadrature.opening_law(film, parameters, wrench)
 
 

@@ -82,8 +82,8 @@ def accepts(film, waves=()) -> str:
 
 
 def opening_law(film):
-    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`; pressures
-    absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
+    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
+    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
     return _radial_quadrature.opening_law(film, parameters, wrench)
 
 
