@@ -110,9 +110,10 @@ class Interface:
             s[film] += s[rough]
 
 
-def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
+def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0, pace=None):
     """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
-    the gap `shift` (m) wider than the clearance."""
+    the gap `shift` (m) wider than the clearance; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of the
+    motion that is tried in place of it."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
     clearance = clearance + shift
@@ -123,5 +124,5 @@ def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift
     s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
     s[SPIN_DIFFERENCE] = w_r - w_s
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
-    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))

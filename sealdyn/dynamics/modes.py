@@ -102,19 +102,20 @@ class LinearScene:
     def modes(self) -> list[Mode]:
         """Modes with non-negative frequency, least damped first."""
         values, shapes = self.eigen()
+        axial, x, y = shapes[0::3], shapes[1::3], shapes[2::3]
+        parts = shapes, axial, x + 1j * y, x - 1j * y
+        sizes = [np.sqrt(np.sum(np.abs(part) ** 2, axis=0)).tolist() for part in parts]
         found = []
-        for value, shape in zip(values, shapes.T, strict=True):
+        for value, whole, along, forward, backward in zip(values.tolist(), *sizes, strict=True):
             if value.imag < -1e-9 * abs(value):
                 continue
-            axial, x, y = shape[0::3], shape[1::3], shape[2::3]
             # About the aligned film axial and angular motion decouple: a shape is one or the other.
-            kind = "axial" if np.linalg.norm(axial) > 0.02 * np.linalg.norm(shape) else "tilt"
+            kind = "axial" if along > 0.02 * whole else "tilt"
             if value.imag <= 1e-9 * abs(value):
                 direction = "none"
             elif kind == "axial":
                 direction = "axial"
             else:
-                forward, backward = np.linalg.norm(x + 1j * y), np.linalg.norm(x - 1j * y)
                 direction = "forward" if forward > backward else "backward"
             found.append(Mode(complex(value), kind, direction))
         return sorted(found, key=lambda mode: -mode.value.real)
