@@ -57,7 +57,7 @@ def initially(quantity) -> float:
 def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equilibrium], str]:
     """Design clearance, closing force, all equilibria found and a sentence, from what the scene gives.
 
-    `opening_force(film, clearance, p_i, p_o)` is the film's.  Two of clearance, balance ratio and spring
+    `opening_force(clearance, p_i, p_o)` is that of film and faces.  Two of clearance, balance ratio and spring
     force decide the third; the clearance alone means: whatever holds it, counted as hydraulic closing; all three
     (no scenario has them): the closing force is as given, whether or not it balances at the clearance.
     Raises SceneError if there is no stable equilibrium.
@@ -70,7 +70,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     balance, spring = closing.balance_ratio, closing.spring_force
 
     if film.clearance is not None:
-        force = opening_force(film, film.clearance, inner, outer)
+        force = opening_force(film.clearance, inner, outer)
         if balance is None and spring is None:
             balance = (force / area - low) / (high - low) if high > low else 1.0
             spring = 0.0 if high > low else force - area * low
@@ -86,7 +86,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
             spring = force - ClosingForce(area, balance, 0.0, outer_is_high).at(inner, outer, 0.0)
             said = "spring force follows from clearance and balance ratio"
         law = ClosingForce(area, balance, spring, outer_is_high)
-        stiffness = _stiffness(opening_force, film, film.clearance, inner, outer)
+        stiffness = _stiffness(opening_force, film.clearance, inner, outer)
         here = Equilibrium(film.clearance, stiffness, stiffness > 0)
         return film.clearance, law, [here], said
 
@@ -116,35 +116,35 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float) 
     """Every clearance where the aligned film's opening force equals `closing` (N), increasing."""
     reference, least = max(rise(film), 1e-6), closed_below(film) * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
-    excess = np.array([opening_force(film, c, inner, outer) - closing for c in grid])
+    excess = np.array([opening_force(c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
     noise = 1e-11 * max(abs(closing), float(np.max(np.abs(excess + closing))))
     roots = []
     for k in range(POINTS - 1):
         if excess[k] * excess[k + 1] < 0 and max(abs(excess[k]), abs(excess[k + 1])) > noise:
             root = brentq(
-                lambda c: opening_force(film, c, inner, outer) - closing,
+                lambda c: opening_force(c, inner, outer) - closing,
                 grid[k],
                 grid[k + 1],
                 xtol=1e-18,
                 rtol=1e-14,
             )
-            stiffness = _stiffness(opening_force, film, root, inner, outer)
+            stiffness = _stiffness(opening_force, root, inner, outer)
             roots.append(Equilibrium(float(root), stiffness, stiffness > 0))
     return roots
 
 
-def _stiffness(opening_force, film, clearance, inner, outer) -> float:
+def _stiffness(opening_force, clearance, inner, outer) -> float:
     """Axial film stiffness -dF/dC (N/m), fourth-order central difference."""
     step = 1e-3 * clearance
-    f = [opening_force(film, clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
+    f = [opening_force(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(rise(film), 1e-6)
-    tight, wide = (opening_force(film, c, inner, outer) for c in (reference / 100, reference * 100))
+    tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
     expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"
     if roots:

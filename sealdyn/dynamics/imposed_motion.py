@@ -44,7 +44,7 @@ def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.nda
             return
         angle, speed = turning[ring if clock is None else clock]
         w, w_slope = constant_and_slope(speed, leg)
-        cycles = Fraction(frequency) * leg.start
+        cycles = Fraction(frequency) * leg.start if frequency else 0
         a0 = modulo_turn(Fraction(order) * angle) + 2 * math.pi * float(cycles % 1) + phase
         a1, a2 = order * w + 2 * math.pi * frequency, 0.5 * order * w_slope
         rows.append([ring, kind, value, slope, math.cos(direction), math.sin(direction), a0, a1, a2])

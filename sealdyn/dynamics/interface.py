@@ -6,6 +6,7 @@ import numpy as np
 
 from ..faces import contact
 from ..faces.geometry import (
+    CLEARANCE,
     COLLAPSE,
     CONTACT_FORCE,
     CONTACT_X,
@@ -38,11 +39,12 @@ from .modes import linearise
 
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
-    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `observed`: kernel and block from which
-    leakage, friction and film force are reported."""
+    the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
+    is that of the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction
+    and film force are reported."""
 
     def __init__(self, scene, error: float):
-        self.scene, self._asperities = scene, None
+        self.scene = scene
         for key, found, expected in profile_errors(scene.film):
             raise SceneError(f"film.{key}", found, expected)
         for key, found, expected in waviness_errors(scene):
@@ -50,13 +52,15 @@ class Interface:
         check_film(scene.film, waves_of(scene))
         self.film = film_module(scene.film.model, scene.film)
         self.name = film_name(self.film)
+        force = self._borrowed().opening_law(scene.film)
+        self.opening_force = self._with_asperities(force) if scene.contact else force
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
         lay_waves(self.f, scene.stator.waviness, scene.rotor.waviness)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
-                self.f[slot] = self._borrowed().opening_force(scene.film, self.clearance, *ends)
+                self.f[slot] = force(self.clearance, *ends)
         self.observed = self.film.flow, self.f
         self.contact = None
         if scene.contact:
@@ -80,45 +84,45 @@ class Interface:
         )
         return replace(table, coefficients=taken)
 
-    def opening_force(self, table, clearance, inner_pressure, outer_pressure) -> float:
-        """Opening force (N) of the aligned faces at rest: film, and the asperities that touch."""
-        if self.scene.contact:
-            # The floor of rough faces is a thickness, whatever the clearance.
-            floor, touch, collapse = contact_thresholds(self.scene.contact)
-            table = replace(table, floor=floor / clearance)
-        force = self._borrowed().opening_force(table, clearance, inner_pressure, outer_pressure)
-        if not self.scene.contact:
-            return force
-        face, s = face_parameters(table, clearance), np.zeros(GAP_STATE_SIZE)
-        face[TOUCH], face[COLLAPSE] = touch, collapse
-        if self._asperities is None:
-            # Of the faces it takes the radii, and whether there is a profile, which stay.
-            self._asperities = contact.parameters(self.scene.contact, face)
-        contact.contact_load(self._asperities, face, s)
-        return force + s[CONTACT_FORCE]
+    def _with_asperities(self, film_force):
+        """`film_force` with the floor of rough faces, and the force of the asperities that touch."""
+        # Of the faces the asperities take the radii, and whether there is a profile.
+        face, s = face_parameters(self.scene.film, 1.0), np.zeros(GAP_STATE_SIZE)
+        asperities = contact.parameters(self.scene.contact, face)
+        floor, _, _ = contact_thresholds(self.scene.contact)
 
-    def wrench(self, f, s):
-        """Film and asperities together, as the force and moments of the film."""
+        def force(clearance: float, inner_pressure: float, outer_pressure: float) -> float:
+            face[CLEARANCE] = clearance
+            contact.contact_load(asperities, face, s)
+            return film_force(clearance, inner_pressure, outer_pressure, floor) + s[CONTACT_FORCE]
+
+        return force
+
+    @property
+    def wrench(self):
+        """Function `wrench(f, s)`: film and asperities together, as the force and moments of the film."""
+        return self.film.wrench if self.contact is None else self._rough_wrench
+
+    def _rough_wrench(self, f, s):
         self.film.wrench(f, s)
-        if self.contact is not None:
-            contact.contact_load(self.contact, f, s)
-            for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
-                s[film] += s[rough]
+        contact.contact_load(self.contact, f, s)
+        for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
+            s[film] += s[rough]
 
 
-def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a segment's
-    start,
-    the gap `shift` (m) wider than the clearance."""
+def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at an interval's
+    start, the gap `shift` (m) wider than the clearance; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of
+    the motion that is tried in place of it."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
     clearance = clearance + shift
-    first = (lambda q: constant_and_slope(q, leg)[0]) if leg else initially
+    first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
     s[VISCOSITY] = first(scene.film.viscosity)
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
     w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
     s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
     s[SPIN_DIFFERENCE] = w_r - w_s
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
-    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))

@@ -11,7 +11,7 @@ from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import linearised_film
 from .intervals import constant_and_slope
-from .modes import Harmonic, LinearScene, RingNumbers
+from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
 
 
 def axial_shift(model, interval) -> tuple[float, bool]:
@@ -42,19 +42,28 @@ def axial_shift(model, interval) -> tuple[float, bool]:
     return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18)), True
 
 
+def film_matrices(model, interval, shift: float, mean_spin: float, pace: float | None = None):
+    """Stiffness and damping (3, 3) of film and asperities at an interval's start, the gap `shift` (m) wider."""
+    return linearised_film(
+        model.interface.wrench, model.f, model.scene, model.clearance, interval, mean_spin, shift, pace
+    )
+
+
 def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
-    """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
+    """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap.
+
+    **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
+    another speed it needs no other linearisation.
+    **Valid** no floor of the pressure, which the motion tried may meet: such a film is linearised at every speed.
+    """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
-    stiffness, damping = linearised_film(
-        model.interface.wrench,
-        model.f,
-        model.scene,
-        model.clearance,
-        interval,
-        mean_spin=0.5 * (w_r + w_s),
-        shift=model.axial_shift(interval) if shift is None else shift,
-    )
+    shift = model.axial_shift(interval) if shift is None else shift
+    if speed is None or model.scene.film.cavitation_pressure is not None:
+        stiffness, damping = film_matrices(model, interval, shift, 0.5 * (w_r + w_s))
+    else:
+        still, damping = model.still_film(interval, shift)
+        stiffness = still - 0.5 * (w_r + w_s) * damping @ QUARTER_TURN
     rings = []
     for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
         support = ring.support

@@ -33,7 +33,7 @@ class Model:
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed())
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear")
-        self._shifts, self._linear_scenes = {}, {}
+        self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.massless else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = accuracy * self.clearance * self.reference_rate / FADES
@@ -103,6 +103,15 @@ class Model:
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]
+
+    def still_film(self, interval: Interval, shift: float):
+        """Stiffness and damping (3, 3) of the film at an interval's start without mean spin, the gap `shift` (m) wider;
+        not to be changed."""
+        key = interval.start, shift
+        if key not in self._still_films:
+            found = linearisation.film_matrices(self, interval, shift, mean_spin=0.0, pace=self.reference_rate)
+            self._still_films[key] = found
+        return self._still_films[key]
 
     def speed_at(self, interval: Interval) -> float:
         """Shaft speed (rad/s) at an interval's start."""

@@ -102,19 +102,20 @@ class LinearScene:
     def modes(self) -> list[Mode]:
         """Modes with non-negative frequency, least damped first."""
         values, shapes = self.eigen()
+        axial, x, y = shapes[0::3], shapes[1::3], shapes[2::3]
+        parts = shapes, axial, x + 1j * y, x - 1j * y
+        sizes = [np.sqrt(np.sum(np.abs(part) ** 2, axis=0)).tolist() for part in parts]
         found = []
-        for value, shape in zip(values, shapes.T, strict=True):
+        for value, whole, along, forward, backward in zip(values.tolist(), *sizes, strict=True):
             if value.imag < -1e-9 * abs(value):
                 continue
-            axial, x, y = shape[0::3], shape[1::3], shape[2::3]
             # About the aligned film axial and angular motion decouple: a shape is one or the other.
-            kind = "axial" if np.linalg.norm(axial) > 0.02 * np.linalg.norm(shape) else "tilt"
+            kind = "axial" if along > 0.02 * whole else "tilt"
             if value.imag <= 1e-9 * abs(value):
                 direction = "none"
             elif kind == "axial":
                 direction = "axial"
             else:
-                forward, backward = np.linalg.norm(x + 1j * y), np.linalg.norm(x - 1j * y)
                 direction = "forward" if forward > backward else "backward"
             found.append(Mode(complex(value), kind, direction))
         return sorted(found, key=lambda mode: -mode.value.real)
@@ -224,20 +225,19 @@ def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, f
     Central differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates.  A film
     law is analytic in the gap, so the error is rounding (about 1e-11 relative at 2 % of the clearance).
     """
-    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    jacobian = np.zeros((3, 6))
-    sizes = [steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]]
-    for column in range(6):
-        for k, weight in enumerate(weights):
-            moved = s.copy()
-            moved[column] += (k - 4) * sizes[column]
-            wrench(f, moved)
-            jacobian[:, column] += weight * moved[FORCE : FORCE + 3] / sizes[column]
+    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+    offsets = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
+    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+    moved = np.empty((len(offsets), 6, len(s)))
+    moved[:] = s
+    moved[:, range(6), range(6)] += offsets[:, None] * sizes
+    for row in moved.reshape(-1, len(s)):
+        wrench(f, row)
+    jacobian = (weights[:, None, None] * moved[:, :, FORCE : FORCE + 3] / sizes[:, None]).sum(axis=0).T
     # What is below the rounding of the force is nothing.
     wrench(f, s)
-    for column in range(6):
-        noise = 1e-14 * np.array([abs(s[FORCE]), *[abs(s[FORCE]) * steps[0] / steps[1]] * 2]) / sizes[column]
-        jacobian[np.abs(jacobian[:, column]) < noise, column] = 0.0
+    noise = 1e-14 * abs(s[FORCE]) * np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
+    jacobian[np.abs(jacobian) < noise[:, None] / sizes] = 0.0
     return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
 
 

@@ -10,6 +10,7 @@ between its radii, which faces/contact_annulus.py integrates.
 """
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
@@ -57,6 +58,7 @@ from .roughness import christensen_series, gaussian_series, scaled, stored
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
+_gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
 
 
 def parameters(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
@@ -85,7 +87,7 @@ def parameters(contact: Contact, face: np.ndarray, points: int | None = None) ->
     k[LOAD:AREA], k[AREA:ENERGY], k[ENERGY:NODES] = load, area, stored(load, top - bottom)
     k[RADIAL], k[AROUND], first = radial, points, NODES
     for count in (radial, points):
-        node, weight = np.polynomial.legendre.leggauss(count)
+        node, weight = _gauss(count)
         k[first : first + count] = 0.5 * (1.0 + node)
         k[first + count : first + 2 * count] = 0.5 * weight
         first += 2 * count

@@ -55,6 +55,7 @@ def gaussian_overlap(n: float, d):
     return density @ (math.sqrt(14.0) * weight * w ** (2.0 * n + 1.0))
 
 
+@lru_cache(maxsize=1)
 def christensen_series() -> np.ndarray:
     """Contact fraction of Christensen's heights, c (u = 0) to -c (u = 1): exact."""
     return series(np.polynomial.Polynomial([35.0, -84.0, 70.0, -20.0])(np.polynomial.Polynomial([0.5, 0.5])).coef)

@@ -11,8 +11,9 @@ What every film module offers (the contract):
 `parameters(film, clearance)`
                   float64 array: the film's block of the parameter array, for a `Film` table and the
                   design clearance (m).  The kernels below get this block.
-`opening_force(film, clearance, inner_pressure, outer_pressure)`
-                  force (N) of the aligned film at rest, for the equilibrium.
+`opening_law(film)`
+                  function `force(clearance, inner_pressure, outer_pressure, floor)`: opening force (N) of the aligned
+                  film at rest, for the equilibrium; `floor` (m) of the film thickness, without it the film's own.
 `wrench(f, s)`    compiled kernel: film block `f`, gap state `s` (slots named in faces/geometry.py) -> writes
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
@@ -32,6 +33,11 @@ def film_module(name: str, film=None):
     `Film` table (None: plain cones), until a choice is certified."""
     if name == "auto":
         name = max(film_names(film), key=lambda n: film_module(n).RUNG)
+    return _module(name)
+
+
+@cache
+def _module(name: str):
     found = importlib.import_module(f"{__name__}.{name}")
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 

@@ -6,7 +6,17 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from ..faces.geometry import FACE_SIZE, face_parameters
+from ..faces.geometry import (
+    CLEARANCE,
+    FACE_SIZE,
+    FLOOR,
+    FORCE,
+    GAP_STATE_SIZE,
+    INNER_PRESSURE,
+    OUTER_PRESSURE,
+    VISCOSITY,
+    face_parameters,
+)
 
 # Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
@@ -96,6 +106,22 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     f[ANGLE_COUNTS:COSINES] = ANGLES
     f[COSINES:SINES], f[SINES:] = HALF_CIRCLE
     return f
+
+
+def opening_law(film, parameters, wrench):
+    """The function `opening_law` of a radial film's contract, from its `parameters` and its kernel `wrench`."""
+    s = np.zeros(GAP_STATE_SIZE)
+    s[VISCOSITY] = 1.0
+    # One block for all clearances: only the slots of the clearance differ.
+    f = parameters(film, 1.0, 1e-13)
+
+    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
+        f[CLEARANCE], f[FLOOR] = clearance, film.floor * clearance if floor is None else floor
+        s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
+        wrench(f, s)
+        return float(s[FORCE])
+
+    return force
 
 
 @njit(cache=True)

@@ -99,18 +99,16 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-    """Opening force (N) of the aligned narrow seal at rest; pressures absolute (Pa), clearance in m."""
-    return float(
-        narrow_seal_opening_force(
-            inner_radius=film.inner_radius,
-            outer_radius=film.outer_radius,
-            clearance=clearance,
-            coning=film.coning,
-            inner_pressure=inner_pressure,
-            outer_pressure=outer_pressure,
-        )
-    )
+def opening_law(film):
+    """Opening force (N) of the aligned narrow seal at rest, `force(clearance, inner_pressure, outer_pressure, floor)`;
+    pressures absolute (Pa), clearance in m; it has no use for a floor."""
+    faces = dict(inner_radius=film.inner_radius, outer_radius=film.outer_radius, coning=film.coning)
+
+    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
+        pressures = dict(inner_pressure=inner_pressure, outer_pressure=outer_pressure)
+        return float(narrow_seal_opening_force(**faces, clearance=clearance, **pressures))
+
+    return force
 
 
 @njit(cache=True)

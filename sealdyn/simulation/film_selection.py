@@ -13,8 +13,8 @@ from .film_error import model_error
 def select_film(
     scene, duration: float, accuracy: float, start: Callable[[RunState], None]
 ) -> tuple[RunState, float | None]:
-    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a chosen linear
-    film; `start(run)` sets its unknowns.
+    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
+    that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
 
     Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
     below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
@@ -28,10 +28,10 @@ def select_film(
 
     if film.model != "auto" or not {"linear", "radial"} <= set(film_names(film, waves_of(scene))):
         run = started(Model(scene, accuracy))
-        name = run.model.interface.name
         if film.model == "auto":
+            name = run.model.interface.name
             run.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
-        return run, model_error(run) if name == "linear" else None
+        return run, None
     radial = started(Model(replace(scene, film=replace(film, model="radial")), accuracy))
     why = _why_not_linear(scene, radial)
     if why is None:

@@ -181,14 +181,15 @@ def certificate(run, method, outcome, errors, by_model) -> dict:
             "said": found.said}  # fmt: skip
 
 
-def simulate_in_memory(scenario) -> dict:
-    """A run without an archive: the summary as `run --json` prints it.  Raises SceneError or ArchiveError."""
+def simulate_in_memory(scenario, speeds: bool = False) -> dict:
+    """A run without an archive: the summary as `run --json` prints it, without a certificate; critical and resonance
+    speeds only if `speeds`.  Raises SceneError or ArchiveError."""
     begun = clock.perf_counter()
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, trial = TallySink(run, interval, count), choose_tolerance(run, method)
     outcome = solve(run, method, run.model.accuracy, sink, errors=error_estimator(run, method), **_tried(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial))
+    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial), speeds)
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 

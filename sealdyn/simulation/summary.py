@@ -13,6 +13,7 @@ from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
+from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
@@ -28,8 +29,9 @@ def model_chosen(scenario, run, method: str, why: str) -> dict:
     }
 
 
-def summarise(scenario, run, outcome, tally, method, why) -> dict:
-    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite."""
+def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
+    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite.  `speeds`: with critical and
+    resonance speeds, which cost more than a short run."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     steady, sentence = _steady(run, outcome, period)
@@ -66,7 +68,7 @@ def summarise(scenario, run, outcome, tally, method, why) -> dict:
         "closing": _closing(segment),
         "contact_margin": _contact_margin(segment, linear, tilt),
         "closed_form": _closed_form(segment, linear, tilt),
-        "stability": stability(model, segment.interval, linear),
+        "stability": stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
         "warnings": [*run.warnings, *_blown_open(model, tally)],
         "counts": {
@@ -294,37 +296,3 @@ def _closed_form(segment, linear, tilt):
     )
     found["formula_max"], found["formula_min"] = float(most), float(least)
     return found
-
-
-def stability(model, interval=None, linear=None) -> dict:
-    """Linear stability with all degrees of freedom at an interval's start: verdict, whirl ratio of the least damped
-    tilt mode,
-    critical speed (rad/s, None if there is none) and resonance speeds."""
-    linear = linear or model.linear_scene(interval)
-    found = linear.modes()
-    speed = linear.rings[ROTOR].spin
-    tilt = [mode for mode in found if mode.kind == "tilt"]
-    least = tilt[0] if tilt else None
-    whirl = None
-    if least is not None and speed:
-        sign = -1.0 if least.direction == "backward" else 1.0
-        whirl = sign * least.value.imag / speed
-
-    def at_speed(w):
-        return model.linear_scene(interval, speed=w)
-
-    critical, resonances = None, []
-    if tilt:
-        pace = max(abs(mode.value) for mode in tilt)
-        low, high = 1e-3 * pace, 1e3 * pace
-        critical = modes.critical_speed(at_speed, low, high)
-        resonances = modes.resonance_speeds(at_speed, 1e-2 * pace, 1e2 * pace)
-    return {
-        "verdict": modes.verdict(found),
-        "whirl_ratio": whirl,
-        "critical_speed": critical,
-        "resonance_speeds": resonances,
-        "growth_rate": found[0].value.real if found else None,
-        "speed": speed,
-        "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
-    }

@@ -30,7 +30,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_module(scene.film.model, scene.film).opening_force
+    film, opening = scene.film, film_module(scene.film.model, scene.film).opening_law(scene.film)
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
@@ -38,7 +38,7 @@ def run(scenario, settings, tools) -> dict:
     low, high = _range(film, roots, settings)
     roots = [root for root in roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
-    force = np.array([opening(film, c, inner, outer) for c in clearance])
+    force = np.array([opening(c, inner, outer) for c in clearance])
     stiffness = np.array([_stiffness(opening, film, c, inner, outer) for c in clearance])
     support = sum(ring.support.axial_stiffness for ring in (scene.rotor, scene.stator) if ring.support)
     answer = {
@@ -88,7 +88,7 @@ def _range(film, roots, settings) -> tuple[float, float]:
 def _stiffness(opening, film, clearance, inner, outer) -> float:
     """-dF/dC (N/m), central difference, one step smaller than the distance to closed faces."""
     step = 1e-4 * (clearance - closed_below(film))
-    f = [opening(film, clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
+    f = [opening(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 

@@ -22,6 +22,8 @@ OUTPUTS = (
     "contact_margin",
     "stability.verdict",
 )
+# What of the summary is found only if it is among the outputs.
+SPEEDS = ("critical_speed", "resonance_speeds")
 UNITS = {
     "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
     "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
@@ -64,7 +66,8 @@ def run(scenario, settings, tools) -> dict:
 
 def one_run(scenario, point: dict) -> dict:
     """The outputs of one point's run, its status, and its message when it did not end well."""
-    summary = simulate_in_memory(with_values(scenario, point["set"]))
+    speeds = any(name in key for key in point["outputs"] for name in SPEEDS)
+    summary = simulate_in_memory(with_values(scenario, point["set"]), speeds)
     row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
     return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
 
@@ -74,7 +77,8 @@ def looked_up(summary: dict, key: str):
     place = summary
     for part in key.split("."):
         if not isinstance(place, dict) or part not in place:
-            near = difflib.get_close_matches(key, leaves(summary), 1, 0.3)
+            known = [*leaves(summary), *(f"stability.{name}" for name in SPEEDS)]
+            near = difflib.get_close_matches(key, known, 1, 0.3)
             raise ValueError(f"the run's summary has no {key}" + (f"; nearest {near[0]}" if near else ""))
         place = place[part]
     if isinstance(place, dict):

@@ -14,7 +14,7 @@ import pytest
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis
-from sealdyn.simulation.simulate import simulate
+from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies._runner import run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
@@ -68,6 +68,18 @@ def test_rows_equal_single_runs(tmp_path):
     assert row["relative_misalignment.steady_max"] == summary["relative_misalignment"]["steady_max"]
     assert row["leakage.mean"] == summary["leakage"]["mean"]
     assert row["stability.verdict"] == "stable"
+
+
+def test_critical_and_resonance_speeds_are_found_where_they_are_asked_for(tmp_path):
+    scenario, speeds = parse_scenario(PATH.read_text(), "one", SHORT), {"critical_speed", "resonance_speeds"}
+    assert not speeds & set(simulate_in_memory(scenario)["stability"])
+    whole = simulate(scenario, tmp_path / "one.h5").summary["stability"]
+    assert speeds <= set(whole) and whole["critical_speed"] > 0
+    # Runout has no part in it.
+    for row in sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_speed")["rows"]:
+        assert row["stability.critical_speed"] == whole["critical_speed"]
+    answer = sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_sped")
+    assert "nearest stability.critical_speed" in answer["rows"][0]["failed"]
 
 
 def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):

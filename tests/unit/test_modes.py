@@ -6,9 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
+from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, fms, ring
 from scenes import of_given_film as run_of
 
+from sealdyn.dynamics.linearisation import film_matrices as film_at
+from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
 from sealdyn.scene.rings import Rotor, Stator
 
@@ -88,6 +90,19 @@ def test_eigenvalues_against_the_complex_equations(name, speed):
     expected = np.concatenate([tilt, tilt.conj(), axial_roots(masses)])
     same(linear.eigen()[0], expected)
     same(np.linalg.eigvals(linear.state_matrix()), expected)
+
+
+@pytest.mark.parametrize("floor", [None, -1e5], ids=["no floor", "floor"])
+@pytest.mark.parametrize("speed", [3.0, 300.0, 9000.0])
+def test_film_at_another_speed_is_the_film_linearised_there(speed, floor):
+    """To rounding where the still film serves all speeds; a film with a floor is linearised at each."""
+    model = Model(fms(film=film(cavitation_pressure=floor)))
+    linear = model.linear_scene(speed=speed)
+    stiffness, damping = film_at(model, model.start, model.axial_shift(), mean_spin=0.5 * speed)
+    for found, expected in ((linear.film_k, stiffness), (linear.film_d, damping)):
+        assert found[0, 0] == pytest.approx(expected[0, 0], rel=1e-8)
+        assert found[1:, 1:] == pytest.approx(expected[1:, 1:], rel=1e-8)
+    assert linear.film_k[2, 1] == pytest.approx(-0.5 * speed * linear.film_d[1, 1], rel=1e-8)
 
 
 @pytest.mark.parametrize("speed", [300.0, 4000.0])

@@ -22,7 +22,6 @@ from ...faces.geometry import (
     FLOW_INNER,
     FLOW_OUTER,
     FORCE,
-    GAP_STATE_SIZE,
     GX,
     GX_RATE,
     GY,
@@ -71,13 +70,10 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-    """Opening force (N) of the aligned film at rest; pressures absolute (Pa), clearance in m."""
-    s = np.zeros(GAP_STATE_SIZE)
-    s[VISCOSITY] = 1.0
-    s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
-    wrench(parameters(film, clearance, 1e-13), s)
-    return float(s[FORCE])
+def opening_law(film):
+    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
+    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
+    return _radial_quadrature.opening_law(film, parameters, wrench)
 
 
 @njit(cache=True, error_model="numpy")

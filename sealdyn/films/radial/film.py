@@ -33,7 +33,6 @@ from ...faces.geometry import (
     FLOW_INNER,
     FLOW_OUTER,
     FORCE,
-    GAP_STATE_SIZE,
     GX,
     GX_RATE,
     GY,
@@ -52,6 +51,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
+from .. import _radial_quadrature
 from .._radial_quadrature import (
     COSINES,
     HAS_CAVITATION,
@@ -81,13 +81,10 @@ def accepts(film, waves=()) -> str:
     return "plain cones only" if waves or (film is not None and film.profile is not None) else ""
 
 
-def opening_force(film, clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-    """Opening force (N) of the aligned film at rest; pressures absolute (Pa), clearance in m."""
-    s = np.zeros(GAP_STATE_SIZE)
-    s[VISCOSITY] = 1.0
-    s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
-    wrench(parameters(film, clearance, 1e-13), s)
-    return float(s[FORCE])
+def opening_law(film):
+    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
+    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
+    return _radial_quadrature.opening_law(film, parameters, wrench)
 
 
 @njit(cache=True)

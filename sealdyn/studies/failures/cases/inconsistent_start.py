@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 
 from ....analysis.validation import reference_scene
 from ....dynamics.model import Model
+from ....films import film_module
 from ....scene.scene import Closing, SceneError
 from ._common import not_available, row, run_from
 from .vanishing_inertia import lightened
@@ -46,12 +47,12 @@ def no_equilibrium() -> dict:
     scene = reference_scene("FMR")
     film = replace(scene.film, model="radial", clearance=None)
     overloaded = replace(scene, film=film, closing=Closing(balance_ratio=1.3, spring_force=0.0))
-    opening = Model(replace(scene, film=replace(film, clearance=1e-5))).interface.film.opening_force
+    opening = film_module("radial").opening_law(film)
     area = np.pi * (film.outer_radius**2 - film.inner_radius**2)
     closing = 1.3 * area * film.outer_pressure
 
     def excess(c):
-        return opening(film, c, 0.0, film.outer_pressure) - closing
+        return opening(c, 0.0, film.outer_pressure) - closing
 
     c = 1e-5
     for _ in range(50):

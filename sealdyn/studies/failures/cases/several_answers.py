@@ -27,7 +27,7 @@ def show() -> list[dict]:
     film, roots, closing = model.scene.film, model.interface.equilibria, model.closing_force()
 
     def excess(clearance):
-        force = model.interface.opening_force(film, clearance, film.inner_pressure, film.outer_pressure)
+        force = model.interface.opening_force(clearance, film.inner_pressure, film.outer_pressure)
         return force / closing - 1
 
     alone = newton(excess, 10e-6)
