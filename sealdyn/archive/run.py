@@ -31,10 +31,13 @@ class ArchiveError(Exception):
 
 
 class Series(NamedTuple):
-    """What a stranger must know of a column."""
+    """What a stranger must know of a column; `display_unit`, when given, is what people read it in, `display_factor`
+    how many of it make one of `units`."""
 
     units: str
     long_name: str
+    display_unit: str = ""
+    display_factor: float = 1.0
 
 
 def partial_path(path) -> Path:
@@ -68,7 +71,7 @@ class ArchiveWriter:
     ):
         self.path, self.partial = Path(path), partial_path(path)
         self.rows, self.state = 0, {}
-        self._series = {"time": Series("s", "time"), **series}
+        self._series = {"time": Series("s", "time", "ms", 1e3), **series}
         self._attributes = {
             "title": self.path.stem,
             "program": "sealdyn",
@@ -224,7 +227,7 @@ class ArchiveWriter:
                 file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
             for name, series in self._series.items():
                 column = file.create_dataset(name, (room,), "<f8", fillvalue=np.nan)
-                column.attrs["units"], column.attrs["long_name"] = series
+                column.attrs.update(series._asdict())
                 column[:1] = np.nan  # HDF5 reserves the whole extent at the first write
             _attach_scale(file, "time", self._series)
             if source and self.rows:
@@ -356,8 +359,13 @@ def read_info(path) -> dict:
                 info[name] = _from_json(info[name])
         info.setdefault("summary", {})
         names = [name for name, item in file.items() if isinstance(item, h5py.Dataset)]
-        info["series"] = {n: Series(file[n].attrs["units"], file[n].attrs["long_name"]) for n in names}
+        info["series"] = {name: _series(file[name].attrs) for name in names}
         return info | {"rows": record["rows"], "restart": record["state"], "events": record["events"]}
+
+
+def _series(attributes) -> Series:
+    """Older archives have no display unit: their series are shown in `units`."""
+    return Series(**{field: attributes[field] for field in Series._fields if field in attributes})
 
 
 def last_state(path) -> dict:
