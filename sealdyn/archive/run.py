@@ -20,8 +20,10 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
+from ..status import Status
+
 FORMAT = "sealdyn archive 1"
-STATUSES = ("ok", "collapsed", "failed", "interrupted")
+STATUSES = (Status.OK, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
 
@@ -139,7 +141,7 @@ class ArchiveWriter:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
         self.flush()
         target = self.path
-        if status == "interrupted" and not self._may_replace():
+        if status == Status.INTERRUPTED and not self._may_replace():
             target = self.partial
         self._attributes |= {"status": status, "message": message, "summary": summary, "rows": self.rows}
         with self._rewritten(target, self.rows, self.partial, self._attributes) as file:
@@ -175,7 +177,7 @@ class ArchiveWriter:
 
     def _may_replace(self) -> bool:
         try:
-            return read_info(self.path)["status"] == "interrupted"
+            return read_info(self.path)["status"] == Status.INTERRUPTED
         except ArchiveError:
             return True
 
@@ -198,7 +200,7 @@ class ArchiveWriter:
 
     def _reserve(self, source, rows: int) -> None:
         """Writes the file anew with room for `rows` and as many again, what counts in `source` copied."""
-        attributes = {**self._attributes, "status": "running", "message": ""}
+        attributes = {**self._attributes, "status": str(Status.RUNNING), "message": ""}
         room = self._room if rows <= self._room else max(rows, 2 * self.rows)
         log = self._log
         record = self._record(self.rows, self._state, log)

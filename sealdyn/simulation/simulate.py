@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import __version__, archive
 from ..archive import ArchiveWriter, Series, partial_path
+from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import time_of_angle
 from ..dynamics.signals import PARTS, signal_table
@@ -159,14 +160,16 @@ def prepare_run(scenario):
     check_method(run.model, method)
     best = attainable(method, run.memory)
     if best > accuracy:
-        run.warnings.append(f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best")
+        sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
+        run.cautions.append(Caution(Concern.ACCURACY, sentence))
     _set_windows(run)
     fastest = run.fastest_forcing()
     if fastest * interval > math.pi:
-        run.warnings.append(
+        sentence = (
             f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
             f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
         )
+        run.cautions.append(Caution(Concern.ALIASING, sentence))
     return run, method, why, interval, count, by_model
 
 

@@ -10,6 +10,7 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..simulation.simulate import prepare_run, simulate_in_memory
+from ..status import Status
 
 WITH_CONTACT = WITH_WAVES = True
 OUTPUTS = (
@@ -66,7 +67,7 @@ def one_run(scenario, point: dict) -> dict:
     """The outputs of one point's run, its status, and its message when it did not end well."""
     summary = simulate_in_memory(with_values(scenario, point["set"]))
     row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
-    return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
+    return row if summary["status"] == Status.OK else {**row, "message": summary["message"]}
 
 
 def looked_up(summary: dict, key: str):

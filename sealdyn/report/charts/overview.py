@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...status import Status
 from . import orbit, spectrum
 from .page import absent, header, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
@@ -65,7 +66,7 @@ def film_panel(ax, run: Run, first: int) -> None:
         if not first:
             _name(ax, per * run.clearance, "clearance", GREY)
     ax.axhline(per * run.touch_at, color=CONTACT, lw=1.2)
-    if run.status in ("collapsed", "failed", "interrupted"):
+    if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
         ax.plot(x[-1], per * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
         near_top = per * h[-1] > 0.75 * top

@@ -102,7 +102,7 @@ class ShortRunAverages:
                 if lost.cause == Cause.INTERRUPTED:
                     raise KeyboardInterrupt from None
                 crushed = lost.cause == Cause.ASPERITIES_CRUSHED
-                raise NoAverage("collapsed" if crushed else "failed", str(lost)) from None
+                raise NoAverage(Status.COLLAPSED if crushed else Status.FAILED, str(lost)) from None
         n = len(self.radius)
         return {"travel": 0.0, "y": y, "depth": [float(v) for v in depth], "share": [1.0 / n] * n}
 
@@ -150,9 +150,9 @@ class ShortRunAverages:
             if excess(far) * here <= 0.0:
                 return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
             if lowest + far < contact_thresholds(self.scene.contact)[2]:
-                raise NoAverage("collapsed", "asperities crushed flat: the faces cannot carry the closing force")
+                raise NoAverage(Status.COLLAPSED, "asperities crushed flat: the faces cannot carry the closing force")
             if far > 100 * max(self.clearance, run.model.face[1] * 1e-3):
-                raise NoAverage("failed", "the ring is blown open: no gap at which film and springs balance")
+                raise NoAverage(Status.FAILED, "the ring is blown open: no gap at which film and springs balance")
             near, side = far, 1.3 * side
 
     # --- a scene that moves ---------------------------------------------------------------------------
@@ -171,7 +171,7 @@ class ShortRunAverages:
             if outcome.status == Status.INTERRUPTED:
                 raise KeyboardInterrupt
             if outcome.status != Status.OK:
-                raise NoAverage(str(outcome.status), outcome.message)
+                raise NoAverage(outcome.status, outcome.message)
             t, q, rate = (part[:-1] for part in sink.arrays())
             states = _states(run, t, q, rate)
             past.append(self._rates(run, states))
