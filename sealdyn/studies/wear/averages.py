@@ -11,15 +11,15 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
 from ...dynamics import equations
+from ...dynamics.equilibrium import axial_excess, crossing, support_stiffness
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
-from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
+from ...faces.geometry import FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
 from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
@@ -124,14 +124,7 @@ class ShortRunAverages:
         """The balance of forces of aligned faces."""
         still = np.zeros((1, run.model.unknowns.n))
         (s,) = _states(run, np.zeros(1), still, still)
-        closing = run.model.closing_force()
-
-        def excess(shift):
-            s[DZ] = shift
-            run.model.interface.wrench(run.model.f, s)
-            return s[FORCE] - closing - self.stiffness * shift
-
-        shift = self._root(run, excess)
+        shift = self._root(run, axial_excess(run.model, s, run.model.closing_force()))
         q = np.array([[shift * self.shares[name] for name in run.model.unknowns.names]])
         seen = self._seen(run, np.zeros(1), q, still)
         states = _states(run, np.zeros(1), q, still)
@@ -148,7 +141,7 @@ class ShortRunAverages:
         while True:
             far = near + side
             if excess(far) * here <= 0.0:
-                return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
+                return crossing(excess, *sorted((near, far)))
             if lowest + far < contact_thresholds(self.scene.contact)[2]:
                 raise NoAverage(Status.COLLAPSED, "asperities crushed flat: the faces cannot carry the closing force")
             if far > 100 * max(self.clearance, run.model.face[1] * 1e-3):
@@ -263,7 +256,7 @@ def _supports(scene) -> tuple[float, dict[str, float]]:
     free = [name for name, (stiffness, _) in give.items() if stiffness == 0.0]
     if free:
         return 0.0, {name: give[name][1] / len(free) if name in free else 0.0 for name in give}
-    series = 1.0 / sum(1.0 / stiffness for stiffness, _ in give.values())
+    series = support_stiffness(scene)
     return series, {name: sign * series / stiffness for name, (stiffness, sign) in give.items()}
 
 
