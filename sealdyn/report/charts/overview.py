@@ -45,8 +45,7 @@ def draw(archive_path, out_path, turns: float = 4.0):
 def film_panel(ax, run: Run, first: int) -> None:
     """h_min with the design clearance, contact, and where the run ended if it did not end well."""
     title = "Smallest film thickness" + (f", {orbit.window(run, first)}" if first else "")
-    if not run.has("h_min"):
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if _lacking(ax, run, title, "h_min"):
         return
     unit, per = run.shown("h_min")
     x, h = run.envelope("h_min", first)
@@ -77,8 +76,7 @@ def film_panel(ax, run: Run, first: int) -> None:
 def tilt_panel(ax, run: Run, first: int) -> None:
     """Relative misalignment between the closed form's extremes."""
     title = "Relative misalignment" + (f", {orbit.window(run, first)}" if first else "")
-    if not run.has("relative_misalignment"):
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if _lacking(ax, run, title, "relative_misalignment"):
         return
     unit, per = run.shown("relative_misalignment")
     x, tilt = run.envelope("relative_misalignment", first)
@@ -103,8 +101,7 @@ def leakage_panel(ax, run: Run) -> None:
     """Leakage at both radii; they differ while the film swells and shrinks."""
     sides = [side for side in ("inner", "outer") if run.has(f"leakage_{side}")]
     title = "Leakage, high to low pressure"
-    if not sides:
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if not sides and _lacking(ax, run, title, "leakage_inner"):
         return
     # The outer one wide and pale beneath, so that both are seen where they agree.
     for side in reversed(sides):
@@ -126,6 +123,14 @@ def contact_panel(ax, run: Run) -> None:
     words = f", {100 * share:.3g} % of the closing force on average" if isinstance(share, float) else ""
     ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * per * np.nanmax(force)))
     _span(ax, run, 0)
+
+
+def _lacking(ax, run: Run, title: str, name: str) -> bool:
+    """Whether a series has nothing to draw; the panel then says so."""
+    if run.has(name):
+        return False
+    absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    return True
 
 
 def key_numbers(ax, run: Run) -> None:
