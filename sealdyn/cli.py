@@ -11,17 +11,19 @@ from typing import Annotated
 
 import typer
 
+from .status import Status
+
 # Matrices here have a dozen rows: threads of a BLAS, and of every worker's BLAS, only get in each other's way.
 for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
 EXIT = {
-    "ok": DONE,
-    "invalid": BAD_INPUT,
-    "collapsed": COLLAPSED,
-    "failed": FAILED,
-    "interrupted": INTERRUPTED,
+    Status.OK: DONE,
+    Status.INVALID: BAD_INPUT,
+    Status.COLLAPSED: COLLAPSED,
+    Status.FAILED: FAILED,
+    Status.INTERRUPTED: INTERRUPTED,
 }
 
 app = typer.Typer(
@@ -74,7 +76,7 @@ def _read(path: Path, overrides):
             return parse_scenario(info["scenario"], info.get("name", path.stem), given)
         return read_scenario(path, overrides or ())
     except (ScenarioError, ArchiveError) as error:
-        raise Stop("invalid", str(error)) from None
+        raise Stop(Status.INVALID, str(error)) from None
 
 
 @app.command()
@@ -97,7 +99,7 @@ def run(
         stem = f"{file.stem}-rerun" if file.suffix == ".h5" else scenario.name
         out = (file.parent if file.suffix == ".h5" else Path("outputs")) / f"{stem}.h5"
     if out.is_dir() or out.suffix != ".h5":
-        raise Stop("invalid", f'--out: found "{out}"; expected a file name ending in .h5')
+        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .h5')
     if resume:
         _check_resumable(out, scenario)
     _say_compiling(file=sys.stderr)
@@ -106,11 +108,11 @@ def run(
         try:
             result = simulate(scenario, out, progress=bar, stop=lambda: bool(flag), resume=resume)
         except (SceneError, ArchiveError) as error:
-            raise Stop("invalid", f"{file}: {error}") from None
+            raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
-            raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
+            raise Stop(Status.INVALID, f"{out}: cannot be written ({error.strerror or error})") from None
     summary = {**result.summary, "figure": None}
-    if plot and result.status != "interrupted":
+    if plot and result.status != Status.INTERRUPTED:
         from .report.charts import overview
 
         figure = result.archive.with_suffix(".png")
@@ -121,7 +123,7 @@ def run(
     else:
         for line in lines(scenario, summary):
             print(line)
-    if result.status == "interrupted":
+    if result.status == Status.INTERRUPTED:
         words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
         print(f"go on with: sealdyn run {' '.join(words)}", file=sys.stderr)
     raise typer.Exit(EXIT[result.status])
@@ -132,12 +134,14 @@ def _check_resumable(out, scenario):
 
     source = partial_path(out) if partial_path(out).exists() else out
     if not source.exists():
-        raise Stop("invalid", f"{source}: nothing to continue; run without --continue first")
+        raise Stop(Status.INVALID, f"{source}: nothing to continue; run without --continue first")
     info = read_info(source)
-    if info["status"] not in ("running", "interrupted"):
-        raise Stop("ok", f"{source}: nothing to continue, the run is complete ({info['status']})")
+    if info["status"] not in (Status.RUNNING, Status.INTERRUPTED):
+        raise Stop(Status.OK, f"{source}: nothing to continue, the run is complete ({info['status']})")
     if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
-        raise Stop("invalid", f"{source}: was made from another scenario text or other --set; run without --continue")
+        raise Stop(
+            Status.INVALID, f"{source}: was made from another scenario text or other --set; run without --continue"
+        )
 
 
 def _catch_interrupt() -> list:
@@ -207,9 +211,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     try:
         run, method, why, *_ = prepare_run(scenario)
     except (SceneError, ArchiveError) as error:
-        raise Stop("invalid", f"{file}: {error}") from None
+        raise Stop(Status.INVALID, f"{file}: {error}") from None
     found = {
-        "status": "ok",
+        "status": Status.OK,
         "message": "the scene is possible",
         "scene": scenario.resolved(),
         "model": model_chosen(scenario, run, method, why),
@@ -254,7 +258,7 @@ def show(
             for line in archive_lines(file, info):
                 print(line)
     except ArchiveError as error:
-        raise Stop("invalid", str(error)) from None
+        raise Stop(Status.INVALID, str(error)) from None
 
 
 @app.command()
@@ -270,15 +274,15 @@ def plot(
 
     kinds = ("overview", "orbit", "film", "spectrum", "poincare")
     if kind not in kinds:
-        raise Stop("invalid", f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
+        raise Stop(Status.INVALID, f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
     if out is not None and out.suffix != ".png":
-        raise Stop("invalid", f'--out: found "{out}"; expected a file name ending in .png')
+        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .png')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     try:
         importlib.import_module(f"sealdyn.report.charts.{kind}").draw(file, out)
     except ArchiveError as error:
-        raise Stop("invalid", str(error)) from None
+        raise Stop(Status.INVALID, str(error)) from None
     print(out)
 
 
@@ -291,7 +295,7 @@ def validate(as_json: AsJson = False):
         rows = validate_all()
     good = all(row["verdict"] != "FAILED" for row in rows)
     if as_json:
-        print(json.dumps({"status": "ok" if good else "failed", "checks": rows}))
+        print(json.dumps({"status": Status.OK if good else Status.FAILED, "checks": rows}))
     else:
         report(rows)
     raise typer.Exit(DONE if good else CHECK_FAILED)
@@ -317,7 +321,7 @@ def study(
 
     names = study_names()
     if name.replace("_", "-") not in names:
-        raise Stop("invalid", f'study: found "{name}"; expected one of {", ".join(names)}{_nearest(name, names)}')
+        raise Stop(Status.INVALID, f'study: found "{name}"; expected one of {", ".join(names)}{_nearest(name, names)}')
     scenario = _read(file, set)
     _say_compiling(file=sys.stderr)
     with _Progress() as bar, _libraries_on_stderr():
@@ -327,9 +331,9 @@ def study(
             )
         except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "
-            raise Stop("invalid", f"{where}{error}") from None
+            raise Stop(Status.INVALID, f"{where}{error}") from None
         except OSError as error:
-            raise Stop("invalid", f"{out}: cannot be written ({error.strerror or error})") from None
+            raise Stop(Status.INVALID, f"{out}: cannot be written ({error.strerror or error})") from None
     if plot:
         figure = Path(answer["archive"]).with_suffix(".png")
         importlib.import_module(f"sealdyn.report.charts.study_{answer['study']}").draw(answer["archive"], figure)
@@ -357,11 +361,11 @@ def _flags(words: list[str]) -> dict:
     while words:
         word = words.pop(0)
         if not word.startswith("--"):
-            raise Stop("invalid", f'study: found "{word}"; expected settings as --key value')
+            raise Stop(Status.INVALID, f'study: found "{word}"; expected settings as --key value')
         key, equals, value = word[2:].partition("=")
         if not equals:
             if not words:
-                raise Stop("invalid", f"study: --{key} has no value")
+                raise Stop(Status.INVALID, f"study: --{key} has no value")
             value = words.pop(0)
         with contextlib.suppress(ValueError):
             value = json.loads(value)
@@ -391,7 +395,7 @@ def main():
         # A misused command line: the parser's own errors can say what they mean in one line.
         if not hasattr(error, "format_message"):
             raise
-        _refuse("invalid", f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
+        _refuse(Status.INVALID, f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
         sys.exit(BAD_INPUT)
 
 

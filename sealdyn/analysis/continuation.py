@@ -76,10 +76,10 @@ def sweep_branch(scene, point: dict) -> dict:
         row = {"value": value, "direction": point["direction"], "start": "continued" if x is not None else "aligned"}
         try:
             x, more = characterise(here, ramp_to(here, point["key"], last, x, point), point)
-            rows.append(row | {"status": "ok", **more})
+            rows.append(row | {"status": Status.OK, **more})
         except FilmCollapsed as lost:
             x = None
-            rows.append(row | {"status": "collapsed", "message": str(lost), "class": "collapse"})
+            rows.append(row | {"status": Status.COLLAPSED, "message": str(lost), "class": "collapse"})
         last = value
     return {"rows": rows}
 
@@ -97,7 +97,7 @@ def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
     for periods in (point["drop"], point["keep"]):
         turns = stroboscope.run(x, periods)
         x = turns.last
-        if turns.status != "ok":
+        if turns.status != Status.OK:
             raise FilmCollapsed(turns.message)
     model = stroboscope.model
     scale = model.clearance / model.face[1]

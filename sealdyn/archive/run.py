@@ -20,8 +20,10 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
+from ..status import Status
+
 FORMAT = "sealdyn archive 1"
-STATUSES = ("ok", "collapsed", "failed", "interrupted")
+STATUSES = (Status.OK, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
 
@@ -31,10 +33,13 @@ class ArchiveError(Exception):
 
 
 class Series(NamedTuple):
-    """What a stranger must know of a column."""
+    """What a stranger must know of a column; `display_unit`, when given, is what people read it in, `display_factor`
+    how many of it make one of `units`."""
 
     units: str
     long_name: str
+    display_unit: str = ""
+    display_factor: float = 1.0
 
 
 def partial_path(path) -> Path:
@@ -68,7 +73,7 @@ class ArchiveWriter:
     ):
         self.path, self.partial = Path(path), partial_path(path)
         self.rows, self.state = 0, {}
-        self._series = {"time": Series("s", "time"), **series}
+        self._series = {"time": Series("s", "time", "ms", 1e3), **series}
         self._attributes = {
             "title": self.path.stem,
             "program": "sealdyn",
@@ -136,7 +141,7 @@ class ArchiveWriter:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
         self.flush()
         target = self.path
-        if status == "interrupted" and not self._may_replace():
+        if status == Status.INTERRUPTED and not self._may_replace():
             target = self.partial
         self._attributes |= {"status": status, "message": message, "summary": summary, "rows": self.rows}
         with self._rewritten(target, self.rows, self.partial, self._attributes) as file:
@@ -172,7 +177,7 @@ class ArchiveWriter:
 
     def _may_replace(self) -> bool:
         try:
-            return read_info(self.path)["status"] == "interrupted"
+            return read_info(self.path)["status"] == Status.INTERRUPTED
         except ArchiveError:
             return True
 
@@ -195,7 +200,7 @@ class ArchiveWriter:
 
     def _reserve(self, source, rows: int) -> None:
         """Writes the file anew with room for `rows` and as many again, what counts in `source` copied."""
-        attributes = {**self._attributes, "status": "running", "message": ""}
+        attributes = {**self._attributes, "status": str(Status.RUNNING), "message": ""}
         room = self._room if rows <= self._room else max(rows, 2 * self.rows)
         log = self._log
         record = self._record(self.rows, self._state, log)
@@ -224,7 +229,7 @@ class ArchiveWriter:
                 file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
             for name, series in self._series.items():
                 column = file.create_dataset(name, (room,), "<f8", fillvalue=np.nan)
-                column.attrs["units"], column.attrs["long_name"] = series
+                column.attrs.update(series._asdict())
                 column[:1] = np.nan  # HDF5 reserves the whole extent at the first write
             _attach_scale(file, "time", self._series)
             if source and self.rows:
@@ -356,8 +361,13 @@ def read_info(path) -> dict:
                 info[name] = _from_json(info[name])
         info.setdefault("summary", {})
         names = [name for name, item in file.items() if isinstance(item, h5py.Dataset)]
-        info["series"] = {n: Series(file[n].attrs["units"], file[n].attrs["long_name"]) for n in names}
+        info["series"] = {name: _series(file[name].attrs) for name in names}
         return info | {"rows": record["rows"], "restart": record["state"], "events": record["events"]}
+
+
+def _series(attributes) -> Series:
+    """Older archives have no display unit: their series are shown in `units`."""
+    return Series(**{field: attributes[field] for field in Series._fields if field in attributes})
 
 
 def last_state(path) -> dict:

@@ -1,4 +1,4 @@
-"""Closing force and equilibrium clearance of the aligned seal."""
+"""Closing force, and where it balances the opening force: clearance of the aligned seal, and how loads change it."""
 
 import math
 from dataclasses import dataclass
@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
 from .intervals import Interval, constant_and_slope
 
 POINTS = 600
+STEP = 1e-3  # of a difference, in clearances
 WIDEST = 1e3  # the search runs from the reference clearance over and under this factor
 
 
@@ -86,7 +88,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
             spring = force - ClosingForce(area, balance, 0.0, outer_is_high).at(inner, outer, 0.0)
             said = "spring force follows from clearance and balance ratio"
         law = ClosingForce(area, balance, spring, outer_is_high)
-        stiffness = _stiffness(opening_force, film.clearance, inner, outer)
+        stiffness = film_stiffness(opening_force, film.clearance, inner, outer, STEP * film.clearance)
         here = Equilibrium(film.clearance, stiffness, stiffness > 0)
         return film.clearance, law, [here], said
 
@@ -122,23 +124,61 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float) 
     roots = []
     for k in range(POINTS - 1):
         if excess[k] * excess[k + 1] < 0 and max(abs(excess[k]), abs(excess[k + 1])) > noise:
-            root = brentq(
-                lambda c: opening_force(c, inner, outer) - closing,
-                grid[k],
-                grid[k + 1],
-                xtol=1e-18,
-                rtol=1e-14,
-            )
-            stiffness = _stiffness(opening_force, root, inner, outer)
-            roots.append(Equilibrium(float(root), stiffness, stiffness > 0))
+            root = crossing(lambda c: opening_force(c, inner, outer) - closing, grid[k], grid[k + 1])
+            stiffness = film_stiffness(opening_force, root, inner, outer, STEP * root)
+            roots.append(Equilibrium(root, stiffness, stiffness > 0))
     return roots
 
 
-def _stiffness(opening_force, clearance, inner, outer) -> float:
-    """Axial film stiffness -dF/dC (N/m), fourth-order central difference."""
-    step = 1e-3 * clearance
+def film_stiffness(opening_force, clearance, inner, outer, step) -> float:
+    """Axial film stiffness -dF/dC (N/m), fourth-order central difference of this step (m)."""
     f = [opening_force(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
+
+
+def crossing(excess, low: float, high: float) -> float:
+    """The clearance, or its change (m), between `low` and `high` at which an excess of opening force is zero."""
+    return float(brentq(excess, low, high, xtol=1e-18, rtol=1e-14))
+
+
+def support_stiffness(scene: Scene) -> float:
+    """Axial stiffness (N/m) of the supports against a change of the gap: both carry the same force, so in series."""
+    stiffness = [ring.support.axial_stiffness for ring in (scene.stator, scene.rotor) if ring.support]
+    return 1 / sum(1 / k for k in stiffness) if all(stiffness) else 0.0
+
+
+def axial_excess(model, s, closing: float):
+    """Opening force (N) of film and asperities in excess of a closing force (N) and of the supports, as a function of
+    the change (m) of the axial gap; tilts, rates and pressures are those of the gap state `s`, which it fills."""
+    support = support_stiffness(model.scene)
+
+    def excess(shift):
+        s[DZ] = shift
+        model.interface.wrench(model.f, s)
+        return s[FORCE] - closing - support * shift
+
+    return excess
+
+
+def axial_shift(model, interval: Interval) -> tuple[float, bool]:
+    """How far (m) the loads at an interval's start move the aligned gap from its design clearance: opening force =
+    closing force + support springs.  (0, False) if none is found from 0.1 % to 50 times the clearance."""
+    film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
+    s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
+        constant_and_slope(q, interval)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
+    )
+    closing = model.closing.over(interval, film)[0]
+    excess = axial_excess(model, s, closing)
+    if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
+        return 0.0, True
+    grid = model.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
+    values = [excess(x) for x in grid]
+    # The stable root nearest to the design clearance: the excess falls through zero.
+    roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
+    if not roots:
+        return 0.0, False
+    k = min(roots, key=lambda k: abs(grid[k]))
+    return crossing(excess, grid[k], grid[k + 1]), True
 
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):

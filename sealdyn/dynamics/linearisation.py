@@ -1,45 +1,13 @@
 """A scene linearised about its aligned equilibrium: matrices, steady state, exact motion of a linear scene."""
 
-import math
-
 import numpy as np
 from scipy.linalg import expm
-from scipy.optimize import brentq
 
-from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import linearised_film
 from .intervals import constant_and_slope
 from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
-
-
-def axial_shift(model, interval) -> tuple[float, bool]:
-    """How far (m) the loads at an interval's start move the aligned gap from its design clearance: opening force =
-    closing force + support springs.  (0, False) if none is found from 0.1 % to 50 times the clearance."""
-    film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
-    s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
-        constant_and_slope(q, interval)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
-    )
-    closing = model.closing.over(interval, film)[0]
-    springs = [r.support.axial_stiffness for r in (model.scene.stator, model.scene.rotor) if r.support]
-    compliance = sum(1 / k if k > 0 else math.inf for k in springs)
-
-    def excess(shift):
-        s[DZ] = shift
-        model.interface.wrench(model.f, s)
-        return s[FORCE] - closing - shift / compliance
-
-    if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
-        return 0.0, True
-    grid = model.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
-    values = [excess(x) for x in grid]
-    # The stable root nearest to the design clearance: the excess falls through zero.
-    roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
-    if not roots:
-        return 0.0, False
-    k = min(roots, key=lambda k: abs(grid[k]))
-    return float(brentq(excess, grid[k], grid[k + 1], xtol=1e-18)), True
 
 
 def film_matrices(model, interval, shift: float, mean_spin: float, pace: float | None = None):

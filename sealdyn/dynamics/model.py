@@ -5,6 +5,7 @@ import numpy as np
 from ..faces.geometry import FACE_SIZE
 from ..scene.scene import Scene
 from . import equations, linearisation
+from .equilibrium import axial_shift
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
 from .segments import Segment
@@ -91,7 +92,7 @@ class Model:
 
     def _axial_shift(self, interval: Interval) -> tuple[float, bool]:
         if interval.start not in self._shifts:
-            self._shifts[interval.start] = linearisation.axial_shift(self, interval)
+            self._shifts[interval.start] = axial_shift(self, interval)
         return self._shifts[interval.start]
 
     def linear_scene(self, interval: Interval | None = None, speed: float | None = None, shift: float | None = None):

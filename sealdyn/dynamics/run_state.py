@@ -7,6 +7,7 @@ import numpy as np
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
 from ..scene.scene import SceneError
+from .cautions import Caution, Concern
 from .contact_events import ContactEvents
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
@@ -18,7 +19,7 @@ from .stick_slip import StickSlip
 
 class RunState:
     """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`,
-    `stick_slip` or None), `reasons` and `warnings` (sentences), and `last`, the segment's index, time and unknowns
+    `stick_slip` or None), `reasons` (sentences) and `cautions`, and `last`, the segment's index, time and unknowns
     reached so far."""
 
     def __init__(self, model: Model, duration: float):
@@ -28,7 +29,7 @@ class RunState:
         self.extrema = ExtremaTracker(model, duration)
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
-        self.reasons, self.warnings = list(model.unknowns.reasons), []
+        self.reasons, self.cautions = list(model.unknowns.reasons), []
         self.last = (0, 0.0, self.y0)
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
@@ -92,10 +93,11 @@ class RunState:
         """Warn of loads for which no equilibrium gap is found."""
         for interval in self.intervals:
             if not self.model.loads_are_balanced(interval):
-                self.warnings.append(
+                sentence = (
                     f"no equilibrium gap found for the loads from t = {interval.time:.4g} s: linear numbers are at the "
                     "clearance"
                 )
+                self.cautions.append(Caution(Concern.NO_EQUILIBRIUM, sentence))
                 return
 
     # --- going on -----------------------------------------------------------------------------------

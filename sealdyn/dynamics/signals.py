@@ -1,4 +1,8 @@
-"""What is looked at: everything the archive keeps, from the motion at given times."""
+"""What is looked at: one table of all that the archive keeps, and its values from the motion at given times."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -30,23 +34,179 @@ from ..scene.rings import RING_NAMES
 from . import equations
 from .intervals import constant_and_slope, modulo_turn
 
-# What contact adds.
-CONTACT_SIGNALS = {
-    "contact_force": CONTACT_FORCE,
-    "contact_moment_x": CONTACT_X,
-    "contact_moment_y": CONTACT_Y,
-    "contact_torque": CONTACT_TORQUE,
-    "contact_area_fraction": CONTACT_AREA,
-    "contact_pressure": CONTACT_PRESSURE,
-    "wear_rate": WEAR,
+# What people read instead of an SI unit, and how many of it make one.
+SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m/s": ("mm/s", 1e3), "m^3/s": ("ml/h", 3.6e9), "Pa": ("MPa", 1e-6)}
+DEGREES, MILLIMETRES, MICROMETRES_PER_HOUR = ("deg", 180 / np.pi), ("mm", 1e3), ("µm/h", 3.6e9)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Instants of a segment: `taus` (m,), and there the states of the gap, of the equations' scratch, and the thinnest
+    film, its angle and its radius, a row each."""
+
+    segment: object
+    taus: np.ndarray
+    gap: np.ndarray
+    scratch: np.ndarray
+    low: np.ndarray
+
+    @cached_property
+    def waves(self) -> np.ndarray:
+        """Cosine and sine parts (m, orders, 2) of the gap's waves."""
+        return wave_parts_along(self.segment.model.face, self.gap)
+
+    @cached_property
+    def shaft(self) -> tuple[float, float]:
+        """Shaft speed (rad/s) at the start of the interval, and its slope."""
+        return constant_and_slope(self.segment.model.scene.shaft.speed, self.segment.interval)
+
+    @cached_property
+    def tilt(self) -> np.ndarray:
+        """Complex relative tilt (m,)."""
+        return self.gap[:, GX] + 1j * self.gap[:, GY]
+
+    @cached_property
+    def torque(self) -> np.ndarray:
+        """Friction torque (m,) of film and contact on the rotor."""
+        return self.gap[:, TORQUE] + self.gap[:, CONTACT_TORQUE]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A series of the archive: SI unit, what it is, how to read it off `Samples`, (unit, factor) that people read it
+    in, and whether a run keeps its mean and maximum."""
+
+    name: str
+    unit: str
+    long_name: str
+    values: Callable[[Samples], np.ndarray]
+    shown: tuple[str, float] | None = None
+    tallied: bool = False
+
+    @property
+    def display(self) -> tuple[str, float]:
+        """Unit for people, and how many of it make one SI unit."""
+        return self.shown or SHOWN.get(self.unit, (self.unit, 1.0))
+
+
+def _gap(slot):
+    return lambda at: at.gap[:, slot]
+
+
+def _scratch(slot):
+    return lambda at: at.scratch[:, slot]
+
+
+def _low(place):
+    return lambda at: at.low[:, place]
+
+
+def _shaft_angle(at):
+    speed, slope = at.shaft
+    turned = modulo_turn(at.segment.interval.rotor_angle)
+    return np.mod(turned + at.taus * (speed + 0.5 * slope * at.taus), 2 * np.pi)
+
+
+def _closing_force(at):
+    model = at.segment.model
+    closing = model.closing.over(at.segment.interval, model.scene.film)
+    return closing[0] + closing[1] * at.taus
+
+
+def _leakage(slot):
+    # Flow in +r runs from high to low pressure when the inside is sealed.
+    return lambda at: (-1.0 if at.segment.model.closing.outer_is_high else 1.0) * at.gap[:, slot]
+
+
+SHAFT_AND_FILM = (
+    Signal("shaft_angle", "rad", "shaft angle, modulo one turn", _shaft_angle, DEGREES),
+    Signal("shaft_speed", "rad/s", "shaft speed", lambda at: at.shaft[0] + at.shaft[1] * at.taus, tallied=True),
+    Signal("relative_tilt_x", "rad", "relative tilt about xi, stator minus rotor", _gap(GX)),
+    Signal("relative_tilt_y", "rad", "relative tilt about eta, stator minus rotor", _gap(GY)),
+    Signal("relative_misalignment", "rad", "relative misalignment of the faces", lambda at: np.abs(at.tilt),
+           tallied=True),
+    Signal("relative_precession", "rad", "direction of the relative tilt, from xi", lambda at: np.angle(at.tilt),
+           DEGREES),
+    Signal("axial_gap_change", "m", "change of the axial gap from the design clearance", _gap(DZ), tallied=True),
+    Signal("h_min", "m", "smallest film thickness over the face", _low(0)),
+    Signal("h_min_angle", "rad", "angle of the smallest film thickness, from xi", _low(1), DEGREES),
+    Signal("h_min_radius", "m", "radius of the smallest film thickness", _low(2), MILLIMETRES),
+    Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
+    Signal("film_moment_x", "N m", "film moment on the stator about xi", _gap(MOMENT_X)),
+    Signal("film_moment_y", "N m", "film moment on the stator about eta", _gap(MOMENT_Y)),
+    Signal("closing_force", "N", "closing force", _closing_force, tallied=True),
+    Signal("leakage_inner", "m^3/s", "leakage at the inner radius, from high to low pressure", _leakage(FLOW_INNER),
+           tallied=True),
+    Signal("leakage_outer", "m^3/s", "leakage at the outer radius, from high to low pressure", _leakage(FLOW_OUTER),
+           tallied=True),
+    Signal("friction_torque", "N m", "friction torque on the rotor", lambda at: at.torque, tallied=True),
+    Signal("friction_power", "W", "friction power", lambda at: at.torque * at.gap[:, SPIN_DIFFERENCE], tallied=True),
+    Signal("cavitated_fraction", "1", "share of the face at the cavitation pressure", _gap(CAVITATED), tallied=True),
+)  # fmt: skip
+CONTACT = (
+    Signal("contact_force", "N", "contact force, opening", _gap(CONTACT_FORCE), tallied=True),
+    Signal("contact_moment_x", "N m", "contact moment on the stator about xi", _gap(CONTACT_X)),
+    Signal("contact_moment_y", "N m", "contact moment on the stator about eta", _gap(CONTACT_Y)),
+    Signal("contact_torque", "N m", "friction torque of contact on the rotor", _gap(CONTACT_TORQUE), tallied=True),
+    Signal("contact_area_fraction", "1", "share of the face that touches", _gap(CONTACT_AREA), tallied=True),
+    Signal("contact_pressure", "Pa", "largest contact pressure", _gap(CONTACT_PRESSURE), tallied=True),
+    Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), MICROMETRES_PER_HOUR,
+           tallied=True),
+)  # fmt: skip
+TALLIED = tuple(signal.name for signal in SHAFT_AND_FILM + CONTACT if signal.tallied)
+# A ring's motion and its secondary seal, in the order of their slots: unit, what it is.
+PARTS = {
+    "z": ("m", "axial displacement of the {}"),
+    "tilt_x": ("rad", "tilt about xi of the {}"),
+    "tilt_y": ("rad", "tilt about eta of the {}"),
+    "z_rate": ("m/s", "axial velocity of the {}"),
+    "tilt_x_rate": ("rad/s", "tilt rate about xi of the {}"),
+    "tilt_y_rate": ("rad/s", "tilt rate about eta of the {}"),
 }
-PARTS = ("z", "tilt_x", "tilt_y", "z_rate", "tilt_x_rate", "tilt_y_rate")
+SEAL = {
+    "seal_friction": ("N", "axial friction of the secondary seal on the {}"),
+    "seal_moment_x": ("N m", "friction moment of the secondary seal on the {} about xi"),
+    "seal_moment_y": ("N m", "friction moment of the secondary seal on the {} about eta"),
+    "seal_sliding_speed": ("m/s", "sliding speed of the {} on its secondary seal"),
+}
 
 
-def wave_names(face) -> list[tuple[str, str]]:
-    """Names of the cosine and of the sine part of the gap's waves, per order."""
-    orders = face[ORDER_LIST : ORDER_LIST + int(face[ORDERS])]
-    return [(f"gap_cos_{n:.0f}", f"gap_sin_{n:.0f}") for n in orders]
+def signal_table(model) -> tuple[Signal, ...]:
+    """Every series that a run of this model keeps, beside the time."""
+    orders = model.face[ORDER_LIST : ORDER_LIST + int(model.face[ORDERS])]
+    unknowns = model.unknowns
+    return _table(
+        tuple(unknowns.floats[k] for k in range(len(RING_NAMES))),
+        tuple(orders),
+        model.contact is not None,
+        tuple(unknowns.seals),
+    )
+
+
+@cache
+def _table(floats, orders, touching, seals):
+    table = []
+    for k, ring in enumerate(RING_NAMES):
+        at = equations.OWN_STATE + 6 * k
+        table += _of_ring(ring, dict(list(PARTS.items())[: 6 if floats[k] else 3]), at)
+    for j, order in enumerate(orders):
+        for i, (short, part) in enumerate((("cos", "cosine"), ("sin", "sine"))):
+            words = f"{part} part of the gap's wave of order {order:.0f}, from xi"
+            table.append(Signal(f"gap_{short}_{order:.0f}", "m", words, lambda at, j=j, i=i: at.waves[:, j, i]))
+    table += CONTACT if touching else ()
+    for k in seals:
+        table += _of_ring(RING_NAMES[k], SEAL, equations.SEALS + equations.PER_SEAL * k)
+        slot, words = equations.RING * k + equations.STUCK, f"1 while the {RING_NAMES[k]} sticks on its secondary seal"
+        stuck = lambda at, slot=slot: np.full(len(at.taus), at.segment.p[slot])  # noqa: E731
+        table.append(Signal(f"{RING_NAMES[k]}_seal_stuck", "1", words, stuck))
+    return (*table, *SHAFT_AND_FILM)
+
+
+def _of_ring(ring, parts, first):
+    return [
+        Signal(f"{ring}_{part}", unit, words.format(ring), _scratch(first + i))
+        for i, (part, (unit, words)) in enumerate(parts.items())
+    ]
 
 
 def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
@@ -65,47 +225,6 @@ def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
     (flow, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
     blocks = contact, bool(model.unknowns.seals), segment.p, segment.w, segment.s
     states_along(Value(flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
-    return _columns(segment, taus, gap, scratch, low)
-
-
-def _columns(segment, taus, gap, scratch, low):
-    model, leg, columns = segment.model, segment.interval, {}
-    speed, slope = constant_and_slope(model.scene.shaft.speed, leg)
-    columns["time"] = leg.time + taus
-    columns["shaft_angle"] = np.mod(modulo_turn(leg.rotor_angle) + taus * (speed + 0.5 * slope * taus), 2 * np.pi)
-    columns["shaft_speed"] = speed + slope * taus
-    for k, name in enumerate(RING_NAMES):
-        at = equations.OWN_STATE + 6 * k
-        for i, part in enumerate(PARTS[: 6 if model.unknowns.floats[k] else 3]):
-            columns[f"{name}_{part}"] = scratch[:, at + i]
-    g = gap[:, GX] + 1j * gap[:, GY]
-    columns["relative_tilt_x"], columns["relative_tilt_y"] = gap[:, GX], gap[:, GY]
-    columns["relative_misalignment"], columns["relative_precession"] = np.abs(g), np.angle(g)
-    columns["axial_gap_change"] = gap[:, DZ]
-    columns["h_min"], columns["h_min_angle"], columns["h_min_radius"] = low.T
-    columns["film_force"] = gap[:, FORCE]
-    columns["film_moment_x"], columns["film_moment_y"] = gap[:, MOMENT_X], gap[:, MOMENT_Y]
-    closing = model.closing.over(leg, model.scene.film)
-    columns["closing_force"] = closing[0] + closing[1] * taus
-    # Flow in +r runs from high to low pressure when the inside is sealed.
-    sign = -1.0 if model.closing.outer_is_high else 1.0
-    columns["leakage_inner"] = sign * gap[:, FLOW_INNER]
-    columns["leakage_outer"] = sign * gap[:, FLOW_OUTER]
-    torque = gap[:, TORQUE] + gap[:, CONTACT_TORQUE]
-    columns["friction_torque"], columns["friction_power"] = torque, torque * gap[:, SPIN_DIFFERENCE]
-    columns["cavitated_fraction"] = gap[:, CAVITATED]
-    if model.face[ORDERS]:
-        parts = wave_parts_along(model.face, gap)
-        for j, names in enumerate(wave_names(model.face)):
-            columns |= {name: parts[:, j, i] for i, name in enumerate(names)}
-    if model.contact is not None:
-        for name, slot in CONTACT_SIGNALS.items():
-            columns[name] = gap[:, slot]
-    for k in model.unknowns.seals:
-        at = equations.SEALS + equations.PER_SEAL * k
-        names = ("seal_friction", "seal_moment_x", "seal_moment_y", "seal_sliding_speed")
-        for i, name in enumerate(names):
-            columns[f"{RING_NAMES[k]}_{name}"] = scratch[:, at + i]
-        stuck = segment.p[equations.RING * k + equations.STUCK]
-        columns[f"{RING_NAMES[k]}_seal_stuck"] = np.full(len(taus), stuck)
+    at = Samples(segment, taus, gap, scratch, low)
+    columns = {"time": segment.interval.time + taus} | {x.name: x.values(at) for x in signal_table(model)}
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}

@@ -2,6 +2,7 @@
 
 import math
 
+from ..status import Status
 from ..toml_line import toml_line
 
 MICRO, MILLI = 1e6, 1e3
@@ -10,7 +11,9 @@ MICRO, MILLI = 1e6, 1e3
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     model, stability, film, closing = (summary[k] for k in ("model", "stability", "film", "closing"))
-    out = [f"{scenario.name}: {summary['status']}" + ("" if summary["status"] == "ok" else f" - {summary['message']}")]
+    out = [
+        f"{scenario.name}: {summary['status']}" + ("" if summary["status"] == Status.OK else f" - {summary['message']}")
+    ]
     out.append(
         f"  model         {model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
         f"{summary['counts']['steps']} steps, {summary['counts']['rhs']} evaluations, {summary['wall_time']:.2g} s"
@@ -181,7 +184,7 @@ def archive_lines(path, info: dict) -> list[str]:
         f"  rows          {info['rows']}",
     ]
     restart = info.get("restart") or {}
-    if info["status"] == "running" and restart:
+    if info["status"] == Status.RUNNING and restart:
         out.append(f"  state kept    leg {restart.get('leg')}, leg time {restart.get('tau')} s")
     summary = info.get("summary") or {}
     if summary:

@@ -14,9 +14,10 @@ import numpy as np
 
 from .. import __version__, archive
 from ..archive import ArchiveWriter, Series, partial_path
+from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import time_of_angle
-from ..dynamics.signals import wave_names
+from ..dynamics.signals import PARTS, signal_table
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
@@ -28,52 +29,6 @@ from .film_selection import select_film
 from .method_selection import check_method, choose_method
 from .sinks import ArchiveSink, Tally, TallySink
 from .summary import summarise
-
-SERIES = {
-    "shaft_angle": Series("rad", "shaft angle, modulo one turn"),
-    "shaft_speed": Series("rad/s", "shaft speed"),
-    "relative_tilt_x": Series("rad", "relative tilt about xi, stator minus rotor"),
-    "relative_tilt_y": Series("rad", "relative tilt about eta, stator minus rotor"),
-    "relative_misalignment": Series("rad", "relative misalignment of the faces"),
-    "relative_precession": Series("rad", "direction of the relative tilt, from xi"),
-    "axial_gap_change": Series("m", "change of the axial gap from the design clearance"),
-    "h_min": Series("m", "smallest film thickness over the face"),
-    "h_min_angle": Series("rad", "angle of the smallest film thickness, from xi"),
-    "h_min_radius": Series("m", "radius of the smallest film thickness"),
-    "film_force": Series("N", "opening force of the film"),
-    "film_moment_x": Series("N m", "film moment on the stator about xi"),
-    "film_moment_y": Series("N m", "film moment on the stator about eta"),
-    "closing_force": Series("N", "closing force"),
-    "leakage_inner": Series("m^3/s", "leakage at the inner radius, from high to low pressure"),
-    "leakage_outer": Series("m^3/s", "leakage at the outer radius, from high to low pressure"),
-    "friction_torque": Series("N m", "friction torque on the rotor"),
-    "friction_power": Series("W", "friction power"),
-    "cavitated_fraction": Series("1", "share of the face at the cavitation pressure"),
-}
-CONTACT_SERIES = {
-    "contact_force": Series("N", "contact force, opening"),
-    "contact_moment_x": Series("N m", "contact moment on the stator about xi"),
-    "contact_moment_y": Series("N m", "contact moment on the stator about eta"),
-    "contact_torque": Series("N m", "friction torque of contact on the rotor"),
-    "contact_area_fraction": Series("1", "share of the face that touches"),
-    "contact_pressure": Series("Pa", "largest contact pressure"),
-    "wear_rate": Series("m/s", "wear depth rate of both faces, mean over the face"),
-}
-SEAL_SERIES = {
-    "seal_friction": ("N", "axial friction of the secondary seal on the {}"),
-    "seal_moment_x": ("N m", "friction moment of the secondary seal on the {} about xi"),
-    "seal_moment_y": ("N m", "friction moment of the secondary seal on the {} about eta"),
-    "seal_sliding_speed": ("m/s", "sliding speed of the {} on its secondary seal"),
-    "seal_stuck": ("1", "1 while the {} sticks on its secondary seal"),
-}
-PARTS = {
-    "z": ("m", "axial displacement"),
-    "tilt_x": ("rad", "tilt about xi"),
-    "tilt_y": ("rad", "tilt about eta"),
-    "z_rate": ("m/s", "axial velocity"),
-    "tilt_x_rate": ("rad/s", "tilt rate about xi"),
-    "tilt_y_rate": ("rad/s", "tilt rate about eta"),
-}
 
 
 @dataclass(frozen=True)
@@ -207,14 +162,16 @@ def prepare_run(scenario):
     check_method(run.model, method)
     best = attainable(method, run.memory)
     if best > accuracy:
-        run.warnings.append(f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best")
+        sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
+        run.cautions.append(Caution(Concern.ACCURACY, sentence))
     _set_windows(run)
     fastest = run.fastest_forcing()
     if fastest * interval > math.pi:
-        run.warnings.append(
+        sentence = (
             f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
             f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
         )
+        run.cautions.append(Caution(Concern.ALIASING, sentence))
     return run, method, why, interval, count, by_model
 
 
@@ -271,20 +228,7 @@ def _resumed(run, writer, sink, audit):
 
 
 def _series(model) -> dict[str, Series]:
-    series = {}
-    for k, name in enumerate(RING_NAMES):
-        for part in list(PARTS)[: 6 if model.unknowns.floats[k] else 3]:
-            units, long_name = PARTS[part]
-            series[f"{name}_{part}"] = Series(units, f"{long_name} of the {name}")
-    for names in wave_names(model.face):
-        for name, part in zip(names, ("cosine", "sine"), strict=True):
-            series[name] = Series("m", f"{part} part of the gap's wave of order {name.rpartition('_')[2]}, from xi")
-    if model.contact is not None:
-        series |= CONTACT_SERIES
-    for k in model.unknowns.seals:
-        for part, (units, long_name) in SEAL_SERIES.items():
-            series[f"{RING_NAMES[k]}_{part}"] = Series(units, long_name.format(RING_NAMES[k]))
-    return {**series, **SERIES}
+    return {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
 
 
 def _meta(scenario, method) -> dict:

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..dynamics.signals import signals
+from ..dynamics.signals import TALLIED, signals
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -20,12 +20,8 @@ class Tally:
     sums: dict = None
     largest: dict = None
 
-    NAMES = ("relative_misalignment", "leakage_inner", "leakage_outer", "friction_torque", "friction_power",
-             "cavitated_fraction", "film_force", "shaft_speed", "axial_gap_change", "closing_force", "contact_force",
-             "contact_torque", "contact_area_fraction", "contact_pressure", "wear_rate")  # fmt: skip
-
     def add(self, columns):
-        names = [name for name in self.NAMES if name in columns]
+        names = [name for name in TALLIED if name in columns]
         self.sums = self.sums or dict.fromkeys(names, 0.0)
         self.largest = self.largest or dict.fromkeys(names, -math.inf)
         self.rows += len(columns["time"])

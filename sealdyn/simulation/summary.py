@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import closed_form
 from ..dynamics import modes
+from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import TOUCH
@@ -70,7 +71,7 @@ def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -
         "closed_form": _closed_form(segment, linear, tilt),
         "stability": stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
-        "warnings": [*run.warnings, *_blown_open(model, tally)],
+        "warnings": [caution.sentence for caution in (*run.cautions, *_blown_open(model, tally))],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -122,12 +123,15 @@ def _steady(run, outcome, period):
     return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
 
 
-def _blown_open(model, tally) -> list[str]:
+def _blown_open(model, tally) -> list[Caution]:
     """A gap many times its clearance is no seal any more."""
     widest = tally.largest["axial_gap_change"] / model.clearance if tally.largest else 0.0
     if widest < 10:
         return []
-    return [f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"]
+    sentence = (
+        f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"
+    )
+    return [Caution(Concern.BLOWN_OPEN, sentence)]
 
 
 def _contact(run, tally):

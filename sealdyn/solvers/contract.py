@@ -16,6 +16,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from ..status import Status as Status
+
 # Measured over the shipped scenarios (tests/convergence): error relative to the scales, per solver tolerance, of a
 # damped scene and per remembered period of an undamped one.  Multistep methods err by up to a tolerance a step
 # and always the same way; CVODE's Adams stays at low order on an undamped oscillation (its step may only grow by
@@ -29,17 +31,6 @@ SAFETY = {
     "expm": (1.0, 0.0),
 }
 TIGHTEST = 3e-14
-
-
-class Status(StrEnum):
-    """How a run ended."""
-
-    OK = "ok"
-    INACCURATE = "inaccurate"
-    COLLAPSED = "collapsed"
-    FAILED = "failed"
-    INTERRUPTED = "interrupted"
-    INVALID = "invalid"
 
 
 class Cause(StrEnum):

@@ -14,6 +14,7 @@ from ..numerics.parallel import Checkpoint, evaluate
 from ..scenario.settings import study_settings, without_contact
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
+from ..status import Status
 
 
 def study_names() -> list[str]:
@@ -64,7 +65,7 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     if left_out:
         said = f"a study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out"
         answer = {**answer, "verdict": [*answer.get("verdict", []), said]}
-    answer = {"status": "ok", "message": " ".join(answer.get("verdict", [])), "study": name, **answer}
+    answer = {"status": Status.OK, "message": " ".join(answer.get("verdict", [])), "study": name, **answer}
     libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
         "python": platform.python_version()
     }

@@ -6,13 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
+from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.model import Model
 from ..dynamics.modes import linearise
 from ..faces.geometry import (
     DZ,
-    FORCE,
     GAP_STATE_SIZE,
     GX,
     GX_RATE,
@@ -120,18 +119,7 @@ def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndar
 
 def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
-    scene = model.scene
-    stiffness = [ring.support.axial_stiffness for ring in (scene.stator, scene.rotor) if ring.support]
-    # Two supports carry the same force: in series.
-    support = 1 / sum(1 / k for k in stiffness) if all(stiffness) else 0.0
-    leg = model.start
-    closing = model.closing.over(leg, scene.film)[0]
-
-    def excess(dz):
-        s = gap_state(model, State(dz, tilt, whirl))
-        model.interface.film.wrench(model.f, s)
-        return s[FORCE] - closing - support * dz
-
+    excess = axial_excess(model, gap_state(model, State(0.0, tilt, whirl)), model.closing_force())
     thinnest = smallest_gap(model.face, 0.0, abs(tilt))[0]
     # From faces that all but touch upwards.
     low, reach = 1.01 * model.face[4] - thinnest, model.clearance
@@ -140,7 +128,7 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
         low, high = high, high + 0.25 * reach
     if excess(low) * excess(high) > 0:
         raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
-    return float(brentq(excess, low, high, xtol=1e-9 * reach))
+    return crossing(excess, low, high)
 
 
 def steady_tilt(model: Model) -> tuple[complex, float, str]:

@@ -12,6 +12,7 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..scenario.settings import with_values
 from ..scene import variants
+from ..status import Status
 
 units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
 
@@ -49,7 +50,7 @@ def run(scenario, settings, tools) -> dict:
     answer = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
     if "failed" in answer:
-        answer["status"] = "failed"
+        answer["status"] = Status.FAILED
     return {**answer, "verdict": _verdict(answer)}
 
 

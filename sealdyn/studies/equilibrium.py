@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics.equilibrium import ClosingForce, closed_below, equilibria, initially, rise, settle
+from ..dynamics.equilibrium import ClosingForce, closed_below, equilibria, film_stiffness, initially, rise, settle
 from ..films import film_module
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
@@ -39,7 +39,11 @@ def run(scenario, settings, tools) -> dict:
     roots = [root for root in roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
     force = np.array([opening(c, inner, outer) for c in clearance])
-    stiffness = np.array([_stiffness(opening, film, c, inner, outer) for c in clearance])
+    # Steps smaller than the distance to closed faces.
+    steps = 1e-4 * (clearance - closed_below(film))
+    stiffness = np.array(
+        [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
+    )
     support = sum(ring.support.axial_stiffness for ring in (scene.rotor, scene.stator) if ring.support)
     answer = {
         "roots": [{**vars(root), "stable": bool(root.stable)} for root in roots],
@@ -83,13 +87,6 @@ def _range(film, roots, settings) -> tuple[float, float]:
         wanted = f"clearances above {least:.4g} m, where the faces are open"
         raise SceneError("study.equilibrium.clearance_to", f"{high:.4g} m", wanted)
     return float(low), float(high)
-
-
-def _stiffness(opening, film, clearance, inner, outer) -> float:
-    """-dF/dC (N/m), central difference, one step smaller than the distance to closed faces."""
-    step = 1e-4 * (clearance - closed_below(film))
-    f = [opening(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
-    return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 
 def _verdict(answer) -> list[str]:

@@ -45,7 +45,7 @@ def run(scenario, settings, tools) -> dict:
     try:
         orbit = shooter.find()
     except NoOrbit as reason:
-        return {"status": "failed", "period": shooter.period, "multipliers": None, "stable": None,
+        return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None,
                 "verdict": [str(reason)]}  # fmt: skip
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)

@@ -10,6 +10,7 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..simulation.simulate import prepare_run, simulate_in_memory
+from ..status import Status
 
 WITH_CONTACT = WITH_WAVES = True
 OUTPUTS = (
@@ -69,7 +70,7 @@ def one_run(scenario, point: dict) -> dict:
     speeds = any(name in key for key in point["outputs"] for name in SPEEDS)
     summary = simulate_in_memory(with_values(scenario, point["set"]), speeds)
     row = {"status": summary["status"], **{key: looked_up(summary, key) for key in point["outputs"]}}
-    return row if summary["status"] == "ok" else {**row, "message": summary["message"]}
+    return row if summary["status"] == Status.OK else {**row, "message": summary["message"]}
 
 
 def looked_up(summary: dict, key: str):

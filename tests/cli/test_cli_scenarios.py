@@ -120,7 +120,9 @@ def test_archive_opens_for_a_stranger(run):
     folder, answer = run
     with xarray.open_dataset(folder / answer.found["archive"], engine="h5netcdf") as data:
         assert data.h_min.dims == ("time",)
-        assert all({"units", "long_name"} <= series.attrs.keys() for series in data.values())
+        wanted = {"units", "long_name", "display_unit", "display_factor"}
+        assert all(wanted <= series.attrs.keys() for series in data.values())
+        assert (data.h_min.attrs["display_unit"], data.h_min.attrs["display_factor"]) == ("µm", 1e6)
         assert data.attrs["status"] == "ok" and "[film]" in data.attrs["scenario"]
 
 

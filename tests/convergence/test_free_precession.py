@@ -97,7 +97,7 @@ def test_a_short_disk_precesses_at_2224_and_minus_225_rad_per_s():
 
 
 def warnings(*overrides):
-    return prepare_run(read_scenario(SCENARIO, overrides))[0].warnings
+    return [caution.sentence for caution in prepare_run(read_scenario(SCENARIO, overrides))[0].cautions]
 
 
 def test_an_accuracy_that_cannot_be_kept_is_warned_of():

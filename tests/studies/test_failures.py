@@ -155,7 +155,7 @@ def drawn_texts(monkeypatch, order, samples):
         ax = sheet(8, 4).add_axes((0.1, 0.1, 0.8, 0.8))
         turns = Made.turns
         tilt = 1e-4 * (np.exp(2j * np.pi * turns) + 0.1 * np.exp(2j * np.pi * order * turns))
-        spectrum.show(ax, Made(), lambda first: tilt, "tilt", "urad", "k", None)
+        spectrum.show(ax, Made(), lambda first: tilt, "tilt", ("urad", 1e6), "k", None)
         return [text.get_text() for text in ax.texts]
 
 

@@ -9,6 +9,7 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Rooms, lowest first: a room may import only rooms of the lines above its own.
 ORDER = (
+    ("status",),
     ("numerics", "closed_form", "archive", "kernel_cache", "toml_line", "unit_names"),
     ("units", "solvers", "report"),
     ("scene",),

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from drawn import crossed, drawn, text_trouble
@@ -72,10 +73,17 @@ def whirling(samples=3840, turns=60.0, tilt=1e-4, speed=1000.0, ramp=0.0):
     }
 
 
+def series(name):
+    """A series as runs write it: thicknesses in µm, tilts in µrad, leakage in ml/h."""
+    lengths = {"h_min", "axial_gap_change"}
+    shown = ("µm", 1e6) if name in lengths else ("µrad", 1e6) if "tilt" in name or "misalignment" in name else ()
+    return Series("SI", name, *(shown or (("ml/h", 3.6e9) if "leakage" in name else ())))
+
+
 def write(path, columns, status="ok", message="", summary=None, film=None, **resolved):
-    series = {name: Series("SI", name) for name in columns if name != "time"}
+    given = {name: series(name) for name in columns if name != "time"}
     resolved = {"film": FILM if film is None else film, **resolved}
-    run = ArchiveWriter(path, scenario_text=SCENARIO, resolved=resolved, meta={}, series=series)
+    run = ArchiveWriter(path, scenario_text=SCENARIO, resolved=resolved, meta={}, series=given)
     run.append(columns)
     if status == "running":
         run.close()
@@ -149,6 +157,26 @@ def test_the_overview_says_question_model_verdict_and_numbers(tmp_path):
     assert words[2] == "ok: done"
     numbers = [text.get_text() for ax in figure.axes for text in ax.texts]
     assert "2.3 µm, 23 % of clearance" in numbers and "43 220 ml/h" in numbers and "8684 rad/s" in numbers
+
+
+@pytest.mark.parametrize(
+    "display, largest, label", [(("nm", 1e9), 1e4, "h_min, nm"), ((), 1e-5, "h_min, m")], ids=["nm", "an older archive"]
+)
+def test_a_chart_takes_unit_and_factor_from_the_archive(tmp_path, display, largest, label):
+    columns = first(whirling(tilt=0.0), 400)
+    given = {name: Series("m", name, *(display if name == "h_min" else ())) for name in columns if name != "time"}
+    run = ArchiveWriter(tmp_path / "seal.h5", scenario_text=SCENARIO, resolved={"film": FILM}, meta={}, series=given)
+    run.append(columns)
+    path = run.finish("ok", "", SUMMARY)
+    if not display:
+        with h5py.File(path, "r+") as file:
+            for name in columns:
+                del file[name].attrs["display_unit"], file[name].attrs["display_factor"]
+    figure = drawn(overview, path, tmp_path / "chart.png", written=False)
+    panels = [ax for ax in figure.axes if ax.get_ylabel() == label]
+    assert len(panels) == 2
+    for ax in panels:
+        assert max(ax.lines[0].get_ydata()) == pytest.approx(largest, rel=0.02)
 
 
 def test_turns_count_through_wraps_blocks_and_changing_speed(tmp_path, monkeypatch):

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles import opening_force
-from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, run, started
+from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, fmsr, run, started
 
 from sealdyn.analysis.continuation import frozen_at_end
-from sealdyn.dynamics.equilibrium import equilibria, settle
+from sealdyn.dynamics.equilibrium import axial_excess, equilibria, settle, support_stiffness
 from sealdyn.faces.geometry import FLOOR
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
@@ -216,3 +216,18 @@ def test_what_a_scene_drives_to_is_closed_as_its_run_is():
     assert end.model.closing_force() == pytest.approx(last, rel=1e-12)
     assert end.model.axial_shift() == pytest.approx(whole.model.axial_shift(whole.intervals[-1]), rel=1e-9)
     assert abs(end.model.axial_shift()) > 1e-9
+
+
+@pytest.mark.parametrize("rotor, stator, series", [(3.0, 1.5, 5e5), (0.0, 1.0, 0.0), (1.0, 1.0, 2.5e5)])
+def test_supports_hold_the_gap_in_series(rotor, stator, series):
+    """Both carry the same force; a ring without axial stiffness carries none."""
+    assert support_stiffness(fmsr(rotor_stiffer=rotor, stator_stiffer=stator)) == pytest.approx(series, rel=1e-14)
+    assert support_stiffness(fms()) == SUPPORT.axial_stiffness
+
+
+def test_the_excess_of_opening_force_is_zero_where_the_loads_move_the_gap():
+    model = started(scene(Closing(None, 40.0), clearance=CLEARANCE), 1.0).model
+    s = model.segment().gap_state(0.0, np.zeros(model.unknowns.size)).copy()
+    assert abs(axial_excess(model, s, model.closing_force())(0.0)) < 1e-9 * model.closing_force()
+    heavier = axial_excess(model, s, 1.02 * model.closing_force())
+    assert heavier(0.0) < 0 < heavier(-0.5 * CLEARANCE)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ...scene.variants import unforced
+from ...status import Status
 from ..poincare_map import PIECE, PeriodMap
 from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
 
@@ -35,8 +36,11 @@ def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> di
         if row["first_contact"] is None and len(touched):
             row["first_contact"] = int(done + touched[0])
         done += len(turns.section)
-        if turns.status != "ok":
-            row["fate"], row["message"] = "collapse" if turns.status == "collapsed" else turns.status, turns.message
+        if turns.status != Status.OK:
+            row["fate"], row["message"] = (
+                "collapse" if turns.status == Status.COLLAPSED else turns.status,
+                turns.message,
+            )
             break
         # The late half of a piece, so that one piece can settle.
         late = size[len(size) // 2 :]

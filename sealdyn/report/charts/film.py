@@ -11,6 +11,7 @@ from .record import BLOCK, Run
 MOST_COLUMNS, STEPS = 1500, 20
 # Angles around the circle, at least, and per wave of the highest order.
 ANGLES, PER_WAVE = 180, 16
+NOTHING = 1e-12  # m: a film this even shows no thinnest place
 
 
 def draw(archive_path, out_path, turns: float = 6.0):
@@ -27,7 +28,9 @@ def draw(archive_path, out_path, turns: float = 6.0):
             absent(face, "Thinnest moment")
             return save(figure, out_path)
         bar = figure.add_axes((0.54, 0.11, 0.011, 0.64))
-        figure.colorbar(map_over_turns(over_turns, run, turns), cax=bar, label="film thickness, µm")
+        figure.colorbar(
+            map_over_turns(over_turns, run, turns), cax=bar, label=f"film thickness, {run.shown('h_min')[0]}"
+        )
         face_at_minimum(figure, face, run)
         return save(figure, out_path)
 
@@ -58,7 +61,9 @@ def map_over_turns(ax, run: Run, turns: float):
     """Angle against turns; the line follows the smallest film thickness."""
     first = run.last(turns, MOST_COLUMNS)
     radius = _edge(run, first)
-    over = 1e6 * thickness(run, radius, around(run), first, run.rows)
+    over = thickness(run, radius, around(run), first, run.rows)
+    tilted = (over.max(1) - over.min(1)).max() > NOTHING
+    over = run.shown("h_min")[1] * over
     progress = run.progress[first:]
     even = np.linspace(progress[0], progress[-1], len(progress))
     over = over[np.clip(np.searchsorted(progress, even), 0, len(progress) - 1)]
@@ -72,7 +77,6 @@ def map_over_turns(ax, run: Run, turns: float):
         interpolation="bilinear",
         interpolation_stage="data",
     )
-    tilted = (over.max(1) - over.min(1)).max() > 1e-6
     if run.has("h_min_angle") and tilted:
         angle = np.degrees(run.values("h_min_angle", first)) % 360
         ax.plot(progress, angle, ".", ms=1.6, color="white")
@@ -93,8 +97,10 @@ def face_at_minimum(figure, ax, run: Run) -> None:
         absent(ax, "Thinnest moment")
         return
     radius, angle = np.linspace(inner, outer, 12), around(run)
-    over = 1e6 * thickness(run, radius[:, None], angle, at, at + 1)[0]
-    over = np.broadcast_to(over, (len(radius), len(angle)))
+    unit, per = run.shown("h_min")
+    over = np.broadcast_to(thickness(run, radius[:, None], angle, at, at + 1)[0], (len(radius), len(angle)))
+    low = np.unravel_index(over.argmin(), over.shape)
+    tilted, over = np.ptp(over[low[0]]) > NOTHING, per * over
     image = ax.pcolormesh(
         angle,
         1e3 * radius,
@@ -103,17 +109,16 @@ def face_at_minimum(figure, ax, run: Run) -> None:
         cmap=colormaps[THICKNESS].resampled(STEPS),
         norm=_scale(over),
     )
-    low = np.unravel_index(over.argmin(), over.shape)
-    if np.ptp(over[low[0]]) > 1e-6:
+    if tilted:
         ax.plot(angle[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     ax.set(ylim=(0, 1e3 * outer), yticks=[])
     ax.grid(False)
-    unit = "turn" if run.turning else "ms"
-    ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * 1e6:.4g} µm at {unit} "
+    step = "turn" if run.turning else "ms"
+    ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * per:.4g} {unit} at {step} "
                  f"{run.progress[at]:.4g}", pad=16, loc="center")  # fmt: skip
     ax.text(0, 0, f"{1e3 * inner:.4g}–{1e3 * outer:.4g} mm", ha="center", va="center")
     bar = figure.add_axes((0.945, 0.11, 0.011, 0.64))
-    figure.colorbar(image, cax=bar, label="film thickness, µm")
+    figure.colorbar(image, cax=bar, label=f"film thickness, {unit}")
 
 
 def _scale(over) -> Normalize:

@@ -35,23 +35,24 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     if not whole > 0:
         absent(ax, title, "faces aligned throughout")
         return
+    unit, per = run.shown(f"{tilts[0][0]}_x")
     first = run.last(turns)
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
-            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=_once(ax, f"whole run: to {whole:.3g} µrad"))
-        x, y = (1e6 * run.values(f"{prefix}_{axis}", first) for axis in "xy")
+            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=_once(ax, f"whole run: to {whole:.3g} {unit}"))
+        x, y = (per * run.values(f"{prefix}_{axis}", first) for axis in "xy")
         ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
         mark_turns(ax, run, first, x, y)
         drawn = max(drawn, np.hypot(x, y).max())
     # A start-up transient much larger than what is left of it would hide the orbit: look closer.
     reach = drawn if 0 < 3 * drawn < whole else whole
-    circle = contact_circle(ax, run, reach) if contact else 0.0
+    circle = contact_circle(ax, per * (run.contact_tilt or 0.0), reach) if contact else 0.0
     limit = 1.12 * max(reach, circle)
     ax.axhline(0, color=GREY, lw=0.5)
     ax.axvline(0, color=GREY, lw=0.5)
     ax.set(xlim=(-limit, limit), ylim=(-limit, limit * 1.3), aspect="equal", title=title)
-    ax.set(xlabel="tilt about x, µrad", ylabel="tilt about y, µrad")
+    ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
     ax.legend(loc="upper left", ncols=2, borderaxespad=0.1, handlelength=1.4, columnspacing=1.0)
 
 
@@ -68,7 +69,8 @@ def window(run: Run, first: int) -> str:
 
 
 def hull(run: Run, prefix: str) -> np.ndarray:
-    """How far the tilt went towards each direction in the whole run: a convex polygon, (2, n), urad."""
+    """How far the tilt went towards each direction in the whole run: a convex polygon, (2, n), in the series'
+    unit for people."""
     angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
     towards = np.stack([np.cos(angles), np.sin(angles)], 1)
     furthest, corners = np.full(DIRECTIONS, -np.inf), np.zeros((2, DIRECTIONS))
@@ -79,7 +81,7 @@ def hull(run: Run, prefix: str) -> np.ndarray:
         reached = reached[np.arange(DIRECTIONS), at]
         corners = np.where(reached > furthest, tilt[:, at], corners)
         furthest = np.maximum(reached, furthest)
-    return 1e6 * corners
+    return run.shown(f"{prefix}_x")[1] * corners
 
 
 def mark_turns(ax, run: Run, first: int, x, y) -> None:
@@ -92,9 +94,8 @@ def mark_turns(ax, run: Run, first: int, x, y) -> None:
     ax.plot(x, y, "o", ms=3.2, color=MARK, label=_once(ax, "once per turn"))
 
 
-def contact_circle(ax, run: Run, reach: float) -> float:
-    """Draws where the faces touch, if the orbit comes within a factor three; returns its radius, urad."""
-    radius = 1e6 * (run.contact_tilt or 0.0)
+def contact_circle(ax, radius: float, reach: float) -> float:
+    """Draws where the faces touch, if the orbit's reach comes within a factor three; returns the radius, else zero."""
     if not 0 < radius < 3 * reach:
         return 0.0
     angles = np.linspace(0, 2 * np.pi, 361)

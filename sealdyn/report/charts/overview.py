@@ -2,12 +2,12 @@
 
 import numpy as np
 
+from ...status import Status
 from . import orbit, spectrum
 from .page import absent, header, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run
 
-ML_PER_HOUR = 3.6e9
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 LEFT, MIDDLE, RIGHT = (0.055, 0.25), (0.375, 0.265), (0.715, 0.265)
 ROWS = ((0.64, 0.235), (0.37, 0.205), (0.085, 0.19))
@@ -45,55 +45,55 @@ def draw(archive_path, out_path, turns: float = 4.0):
 def film_panel(ax, run: Run, first: int) -> None:
     """h_min with the design clearance, contact, and where the run ended if it did not end well."""
     title = "Smallest film thickness" + (f", {orbit.window(run, first)}" if first else "")
-    if not run.has("h_min"):
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if _lacking(ax, run, title, "h_min"):
         return
+    unit, per = run.shown("h_min")
     x, h = run.envelope("h_min", first)
-    ax.plot(x, 1e6 * h, color=FILM)
-    ax.set(title=title, ylabel="h_min, µm")
+    ax.plot(x, per * h, color=FILM)
+    ax.set(title=title, ylabel=f"h_min, {unit}")
     _span(ax, run, first)
-    low, top = 1e6 * np.nanmin(h), 1e6 * np.nanmax(h)
+    low, top = per * np.nanmin(h), per * np.nanmax(h)
     if first:
         margin = max(0.3 * (top - low), 2e-3 * top)
         ax.set_ylim(low - margin, top + margin)
     else:
-        top = 1.15 * max(top, 1e6 * (run.clearance or 0))
+        top = 1.15 * max(top, per * (run.clearance or 0))
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
-        _name(ax, 1e6 * run.touch_at, "asperities meet" if run.touch_at else "contact", CONTACT)
+        _name(ax, per * run.touch_at, "asperities meet" if run.touch_at else "contact", CONTACT)
     if run.clearance:
-        ax.axhline(1e6 * run.clearance, color=GREY, ls="--", lw=0.9)
+        ax.axhline(per * run.clearance, color=GREY, ls="--", lw=0.9)
         if not first:
-            _name(ax, 1e6 * run.clearance, "clearance", GREY)
-    ax.axhline(1e6 * run.touch_at, color=CONTACT, lw=1.2)
-    if run.status in ("collapsed", "failed", "interrupted"):
+            _name(ax, per * run.clearance, "clearance", GREY)
+    ax.axhline(per * run.touch_at, color=CONTACT, lw=1.2)
+    if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
-        ax.plot(x[-1], 1e6 * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
-        near_top = 1e6 * h[-1] > 0.75 * top
-        ax.annotate(run.status, (x[-1], 1e6 * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
+        ax.plot(x[-1], per * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
+        near_top = per * h[-1] > 0.75 * top
+        ax.annotate(run.status, (x[-1], per * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
                     textcoords="offset points", ha="right", weight="bold", bbox=PAPER)  # fmt: skip
 
 
 def tilt_panel(ax, run: Run, first: int) -> None:
     """Relative misalignment between the closed form's extremes."""
     title = "Relative misalignment" + (f", {orbit.window(run, first)}" if first else "")
-    if not run.has("relative_misalignment"):
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if _lacking(ax, run, title, "relative_misalignment"):
         return
+    unit, per = run.shown("relative_misalignment")
     x, tilt = run.envelope("relative_misalignment", first)
-    top = 1e6 * np.nanmax(tilt)
+    top = per * np.nanmax(tilt)
     if not top > 0:
         absent(ax, title, "faces aligned")
         return
-    ax.plot(x, 1e6 * tilt, color=TILT)
+    ax.plot(x, per * tilt, color=TILT)
     theory = run.summary.get("closed_form") or {}
-    lines = [1e6 * theory[k] for k in ("relative_max", "relative_min") if isinstance(theory.get(k), int | float)]
+    lines = [per * theory[k] for k in ("relative_max", "relative_min") if isinstance(theory.get(k), int | float)]
     if lines and 0 < max(lines) < 3 * top:
         for line in lines:
             ax.axhline(line, color=THEORY, ls="--", lw=1.1, zorder=3)
         ax.plot([], [], color=THEORY, ls="--", lw=1.1, label="closed form, max and min")
         ax.legend(loc="upper right", borderaxespad=0.0)
         top = max(top, *lines)
-    ax.set(title=title, ylabel="tilt, µrad", ylim=(0, 1.3 * top))
+    ax.set(title=title, ylabel=f"tilt, {unit}", ylim=(0, 1.3 * top))
     _span(ax, run, first)
 
 
@@ -101,15 +101,14 @@ def leakage_panel(ax, run: Run) -> None:
     """Leakage at both radii; they differ while the film swells and shrinks."""
     sides = [side for side in ("inner", "outer") if run.has(f"leakage_{side}")]
     title = "Leakage, high to low pressure"
-    if not sides:
-        absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    if not sides and _lacking(ax, run, title, "leakage_inner"):
         return
     # The outer one wide and pale beneath, so that both are seen where they agree.
     for side in reversed(sides):
-        x, flow = run.envelope(f"leakage_{side}")
+        (unit, per), (x, flow) = run.shown(f"leakage_{side}"), run.envelope(f"leakage_{side}")
         colour, width = (LEAK, 0.8) if side == "inner" else (YELLOW, 2.0)
-        ax.plot(x, ML_PER_HOUR * flow, label=f"at the {side} radius", color=colour, lw=width)
-    ax.set(title=title, ylabel="ml/h")
+        ax.plot(x, per * flow, label=f"at the {side} radius", color=colour, lw=width)
+    ax.set(title=title, ylabel=unit)
     ax.margins(y=0.25)
     ax.legend(loc="upper right", ncols=2, borderaxespad=0.0)
     _span(ax, run, 0)
@@ -117,13 +116,21 @@ def leakage_panel(ax, run: Run) -> None:
 
 def contact_panel(ax, run: Run) -> None:
     """Load that the touching asperities carry, beside the closing force it is a share of."""
-    x, force = run.envelope("contact_force")
-    ax.fill_between(x, force, color=CONTACT, alpha=0.25, lw=0)
-    ax.plot(x, force, color=CONTACT, lw=0.9)
+    (unit, per), (x, force) = run.shown("contact_force"), run.envelope("contact_force")
+    ax.fill_between(x, per * force, color=CONTACT, alpha=0.25, lw=0)
+    ax.plot(x, per * force, color=CONTACT, lw=0.9)
     share = (run.summary.get("contact") or {}).get("share_of_closing")
     words = f", {100 * share:.3g} % of the closing force on average" if isinstance(share, float) else ""
-    ax.set(title=f"Contact force{words}", ylabel="N", ylim=(0, 1.15 * np.nanmax(force)))
+    ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * per * np.nanmax(force)))
     _span(ax, run, 0)
+
+
+def _lacking(ax, run: Run, title: str, name: str) -> bool:
+    """Whether a series has nothing to draw; the panel then says so."""
+    if run.has(name):
+        return False
+    absent(ax, title, "no samples" if run.rows < 2 else "not in this scene")
+    return True
 
 
 def key_numbers(ax, run: Run) -> None:

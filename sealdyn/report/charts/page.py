@@ -56,19 +56,21 @@ def absent(ax, title: str, why: str = "not in this scene") -> None:
     ax.text(0.5, 0.5, why, transform=ax.transAxes, ha="center", va="center", color=GREY, style="italic")
 
 
-def header(figure, run, lines_below: int = 2) -> None:
+def header(figure, run) -> None:
     """The scene's question, then name, model and verdict, then what happened."""
+    ended = f"{run.status}: {run.message}" if run.message else run.status
+    heading(figure, run.question, run.description, ended, STATUS.get(run.status, BLACK))
+
+
+def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK) -> None:
+    """The title of a sheet, a line below it, and a bold one in `colour`; each cut to the width of the sheet."""
     left, top, step = 0.035, 1 - 0.26 / figure.get_figheight(), 0.2 / figure.get_figheight()
-    width = int(figure.get_figwidth() * 11)
-    figure.text(left, top, shortened(run.question, width), fontsize=13, weight="bold", va="center")
-    if lines_below > 0:
-        words = shortened(run.description, int(figure.get_figwidth() * 15.5))
-        figure.text(left, top - 1.3 * step, words, fontsize=9, va="center", color=BLACK)
-    if lines_below > 1:
-        words = f"{run.status}: {run.message}" if run.message else run.status
-        words = shortened(words, int(figure.get_figwidth() * 12.5))
-        colour = STATUS.get(run.status, BLACK)
-        figure.text(left, top - 2.4 * step, words, fontsize=9, va="center", color=colour, weight="bold")
+    width = figure.get_figwidth()
+    figure.text(left, top, shortened(title, int(11 * width)), fontsize=13, weight="bold", va="center")
+    below, bold = shortened(below, int(13 * width)), shortened(bold, int(12.5 * width))
+    figure.text(left, top - 1.3 * step, below, fontsize=9, va="center")
+    if bold:
+        figure.text(left, top - 2.4 * step, bold, fontsize=9, va="center", color=colour, weight="bold")
 
 
 def shortened(words: str, length: int) -> str:

@@ -4,6 +4,8 @@
 (Nunez, Anderton and Renslow, 2018).
 """
 
+from ...status import Status
+
 BLACK = "#000000"
 ORANGE = "#E69F00"
 SKY = "#56B4E9"
@@ -20,4 +22,10 @@ THICKNESS = "cividis"
 # One meaning, one colour, in every chart.
 FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK
 RING = {"stator": PURPLE, "rotor": BLUE}
-STATUS = {"ok": GREEN, "collapsed": VERMILLION, "failed": VERMILLION, "interrupted": ORANGE, "running": BLUE}
+STATUS = {
+    Status.OK: GREEN,
+    Status.COLLAPSED: VERMILLION,
+    Status.FAILED: VERMILLION,
+    Status.INTERRUPTED: ORANGE,
+    Status.RUNNING: BLUE,
+}

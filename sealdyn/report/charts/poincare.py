@@ -24,8 +24,10 @@ def draw(archive_path, out_path):
             absent(left, "Once per turn: relative tilt", "fewer than two passages of shaft angle zero")
             absent(right, "Once per turn: smallest film thickness", "fewer than two passages of shaft angle zero")
         else:
-            _plane(left, turns, 1e6 * values[0], 1e6 * values[1])
-            _film(right, turns, 1e6 * values[2])
+            unit, per = run.shown("relative_tilt_x")
+            _plane(left, turns, per * values[0], per * values[1], unit)
+            unit, per = run.shown("h_min")
+            _film(right, turns, per * values[2], unit)
         return save(figure, out_path)
 
 
@@ -50,7 +52,7 @@ def section(run: Run, names):
     return whole, found
 
 
-def _plane(ax, turns, x, y):
+def _plane(ax, turns, x, y, unit):
     points = ax.scatter(x, y, c=turns, cmap="cividis", s=12, lw=0)
     ax.plot(x[-1], y[-1], "o", mfc="none", mec=TILT, ms=10, label="last turn")
     reach = max(np.ptp(x), np.ptp(y), 1e-9 * max(np.abs(x).max(), np.abs(y).max(), 1e-12))
@@ -61,15 +63,15 @@ def _plane(ax, turns, x, y):
         setter(centre - 0.6 * reach, centre + 0.6 * reach)
     ax.set_aspect("equal")
     ax.set_title(f"Once per turn: relative tilt, {len(turns)} turns")
-    ax.set_xlabel("tilt about x, µrad")
-    ax.set_ylabel("tilt about y, µrad")
+    ax.set_xlabel(f"tilt about x, {unit}")
+    ax.set_ylabel(f"tilt about y, {unit}")
     ax.legend(loc="upper right")
     bar = ax.figure.colorbar(points, ax=ax, fraction=0.04, pad=0.02)
     bar.set_label("turn")
 
 
-def _film(ax, turns, h_min):
+def _film(ax, turns, h_min, unit):
     ax.plot(turns, h_min, ".", color=FILM, ms=4)
     ax.set_title("Once per turn: smallest film thickness")
     ax.set_xlabel("turns of the shaft")
-    ax.set_ylabel("h_min, µm")
+    ax.set_ylabel(f"h_min, {unit}")

@@ -28,6 +28,11 @@ class Run:
         """Rows `start` to `stop` of a series (SI)."""
         return column(self.path, name, slice(start, self.rows if stop is None else min(stop, self.rows)))
 
+    def shown(self, name: str) -> tuple[str, float]:
+        """The unit that people read a series in, and how many of it make one SI unit: what the archive says."""
+        series = self.info["series"][name]
+        return series.display_unit or series.units, series.display_factor
+
     @cached_property
     def turns(self) -> np.ndarray:
         """Turns of the shaft since the first row: its angle unwrapped, the speed deciding how often it went

@@ -8,7 +8,7 @@ from .record import Run
 
 MOST_ROWS = 1 << 14
 FLOOR = 1e-5
-NOTHING = 1e-7  # um or urad: below what any run resolves
+NOTHING = 1e-13  # m or rad: below what any run resolves
 CLEAR = 4  # lines
 HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 # Power in the top tenth of the band, of all that moves, above which a spectrum may be folded.  Measured: below 3e-7 in
@@ -41,7 +41,7 @@ def panel(ax, run: Run, turns: float | None = None) -> None:
         return
     x, y = (lambda first, axis=axis: run.values(f"relative_tilt_{axis}", first) for axis in "xy")
     title = "Relative tilt in orders of shaft speed"
-    show(ax, run, lambda first: x(first) + 1j * y(first), title, "amplitude, µrad", TILT, turns)
+    show(ax, run, lambda first: x(first) + 1j * y(first), title, run.shown(tilts[0]), TILT, turns)
 
 
 def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, said=True) -> None:
@@ -50,11 +50,12 @@ def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, 
         absent(ax, title)
         return
     colour = FILM if name == "h_min" else LEAK
-    show(ax, run, lambda first: run.values(name, first), title, "amplitude, µm", colour, turns, said)
+    show(ax, run, lambda first: run.values(name, first), title, run.shown(name), colour, turns, said)
 
 
-def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float | None, said=True):
-    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI)."""
+def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None, said=True):
+    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), `shown` is the unit for people
+    and how many of it make one SI unit."""
     if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
         absent(ax, title, "fewer than two turns: no spectrum")
         return
@@ -62,11 +63,12 @@ def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float |
     if run.rows - first < 16:
         first = 0
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
-    amplitude *= 1e6
-    largest = amplitude.max()
-    if not largest > NOTHING:
+    if not amplitude.max() > NOTHING:
         absent(ax, title, "does not move")
         return
+    unit, per = shown
+    amplitude *= per
+    largest = amplitude.max()
     named = peaks(orders, amplitude)
     reach = min(max(3.0, 1.15 * np.abs(orders[named]).max() if len(named) else 0), np.abs(orders).max())
     two_sided = orders[0] < 0
@@ -90,7 +92,7 @@ def show(ax, run: Run, read, title: str, label: str, colour: str, turns: float |
         words = f"{100 * share:.2g} % of the power in the top tenth of the band:\nmay be folded, raise samples_per_turn"
         ax.text(0.99, 0.97, words, transform=ax.transAxes, ha="right", va="top", fontsize=7.5, color=CONTACT)
     sides = "against the shaft  ←   order   →  with the shaft" if two_sided else "order of shaft speed"
-    ax.set(title=title, ylabel=label)
+    ax.set(title=title, ylabel=f"amplitude, {unit}")
     span = run.turns[-1] - run.turns[first]
     how = f"\nlast {span:.3g} turns, Hann window, resolution {resolution:.2g} orders"
     how += "\nspeed varies: resampled over shaft angle" if resampled else ""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet
 from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 
 COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
@@ -19,8 +19,7 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(11.5, 6.6)
-        figure.text(0.035, 0.96, "At which frequencies does the seal whirl?", fontsize=13, weight="bold", va="center")
-        figure.text(0.035, 0.922, shortened(f"{study['name']}: {study['question']}", 150), fontsize=9, va="center")
+        heading(figure, "At which frequencies does the seal whirl?", f"{study['name']}: {study['question']}")
         left, right = figure.add_axes((0.07, 0.185, 0.49, 0.63)), figure.add_axes((0.655, 0.185, 0.325, 0.63))
         factor = RPM if answer["unit"] == "rpm" else 1.0
         speed = factor * np.array(answer["speed"])

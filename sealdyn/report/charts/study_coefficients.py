@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet, shortened
 from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 
 TILT = (("K xx", 1, 1, BLUE, "-"), ("K yy", 2, 2, GREEN, (0, (5, 2))), ("K xy", 1, 2, VERMILLION, "-"),
@@ -17,9 +17,7 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(11.5, 8.0)
-        words = "How stiff is the film, and how does it damp?"
-        figure.text(0.035, 0.967, words, fontsize=13, weight="bold", va="center")
-        figure.text(0.035, 0.937, shortened(f"{study['name']}: {study['question']}", 150), fontsize=9, va="center")
+        heading(figure, "How stiff is the film, and how does it damp?", f"{study['name']}: {study['question']}")
         for i, (key, name, scale, label) in enumerate((
             ("against_speed", "speed", 1.0, "shaft speed, rad/s"),
             ("against_clearance", "clearance", 1e6, "clearance, µm"),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import absent, look, save, sheet, shortened
+from .page import absent, heading, look, save, sheet
 from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
 
 
@@ -13,9 +13,7 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(12, 5.2)
-        figure.text(0.04, 0.95, "When do the faces first touch?", fontsize=13, weight="bold", va="center")
-        figure.text(0.04, 0.905, shortened(f"{study['name']}: {study['question']}", 160), fontsize=9, va="center")
-        figure.text(0.04, 0.865, shortened(answer["verdict"][0], 165), fontsize=9, va="center", weight="bold")
+        heading(figure, "When do the faces first touch?", f"{study['name']}: {study['question']}", answer["verdict"][0])
         boxes = [(0.06 + 0.325 * i, 0.13, 0.25, 0.61) for i in range(3)]
         axes = [figure.add_axes(box) for box in boxes]
         if answer.get("path"):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet
 from .palette import BLACK, FILM, GREEN, GREY, THEORY, VERMILLION
 
 
@@ -13,8 +13,7 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(9.5, 7.2)
-        figure.text(0.045, 0.963, "At which clearance does the seal ride?", fontsize=13, weight="bold", va="center")
-        figure.text(0.045, 0.929, shortened(f"{study['name']}: {study['question']}", 125), fontsize=9, va="center")
+        heading(figure, "At which clearance does the seal ride?", f"{study['name']}: {study['question']}")
         top, below = figure.add_axes((0.11, 0.43, 0.86, 0.42)), figure.add_axes((0.11, 0.09, 0.86, 0.25))
         clearance = 1e6 * np.array(answer["curve"]["clearance"])
         _forces(top, answer, clearance)

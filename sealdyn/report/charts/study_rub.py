@@ -4,6 +4,7 @@ correct runs make of the same start."""
 import numpy as np
 
 from ...archive import read_study
+from ...status import Status
 from .page import look, save, sheet, shortened
 from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 
@@ -32,7 +33,7 @@ def draw(archive_path, out_path):
         figure.text(0.03, 0.937, shortened(f"{study['name']}: {words}", 165), fontsize=9, va="center")
         diagram = figure.add_axes((LEFT, 0.575, WIDTH, 0.305))
         below = figure.add_axes((LEFT, 0.355, WIDTH, 0.17), sharex=diagram)
-        rows = [row for row in answer["rows"] if row["status"] == "ok"]
+        rows = [row for row in answer["rows"] if row["status"] == Status.OK]
         _diagram(diagram, answer, rows, factor)
         _exponents(below, answer, rows, factor)
         below.set_xlabel(name)
@@ -63,7 +64,7 @@ def _diagram(ax, answer, rows, factor):
     ax.axhline(1e6 * answer["touch"], color=CONTACT, lw=0.9, ls="--")
     ax.annotate("asperities meet", (1.0, 1e6 * answer["touch"]), xycoords=("axes fraction", "data"), xytext=(-2, 3),
                 textcoords="offset points", fontsize=8, color=CONTACT, ha="right")  # fmt: skip
-    lost = [factor * row["value"] for row in answer["rows"] if row["status"] != "ok"]
+    lost = [factor * row["value"] for row in answer["rows"] if row["status"] != Status.OK]
     if lost:
         low = ax.get_ylim()[0]
         ax.plot(lost, np.full(len(lost), low), "x", color=BLACK, ms=7, clip_on=False, label="crushed: no motion")

@@ -6,7 +6,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet
 from .palette import BLACK, PALE, VERMILLION, YELLOW
 
 # Axis values as an engineer reads them.
@@ -21,10 +21,12 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(11.5, 7.0)
-        figure.text(0.035, 0.963, "Where does the seal whirl by itself?", fontsize=13, weight="bold", va="center")
-        figure.text(0.035, 0.928, shortened(f"{study['name']}: {study['question']}", 150), fontsize=9, va="center")
-        said = " ".join(answer["verdict"][:3])
-        figure.text(0.035, 0.895, shortened(said, 125), fontsize=9, va="center", weight="bold")
+        heading(
+            figure,
+            "Where does the seal whirl by itself?",
+            f"{study['name']}: {study['question']}",
+            " ".join(answer["verdict"][:3]),
+        )
         ax = figure.add_axes((0.075, 0.145, 0.80, 0.685))
         mesh = _map(ax, answer)
         if mesh is not None:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import absent, look, save, sheet, shortened
+from .page import absent, heading, look, save, sheet
 from .palette import CONTACT, FILM, GREY, MARK, THEORY, TILT
 
 
@@ -13,9 +13,9 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(11, 7)
-        figure.text(0.04, 0.96, "Periodic steady state by shooting", fontsize=13, weight="bold", va="center")
-        figure.text(0.04, 0.925, shortened(f"{study['name']}: {study['question']}", 150), fontsize=9, va="center")
-        figure.text(0.04, 0.895, shortened(answer["verdict"][0], 150), fontsize=9, va="center", weight="bold")
+        heading(
+            figure, "Periodic steady state by shooting", f"{study['name']}: {study['question']}", answer["verdict"][0]
+        )
         _orbit(figure.add_axes((0.07, 0.50, 0.36, 0.34)), answer)
         _film(figure.add_axes((0.07, 0.09, 0.36, 0.29)), answer)
         _multipliers(figure.add_axes((0.54, 0.50, 0.40, 0.34)), answer)

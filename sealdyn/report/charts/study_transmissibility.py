@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet
 from .palette import BLACK, GREY, PALE, RING
 
 COLOUR = {"fmr": RING["rotor"], "fms": RING["stator"]}
@@ -33,8 +33,7 @@ def draw(archive_path, out_path):
     answer = study["answer"]
     with look():
         figure = sheet(11.5, 9.6)
-        figure.text(0.035, 0.973, "How much misalignment reaches the film?", fontsize=13, weight="bold", va="center")
-        figure.text(0.035, 0.948, shortened(f"{study['name']}: {study['question']}", 150), fontsize=9, va="center")
+        heading(figure, "How much misalignment reaches the film?", f"{study['name']}: {study['question']}")
         for i, quantity in enumerate(TITLES):
             left = 0.06 + 0.324 * i
             above = figure.add_axes((left, 0.585, 0.262, 0.32))

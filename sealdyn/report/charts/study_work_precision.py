@@ -7,6 +7,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...archive import read_study
+from ...status import Status
 from .page import absent, look, save, sheet, shortened
 from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILLION
 
@@ -51,7 +52,7 @@ def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str
         colour, line, marker = LOOKS.get(name, (GREY, "-", "o"))
         error = _errors(row, where)
         spent = np.array(row[cost], dtype=float) * (1e3 if cost == "wall" else 1.0)
-        good = np.array([s in ("ok", "slow") for s in row["status"]]) & np.isfinite(error)
+        good = np.array([s in (Status.OK, "slow") for s in row["status"]]) & np.isfinite(error)
         slow = np.array([s == "slow" for s in row["status"]])
         if good.any():
             drawn = True
@@ -59,7 +60,7 @@ def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str
             ax.plot(error[good & slow], spent[good & slow], "x", color=colour, ms=9, mew=1.8)
             last = np.nonzero(good)[0][-1]
             ends.append((error[last], spent[last], SHORT[name], colour))
-    crossed = any(status != "ok" for row in answer["methods"].values() for status in row["status"])
+    crossed = any(status != Status.OK for row in answer["methods"].values() for status in row["status"])
     if not drawn and (where == "steady" or not crossed):
         absent(ax, title or TITLES[where], "no steady state here" if where == "steady" else "nothing to compare")
         return
@@ -108,7 +109,7 @@ def _crosses(ax, answer, where, cost):
     for name, row in answer["methods"].items():
         colour = LOOKS.get(name, (GREY,))[0]
         for k, status in enumerate(row["status"]):
-            if status in ("ok", "slow"):
+            if status in (Status.OK, "slow"):
                 continue
             # Errors fall to the right: the right end is the smaller number.
             at = max(row["expected"][k], ax.get_xlim()[1]) if status == "stopped" and row["expected"][k] else left
@@ -153,7 +154,7 @@ def models(ax, answer):
         (e, 1e3 * w)
         for row in answer["methods"].values()
         for e, w, s in zip(_errors(row, where), row["wall"], row["status"], strict=True)
-        if s == "ok" and np.isfinite(e)
+        if s == Status.OK and np.isfinite(e)
     )
     best = np.minimum.accumulate([w for _, w in edge]) if edge else []
     ax.set(xscale="log", yscale="log")
@@ -198,7 +199,7 @@ def said(ax, answer):
     reasons = {}
     for name, row in answer["methods"].items():
         for status, reason in zip(row["status"], row["reason"], strict=True):
-            if status not in ("ok", "slow"):
+            if status not in (Status.OK, "slow"):
                 # One of each kind; "NAME gave up ... into this leg:" is said by the cross.
                 words = reason.partition("this leg: ")[2] or reason
                 reasons.setdefault((name, status), shortened(f"✕ {SHORT[name]}: {words}", 72))

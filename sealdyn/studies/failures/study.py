@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from ...scenario.errors import ScenarioError
 from ...scene.scene import SceneError
 from ...simulation.simulate import prepare_run
+from ...status import Status
 from . import cases
 
 units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row's unit"}
@@ -39,7 +40,7 @@ def run(scenario, settings, tools) -> dict:
         rows += part.get("rows") or [{"item": names[name], "title": title, "failed": part["failed"]}]
     answer = {"rows": rows, "items": sorted({row["item"] for row in rows}), "scenario": chosen_for(scenario)}
     if any("failed" in row for row in rows):
-        answer["status"] = "failed"
+        answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer)}
 
 
@@ -61,7 +62,12 @@ def chosen_for(scenario) -> dict:
         run, method, why, *_ = prepare_run(scenario)
     except SceneError as error:
         return {"refused": str(error)}
-    return {"film": run.model.interface.name, "method": method, "why": why, "warnings": list(run.warnings)}
+    return {
+        "film": run.model.interface.name,
+        "method": method,
+        "why": why,
+        "warnings": [caution.sentence for caution in run.cautions],
+    }
 
 
 def sentences(answer) -> list[str]:

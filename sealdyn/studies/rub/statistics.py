@@ -14,6 +14,7 @@ from ...numerics import time_series
 from ...numerics.lyapunov import tangent_product
 from ...scene.contact import contact_thresholds
 from ...scene.variants import with_values
+from ...status import Status
 
 # Separation that makes a forecast worthless, in units of the attractor's spread; the tighter of two correct runs.
 LOST, TIGHTER = 0.3, 100.0
@@ -28,7 +29,7 @@ def evaluate_point(scene, point: dict) -> dict:
     stroboscope = PeriodMap(scene, point["accuracy"], point["method"])
     if point["method"] == "adams":
         seen = stroboscope.run(x, turns)
-        if seen.status != "ok":
+        if seen.status != Status.OK:
             raise FilmCollapsed(seen.message)
         exponent = neighbours(scene, x, turns, point["accuracy"], "adams")
         series = {"h_min": seen.lowest, "section": seen.section, "force": seen.contact_force, "share": seen.touching}

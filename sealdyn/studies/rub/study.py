@@ -19,6 +19,7 @@ from ...numerics.lyapunov import horizon
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import axis
 from ...scene.variants import part
+from ...status import Status
 from ...unit_names import dimension_and_factor
 from ...units import Speed
 from .statistics import evaluate_point, touch_level
@@ -70,8 +71,8 @@ def run(scenario, settings, tools) -> dict:
     answer = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
     answer |= _judged(base, rows, settings, scenario, tools)
     answer["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
-    if not any(row["status"] == "ok" for row in rows):
-        answer["status"] = "failed"
+    if not any(row["status"] == Status.OK for row in rows):
+        answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer)}
 
 
@@ -100,7 +101,7 @@ def _in_si(scenario, key, words, where) -> list[float]:
 
 def _judged(base, rows, settings, scenario, tools) -> dict:
     """Two methods' averages, and how two correct runs part, at one point of the diagram."""
-    good = [row for row in rows if row["status"] == "ok" and row["contact_share"] > 0]
+    good = [row for row in rows if row["status"] == Status.OK and row["contact_share"] > 0]
     nothing = {"judge": None, "methods": None, "separation": None}
     if not good or not settings.judge_turns:
         return nothing
@@ -152,7 +153,7 @@ def sentences(answer) -> list[str]:
     """The verdict."""
     rows, key, unit = answer["rows"], answer["key"], UNITS.get(answer["key"], "SI")
     lines = [*answer["reason"]]
-    good = [row for row in rows if row["status"] == "ok"]
+    good = [row for row in rows if row["status"] == Status.OK]
     for direction in ("up", "down"):
         told = _runs([row for row in rows if row["direction"] == direction])
         lines += [f"{key} going {direction}: {told} ({unit})"] if told else []

@@ -2,6 +2,8 @@
 
 import math
 
+from ...status import Status
+
 RPM = 30 / math.pi
 WAYS = ("up", "down")
 
@@ -13,7 +15,9 @@ def sentences(answer) -> list[str]:
     said += [f"at {row['rate']:.4g} rad/s^2: {row['failed']}" for row in rows if "failed" in row]
     good = [row for row in rows if "failed" not in row]
     said += list(dict.fromkeys(warning for row in good for warning in row["warnings"]))
-    said += [f"at {row['rate']:.4g} rad/s^2: {_ended(row)}" for row in good if row["status"] != "ok" or row["touched"]]
+    said += [
+        f"at {row['rate']:.4g} rad/s^2: {_ended(row)}" for row in good if row["status"] != Status.OK or row["touched"]
+    ]
     said += _peaks(answer, good) + _lag(good) + _resolution(answer, good)
     if answer["crossing"] is None:
         said.append(_no_threshold(answer))
@@ -28,7 +32,7 @@ def _speed(w) -> str:
 def _ended(row) -> str:
     """That it touched or collapsed, and where on its way."""
     where = f"at {_speed(row['h_min_speed'])} going {row['h_min_way']}" if row["h_min_speed"] else ""
-    if row["status"] == "ok":
+    if row["status"] == Status.OK:
         return f"the faces touch, closest {where} (mean planes {1e6 * row['h_min']:.3g} um), and the run goes on"
     return f"{row['message'].partition(' at t =')[0]} {where}: the run ends there" if where else row["message"]
 
@@ -195,4 +199,4 @@ def _loaded(row) -> str:
     words += f" ({100 * more:.3g} % above the slow answer)" if more is not None and more > BEYOND else ""
     low, high = row["leakage_least"] * 3.6e9, row["leakage"] * 3.6e9
     words += f", leakage {low:.5g} to {high:.5g} ml/h{beyond(over['leakage'])}"
-    return words if row["status"] == "ok" else f"{words}; {row['message']}"
+    return words if row["status"] == Status.OK else f"{words}; {row['message']}"

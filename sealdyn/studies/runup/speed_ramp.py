@@ -9,6 +9,7 @@ from scipy.optimize import brentq, minimize_scalar
 from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
 from ...analysis.whirl.mode_over_speed import along
+from ...dynamics.cautions import Concern
 from ...dynamics.model import Model
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
 from ...numerics.order_tracking import centres, peak, resolution, tracked, waterfall
@@ -183,7 +184,7 @@ def passage(scenario, point: dict) -> dict:
     mode = followed_mode(scenario.scene, trip.begin, trip.end, trip.crossing)
     run = run_cycle(scenario, trip, point["per_turn"], mode, point["disturbance"])
     row = {"rate": trip.rate, **extremes(run), **_followed(run, trip, steady, point)}
-    row["warnings"] = [said for said in run.state.warnings if not said.startswith("aliasing")]
+    row["warnings"] = [c.sentence for c in run.state.cautions if c.concern != Concern.ALIASING]
     row["h_min_way"] = "up" if row["h_min_time"] < 0.5 * (trip.top + trip.back) else "down"
     scale = run.state.model.clearance / run.state.model.face[1]
     row["growth"] = (

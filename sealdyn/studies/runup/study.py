@@ -13,6 +13,7 @@ import numpy as np
 
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scene.variants import part, with_values
+from ...status import Status
 from ...units import Angle, Time
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
@@ -82,12 +83,12 @@ def speed_ramps(scenario, settings, tools) -> dict:
         "whirl": _whirl(mode, plan, begin, end), "forced_tilt": plan["forced"],
         "warnings": plan["warnings"], "rate_foretold": plan["rate_foretold"],
     }  # fmt: skip
-    shown = next((r for r in rows if r.get("status") == "ok"), next((r for r in rows if "waterfall" in r), None))
+    shown = next((r for r in rows if r.get("status") == Status.OK), next((r for r in rows if "waterfall" in r), None))
     answer["waterfall"] = {"rate": shown["rate"], "window": shown["window"], **shown["waterfall"]} if shown else None
     answer["rows"] = [{k: v for k, v in row.items() if k != "waterfall"} for row in rows]
     answer |= touching(plan, answer["rows"], settings, tools)
     if not any("status" in row for row in rows):
-        answer["status"] = "failed"
+        answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer)}
 
 
@@ -104,14 +105,14 @@ def _whirl(mode, plan, begin, end) -> dict | None:
 def touching(plan, rows, settings, tools) -> dict:
     """Largest misalignment and thinnest film over the ramp rate, and the rate that just touches."""
     done = [{k: row[k] for k in ("rate", "status", "touched", "relative_misalignment", "h_min")}
-            for row in rows if row.get("status") in ("ok", "collapsed")]  # fmt: skip
+            for row in rows if row.get("status") in (Status.OK, Status.COLLAPSED)]  # fmt: skip
     said = None
     if plan["crossing"] is not None and settings.touch:
         middle = plan["rate_foretold"]
         rates = [float(f"{middle * share:.4g}") for share in CURVE] if middle else []
         points = [{**plan["base"], "rate": rate} for rate in rates]
         found = tools.map(partial(short_pass, plan["scenario"]), points, "short passes")
-        done += [row for row in found if row.get("status") in ("ok", "collapsed")]
+        done += [row for row in found if row.get("status") in (Status.OK, Status.COLLAPSED)]
         done, said = _closer(plan, done, tools)
     done.sort(key=lambda row: row["rate"])
     names = ("rate", "relative_misalignment", "h_min", "touched")
@@ -135,7 +136,7 @@ def _closer(plan, done, tools):
             break
         rate = float(f"{math.sqrt(low * high):.5g}")
         (row,) = tools.map(partial(short_pass, plan["scenario"]), [{**plan["base"], "rate": rate}], "touching rate")
-        if row.get("status") not in ("ok", "collapsed"):
+        if row.get("status") not in (Status.OK, Status.COLLAPSED):
             return done, {"value": None, "bracket": [low, high], "said": row.get("failed") or row["message"]}
         done.append(row)
     return done, {"value": math.sqrt(low * high), "bracket": [low, high], "said": ""}
@@ -182,5 +183,5 @@ def load_ramps(scenario, settings, tools) -> dict:
         "rows": rows,
     }
     if not any("status" in row for row in rows):
-        answer["status"] = "failed"
+        answer["status"] = Status.FAILED
     return {**answer, "verdict": load_sentences(answer)}

@@ -30,6 +30,7 @@ from ...films.radial import film as radial
 from ...scene.film import Film
 from ...solvers.contract import Counts, SolverFailure, tolerance_for
 from ...solvers.methods import METHODS
+from ...status import Status
 
 # Film error: below what the integrator is asked, so that it meets a smooth function.
 FILM_ERROR = 1e-10
@@ -297,7 +298,7 @@ def quasi_static(
             return "hang-up", _hung(force_ratio, "the wedge is gone", where)
         if force_ratio <= closed.LEAST_FORCE_RATIO:
             return "hang-up", _hung(force_ratio, said or "the film goes on moving", where)
-        return ("failed", f"{said} ({where})") if said else ("moving", f"not settled {where}")
+        return (Status.FAILED, f"{said} ({where})") if said else ("moving", f"not settled {where}")
 
     return _run(balance, start, duration, accuracy, ended, sentence)
 
@@ -312,7 +313,7 @@ def guided(
     def sentence(verdict, said, time, film):
         where = f"at t = {time:.4g} s, h0 = {film[0] * 1e6:.4g} um, h1/h0 = {film[1] / film[0]:.3g}"
         if said:
-            return "failed", f"{said} ({where})"
+            return Status.FAILED, f"{said} ({where})"
         return (
             "straightened" if film[1] < 0.1 * film[0] else "moving"
         ), f"h1/h0 fell to {film[1] / film[0]:.3g} {where}"

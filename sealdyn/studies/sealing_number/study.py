@@ -12,6 +12,7 @@ from ...closed_form import ludwig_allen as closed
 from ...closed_form import released_ring
 from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
+from ...status import Status
 from . import quasi_static
 from . import released as free
 
@@ -149,7 +150,7 @@ def release(scene, point: dict) -> dict:
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
     for accuracy in (point["accuracy"], point["accuracy"] / 3, 3 * point["accuracy"]):
         told = free.released(scene, point["turns"], point["last"], accuracy)
-        if told.status != "failed":
+        if told.status != Status.FAILED:
             break
     row = {name: getattr(told, name) for name in ("status", "message", "mean_film", "least_film", "share", "direction",
            "whirl", "contact_share", "stuck_share", "evaluations", "energy_residual")}  # fmt: skip
@@ -264,7 +265,7 @@ def _opened(answer) -> list[str]:
 
 def _foreseen(answer) -> list[str]:
     rows = [r for r in answer["released"] if r.get("status") == "film" and r.get("foreseen")]
-    failed = [r for r in answer["released"] if "failed" in r or r.get("status") == "failed"]
+    failed = [r for r in answer["released"] if "failed" in r or r.get("status") == Status.FAILED]
     lines = []
     if rows:
         off = max(abs(r["mean_film"][0] / r["foreseen"]["mean_film"] - 1) for r in rows)

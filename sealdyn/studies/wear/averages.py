@@ -11,15 +11,15 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
 from ...dynamics import equations
+from ...dynamics.equilibrium import axial_excess, crossing, support_stiffness
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
-from ...faces.geometry import DZ, FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
+from ...faces.geometry import FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smallest_gap
 from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
@@ -102,7 +102,7 @@ class ShortRunAverages:
                 if lost.cause == Cause.INTERRUPTED:
                     raise KeyboardInterrupt from None
                 crushed = lost.cause == Cause.ASPERITIES_CRUSHED
-                raise NoAverage("collapsed" if crushed else "failed", str(lost)) from None
+                raise NoAverage(Status.COLLAPSED if crushed else Status.FAILED, str(lost)) from None
         n = len(self.radius)
         return {"travel": 0.0, "y": y, "depth": [float(v) for v in depth], "share": [1.0 / n] * n}
 
@@ -124,14 +124,7 @@ class ShortRunAverages:
         """The balance of forces of aligned faces."""
         still = np.zeros((1, run.model.unknowns.n))
         (s,) = _states(run, np.zeros(1), still, still)
-        closing = run.model.closing_force()
-
-        def excess(shift):
-            s[DZ] = shift
-            run.model.interface.wrench(run.model.f, s)
-            return s[FORCE] - closing - self.stiffness * shift
-
-        shift = self._root(run, excess)
+        shift = self._root(run, axial_excess(run.model, s, run.model.closing_force()))
         q = np.array([[shift * self.shares[name] for name in run.model.unknowns.names]])
         seen = self._seen(run, np.zeros(1), q, still)
         states = _states(run, np.zeros(1), q, still)
@@ -148,11 +141,11 @@ class ShortRunAverages:
         while True:
             far = near + side
             if excess(far) * here <= 0.0:
-                return float(brentq(excess, *sorted((near, far)), xtol=1e-20, rtol=1e-14))
+                return crossing(excess, *sorted((near, far)))
             if lowest + far < contact_thresholds(self.scene.contact)[2]:
-                raise NoAverage("collapsed", "asperities crushed flat: the faces cannot carry the closing force")
+                raise NoAverage(Status.COLLAPSED, "asperities crushed flat: the faces cannot carry the closing force")
             if far > 100 * max(self.clearance, run.model.face[1] * 1e-3):
-                raise NoAverage("failed", "the ring is blown open: no gap at which film and springs balance")
+                raise NoAverage(Status.FAILED, "the ring is blown open: no gap at which film and springs balance")
             near, side = far, 1.3 * side
 
     # --- a scene that moves ---------------------------------------------------------------------------
@@ -171,7 +164,7 @@ class ShortRunAverages:
             if outcome.status == Status.INTERRUPTED:
                 raise KeyboardInterrupt
             if outcome.status != Status.OK:
-                raise NoAverage(str(outcome.status), outcome.message)
+                raise NoAverage(outcome.status, outcome.message)
             t, q, rate = (part[:-1] for part in sink.arrays())
             states = _states(run, t, q, rate)
             past.append(self._rates(run, states))
@@ -263,7 +256,7 @@ def _supports(scene) -> tuple[float, dict[str, float]]:
     free = [name for name, (stiffness, _) in give.items() if stiffness == 0.0]
     if free:
         return 0.0, {name: give[name][1] / len(free) if name in free else 0.0 for name in give}
-    series = 1.0 / sum(1.0 / stiffness for stiffness, _ in give.values())
+    series = support_stiffness(scene)
     return series, {name: sign * series / stiffness for name, (stiffness, sign) in give.items()}
 
 

@@ -18,6 +18,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from ...status import Status
+
 # ROS34PW2: stage positions, their implicit parts, weights, weights of order 2.
 GAMMA = 0.435866521508459
 ALPHA = np.array([
@@ -42,9 +44,9 @@ SCATTERED = 3.0
 
 
 class NoAverage(RuntimeError):
-    """A short run that gives no averages: `kind` "collapsed" or "failed", and a sentence."""
+    """A short run that gives no averages: how it ended, and a sentence."""
 
-    def __init__(self, kind: str, said: str):
+    def __init__(self, kind: Status, said: str):
         super().__init__(said)
         self.kind = kind
 

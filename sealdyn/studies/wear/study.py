@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from ...scenario.errors import ScenarioError
+from ...status import Status
 from ...units import Time
 from .averages import ShortRunAverages
 from .rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
@@ -65,7 +66,7 @@ def run(scenario, settings, tools) -> dict:
     answer = _answer(runs, hats, wears, rows) | {"end": end}
     if end["kind"] == "run-in" and settings.run_in == "extrapolate":
         answer["extrapolated"] = _extrapolated(answer, rows[-1], hats, wears, settings.duration)
-    status = end["kind"] if end["kind"] in ("collapsed", "failed") else "ok"
+    status = end["kind"] if end["kind"] in (Status.COLLAPSED, Status.FAILED) else Status.OK
     return {**answer, "status": status, "verdict": sentences(answer, settings)}
 
 

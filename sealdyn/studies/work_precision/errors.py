@@ -88,8 +88,8 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
     status, reason = str(outcome.status), "" if outcome.status == Status.OK else outcome.message
     if watch.stopped:
         status = "stopped"
-    elif status == "ok" and not np.all(np.isfinite(outcome.y)):
-        status, reason = "failed", "overflowed"
+    elif status == Status.OK and not np.all(np.isfinite(outcome.y)):
+        status, reason = Status.FAILED, "overflowed"
     found = _observed(run, status, reason, watch.spent, outcome.counts, sink, outcome.y)
     found.processor = watch.processor
     return found
@@ -98,7 +98,7 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
 def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
     columns = [np.concatenate([part[i] for part in sink.parts]) if sink.parts else np.empty(0) for i in range(4)]
     record, steady = run.extrema.records[1], None
-    if status == "ok" and math.isfinite(record[H]) and math.isfinite(record[MOST]):
+    if status == Status.OK and math.isfinite(record[H]) and math.isfinite(record[MOST]):
         steady = {"h_min": [record[H]], "relative_misalignment": [record[LEAST], record[MOST]]}
         late = columns[0] >= run.extrema.windows[1][0] * (1 - 1e-12)
         if late.sum() > 1:
@@ -122,7 +122,7 @@ def errors(found: Observed, exact: Observed) -> dict:
     the outer radius, the largest leakage and the whole impulse of `exact`; an empty dict where there is nothing to
     compare.  **Source** maximum and final-time errors as in Hairer & Wanner's work-precision diagrams."""
     none = {where: {} for where in WHERE}
-    if found.status != "ok" or exact.status != "ok" or len(found.times) != len(exact.times):
+    if found.status != Status.OK or exact.status != Status.OK or len(found.times) != len(exact.times):
         return none
     out = none
     for name, scale in exact.scales.items():

@@ -13,6 +13,7 @@ from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
 from ...solvers.methods import METHODS
+from ...status import Status
 from .errors import errors, observe, worst
 
 JUDGE, TIGHT = 1e-11, 1e-11
@@ -45,7 +46,7 @@ def compare(scenario, samples: int, longest: float, repeats: int, exact=None) ->
     own = scenario.scene.film.model
     if (
         exact is not None
-        and exact.status == "ok"
+        and exact.status == Status.OK
         and own not in ("linear", "auto")
         and ladder[-1][1]["film.model"] == own
     ):
@@ -68,14 +69,14 @@ def _highest(scenario, ladder, samples, longest):
         try:
             run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
             found = observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
-            if found.status not in ("ok", "collapsed"):
+            if found.status not in (Status.OK, Status.COLLAPSED):
                 run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": 1e-9, **AUTO}))
                 tolerance = tolerance_for(method, 1e-9, run.memory)
                 found = observe(run, METHODS[method], method, tolerance, longest, samples)
         except ValueError:
             # This film refuses the scene.
             continue
-        if found.status in ("ok", "collapsed"):
+        if found.status in (Status.OK, Status.COLLAPSED):
             return found, rung
     return None, None
 
@@ -99,12 +100,12 @@ def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
             tolerance = tolerance_for(method, scenario.run.accuracy, run.memory)
             found = observe(run, METHODS[method], method, tolerance, longest, samples)
             best = found if best is None or found.wall < best.wall else best
-            if found.wall > 1.0 or found.status != "ok":
+            if found.wall > 1.0 or found.status != Status.OK:
                 break
     except ValueError as refused:
         return row | {"failed": str(refused)}
     row |= {"wall": best.wall, "rhs": best.counts.rhs, "method": method}
-    if best.status != "ok" or highest.status != "ok":
+    if best.status != Status.OK or highest.status != Status.OK:
         return row | {"failed": best.reason or f"the highest rung: {highest.reason}"}
     # The motion for itself: a film's leakage is a formula of its own.
     found = errors(best, highest)

@@ -3,13 +3,15 @@
 import math
 from itertools import pairwise
 
+from ...status import Status
+
 
 def mark_slow_runs(methods: dict, where: str, slowest: float):
     """A run that took more than `slowest` times the fastest of at most its error becomes a cross."""
     everyone = {name: curve(row, where) for name, row in methods.items()}
     for row in methods.values():
         for k, error in enumerate(row["error"][where]):
-            if row["status"][k] != "ok" or error is None:
+            if row["status"][k] != Status.OK or error is None:
                 continue
             least = min((w for c in everyone.values() for e, w in c if e <= error), default=math.inf)
             if row["wall"][k] > slowest * least:
@@ -22,7 +24,7 @@ def curve(row: dict, where: str, cost: str = "wall") -> list[tuple[float, float]
     return [
         (max(error, 1e-16), spent)
         for error, spent, status in zip(row["error"][where], row[cost], row["status"], strict=True)
-        if status == "ok" and error is not None
+        if status == Status.OK and error is not None
     ]
 
 
@@ -51,12 +53,12 @@ def rank_methods(answer: dict, error: float) -> dict:
     found = {name: time_at(curve(row, where), error) for name, row in answer["methods"].items()}
     order = sorted((wall, name) for name, wall in found.items() if wall is not None)
     if not order:
-        collapsed = answer["judges"].get("status") == "collapsed"
+        collapsed = answer["judges"].get("status") == Status.COLLAPSED
         why = "the film collapses in the judge's run too" if collapsed else "no method got there"
         return {"error": error, "method": None, "why": why}
     wall, name = order[0]
     # Who ended well at the tightest tolerance and is still above this error was not asked tightly enough.
-    above = [m for m, row in answer["methods"].items() if found[m] is None and row["status"][-1] == "ok"]
+    above = [m for m, row in answer["methods"].items() if found[m] is None and row["status"][-1] == Status.OK]
     out = {"error": error, "method": name, "wall": wall, "next": None, "factor_next": None, "factor_dop853": None,
            "not_asked": above}  # fmt: skip
     if len(order) > 1:

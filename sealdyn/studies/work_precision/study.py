@@ -16,6 +16,7 @@ from ...simulation.method_selection import choose_method
 from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
+from ...status import Status
 from . import film_ladder
 from .errors import WHERE, errors, observe, worst
 from .ranking import curve, mark_slow_runs, rank_methods, time_at
@@ -142,7 +143,7 @@ def reference(scenario, samples: int, limit: float):
     good = []
     for name, steps, tolerance in trials:
         found = observe(ready(scenario), steps, name, tolerance, limit, samples)
-        if found.status in ("ok", "collapsed") and name not in [n for n, _ in good]:
+        if found.status in (Status.OK, Status.COLLAPSED) and name not in [n for n, _ in good]:
             good.append((name, found))
         if len(good) == 2:
             break
@@ -169,7 +170,7 @@ def judge(scenario, exact, judges: dict, point: dict) -> dict:
     # Again, one round after the other: a busy moment of the machine must not hit all runs of one tolerance.
     for _ in range(point["repeats"] - 1):
         for row in rows:
-            if row["status"] == "ok" and row["wall"] < BRIEF:
+            if row["status"] == Status.OK and row["wall"] < BRIEF:
                 again = _run(scenario, method, row["tolerance"], point, point["limit"])
                 row["wall"], row["processor"] = min(row["wall"], again.wall), min(row["processor"], again.processor)
     if judges.get("method") == method:
@@ -211,7 +212,7 @@ def front(rows, where: str) -> list[tuple[float, float]]:
 
 def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
     """Seconds that a run may take, and the error it can be expected to reach: errors go as the tolerance does."""
-    known = [row for row in rows if row["status"] == "ok" and row["errors"][point.get("where", "end")]]
+    known = [row for row in rows if row["status"] == Status.OK and row["errors"][point.get("where", "end")]]
     if not known or not point.get("front"):
         return point["limit"], None
     last = known[-1]
@@ -262,8 +263,9 @@ def _least_time(methods, settings, error):
 
 def _crosses(methods) -> str:
     said = []
-    for status, word in (("collapsed", "the film collapsed"), ("failed", "gave up"), ("stopped", "stopped for time"),
-                         ("slow", "too slow")):  # fmt: skip
+    ends = {Status.COLLAPSED: "the film collapsed", Status.FAILED: "gave up", "stopped": "stopped for time",
+            "slow": "too slow"}  # fmt: skip
+    for status, word in ends.items():
         names = [NAMES[name] for name, row in methods.items() if status in row["status"]]
         if names:
             said.append(f"{word}: {', '.join(names)}")

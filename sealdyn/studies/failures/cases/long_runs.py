@@ -5,6 +5,7 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
+from ....dynamics.cautions import Concern
 from ....dynamics.imposed_motion import (
     OSCILLATOR_COUNT,
     OSCILLATORS,
@@ -84,7 +85,7 @@ def apparent(per_turn: int) -> float:
 def warns(per_turn: int) -> bool:
     """Whether a run with so many samples a turn is warned of."""
     run, *_ = prepare_run(Scenario(SCENE, Run(turns=8, samples_per_turn=per_turn)))
-    return any(warning.startswith("aliasing") for warning in run.warnings)
+    return any(caution.concern == Concern.ALIASING for caution in run.cautions)
 
 
 def aliasing() -> dict:

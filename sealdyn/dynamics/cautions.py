@@ -1,0 +1,20 @@
+"""What a person should know of a run before trusting it: code tests the concern, a person reads the sentence."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+
+class Concern(StrEnum):
+    """What a caution is about."""
+
+    ACCURACY = "accuracy"
+    ALIASING = "aliasing"
+    NO_EQUILIBRIUM = "no equilibrium gap"
+    BLOWN_OPEN = "blown open"
+
+
+class Caution(NamedTuple):
+    """A warning: what it is about, and a sentence."""
+
+    concern: Concern
+    sentence: str
