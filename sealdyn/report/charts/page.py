@@ -66,7 +66,7 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
     """The title of a sheet, a line below it, and a bold one in `colour`; each cut to the width of the sheet."""
     left, top, step = 0.035, 1 - 0.26 / figure.get_figheight(), 0.2 / figure.get_figheight()
     width = figure.get_figwidth()
-    figure.text(left, top, shortened(title, int(11 * width)), fontsize=13, weight="bold", va="center")
+    figure.text(left, top, shortened(title, int(9.5 * width)), fontsize=13, weight="bold", va="center")
     below, bold = shortened(below, int(13 * width)), shortened(bold, int(12.5 * width))
     figure.text(left, top - 1.3 * step, below, fontsize=9, va="center")
     if bold:
