@@ -10,7 +10,8 @@ from drawn import drawn, has_points, panel, text_trouble
 from scipy.integrate import solve_ivp
 
 from sealdyn.archive import read_study
-from sealdyn.faces.geometry import h_min as thinnest
+from sealdyn.faces.film_thickness import h_min
+from sealdyn.faces.geometry import DZ, GAP_STATE_SIZE, GX, GY
 from sealdyn.report.charts import study_work_precision as chart
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.film import Coefficients
@@ -56,7 +57,9 @@ def test_errors_are_those_of_an_independent_integration(reference_seal):
         at = ready.model.unknowns.names.index("rotor_tilt_x")
         g[0], g[1] = 25e-6 - y[at], -y[at + 1]
         assert turn == pytest.approx(8 * math.pi)
-        return math.hypot(*g), thinnest(ready.model.face, -y[ready.model.unknowns.names.index("rotor_z")], *g)[0]
+        s = np.zeros(GAP_STATE_SIZE)
+        s[DZ], s[GX], s[GY] = -y[ready.model.unknowns.names.index("rotor_z")], *g
+        return math.hypot(*g), h_min(ready.model.face, s)[0]
 
     atol = 1e-13 * ready.model.scales
     atol[-1] = 1e30
@@ -140,16 +143,21 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
     assert answer["judge_error"]["over_time"] < 1e-10
 
 
-# Measured: 2e-11; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
+# Measured: 2e-11 to 2.8e-6, by whether a sample falls between the captures that two methods find, which rounding
+# decides; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
 def test_judges_agree_where_a_ring_sticks():
-    """hang_up: stuck and slipping once a turn; leakage follows the axial speed up to each capture."""
+    """hang_up: stuck and slipping once a turn; leakage follows the axial speed up to each capture, where the ring
+    drops what is left of it: so much two exact methods may differ by at one instant."""
     asked = scenario("hang_up", "run.turns=3")
+    model = study.ready(asked).model
     exact, band, judges = study.reference(asked, 200, 60.0)
     assert exact.status == "ok" and judges["second"] and exact.impulse > 0
-    assert max(band.values()) < 3e-7
+    face = math.pi * (model.scene.film.outer_radius**2 - model.scene.film.inner_radius**2)
+    dropped = model.capture_speed * face / exact.scales["leakage"]
+    assert max(band.values()) < dropped < 4e-6
     # A judged method, whose steps are its own, agrees as well.
     found = errors.observe(study.ready(asked), REFERENCE_METHODS["dop853"], "dop853", 1e-12, samples=200)
-    assert max(errors.worst(errors.errors(found, exact)).values()) < 3e-7
+    assert max(errors.worst(errors.errors(found, exact)).values()) < dropped
 
 
 def test_a_run_that_takes_too_long_is_stopped(tmp_path):
