@@ -43,7 +43,7 @@ def test_growth_off_the_threshold_less_the_eigenvalue_is_the_methods_own():
     eigenvalue of a speed 1 % higher is not small."""
     scene = fmr("linear", 3.0)
     speed = 1.001 * exhibit.threshold(scene)
-    ready, whirling = exhibit.neutral_problem(scene, speed, 20)
+    ready, whirling = exhibit.neutral_run(scene, speed, 20)
     rate, calls = exhibit.growth(ready, whirling, "dop853", 1e-12)
     exact = max(mode.value.real for mode in ready.model.linear_scene().modes() if mode.kind == "tilt")
     assert exact > 1.0 and abs(rate) < 1e-6 * exact and calls > 1000
