@@ -145,7 +145,7 @@ class PeriodMap:
         from scipy.integrate import DOP853
 
         run, n, k = self.one_period, self.size, q.shape[1]
-        if run.model.unknowns.massless or run.stick_slip:
+        if run.model.unknowns.has_residual_form or run.stick_slip:
             raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
         segment = run.segment(0)
         y, yp, scales = np.zeros(segment.size), np.zeros(segment.size), self.scales

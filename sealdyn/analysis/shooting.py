@@ -146,7 +146,7 @@ class Shooter:
         run = RunState(self.model, self.period)
         run.y0[: self.size] = start
         recorder = Recorder(self.period / per_period if per_period else None)
-        method = "ida" if run.model.unknowns.massless else choose_method(run)[0]
+        method = "ida" if run.model.unknowns.has_residual_form else choose_method(run)[0]
         outcome = solve(run, method, self.accuracy, recorder)
         record = run.extrema.records[0]
         found = {

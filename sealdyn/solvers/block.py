@@ -33,7 +33,7 @@ class Block:
     @cached_property
     def slopes(self) -> np.ndarray | None:
         """The right-hand side (m, size) at the steps; None where a ring has no mass."""
-        return None if self.segment.massless else self.segment.derivatives(self.t, self.ys)
+        return None if np.any(self.segment.lacks_inertia) else self.segment.derivatives(self.t, self.ys)
 
     @cached_property
     def accelerations(self) -> np.ndarray | None:

@@ -99,7 +99,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     for observer in (*observers, *([sticking] if sticking else [])):
         observer.begin(segment, tau, y)
     t, ys = np.array([tau]), y[None, :].copy()
-    yps = segment.start_rates(tau, y)[None, :] if segment.massless else np.zeros_like(ys)
+    yps = segment.start_rates(tau, y)[None, :] if segment.has_residual_form else np.zeros_like(ys)
     due = sink.due(segment)
     done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
     watched = looked = 0
