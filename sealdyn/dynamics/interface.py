@@ -26,11 +26,13 @@ from ..faces.geometry import (
     face_parameters,
 )
 from ..faces.waviness import lay_waves
-from ..films import check_film, film_module, film_name
+from ..films import check_film, film_module, film_name, has_unknowns
+from ..films._unknowns import FilmDerivatives
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, profile_errors
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of, waviness_errors
+from .condensation import condensed
 from .equilibrium import initially, settle
 from .intervals import constant_and_slope
 from .modes import linearise
@@ -39,16 +41,18 @@ from .modes import linearise
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
     the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `observed`: kernel and block from which
-    leakage, friction and film force are reported."""
+    leakage, friction and film force are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic
+    one.
+    """
 
-    def __init__(self, scene, error: float):
+    def __init__(self, scene, error: float, film=None):
         self.scene, self._asperities = scene, None
         for key, found, expected in profile_errors(scene.film):
             raise SceneError(f"film.{key}", found, expected)
         for key, found, expected in waviness_errors(scene):
             raise SceneError(key, found, expected)
-        check_film(scene.film, waves_of(scene))
-        self.film = film_module(scene.film.model, scene.film)
+        check_film(scene.film, waves_of(scene), film)
+        self.film = film or film_module(scene.film.model, scene.film)
         self.name = film_name(self.film)
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
@@ -57,6 +61,7 @@ class Interface:
             # The opening force is linear in both pressures.
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = self._borrowed().opening_force(scene.film, self.clearance, *ends)
+        self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
         self.observed = self.film.flow, self.f
         self.contact = None
         if scene.contact:
@@ -98,17 +103,45 @@ class Interface:
         return force + s[CONTACT_FORCE]
 
     def wrench(self, f, s):
-        """Film and asperities together, as the force and moments of the film."""
-        self.film.wrench(f, s)
+        """Film and asperities together, as the force and moments of the film; one with unknowns is steady."""
+        if self.unknowns is None:
+            self.film.wrench(f, s)
+        else:
+            self.film.wrench(f, s, self.steady(f, s))
         if self.contact is not None:
             contact.contact_load(self.contact, f, s)
             for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
                 s[film] += s[rough]
 
+    def steady(self, f, s) -> np.ndarray:
+        """Unknowns (n,) of the steady film at a gap state.  Raises SceneError if there are none."""
+        x = np.empty(len(self.unknowns.names))
+        code = self.film.start(f, s, x)
+        if code:
+            raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
+        return x
 
-def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
-    the gap `shift` (m) wider than the clearance."""
+    def linearised(self, leg=None, mean_spin=None, shift=0.0, omega=0.0):
+        """Stiffness and damping matrices (3, 3) of film and asperities about the aligned rest state, as
+        `linearised_film`; of a film with unknowns at the frequency `omega` (rad/s)."""
+        if self.unknowns is None:
+            return linearised_film(self.wrench, self.f, self.scene, self.clearance, leg, mean_spin, shift)
+        s, steps = rest_state(self.scene, self.clearance, leg, mean_spin, shift)
+        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
+        stiffness, damping = condensed(derivatives, s, self.steady(self.f, s), steps, omega)
+        if self.contact is not None:
+            rough = linearise(self._asperities_alone, self.f, s, steps)
+            stiffness, damping = stiffness + rough[0], damping + rough[1]
+        return stiffness, damping
+
+    def _asperities_alone(self, f, s):
+        contact.contact_load(self.contact, f, s)
+        s[FORCE : FORCE + 3] = s[CONTACT_FORCE : CONTACT_FORCE + 3]
+
+
+def rest_state(scene, clearance, leg=None, mean_spin=None, shift=0.0):
+    """Gap state of the aligned rings at rest at a leg's start, the gap `shift` (m) wider than the clearance, and steps
+    for derivatives about it."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
     clearance = clearance + shift
@@ -120,4 +153,11 @@ def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift
     s[SPIN_DIFFERENCE] = w_r - w_s
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))
+    return s, (length, tilt, length * pace, tilt * pace)
+
+
+def linearised_film(wrench, f, scene, clearance, leg=None, mean_spin=None, shift=0.0):
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at a leg's start,
+    the gap `shift` (m) wider than the clearance."""
+    s, steps = rest_state(scene, clearance, leg, mean_spin, shift)
+    return linearise(wrench, f, s, steps)

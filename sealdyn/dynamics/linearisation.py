@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
-from .interface import linearised_film
 from .intervals import constant_and_slope
 from .modes import Harmonic, LinearScene, RingNumbers
 
@@ -46,11 +45,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
-    stiffness, damping = linearised_film(
-        model.interface.wrench,
-        model.f,
-        model.scene,
-        model.clearance,
+    stiffness, damping = model.interface.linearised(
         interval,
         mean_spin=0.5 * (w_r + w_s),
         shift=model.axial_shift(interval) if shift is None else shift,

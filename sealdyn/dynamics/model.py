@@ -5,6 +5,7 @@ import numpy as np
 from ..faces.geometry import FACE_SIZE
 from ..scene.scene import Scene
 from . import equations, linearisation
+from .coupled_segment import CoupledSegment
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
 from .segments import Segment
@@ -21,20 +22,21 @@ class Model:
     `observed` kernel and block from which leakage and friction are reported; `unknowns` (unknowns.py); `scales` (size,)
     of the unknowns, `reference_rate` (rad/s) between displacements and rates, `shortest_period` (s) of interest;
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
-    mass and damping; `start` the first interval.
+    mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
+    `film` is given: a module or what offers the same (films/__init__.py).
     """
 
-    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None):
+    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None):
         self.scene, self.accuracy = scene, accuracy
-        self.interface = Interface(scene, max(accuracy / 100, 1e-13))
+        self.interface = Interface(scene, max(accuracy / 100, 1e-13), film)
         self.f, self.contact = self.interface.f, self.interface.contact
         self.face = self.f[:FACE_SIZE].copy()
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed())
-        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear")
+        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
         self._shifts, self._linear_scenes = {}, {}
-        self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.massless else []
+        self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = accuracy * self.clearance * self.reference_rate / FADES
         self._set_bands()
@@ -62,7 +64,8 @@ class Model:
 
     def segment(self, interval: Interval | None = None, index: int = 0, last: bool = True, stuck=None) -> Segment:
         """The equations over an interval (the first one if none is given); `stuck` rings: {ring: bool}."""
-        return Segment(self, interval or self.start, index, last, stuck)
+        kind = Segment if self.unknowns.film_unknowns is None else CoupledSegment
+        return kind(self, interval or self.start, index, last, stuck)
 
     # --- numbers at rest ----------------------------------------------------------------------------
 

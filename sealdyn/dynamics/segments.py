@@ -22,8 +22,8 @@ class Segment:
     """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
-    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace` (rad/s) the fastest of them;
-    `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
+    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace`
+    (rad/s) the fastest of them; `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -119,6 +119,13 @@ class Segment:
             self.rhs(tau, moved, column)
             jac[:, j] = (column - base) / step
             moved[j] = y[j]
+
+    def settle_film(self, tau, y):
+        """Film unknowns of `y` as those of the steady film: an algebraic film has none."""
+
+    def start(self, tau, y) -> tuple[np.ndarray, np.ndarray]:
+        """Consistent unknowns and derivatives to go on from `y` with."""
+        return y, self.start_rates(tau, y)
 
     def start_rates(self, tau, y) -> np.ndarray:
         """Consistent derivatives at y: Newton on the residual, whose rows are linear in them but for a floor."""

@@ -137,7 +137,7 @@ class Unknowns:
         self.ring_block[equations.WORKS_AT], self.ring_block[equations.EXTENDED] = self.works.start, self.extended
 
     def algebraic(self, film_damping: np.ndarray) -> list[int]:
-        """Displacements without mass and without any damping on them: algebraic unknowns."""
+        """Algebraic unknowns: displacements without mass and without any damping on them, and those of the film."""
         places = []
         for k in range(2):
             block = self.ring_block[equations.RING * k : equations.RING * (k + 1)]
@@ -146,6 +146,8 @@ class Unknowns:
                 places.append(z)
             if tilt >= 0 and self.rate_places[tilt] < 0 and not (block[equations.TILT_D] or film_damping[1, 1]):
                 places += [tilt, tilt + 1]
+        if self.film_unknowns:
+            places += [self.film.start + int(i) for i in np.flatnonzero(~self.film_unknowns.differential)]
         return places
 
     def scales(self, model):
