@@ -102,12 +102,16 @@ class Interface:
         contact.contact_load(self._asperities, face, s)
         return force + s[CONTACT_FORCE]
 
-    def wrench(self, f, s):
-        """Film and asperities together, as the force and moments of the film; one with unknowns is steady."""
+    def film_wrench(self, f, s):
+        """Force and moments of the film alone; of one with unknowns when it is steady."""
         if self.unknowns is None:
             self.film.wrench(f, s)
         else:
             self.film.wrench(f, s, self.steady(f, s))
+
+    def wrench(self, f, s):
+        """Film and asperities together, as the force and moments of the film."""
+        self.film_wrench(f, s)
         if self.contact is not None:
             contact.contact_load(self.contact, f, s)
             for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
@@ -127,12 +131,19 @@ class Interface:
         if self.unknowns is None:
             return linearised_film(self.wrench, self.f, self.scene, self.clearance, leg, mean_spin, shift)
         s, steps = rest_state(self.scene, self.clearance, leg, mean_spin, shift)
-        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
-        stiffness, damping = condensed(derivatives, s, self.steady(self.f, s), steps, omega)
+        stiffness, damping = self.film_about(s, steps, omega)
         if self.contact is not None:
             rough = linearise(self._asperities_alone, self.f, s, steps)
             stiffness, damping = stiffness + rough[0], damping + rough[1]
         return stiffness, damping
+
+    def film_about(self, s, steps, omega=0.0):
+        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in modes.gap_slopes; of
+        a film with unknowns at the frequency `omega` (rad/s)."""
+        if self.unknowns is None:
+            return linearise(self.film.wrench, self.f, s, steps)
+        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
+        return condensed(derivatives, s, self.steady(self.f, s), steps, omega)
 
     def _asperities_alone(self, f, s):
         contact.contact_load(self.contact, f, s)

@@ -187,6 +187,8 @@ def _end_of(block) -> np.ndarray:
     q, q_rate = block.at(np.array([block.until]))
     there = segment.model.vector(q[0], q_rate[0])
     y[: segment.n_mechanical] = there[: segment.n_mechanical]
+    for x in block.film_at(np.array([block.until])):
+        y[segment.film] = x[0]
     return y
 
 

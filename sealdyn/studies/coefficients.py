@@ -9,7 +9,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..dynamics.model import Model
-from ..dynamics.modes import linearise
 from ..faces.geometry import (
     DZ,
     FORCE,
@@ -102,7 +101,7 @@ def matrices(model: Model, state: State, speed: float | None = None) -> tuple[np
     length = STEP * min(model.clearance, thinnest)
     tilt = length / model.face[1]
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(model.interface.film.wrench, model.f, s, (length, tilt, length * pace, tilt * pace))
+    return model.interface.film_about(s, (length, tilt, length * pace, tilt * pace))
 
 
 def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
@@ -129,7 +128,7 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
 
     def excess(dz):
         s = gap_state(model, State(dz, tilt, whirl))
-        model.interface.film.wrench(model.f, s)
+        model.interface.film_wrench(model.f, s)
         return s[FORCE] - closing - support * dz
 
     thinnest = smallest_gap(model.face, 0.0, abs(tilt))[0]

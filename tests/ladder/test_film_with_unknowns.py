@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 from radial_cells import film_of
-from scenes import CLEARANCE, R_I, R_O, SPEED, film, fms, fmsr, ring, run, started
+from scenes import CLEARANCE, R_I, R_O, SPEED, Sink, film, fms, fmsr, prepared, ring, run, runup, started
 from scipy.special import iv, kv
 
 from sealdyn.dynamics.interface import Interface
@@ -15,9 +15,11 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
 from sealdyn.films._unknowns import FilmDerivatives
 from sealdyn.films.radial import film as radial
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.method_selection import check_method, choose_method
+from sealdyn.solvers.integrate import solve
 
 PARTS = [geometry.FORCE, geometry.MOMENT_X, geometry.MOMENT_Y, geometry.FLOW_INNER, geometry.FLOW_OUTER,
          geometry.TORQUE]  # fmt: skip
@@ -108,6 +110,36 @@ def test_motion_tends_to_that_of_the_radial_film_at_second_order(scene):
     assert np.all((orders > 1.7) & (orders < 2.3)), (orders, errors)
     for name in ("film_force", "leakage_inner", "friction_torque", "h_min"):
         assert np.max(np.abs(found[name] - exact[name])) < 0.01 * np.max(np.abs(exact[name])), name
+
+
+def test_asperities_touch_beside_the_film():
+    scene = replace(fms(), contact=Contact(roughness=3.8e-6, compressive_strength=3e8))
+    exact, found = run(scene, 0.25, method="ida"), run(scene, 0.25, method="ida", model_class=cellular(48))
+    assert np.max(exact["contact_force"]) > 1.0
+    assert np.max(np.abs(found["contact_force"] - exact["contact_force"])) < 0.01 * np.max(exact["contact_force"])
+    assert largest(found, exact) < 0.02 and found.outcome.energy_residual < 1e-5
+
+
+def test_pressures_follow_a_changing_speed_past_its_kinks():
+    duration = 0.03
+    exact, found = (run(runup(), duration=duration, per_turn=8, method="ida", **more)
+                    for more in ({}, {"model_class": cellular(48)}))  # fmt: skip
+    assert found.outcome.status == "ok" and found.outcome.segment == 2
+    assert largest(found, exact) < 0.02
+
+
+def test_a_run_goes_on_from_where_it_was():
+    """The pressures of a film that stores are part of the state."""
+    ready = prepared(fms(), 0.18, 1e-6, model_class=cellular(4, 8, compressibility=1e-6))
+    whole, half, rest = (Sink(0.18, 1e-3) for _ in range(3))
+    assert solve(ready, "ida", 1e-6, whole).status == "ok"
+    states = []
+    half.state = lambda segment, tau, y: states.append((segment.index, tau, y))
+    solve(ready, "ida", 1e-6, half)
+    assert len(states) > 1
+    solve(ready, "ida", 1e-6, rest, resume=states[0])
+    q, again = np.concatenate(whole.q), np.concatenate(rest.q)
+    assert np.max(np.abs(q[-len(again) :] - again) / ready.model.scales[:3]) < 3e-6
 
 
 def test_a_run_by_differences_is_that_of_the_films_own_derivatives():
