@@ -64,6 +64,8 @@ class PeriodMap:
         period = RunState(model, 1.0).period()
         if period is None or not model.unknowns.constant:
             raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
+        if model.interface.stores:
+            raise SceneError("film", "one that stores", "a film whose state is the motion of the rings")
         self.period = float(period)
         self.model, self.one_period = model, RunState(model, self.period)
         self.method = method or choose_method(self.one_period)[0]

@@ -19,7 +19,8 @@ MOST_STEPS, ARRIVED = 12, 1e-12
 
 
 class CoupledSegment(Segment):
-    """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side."""
+    """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side; `ring_rates`
+    are those of the rings at given unknowns of the film."""
 
     def _bind(self):
         model, at, p, w, s = self.model, self.film, self.p, self.w, self.s
@@ -44,7 +45,14 @@ class CoupledSegment(Segment):
                 raise SolverFailure(f"{film.STATUS[code]} (at {tau:.6g} s into this segment)")
             res[at] = left
 
-        self.rhs, self._loads, self.residual = None, loads, residual
+        def rhs(tau, y, yp):
+            raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
+
+        def ring_rates(tau, y, yp):
+            loads(tau, y, yp)
+            equations.rates(tau, y, p, w, s, yp)
+
+        self.rhs, self.ring_rates, self._loads, self.residual = rhs, ring_rates, loads, residual
 
     # --- derivatives --------------------------------------------------------------------------------
 
@@ -160,10 +168,9 @@ class CoupledSegment(Segment):
 
     def derivatives(self, taus, ys):
         """Derivatives (m, size) at times and unknowns `ys` (m, size), zero for the film's; every ring has mass."""
-        out, still = np.zeros((len(taus), self.size)), np.zeros(self.size)
+        out = np.zeros((len(taus), self.size))
         for tau, y, yp in zip(taus, ys, out, strict=True):
-            self._loads(tau, y, still)
-            equations.rates(tau, y, self.p, self.w, self.s, yp)
+            self.ring_rates(tau, y, yp)
         return out
 
     def states(self, taus, ys, yps, gaps, scratch, low):

@@ -102,6 +102,11 @@ class Interface:
         contact.contact_load(self._asperities, face, s)
         return force + s[CONTACT_FORCE]
 
+    @property
+    def stores(self) -> bool:
+        """Whether the film remembers: some of its unknowns have rates, and its coefficients hang on the frequency."""
+        return self.unknowns is not None and bool(np.any(self.unknowns.differential))
+
     def film_wrench(self, f, s):
         """Force and moments of the film alone; of one with unknowns when it is steady."""
         if self.unknowns is None:

@@ -98,6 +98,7 @@ class Segment:
 
         # A scene without contact pays nothing for it.
         self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
+        self.ring_rates = self.rhs
 
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""

@@ -59,6 +59,8 @@ class Unknowns:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
             self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form (IDA)")
+            if np.any(film_unknowns.differential):
+                self.reasons.append("film that stores: linear numbers have its stiffness and damping of slow motion")
 
     def seal(self, k: int):
         """Secondary seal of ring k (0 stator, 1 rotor), or None."""
