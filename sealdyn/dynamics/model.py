@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .coupled_segment import CoupledSegment
 from .interface import Interface
@@ -35,6 +35,9 @@ class Model:
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed())
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
+        if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
+            # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
+            raise SceneError("secondary_seal.law", "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes = {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)

@@ -18,6 +18,7 @@ from sealdyn.films.radial import film as radial
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
+from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.simulation.method_selection import check_method, choose_method
 from sealdyn.solvers.contract import Cause
 from sealdyn.solvers.integrate import solve
@@ -120,6 +121,19 @@ def test_asperities_touch_beside_the_film():
     assert np.max(exact["contact_force"]) > 1.0
     assert np.max(np.abs(found["contact_force"] - exact["contact_force"])) < 0.01 * np.max(exact["contact_force"])
     assert largest(found, exact) < 0.02 and found.outcome.energy_residual < 1e-5
+
+
+def test_friction_that_does_not_stick_acts_beside_the_film():
+    def with_seal(**given):
+        seal = SecondarySeal(radius=0.04, friction_force=3.0, **given)
+        return fms(stator=Stator(**ring(misalignment=25e-6, secondary_seal=seal)))
+
+    scene = with_seal(law="regularised", width=1e-4)
+    exact, found = run(scene, 0.25, method="ida"), run(scene, 0.25, method="ida", model_class=cellular(48))
+    assert found.outcome.status == "ok" and np.max(np.abs(found["stator_seal_moment_x"])) > 0.01
+    assert largest(found, exact) < 0.02
+    with pytest.raises(SceneError):
+        cellular(4)(with_seal())
 
 
 def test_pressures_follow_a_changing_speed_past_its_kinks():
