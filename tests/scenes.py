@@ -130,11 +130,11 @@ class Sink:
         inside = (taus >= -1e-12) & ((taus < length * (1 - 1e-12)) | segment.last) & (taus <= length * (1 + 1e-9))
         return np.clip(taus[inside], 0.0, length)
 
-    def take(self, segment, taus, q, q_rate):
+    def take(self, segment, taus, q, q_rate, x=None):
         self.times.append(taus + segment.time)
         self.q.append(q)
         self.rates.append(q_rate)
-        self.parts.append(signals(segment, taus, q, q_rate))
+        self.parts.append(signals(segment, taus, q, q_rate, x))
 
     def state(self, *anything):
         pass

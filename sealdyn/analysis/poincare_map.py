@@ -64,6 +64,8 @@ class PeriodMap:
         period = RunState(model, 1.0).period()
         if period is None or not model.unknowns.constant:
             raise SceneError("shaft.speed", "forcing without a common period", "commensurate, constant forcing")
+        if model.interface.stores:
+            raise SceneError("film", "one that stores", "a film whose state is the motion of the rings")
         self.period = float(period)
         self.model, self.one_period = model, RunState(model, self.period)
         self.method = method or choose_method(self.one_period)[0]
@@ -145,7 +147,7 @@ class PeriodMap:
         from scipy.integrate import DOP853
 
         run, n, k = self.one_period, self.size, q.shape[1]
-        if run.model.unknowns.massless or run.stick_slip:
+        if run.model.unknowns.has_residual_form or run.stick_slip:
             raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
         segment = run.segment(0)
         y, yp, scales = np.zeros(segment.size), np.zeros(segment.size), self.scales

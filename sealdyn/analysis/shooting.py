@@ -63,6 +63,8 @@ class Shooter:
             raise NoOrbit("no common period: forcing frequencies are incommensurate, or conditions change with time")
         if probe.stick_slip:
             raise NoOrbit("a secondary seal that sticks and slips has no smooth period map: run it in time")
+        if probe.model.interface.stores:
+            raise NoOrbit("a film that stores has more to its period map than the motion of the rings: run it in time")
         self.period = float(turns * period)
         self.model = probe.model
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
@@ -146,7 +148,7 @@ class Shooter:
         run = RunState(self.model, self.period)
         run.y0[: self.size] = start
         recorder = Recorder(self.period / per_period if per_period else None)
-        method = "ida" if run.model.unknowns.massless else choose_method(run)[0]
+        method = "ida" if run.model.unknowns.has_residual_form else choose_method(run)[0]
         outcome = solve(run, method, self.accuracy, recorder)
         record = run.extrema.records[0]
         found = {

@@ -27,11 +27,13 @@ from ..faces.geometry import (
     face_parameters,
 )
 from ..faces.waviness import lay_waves
-from ..films import check_film, film_module, film_name
+from ..films import check_film, film_module, film_name, has_unknowns
+from ..films._unknowns import FilmDerivatives
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, profile_errors
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of, waviness_errors
+from .condensation import condensed
 from .equilibrium import initially, settle
 from .intervals import constant_and_slope
 from .modes import linearise
@@ -41,16 +43,16 @@ class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
     the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
     is that of the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction
-    and film force are reported."""
+    and film force are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
 
-    def __init__(self, scene, error: float):
+    def __init__(self, scene, error: float, film=None):
         self.scene = scene
         for key, found, expected in profile_errors(scene.film):
             raise SceneError(f"film.{key}", found, expected)
         for key, found, expected in waviness_errors(scene):
             raise SceneError(key, found, expected)
-        check_film(scene.film, waves_of(scene))
-        self.film = film_module(scene.film.model, scene.film)
+        check_film(scene.film, waves_of(scene), film)
+        self.film = film or film_module(scene.film.model, scene.film)
         self.name = film_name(self.film)
         force = self._borrowed().opening_law(scene.film)
         self.opening_force = self._with_asperities(force) if scene.contact else force
@@ -61,6 +63,7 @@ class Interface:
             # The opening force is linear in both pressures.
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends)
+        self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
         self.observed = self.film.flow, self.f
         self.contact = None
         if scene.contact:
@@ -99,21 +102,66 @@ class Interface:
         return force
 
     @property
+    def stores(self) -> bool:
+        """Whether the film remembers: some of its unknowns have rates, and its coefficients hang on the frequency."""
+        return self.unknowns is not None and bool(np.any(self.unknowns.differential))
+
+    @property
+    def film_wrench(self):
+        """Function `wrench(f, s)`: force and moments of the film alone; of one with unknowns when it is steady."""
+        return self.film.wrench if self.unknowns is None else self._steady_wrench
+
+    @property
     def wrench(self):
         """Function `wrench(f, s)`: film and asperities together, as the force and moments of the film."""
-        return self.film.wrench if self.contact is None else self._rough_wrench
+        return self.film_wrench if self.contact is None else self._rough_wrench
+
+    def _steady_wrench(self, f, s):
+        self.film.wrench(f, s, self.steady(f, s))
 
     def _rough_wrench(self, f, s):
-        self.film.wrench(f, s)
+        self.film_wrench(f, s)
         contact.contact_load(self.contact, f, s)
         for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
             s[film] += s[rough]
 
+    def steady(self, f, s) -> np.ndarray:
+        """Unknowns (n,) of the steady film at a gap state.  Raises SceneError if there are none."""
+        x = np.empty(len(self.unknowns.names))
+        code = self.film.start(f, s, x)
+        if code:
+            raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
+        return x
 
-def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
-    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about the aligned rest state at an interval's
-    start, the gap `shift` (m) wider than the clearance; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of
-    the motion that is tried in place of it."""
+    def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None):
+        """Stiffness and damping matrices (3, 3) of film and asperities about the aligned rest state, as
+        `linearised_film`; of a film with unknowns at the frequency `omega` (rad/s)."""
+        if self.unknowns is None:
+            return linearised_film(self.wrench, self.f, self.scene, self.clearance, interval, mean_spin, shift, pace)
+        s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
+        stiffness, damping = self.film_about(s, steps, omega)
+        if self.contact is not None:
+            rough = linearise(self._asperities_alone, self.f, s, steps)
+            stiffness, damping = stiffness + rough[0], damping + rough[1]
+        return stiffness, damping
+
+    def film_about(self, s, steps, omega=0.0):
+        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in modes.gap_slopes; of
+        a film with unknowns at the frequency `omega` (rad/s)."""
+        if self.unknowns is None:
+            return linearise(self.film.wrench, self.f, s, steps)
+        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
+        return condensed(derivatives, s, self.steady(self.f, s), steps, omega)
+
+    def _asperities_alone(self, f, s):
+        contact.contact_load(self.contact, f, s)
+        s[FORCE : FORCE + 3] = s[CONTACT_FORCE : CONTACT_FORCE + 3]
+
+
+def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
+    """Gap state of the aligned rings at rest at an interval's start, the gap `shift` (m) wider than the clearance, and
+    steps for derivatives about it; `mean_spin` (rad/s) in place of the scene's, `pace` (1/s) of the motion that is
+    tried in place of it."""
     s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
     clearance = clearance + shift
@@ -125,4 +173,10 @@ def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, 
     s[SPIN_DIFFERENCE] = w_r - w_s
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
-    return linearise(wrench, f, s, (length, tilt, length * pace, tilt * pace))
+    return s, (length, tilt, length * pace, tilt * pace)
+
+
+def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
+    """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about `rest_state`."""
+    s, steps = rest_state(scene, clearance, interval, mean_spin, shift, pace)
+    return linearise(wrench, f, s, steps)

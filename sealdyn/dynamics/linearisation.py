@@ -5,16 +5,8 @@ from scipy.linalg import expm
 
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
-from .interface import linearised_film
 from .intervals import constant_and_slope
 from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
-
-
-def film_matrices(model, interval, shift: float, mean_spin: float, pace: float | None = None):
-    """Stiffness and damping (3, 3) of film and asperities at an interval's start, the gap `shift` (m) wider."""
-    return linearised_film(
-        model.interface.wrench, model.f, model.scene, model.clearance, interval, mean_spin, shift, pace
-    )
 
 
 def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
@@ -27,8 +19,9 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     shift = model.axial_shift(interval) if shift is None else shift
-    if speed is None or model.scene.film.cavitation_pressure is not None:
-        stiffness, damping = film_matrices(model, interval, shift, 0.5 * (w_r + w_s))
+    spun = model.scene.film.cavitation_pressure is not None or model.interface.unknowns is not None
+    if speed is None or spun:
+        stiffness, damping = model.interface.linearised(interval, 0.5 * (w_r + w_s), shift)
     else:
         still, damping = model.still_film(interval, shift)
         stiffness = still - 0.5 * (w_r + w_s) * damping @ QUARTER_TURN

@@ -3,8 +3,9 @@
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
-from ..scene.scene import Scene
+from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
+from .coupled_segment import CoupledSegment
 from .equilibrium import axial_shift
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
@@ -22,20 +23,24 @@ class Model:
     `observed` kernel and block from which leakage and friction are reported; `unknowns` (unknowns.py); `scales` (size,)
     of the unknowns, `reference_rate` (rad/s) between displacements and rates, `shortest_period` (s) of interest;
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
-    mass and damping; `start` the first interval.
+    mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
+    `film` is given: a module or what offers the same (films/__init__.py).
     """
 
-    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None):
+    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None):
         self.scene, self.accuracy = scene, accuracy
-        self.interface = Interface(scene, max(accuracy / 100, 1e-13))
+        self.interface = Interface(scene, max(accuracy / 100, 1e-13), film)
         self.f, self.contact = self.interface.f, self.interface.contact
         self.face = self.f[:FACE_SIZE].copy()
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed())
-        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear")
+        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
+        if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
+            # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
+            raise SceneError("secondary_seal.law", "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
-        self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.massless else []
+        self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = accuracy * self.clearance * self.reference_rate / FADES
         self._set_bands()
@@ -63,7 +68,8 @@ class Model:
 
     def segment(self, interval: Interval | None = None, index: int = 0, last: bool = True, stuck=None) -> Segment:
         """The equations over an interval (the first one if none is given); `stuck` rings: {ring: bool}."""
-        return Segment(self, interval or self.start, index, last, stuck)
+        kind = Segment if self.unknowns.film_unknowns is None else CoupledSegment
+        return kind(self, interval or self.start, index, last, stuck)
 
     # --- numbers at rest ----------------------------------------------------------------------------
 
@@ -110,7 +116,7 @@ class Model:
         not to be changed."""
         key = interval.start, shift
         if key not in self._still_films:
-            found = linearisation.film_matrices(self, interval, shift, mean_spin=0.0, pace=self.reference_rate)
+            found = self.interface.linearised(interval, mean_spin=0.0, shift=shift, pace=self.reference_rate)
             self._still_films[key] = found
         return self._still_films[key]
 

@@ -22,8 +22,8 @@ class Segment:
     """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
-    all), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace` (rad/s) the fastest of them;
-    `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
+    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace`
+    (rad/s) the fastest of them; `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -32,7 +32,8 @@ class Segment:
         self.time, self.length, self.stuck = interval.time, interval.length, dict(stuck or {})
         self.n, self.n_mechanical, self.size = unknowns.n, unknowns.n_mechanical, unknowns.size
         self.rate_places, self.works, self.scales = unknowns.rate_places, unknowns.works, model.scales
-        self.massless, self.algebraic = unknowns.massless, model.algebraic
+        self.has_residual_form, self.lacks_inertia = unknowns.has_residual_form, unknowns.lacks_inertia
+        self.algebraic, self.film = model.algebraic, unknowns.film
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
         self.may_change = bool(unknowns.coulomb_rings)
         self.p, self.rows = self._parameters()
@@ -97,6 +98,7 @@ class Segment:
 
         # A scene without contact pays nothing for it.
         self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
+        self.ring_rates = self.rhs
 
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""
@@ -119,10 +121,17 @@ class Segment:
             jac[:, j] = (column - base) / step
             moved[j] = y[j]
 
+    def settle_film(self, tau, y):
+        """Film unknowns of `y` as those of the steady film: an algebraic film has none."""
+
+    def start(self, tau, y) -> tuple[np.ndarray, np.ndarray]:
+        """Consistent unknowns and derivatives to go on from `y` with."""
+        return y, self.start_rates(tau, y)
+
     def start_rates(self, tau, y) -> np.ndarray:
         """Consistent derivatives at y: Newton on the residual, whose rows are linear in them but for a floor."""
         yp, res = np.zeros(self.size), np.empty(self.size)
-        if not self.massless:
+        if not self.has_residual_form:
             self.rhs(tau, y, yp)
             return yp
         light = [i for i in range(self.n) if self.rate_places[i] < 0 and i not in self.algebraic]

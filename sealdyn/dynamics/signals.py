@@ -209,8 +209,8 @@ def _of_ring(ring, parts, first):
     ]
 
 
-def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
-    """Named series (m,) at times of a segment; `q`, `q_rate` (m, n) displacements and rates.
+def signals(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
+    """Named series (m,) at times of a segment; `q`, `q_rate` (m, n) displacements and rates, `x` (m, n) the film's.
     SI; leakage counts from high to low pressure."""
     # Kernels of fixed signature are made ready by their import.
     from .kernels import Value, states_along
@@ -224,7 +224,11 @@ def signals(segment, taus, q, q_rate) -> dict[str, np.ndarray]:
     ys[:, segment.rate_places[massive]] = q_rate[:, massive]
     (flow, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
     blocks = contact, bool(model.unknowns.seals), segment.p, segment.w, segment.s
-    states_along(Value(flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
+    if x is None:
+        states_along(Value(flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
+    else:
+        ys[:, segment.film] = x
+        segment.states(taus, ys, yps, gap, scratch, low)
     at = Samples(segment, taus, gap, scratch, low)
     columns = {"time": segment.interval.time + taus} | {x.name: x.values(at) for x in signal_table(model)}
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}

@@ -65,7 +65,7 @@ class StickSlip:
 
     def sliding_state(self, k: int, tau: float, y) -> tuple[float, float]:
         """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface."""
-        self.segment.rhs(tau, y, self._yp)
+        self.segment.ring_rates(tau, y, self._yp)
         at = SEALS + PER_SEAL * k
         return self.segment.w[at + SEAL_SPEED], self.segment.w[at + SEAL_EXCESS]
 

@@ -18,14 +18,17 @@ WORKS, MORE = 6, 3
 class Unknowns:
     """Unknowns of a scene.
 
-    `names` of the `n` displacements, which come first in `y`; `rate_places` where their rates stand (-1: massless);
-    `n_mechanical` displacements and rates, `size` with the works; `ring_block` the constant part of the parameters;
-    `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `massless`, `linear`,
-    `constant` (no table anywhere), `extended` (contact or a secondary seal), places of `impulse` and `works`,
+    `y` = [displacements | velocities | film | impulse | works | sum of absolute works]: slices `displacements`,
+    `velocities`, `film`, `works` and the place of the `impulse` (None without).  `names` of the `n` displacements;
+    `rate_places` where their rates stand, -1 for those of which `lacks_inertia` (n,) is true; `n_mechanical`
+    displacements and rates, `size` of y; `film_unknowns` what the film owns (films/_unknowns.py), None of an algebraic
+    one; `has_residual_form` whether they obey a residual only, since a ring is massless or the film has unknowns;
+    `ring_block` the constant part of the parameters; `floats` per ring, `seals` the rings with a secondary seal,
+    `with_axial`, `with_tilt`, `linear`, `constant` (no table anywhere), `extended` (contact or a secondary seal),
     `reasons`.
     """
 
-    def __init__(self, scene, closing, linear: bool):
+    def __init__(self, scene, closing, linear: bool, film_unknowns=None):
         self.scene = scene
         self.seals = [
             k for k, ring in ((STATOR, scene.stator), (ROTOR, scene.rotor)) if ring.support and ring.secondary_seal
@@ -48,19 +51,30 @@ class Unknowns:
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
         self._choose(tilted or _tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
-        self.massless = any(
-            self.floats[k] and ((self.with_axial and r.mass == 0) or (self.with_tilt and r.transverse_inertia == 0))
-            for k, r in rings.items()
-        )
+        self.film_unknowns = film_unknowns
+        self._place((scene.stator, scene.rotor))
         if waves_of(scene):
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
-        self._place((scene.stator, scene.rotor))
+        if film_unknowns:
+            self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form (IDA)")
+            if np.any(film_unknowns.differential):
+                self.reasons.append("film that stores: linear numbers have its stiffness and damping of slow motion")
 
     def seal(self, k: int):
         """Secondary seal of ring k (0 stator, 1 rotor), or None."""
         return (self.scene.stator, self.scene.rotor)[k].secondary_seal
+
+    @property
+    def massless(self) -> bool:
+        """Whether any displacement lacks inertia."""
+        return bool(np.any(self.lacks_inertia))
+
+    @property
+    def has_residual_form(self) -> bool:
+        """Whether only a residual says how the unknowns move: no explicit right-hand side."""
+        return self.massless or self.film_unknowns is not None
 
     def among_three(self) -> list[int]:
         """Places of the displacements among three per floating ring."""
@@ -82,7 +96,7 @@ class Unknowns:
             self.reasons.append("linear film: axial and angular motion decouple, both are driven")
 
     def _place(self, rings):
-        """Places in `y`: displacements of both rings, then their rates."""
+        """Places in `y`: displacements of both rings, their rates, the film, what only measures."""
         self.ring_block, self.names = np.zeros(equations.LEG_AT), []
         blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
         place = 0
@@ -114,13 +128,18 @@ class Unknowns:
                 block[equations.AT_TILT_RATE] = place
                 self.rate_places[tilt : tilt + 2] = place, place + 1
                 place += 2
-        self.n_mechanical, self.size = place, place + WORKS + (MORE if self.extended else 0)
+        self.lacks_inertia = self.rate_places < 0
+        self.displacements, self.velocities = slice(0, self.n), slice(self.n, place)
+        self.n_mechanical = place
+        place += len(self.film_unknowns.names) if self.film_unknowns else 0
+        self.film = slice(self.n_mechanical, place)
+        self.size = place + WORKS + (MORE if self.extended else 0)
         self.impulse = place if self.extended else None
         self.works = slice(self.size - WORKS - (2 if self.extended else 0), self.size - 1)
         self.ring_block[equations.WORKS_AT], self.ring_block[equations.EXTENDED] = self.works.start, self.extended
 
     def algebraic(self, film_damping: np.ndarray) -> list[int]:
-        """Displacements without mass and without any damping on them: algebraic unknowns."""
+        """Algebraic unknowns: displacements without mass and without any damping on them, and those of the film."""
         places = []
         for k in range(2):
             block = self.ring_block[equations.RING * k : equations.RING * (k + 1)]
@@ -129,6 +148,8 @@ class Unknowns:
                 places.append(z)
             if tilt >= 0 and self.rate_places[tilt] < 0 and not (block[equations.TILT_D] or film_damping[1, 1]):
                 places += [tilt, tilt + 1]
+        if self.film_unknowns:
+            places += [self.film.start + int(i) for i in np.flatnonzero(~self.film_unknowns.differential)]
         return places
 
     def scales(self, model):
@@ -147,6 +168,8 @@ class Unknowns:
         for i, place in enumerate(self.rate_places):
             if place >= 0:
                 scales[place] = displacement[i] * rate
+        if self.film_unknowns:
+            scales[self.film] = self.film_unknowns.scales
         if self.impulse is not None:
             scales[self.impulse] = max(abs(model.closing_force()), 1.0) / rate
         return scales, rate, 2 * math.pi / max([rate, *forced, natural])

@@ -7,7 +7,6 @@ What every film module offers (the contract):
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
-`UNKNOWNS`        number of unknowns the film owns; 0 for an algebraic law.
 `parameters(film, clearance)`
                   float64 array: the film's block of the parameter array, for a `Film` table and the
                   design clearance (m).  The kernels below get this block.
@@ -18,6 +17,22 @@ What every film module offers (the contract):
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
 
+A film may have unknowns `x` (n,) of its own, such as pressures; its force is then no function of the gap state alone.
+Its kernels are `wrench(f, s, x)` and `flow(f, s, x)`, and it offers besides:
+
+`unknowns(f)`     FilmUnknowns (films/_unknowns.py): names, scales, which are differential, the residual's pattern.
+`start(f, s, x)`  compiled: x of the steady film at a gap state, its rates among it; returns 0, or a code of STATUS.
+`residual(f, s, x, x_rate, res)`
+                  compiled: what is left of the film's equations, in any units; returns 0, or a code of STATUS, which
+                  ends the run.  Finite and smooth at any gap state that a solver may try.
+`STATUS`          {code: sentence}.
+`jacobian(f, s, x, x_rate, alpha, data)`
+                  (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.
+`wrench_jacobian(f, s, x, rows)`
+                  (optional) compiled: d (force, moments) / d x, (3, n).
+
+Its stiffness and damping follow by condensation (dynamics/condensation.py).
+
 A film never asks which ring floats, and imports no other film.
 """
 
@@ -26,6 +41,11 @@ import pkgutil
 from functools import cache
 
 from ..scene.scene import SceneError
+
+
+def has_unknowns(film) -> bool:
+    """Whether a film has unknowns of its own."""
+    return hasattr(film, "unknowns")
 
 
 def film_module(name: str, film=None):
@@ -60,8 +80,14 @@ def film_names(film=None, waves=()) -> list[str]:
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 
 
-def check_film(film, waves=()) -> None:
-    """Raises SceneError if the film that a `Film` table asks for cannot take its faces with these waves."""
+def check_film(film, waves=(), module=None) -> None:
+    """Raises SceneError if the film that a `Film` table asks for, or a `module` given instead, cannot take its faces
+    with these waves."""
+    if module is not None:
+        words = module.accepts(film, waves)
+        if words:
+            raise SceneError("film", f"faces that the film {film_name(module)} does not take", words)
+        return
     able = film_names(film, waves)
     said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
     if able if film.model == "auto" else not said[film.model]:

@@ -53,7 +53,6 @@ from ..faces.geometry import (
 from ..scene.film import Coefficients
 
 RUNG = 1
-UNKNOWNS = 0
 
 
 def accepts(film, waves=()) -> str:

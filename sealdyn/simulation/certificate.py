@@ -84,7 +84,7 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     """What follows the errors of a run by this method; None where its steps do not tell them: contact, friction,
     changing conditions, a massless ring, methods of long steps, a whirl that grows until it is not linear."""
     model, unknowns = run.model, run.model.unknowns
-    told = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.massless)
+    told = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
     if not told or method not in ("adams", "bdf"):
         return None
     asked = model.accuracy

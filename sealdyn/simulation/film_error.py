@@ -34,7 +34,7 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     where it cannot be estimated.
     """
     model, unknowns = run.model, run.model.unknowns
-    if unknowns.massless or not unknowns.constant or not unknowns.linear:
+    if unknowns.has_residual_form or not unknowns.constant or not unknowns.linear:
         return None
     if film_module(higher).accepts(replace(model.scene.film, model=higher), waves_of(model.scene)):
         return None

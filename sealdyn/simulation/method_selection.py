@@ -17,6 +17,8 @@ def choose_method(run) -> tuple[str, str]:
     model = run.model
     if model.unknowns.massless:
         return "ida", "a massless ring has no rates: IDA, on the residual form"
+    if model.unknowns.has_residual_form:
+        return "ida", "the film has unknowns of its own: IDA, on the residual form"
     if model.unknowns.linear and model.unknowns.constant:
         return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
     ratio = _fastest_decay(run) * model.shortest_period / (2 * math.pi)
@@ -28,8 +30,9 @@ def choose_method(run) -> tuple[str, str]:
 def check_method(model, method: str) -> None:
     """Raises SceneError where a method cannot integrate a scene."""
     unknowns = model.unknowns
-    if unknowns.massless and method != "ida":
-        raise SceneError("run.solver", f'"{method}" for a massless ring', '"ida" (or "auto")')
+    if unknowns.has_residual_form and method != "ida":
+        what = "a massless ring" if unknowns.massless else "a film with unknowns of its own"
+        raise SceneError("run.solver", f'"{method}" for {what}', '"ida" (or "auto")')
     if method == "expm" and not (unknowns.linear and unknowns.constant):
         what = "a nonlinear film, contact or friction" if not unknowns.linear else "parameters that change with time"
         raise SceneError("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')

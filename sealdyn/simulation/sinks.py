@@ -55,8 +55,8 @@ class ArchiveSink:
         keep = (taus >= -1e-12 * end) & ((taus < end * (1 - 1e-12)) | last)
         return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
 
-    def take(self, segment, taus, q, q_rate):
-        columns = signals(segment, taus, q, q_rate)
+    def take(self, segment, taus, q, q_rate, x=None):
+        columns = signals(segment, taus, q, q_rate, x)
         self.tally.add(columns)
         if self.waiting is None:
             self.waiting = columns
@@ -112,8 +112,8 @@ class TallySink(ArchiveSink):
     def __init__(self, run, dt, count):
         super().__init__(run, None, dt, count, Tally(), None, None)
 
-    def take(self, segment, taus, q, q_rate):
-        self.tally.add(signals(segment, taus, q, q_rate))
+    def take(self, segment, taus, q, q_rate, x=None):
+        self.tally.add(signals(segment, taus, q, q_rate, x))
 
     def log(self, events):
         pass

@@ -33,7 +33,7 @@ class Block:
     @cached_property
     def slopes(self) -> np.ndarray | None:
         """The right-hand side (m, size) at the steps; None where a ring has no mass."""
-        return None if self.segment.massless else self.segment.derivatives(self.t, self.ys)
+        return None if np.any(self.segment.lacks_inertia) else self.segment.derivatives(self.t, self.ys)
 
     @cached_property
     def accelerations(self) -> np.ndarray | None:
@@ -72,3 +72,14 @@ class Block:
         rate = np.empty_like(out)
         sample(t, q_rate, self.accelerations[first:last], count, begin, end, times, rate, slope)
         return out, rate
+
+    def film_at(self, times) -> tuple:
+        """The film's unknowns (k, n) at `times` (k,), in a tuple; an empty one where it has none."""
+        film = self.segment.film
+        if film.start == film.stop:
+            return ()
+        first, last = max(0, self.begin - OVERLAP), min(len(self.t), self.end + OVERLAP + 1)
+        x, x_rate = (np.ascontiguousarray(part[first:last, film]) for part in (self.ys, self.yps))
+        out, slope = np.empty((len(times), x.shape[1])), np.empty((len(times), x.shape[1]))
+        sample(self.t[first:last], x, x_rate, last - first, self.begin - first, self.end - first, times, out, slope)
+        return (out,)

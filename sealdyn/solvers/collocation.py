@@ -105,7 +105,7 @@ def collocation(segment, tau, y, method, tolerance, counts):
 
 def _rates(segment, counts):
     """The right-hand side; a massless ring's from its consistent derivatives."""
-    if segment.massless:
+    if segment.has_residual_form:
         if len(segment.algebraic):
             raise SolverFailure("collocation needs derivatives, and an undamped massless ring has none")
 

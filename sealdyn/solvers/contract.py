@@ -4,7 +4,8 @@ A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over
 (m,), unknowns (m, size), derivatives or None)` of accepted steps, in the segment's time, the first after the start
 `tau`, `y`, the last at the segment's end.  A segment offers `n` displacements (first in the unknowns), `n_mechanical`,
 `size`, `length`, `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start_rates`, `scales`, `longest_step`,
-`shortest_period`, `massless`, `algebraic`, and `may_change`: whether its equations may, at any step.
+`shortest_period`, `has_residual_form` (there is no `rhs`), `lacks_inertia` (n,), `algebraic`, and `may_change`: whether
+its equations may, at any step.
 
 An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
 returns None, a Stop, a Retry or a Transition (which `make` turns into a Change); `state()` and `restore(state)` for a

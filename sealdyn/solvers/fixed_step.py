@@ -25,7 +25,7 @@ SLOW = 0.3
 
 def _bdf_of_order_two(segment, tau, y, method, tolerance, counts):
     """CVODE's BDF held at order two: what an order-limited stiff solver costs."""
-    _refuse_massless(segment, method)
+    _refuse_residual_form(segment, method)
     yield from cvode(segment, tau, y, method, tolerance, counts, max_order=2)
 
 
@@ -33,7 +33,7 @@ def _scipy(segment, tau, y, method, tolerance, counts):
     """SciPy's RK45 (Dormand & Prince, 1980) and LSODA (Petzold, 1983), step by step."""
     from scipy.integrate import LSODA, RK45
 
-    _refuse_massless(segment, method)
+    _refuse_residual_form(segment, method)
     kind = RK45 if method == "rk45" else LSODA
     steps = scipy_steps(kind, kind is LSODA, segment, tau, y, method, tolerance, counts)
     while True:
@@ -145,7 +145,7 @@ class _System:
     """One segment for a fixed-step implicit method: steps, evaluations, modified Newton."""
 
     def __init__(self, segment, method, tolerance, counts):
-        _refuse_massless(segment, method)
+        _refuse_residual_form(segment, method)
         self.segment, self.method, self.counts = segment, method, counts
         self.step = min(segment.shortest_period * math.sqrt(tolerance), segment.longest_step())
         # A hundredth of the local error of a second-order method, above rounding.
@@ -226,16 +226,17 @@ class _System:
         self.inverse, self.tied = np.linalg.inv(built), tied
 
 
-def _refuse_massless(segment, method):
-    if segment.massless:
-        raise SolverFailure(f"{method} needs rates, and a massless ring has none: only the residual form (IDA)")
+def _refuse_residual_form(segment, method):
+    if segment.has_residual_form:
+        what = "a massless ring has none" if np.any(segment.lacks_inertia) else "this film's unknowns have none"
+        raise SolverFailure(f"{method} needs rates, and {what}: only the residual form (IDA)")
 
 
 def _only_with_rates(steps):
     """A method of solvers/methods.py that says so when the scene has no rates."""
 
     def guarded(segment, tau, y, method, tolerance, counts):
-        _refuse_massless(segment, method)
+        _refuse_residual_form(segment, method)
         yield from steps(segment, tau, y, method, tolerance, counts)
 
     return guarded

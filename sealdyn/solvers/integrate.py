@@ -58,6 +58,8 @@ def solve(
     index, tau, y = resume if resume else (0, 0.0, run.y0.copy())
     status, cause, message = Status.OK, Cause.DONE, str(Cause.DONE)
     segment = run.segment(index)
+    if not resume:
+        segment.settle_film(tau, y)
     if run.stick_slip and not resume:
         segment = run.segment(index, run.stick_slip.start(segment, tau, y))
     try:
@@ -98,8 +100,8 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     sticking, transition = run.stick_slip, None
     for observer in (*observers, *([sticking] if sticking else [])):
         observer.begin(segment, tau, y)
-    t, ys = np.array([tau]), y[None, :].copy()
-    yps = segment.start_rates(tau, y)[None, :] if segment.massless else np.zeros_like(ys)
+    y, yp = segment.start(tau, y) if segment.has_residual_form else (y, np.zeros_like(y))
+    t, ys, yps = np.array([tau]), y[None, :].copy(), yp[None, :]
     due = sink.due(segment)
     done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
     watched = looked = 0
@@ -187,6 +189,8 @@ def _end_of(block) -> np.ndarray:
     q, q_rate = block.at(np.array([block.until]))
     there = segment.model.vector(q[0], q_rate[0])
     y[: segment.n_mechanical] = there[: segment.n_mechanical]
+    for x in block.film_at(np.array([block.until])):
+        y[segment.film] = x[0]
     return y
 
 
@@ -198,5 +202,5 @@ def _hand_over(block, due, done, sink) -> int:
     if block.until is not None and not (len(times) and times[-1] == until):
         times = np.append(times, until)
     if len(times):
-        sink.take(block.segment, times, *block.at(times))
+        sink.take(block.segment, times, *block.at(times), *block.film_at(times))
     return last

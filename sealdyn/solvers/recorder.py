@@ -18,7 +18,7 @@ class Recorder:
         inside = (taus >= 0) & ((taus < length * (1 - 1e-12)) | segment.last) & (taus <= length * (1 + 1e-12))
         return np.clip(taus[inside], 0, length)
 
-    def take(self, segment, taus, q, q_rate):
+    def take(self, segment, taus, q, q_rate, x=None):
         """Displacements and rates (m, n) at segment times (m,)."""
         self.parts.append((segment.time + taus, q, q_rate))
 

@@ -1,5 +1,7 @@
 """CVODE and IDA through scikit-sundae."""
 
+import warnings
+
 import numpy as np
 
 from .contract import SolverFailure, absolute_tolerances, failure_message
@@ -133,6 +135,24 @@ def ida(segment, tau, y, method, tolerance, counts):
         inner(t, y, yp, res)
 
     options = {"algebraic_idx": segment.algebraic} if len(segment.algebraic) else {}
-    solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(segment, tolerance), max_num_steps=1_000_000,
-                 max_step=_longest(segment), **options)  # fmt: skip
-    yield from _in_chunks(solver, segment, tau, y, segment.start_rates(tau, y), method, counts, allow)
+    if segment.film.stop > segment.film.start:
+        options |= _film_options(segment, counts)
+    y, yp = segment.start(tau, y)
+    with warnings.catch_warnings():
+        # It warns that a pattern beside derivatives is used for its shape only.
+        warnings.simplefilter("ignore", UserWarning)
+        solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(segment, tolerance), max_num_steps=1_000_000,
+                     max_step=_longest(segment), **options)  # fmt: skip
+    yield from _in_chunks(solver, segment, tau, y, yp, method, counts, allow)
+
+
+def _film_options(segment, counts) -> dict:
+    """Options of IDA for a film with unknowns: its pattern, and the derivatives that the segment knows."""
+    derivatives = segment.residual_derivatives
+
+    def jacobian(t, y, yp, res, cj, data):
+        counts.jacobians += 1
+        counts.rhs += segment.n_mechanical + 1
+        derivatives(t, y, yp, cj, data)
+
+    return {"linsolver": "sparse", "sparsity": segment.pattern, "jacfn": jacobian}

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.model import Model
-from ..dynamics.modes import linearise
 from ..faces.geometry import (
     DZ,
     GAP_STATE_SIZE,
@@ -38,6 +37,7 @@ STEP = 0.02
 
 units = {
     "against_speed/speed": "rad/s",
+    "against_frequency/frequency": "rad/s",
     "against_clearance/clearance": "m",
     "against_tilt/tilt": "rad",
     "against_tilt/axial_opening": "m",
@@ -87,12 +87,17 @@ def run(scenario, settings, tools) -> dict:
         "against_clearance": _against_clearance(scene, model, settings),
         "against_tilt": _against_tilt(model, settings),
     }
+    if model.interface.stores:
+        answer["against_frequency"] = against_frequency(model, settings, speed)
     return answer | {"verdict": _verdict(answer)}
 
 
-def matrices(model: Model, state: State, speed: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+def matrices(
+    model: Model, state: State, speed: float | None = None, omega: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
-    lose per displacement and per rate of (dz, g_x, g_y).  Raises ValueError where the faces touch."""
+    lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to a film
+    that stores only.  Raises ValueError where the faces touch."""
     s = gap_state(model, state, speed)
     thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
     if thinnest <= model.face[4]:
@@ -101,7 +106,7 @@ def matrices(model: Model, state: State, speed: float | None = None) -> tuple[np
     length = STEP * min(model.clearance, thinnest)
     tilt = length / model.face[1]
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return linearise(model.interface.film.wrench, model.f, s, (length, tilt, length * pace, tilt * pace))
+    return model.interface.film_about(s, (length, tilt, length * pace, tilt * pace), omega)
 
 
 def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
@@ -204,6 +209,13 @@ def _against_speed(model, settings, speed) -> dict:
     top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
     speeds = np.linspace(0.0, top, max(2, settings.points))
     return _columns("speed", speeds, [_row(matrices(model, State(), w)) for w in speeds])
+
+
+def against_frequency(model, settings, speed) -> dict:
+    """Of a film that stores: what a motion of another frequency (rad/s) meets."""
+    top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
+    frequencies = np.linspace(0.0, top, max(2, settings.points))
+    return _columns("frequency", frequencies, [_row(matrices(model, State(), omega=w)) for w in frequencies])
 
 
 def _against_clearance(scene, model, settings) -> dict:

@@ -57,7 +57,7 @@ def run(scenario, settings, tools) -> dict:
     pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
     eigenvalue = modes.critical_speed(lambda w: model.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
     formula, why = by_formula(model)
-    method = "ida" if model.unknowns.massless else settings.method
+    method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
     answer |= in_time(scene, eigenvalue, how, tools, pace)

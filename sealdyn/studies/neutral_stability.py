@@ -53,7 +53,7 @@ def run(scenario, settings, tools) -> dict:
         why = "" if speed else "no critical speed: nothing is neutral to be kept"
     except (SceneError, ValueError, np.linalg.LinAlgError) as error:
         why = str(error)
-    if speed and free_model(linear, speed).unknowns.massless:
+    if speed and free_model(linear, speed).unknowns.has_residual_form:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
     damping, resolved = [], None
     if speed:

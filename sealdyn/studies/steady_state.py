@@ -54,7 +54,9 @@ def run(scenario, settings, tools) -> dict:
     most, least, _ = modes.steady_extremes(linear, answers, shooter.period)
     critical = modes.critical_speed(lambda w: shooter.model.linear_scene(speed=w), 10.0, 1e6)
     rows = (
-        _near_threshold(scenario, settings, critical, tools) if critical and not shooter.model.unknowns.massless else []
+        _near_threshold(scenario, settings, critical, tools)
+        if critical and not shooter.model.unknowns.has_residual_form
+        else []
     )
     extremes = orbit.extremes
     answer = {

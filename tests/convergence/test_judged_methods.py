@@ -112,7 +112,7 @@ def test_the_judge_sees_a_kink_wherever_it_lies(nodes):
             yp[:] = math.cos(t) + 0.3 * max(t - kink, 0.0)
 
         smooth = SimpleNamespace(n_mechanical=1, size=1, scales=np.ones(1), shortest_period=6.0, rows=[0], length=1.0,
-                                 massless=False, longest_step=lambda: math.inf, rhs=rhs)  # fmt: skip
+                                 has_residual_form=False, longest_step=lambda: math.inf, rhs=rhs)  # fmt: skip
         for _, ys, _ in collocation(smooth, 0.0, np.zeros(1), nodes, 1e-9, Counts()):
             y = ys[-1]
         worst = max(worst, abs(y[0] - math.sin(1.0) - 0.15 * (1.0 - kink) ** 2))

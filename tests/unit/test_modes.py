@@ -9,7 +9,6 @@ import pytest
 from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, fms, ring
 from scenes import of_given_film as run_of
 
-from sealdyn.dynamics.linearisation import film_matrices as film_at
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
 from sealdyn.scene.rings import Rotor, Stator
@@ -98,7 +97,7 @@ def test_film_at_another_speed_is_the_film_linearised_there(speed, floor):
     """To rounding where the still film serves all speeds; a film with a floor is linearised at each."""
     model = Model(fms(film=film(cavitation_pressure=floor)))
     linear = model.linear_scene(speed=speed)
-    stiffness, damping = film_at(model, model.start, model.axial_shift(), mean_spin=0.5 * speed)
+    stiffness, damping = model.interface.linearised(model.start, 0.5 * speed, model.axial_shift())
     for found, expected in ((linear.film_k, stiffness), (linear.film_d, damping)):
         assert found[0, 0] == pytest.approx(expected[0, 0], rel=1e-8)
         assert found[1:, 1:] == pytest.approx(expected[1:, 1:], rel=1e-8)

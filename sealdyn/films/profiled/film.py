@@ -47,7 +47,6 @@ from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, node
 
 RUNG = 2
 GENERALISES = "radial"
-UNKNOWNS = 0
 
 
 def accepts(film, waves=()) -> str:

@@ -68,7 +68,6 @@ from .._radial_quadrature import (
 from .cavitated_circle import cavitated_circle
 
 RUNG = 2
-UNKNOWNS = 0
 
 # Angles worked on side by side, and their rows: what their Gauss points need, and the integrals over 1/h^3 of 1, Phi's
 # even and its odd part; the three with r^2; with r^3; the integral of r^3/h.

@@ -140,7 +140,7 @@ def planned(scenario, settings) -> dict:
     threshold = modes.critical_speed(at_speed, 1e-3 * pace, 1e3 * pace) if tilting else None
     begin, end, chosen = _range(scenario, settings, own, resonances, threshold, free)
     crossing = max(threshold, begin) if threshold is not None and threshold < end else None
-    crossing = crossing if not free.unknowns.massless else None
+    crossing = crossing if not free.unknowns.has_residual_form else None
     mode = followed_mode(scenario.scene, begin, end, crossing)
     scale = free.clearance / free.face[1]
     disturbance = settings.disturbance if settings.disturbance is not None else DISTURBANCE * scale

@@ -108,7 +108,7 @@ class EvenAngleSink:
         root = np.sqrt(np.maximum(speed * speed + 2 * slope * ahead, 0.0))
         return np.clip(2 * ahead / np.maximum(speed + root, 1e-300), 0.0, leg.length)
 
-    def take(self, segment, taus, q, q_rate):
+    def take(self, segment, taus, q, q_rate, x=None):
         gap, y = np.empty((len(taus), 3)), np.zeros(segment.size)
         for i, tau in enumerate(taus):
             y[: segment.n] = q[i]

@@ -250,8 +250,8 @@ class Kept(Recorder):
         super().__init__(interval)
         self.series = []
 
-    def take(self, segment, taus, q, q_rate):
-        self.series.append(signals(segment, taus, q, q_rate))
+    def take(self, segment, taus, q, q_rate, x=None):
+        self.series.append(signals(segment, taus, q, q_rate, x))
 
 
 def _told(run, ring, series, outcome, last) -> Released:

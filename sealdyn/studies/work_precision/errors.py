@@ -40,8 +40,8 @@ class Observed:
 class Sampler(Recorder):
     """Keeps what is looked at, at even times."""
 
-    def take(self, segment, taus, q, q_rate):
-        columns = signals(segment, taus, q, q_rate)
+    def take(self, segment, taus, q, q_rate, x=None):
+        columns = signals(segment, taus, q, q_rate, x)
         side = "leakage_inner" if segment.model.closing.outer_is_high else "leakage_outer"
         self.parts.append(
             (columns["time"], columns["h_min"], columns["relative_misalignment"], columns[side])

@@ -118,7 +118,12 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     label, overrides = rung
     run, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
     last = run.intervals[-1]
-    steady = highest.steady and run.period(-1) and not run.model.unknowns.extended and not run.model.unknowns.massless
+    steady = (
+        highest.steady
+        and run.period(-1)
+        and not run.model.unknowns.extended
+        and not run.model.unknowns.has_residual_form
+    )
     if not steady or modes.verdict(run.model.linear_scene(last).modes()) != "stable":
         return None
     wall = math.inf

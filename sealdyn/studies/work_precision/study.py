@@ -128,9 +128,9 @@ def reference(scenario, samples: int, limit: float):
     run = ready(scenario)
     stiff = choose_method(run)[0] == "bdf"
     own = ["radau_nodes", "gauss"] if stiff else ["gauss", "radau_nodes"]
-    if run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.massless:
+    if run.model.unknowns.linear and run.model.unknowns.constant and not run.model.unknowns.has_residual_form:
         others = [("expm", REFERENCE_METHODS["expm"], 1e-13)]
-    elif stiff or run.model.unknowns.massless:
+    elif stiff or run.model.unknowns.has_residual_form:
         others = []
     else:
         others = [("dop853", REFERENCE_METHODS["dop853"], 1e-13)]
