@@ -174,7 +174,7 @@ class _Balance:
     `balance` "sine" asks M_s = 4 R F_d / pi, "cosine" asks that the moment about the tilt axis vanishes.
     """
 
-    algebraic = ()
+    algebraic, film = (), slice(0, 0)
     may_change, length = False, math.inf
 
     def __init__(self, ring: Ring, force_ratio: float, films, balance: str):
@@ -220,6 +220,9 @@ class _Balance:
         rates = self.rates(y[:2])
         res[:2] = np.nan if rates is None else yp[:2] - rates
         res[2] = yp[2]
+
+    def start(self, tau, y):
+        return y, self.start_rates(tau, y)
 
     def start_rates(self, tau, y):
         pace = y[0] * self.ring.shaft_speed
