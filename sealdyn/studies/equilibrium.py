@@ -5,7 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics.equilibrium import ClosingForce, closed_below, equilibria, film_stiffness, initially, rise, settle
+from ..dynamics.equilibrium import (
+    ClosingForce,
+    closed_below,
+    equilibria,
+    film_stiffness,
+    initially,
+    rise,
+    settle,
+    support_stiffness,
+)
 from ..films import film_module
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
@@ -44,7 +53,7 @@ def run(scenario, settings, tools) -> dict:
     stiffness = np.array(
         [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
     )
-    support = sum(ring.support.axial_stiffness for ring in (scene.rotor, scene.stator) if ring.support)
+    support = support_stiffness(scene)
     answer = {
         "roots": [{**vars(root), "stable": bool(root.stable)} for root in roots],
         "closing_force": float(closing),

@@ -12,6 +12,7 @@ from sealdyn import read_scenario
 from sealdyn.archive import read_study
 from sealdyn.report.charts import study_equilibrium
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scenario.settings import with_values
 from sealdyn.studies import equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.equilibrium import Settings
@@ -57,6 +58,16 @@ def test_diverging_film_has_an_unstable_equilibrium():
     assert root["clearance"] == pytest.approx(
         brentq(lambda c: opening(c, -1e-4) - found["closing_force"], 0.9e-6, 1e-3), rel=1e-6
     )
+
+
+def test_two_supports_hold_a_film_in_series():
+    """What they just hold makes the stiffness of the two rings' axial motion singular."""
+    scenario = read_scenario(REFERENCE.with_name("fmsr_both_flexible.toml"))
+    scenario = with_values(scenario, {"stator.support.axial_stiffness": 2e5})
+    rotor, stator = (ring.support.axial_stiffness for ring in (scenario.scene.rotor, scenario.scene.stator))
+    film = -answer(scenario)["support_stiffness"]
+    matrix = np.array([[rotor + film, -film], [-film, stator + film]])
+    assert np.linalg.eigvalsh(matrix) == pytest.approx([0.0, np.trace(matrix)], abs=1e-9 * rotor)
 
 
 def test_no_equilibrium_is_an_answer_not_an_error():
