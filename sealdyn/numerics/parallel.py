@@ -21,9 +21,6 @@ class Checkpoint:
         self.identity = hashlib.sha256(identity.encode()).hexdigest()
         if self.path.exists():
             self._read()
-        if not self.rows:
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            self.path.write_text(json.dumps({"identity": self.identity}) + "\n")
 
     def _read(self):
         lines = self.path.read_text().splitlines()
@@ -44,6 +41,10 @@ class Checkpoint:
         self.path.write_text("\n".join([lines[0], *whole]) + "\n")
 
     def add(self, key: str, row: dict):
+        # No file before the first point: a refused study leaves nothing behind.
+        if not self.rows:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            self.path.write_text(json.dumps({"identity": self.identity}) + "\n")
         self.rows[key] = row
         with self.path.open("a") as file:
             file.write(json.dumps({"key": key, "row": row}) + "\n")

@@ -78,3 +78,10 @@ def test_the_same_point_of_another_question_is_another(calls, tmp_path):
     evaluate(square, points(1), journal, 1, quiet, "squares")
     evaluate(square, points(1), journal, 1, quiet, "cubes")
     assert calls() == ["0", "0"]
+
+
+def test_no_journal_before_the_first_point(tmp_path):
+    journal = Checkpoint(tmp_path / "deep" / "j", "a")
+    assert not journal.path.parent.exists()
+    journal.add("x", {"y": 1})
+    assert Checkpoint(journal.path, "a").rows == {"x": {"y": 1}}
