@@ -102,12 +102,12 @@ class CoupledSegment(Segment):
         # From here `s` is that of the base again.
         self._loads(tau, y, yp)
         x, x_rate = y[at].copy(), yp[at].copy()
-        own = self._of_film.residual(s, x, x_rate, alpha if by_y else 1.0)
         if not by_y:
-            data[block] = own
-            data[block] = alpha * (data[block] - self._of_film.residual(s, x, x_rate, 0.0))
+            data[block] = self._of_film.residual(s, x, x_rate, 1.0)
+            data[block] -= self._of_film.residual(s, x, x_rate, 0.0)
+            data[block] *= alpha
         else:
-            data[block] = own
+            data[block] = self._of_film.residual(s, x, x_rate, alpha)
             others = np.concatenate([np.arange(m), np.arange(at.stop, size)])
             data[rows] = (self._by_force(tau, y, yp, force)[others] @ self._of_film.wrench(s, x)).T
         data[self.pattern.indptr[at.stop] :] = alpha
@@ -159,10 +159,6 @@ class CoupledSegment(Segment):
         data = np.empty(self.pattern.nnz)
         self.residual_derivatives(tau, y, yp, alpha, data, by_y)
         return csc_array((data, self.pattern.indices, self.pattern.indptr), shape=self.pattern.shape)
-
-    def start_rates(self, tau, y):
-        """Consistent derivatives (size,); the film's algebraic unknowns of `y` should be consistent."""
-        return self.start(tau, y)[1]
 
     # --- stored steps -------------------------------------------------------------------------------
 

@@ -125,15 +125,12 @@ class Segment:
         """Film unknowns of `y` as those of the steady film: an algebraic film has none."""
 
     def start(self, tau, y) -> tuple[np.ndarray, np.ndarray]:
-        """Consistent unknowns and derivatives to go on from `y` with."""
-        return y, self.start_rates(tau, y)
-
-    def start_rates(self, tau, y) -> np.ndarray:
-        """Consistent derivatives at y: Newton on the residual, whose rows are linear in them but for a floor."""
+        """Consistent unknowns and derivatives to go on from `y` with; here `y` itself, and Newton on the residual,
+        whose rows are linear in the derivatives but for a floor."""
         yp, res = np.zeros(self.size), np.empty(self.size)
         if not self.has_residual_form:
             self.rhs(tau, y, yp)
-            return yp
+            return y, yp
         light = [i for i in range(self.n) if self.rate_places[i] < 0 and i not in self.algebraic]
         scale = self.scales[: self.n] * self.reference_rate
         for _ in range(4):
@@ -148,7 +145,7 @@ class Segment:
         self.residual(tau, y, yp, res)
         others = [i for i in range(self.size) if i not in light and i not in self.algebraic]
         yp[others] -= res[others]
-        return yp
+        return y, yp
 
     def longest_step(self) -> float:
         """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; no longer than its scan

@@ -111,7 +111,7 @@ def _rates(segment, counts):
 
         def consistent(t, y):
             counts.rhs += 1
-            return segment.start_rates(t, y)
+            return segment.start(t, y)[1]
 
         return consistent
 

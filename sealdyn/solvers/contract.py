@@ -3,7 +3,7 @@
 A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over one segment: it yields blocks `(times
 (m,), unknowns (m, size), derivatives or None)` of accepted steps, in the segment's time, the first after the start
 `tau`, `y`, the last at the segment's end.  A segment offers `n` displacements (first in the unknowns), `n_mechanical`,
-`size`, `length`, `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start_rates`, `scales`, `longest_step`,
+`size`, `length`, `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start`, `scales`, `longest_step`,
 `shortest_period`, `has_residual_form` (there is no `rhs`), `lacks_inertia` (n,), `algebraic`, and `may_change`: whether
 its equations may, at any step.
 

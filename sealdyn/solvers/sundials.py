@@ -43,8 +43,7 @@ def _in_chunks(solver, segment, tau, y, yp, method, counts, allow):
         except _TooLong:
             allow(None)
             counts.rhs = before
-            yield from _one_by_one(solver, stop, tau, y, yp, method)
-            tau, y, yp = _one_by_one.last
+            tau, y, yp = yield from _one_by_one(solver, stop, tau, y, yp, method)
             continue
         if len(result.t) > 1:
             yield result.t[1:], result.y[1:], None if yp is None else result.yp[1:]
@@ -56,7 +55,7 @@ def _in_chunks(solver, segment, tau, y, yp, method, counts, allow):
 
 
 def _one_by_one(solver, end, tau, y, yp, method, block=BLOCK):
-    """The same, step by step: for stretches that may not end well."""
+    """The same, step by step: for stretches that may not end well.  Returns time, unknowns and derivatives there."""
     solver.init_step(tau, y) if yp is None else solver.init_step(tau, y, yp)
     ts, ys, yps = [], [], []
     result = None
@@ -69,10 +68,11 @@ def _one_by_one(solver, end, tau, y, yp, method, block=BLOCK):
             yps.append(None if yp is None else result.yp)
         if ts and (len(ts) >= block or tau >= end or not result.success):
             yield np.array(ts), np.array(ys), None if yp is None else np.array(yps)
-            _one_by_one.last = (ts[-1], ys[-1], yps[-1])
+            y, yp = ys[-1], yps[-1]
             ts, ys, yps = [], [], []
         if not result.success:
             raise SolverFailure(failure_message(method, result.message, result.t))
+    return tau, y, yp
 
 
 class _TooLong(Exception):

@@ -222,15 +222,12 @@ class _Balance:
         res[2] = yp[2]
 
     def start(self, tau, y):
-        return y, self.start_rates(tau, y)
-
-    def start_rates(self, tau, y):
         pace = y[0] * self.ring.shaft_speed
         for guess in ((0, 0), (-0.1, -0.1), (-1, -1), (-0.3, 0.3), (0.1, 0.1), (-1, 0), (0.3, -0.3)):
             self.last_rates = pace * np.array(guess, dtype=float)
             rates = self.rates(y[:2])
             if rates is not None:
-                return np.append(rates, 0.0)
+                return y, np.append(rates, 0.0)
         raise SolverFailure(NO_RATES)
 
 
@@ -240,7 +237,7 @@ def _integrate(balance: _Balance, start, duration: float, accuracy: float, ended
     counts, y, balance.length = Counts(), np.array([*start, 0.0]), duration
     times, films, rates, verdict, said = [0.0], [y[:2]], [], "", ""
     try:
-        rates.append(balance.start_rates(0.0, y)[:2])
+        rates.append(balance.start(0.0, y)[1][:2])
         tolerance = tolerance_for("ida", accuracy, balance.memory)
         for t, ys, yps in METHODS["ida"](balance, 0.0, y, "ida", tolerance, counts):
             times += list(t)

@@ -78,7 +78,7 @@ def contradicting_rates() -> dict:
     run = run_from(lightened(0.0), 0.01, 1e-6)
     segment, sizes = run.segment(0), []
     left = np.empty(segment.size)
-    for yp in (np.zeros(segment.size), segment.start_rates(0.0, run.y0)):
+    for yp in (np.zeros(segment.size), segment.start(0.0, run.y0)[1]):
         segment.residual(0.0, run.y0, yp, left)
         sizes.append(float(np.max(np.abs(left[: segment.n]))))
     return row(
