@@ -163,7 +163,7 @@ def _say_compiling(file):
     from .kernel_cache import kept_kernels
 
     if not kept_kernels():
-        print("first run on this machine: compiling kernels once (some seconds) ...", file=file, flush=True)
+        print("first run on this machine: compiling kernels once (a minute or so) ...", file=file, flush=True)
 
 
 class _Progress:

@@ -85,7 +85,7 @@ def map_over_turns(ax, run: Run, turns: float):
         ax.set_title("Film thickness around the circle  (aligned faces)")
     ax.grid(False)
     ax.set(xlabel=run.progress_label, yticks=range(0, 361, 60))
-    ax.set_ylabel(f"angle from ξ, degrees, at r = {1e3 * radius:.4g} mm")
+    ax.set_ylabel(f"angle from the x axis, degrees, at r = {1e3 * radius:.4g} mm")
     return image
 
 

@@ -11,6 +11,8 @@ from .record import Run
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 LEFT, MIDDLE, RIGHT = (0.055, 0.25), (0.375, 0.265), (0.715, 0.265)
 ROWS = ((0.64, 0.235), (0.37, 0.205), (0.085, 0.19))
+# Height of a name beside a line, as a share of the panel.
+NAME_HEIGHT = 0.08
 
 
 def draw(archive_path, out_path, turns: float = 4.0):
@@ -59,11 +61,15 @@ def film_panel(ax, run: Run, first: int) -> None:
     else:
         top = 1.15 * max(top, per * (run.clearance or 0))
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
-        _name(ax, per * run.touch_at, "asperities meet" if run.touch_at else "contact", CONTACT)
+        # Two lines close together: the lower one's name goes below it.
+        apart = per * ((run.clearance or np.inf) - run.touch_at)
+        close = abs(apart) < NAME_HEIGHT * top
+        words = "asperities meet" if run.touch_at else "contact"
+        _name(ax, per * run.touch_at, words, CONTACT, below=close and apart > 0)
     if run.clearance:
         ax.axhline(per * run.clearance, color=GREY, ls="--", lw=0.9)
         if not first:
-            _name(ax, per * run.clearance, "clearance", GREY)
+            _name(ax, per * run.clearance, "clearance", GREY, below=close and apart <= 0)
     ax.axhline(per * run.touch_at, color=CONTACT, lw=1.2)
     if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
@@ -198,10 +204,11 @@ def _kept(name: str, value):
     return [(name, value)] if value else []
 
 
-def _name(ax, y: float, words: str, colour: str) -> None:
-    """Names a horizontal line above its right end."""
-    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right", "va": "bottom"}
-    ax.annotate(words, (1, y), xytext=(-2, 2), color=colour, fontsize=8, bbox=PAPER, **where)
+def _name(ax, y: float, words: str, colour: str, below: bool = False) -> None:
+    """Names a horizontal line above its right end, or below it."""
+    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right"}
+    where |= {"va": "top", "xytext": (-2, -2)} if below else {"va": "bottom", "xytext": (-2, 2)}
+    ax.annotate(words, (1, y), color=colour, fontsize=8, bbox=PAPER, **where)
 
 
 def _span(ax, run: Run, first: int) -> None:

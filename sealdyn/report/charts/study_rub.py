@@ -168,7 +168,7 @@ def _point(figure, row, k, words):
     for values, limit in ((x, left.set_xlim), (y, left.set_ylim)):
         middle, half = 0.5 * (values.min() + values.max()), 0.62 * max(np.ptp(values), 0.05)
         limit(middle - half, middle + half)
-    left.set(xlabel="γ about ξ, mrad", ylabel="γ about η, mrad", title=f"{words}: {row['class']}")
+    left.set(xlabel="γ about x, mrad", ylabel="γ about y, mrad", title=f"{words}: {row['class']}")
     left.locator_params(nbins=4)
     orders, size = np.array(row["orders"]), 1e3 * np.array(row["amplitude"])
     right.semilogy(orders[1:], np.maximum(size[1:], 1e-9), color=colour, lw=0.8)
