@@ -12,7 +12,16 @@ import pytest
 ROOT = Path(__file__).parents[2]
 SCENARIOS = ROOT / "scenarios"
 # Scene -> what shortens it.
-SCENES = {"fms_reference": "run.turns=3", "rub": "run.turns=3", "massless_ring": "run.turns=2"}
+SCENES = {
+    "fms_reference": "run.turns=3",
+    "rub": "run.turns=3",
+    "massless_ring": "run.turns=2",
+    "fmsr_both_flexible": "run.turns=3",
+    "hang_up": "run.turns=3",
+    "ludwig_allen": "run.turns=1",
+    "squeeze": "run.duration=0.5",
+    "pressure_step": "run.turns=3",
+}
 RUN = """
 import hashlib, sys
 from pathlib import Path
