@@ -140,7 +140,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
     ready = free_model(scene, speed)
     whirling, shape = RotatingWave(ready), least_damped(ready, speed)[1]
     q = high * shape
-    q[ready.model.unknowns.names.index("stator_z")] = 0.5 * high * ready.model.face[0]
+    q[ready.unknowns.names.index("stator_z")] = 0.5 * high * ready.face[0]
     whirl = whirling.solve(high, (q, found["whirl_ratio"] * speed, speed))
     assert whirl.speed == pytest.approx(speed, rel=1e-3)
     assert whirl.frequency / speed == pytest.approx(found["whirl_ratio"], rel=1e-3)
