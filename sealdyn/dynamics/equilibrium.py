@@ -103,20 +103,17 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
-def rise(film) -> float:
-    """Difference (m) between the thickest and the thinnest place of the aligned film."""
+def extent(film) -> tuple[float, float]:
+    """Difference (m) between the thickest and the thinnest place of the aligned film, and the clearance (m) below which
+    it is closed somewhere, as a diverging one is at its outer edge."""
     gaps = [h for _, h in aligned_gaps(film, 0.0)]
-    return max(gaps) - min(gaps)
-
-
-def closed_below(film) -> float:
-    """Clearance (m) below which the aligned film is closed somewhere, as a diverging one is at its outer edge."""
-    return max(0.0, -min(h for _, h in aligned_gaps(film, 0.0)))
+    return max(gaps) - min(gaps), max(0.0, -min(gaps))
 
 
 def equilibria(film, opening_force, closing: float, inner: float, outer: float) -> list[Equilibrium]:
     """Every clearance where the aligned film's opening force equals `closing` (N), increasing."""
-    reference, least = max(rise(film), 1e-6), closed_below(film) * (1 + 1e-9)
+    rise, closed_below = extent(film)
+    reference, least = max(rise, 1e-6), closed_below * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
@@ -183,7 +180,7 @@ def axial_shift(model, interval: Interval) -> tuple[float, bool]:
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
-    reference = max(rise(film), 1e-6)
+    reference = max(extent(film)[0], 1e-6)
     tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
     expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"

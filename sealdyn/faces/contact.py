@@ -33,6 +33,7 @@ from .contact_annulus import (
     pressed,
 )
 from .geometry import (
+    COLLAPSE,
     CONTACT_AREA,
     CONTACT_ENERGY,
     CONTACT_FORCE,
@@ -41,6 +42,7 @@ from .geometry import (
     CONTACT_X,
     CONTACT_Y,
     DZ,
+    FLOOR,
     GX,
     GY,
     INNER_RADIUS,
@@ -49,6 +51,7 @@ from .geometry import (
     PROFILE_RADII,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
+    TOUCH,
     WEAR,
     edge_gaps,
     node_gap,
@@ -61,10 +64,9 @@ ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
 _gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
 
 
-def parameters(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
-    """The contact's block of the parameter array, float64.
-
-    `face` the leading slots of a film's block, `points` Gauss points of each panel around the circle.
+def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
+    """The contact's block of the parameter array, float64; the film thicknesses (m) of its floor, touch and collapse go
+    into the `face` block, or a film's that begins with it.  `points`: Gauss points of each panel around the circle.
     """
     points = points or ANGLE_POINTS[contact.law]
     if contact.law == "christensen":
@@ -77,7 +79,8 @@ def parameters(contact: Contact, face: np.ndarray, points: int | None = None) ->
     # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
     radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
-    _, top, bottom = contact_thresholds(contact)
+    face[FLOOR], top, bottom = contact_thresholds(contact)
+    face[TOUCH], face[COLLAPSE] = top, bottom
     k[TOP], k[SPAN] = top, top - bottom
     k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
     if contact.shear_strength is None:

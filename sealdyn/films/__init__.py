@@ -40,7 +40,9 @@ import importlib
 import pkgutil
 from functools import cache
 
+from ..scene.film import profile_errors
 from ..scene.scene import SceneError
+from ..scene.waviness import waves_of, waviness_errors
 
 
 def has_unknowns(film) -> bool:
@@ -48,16 +50,9 @@ def has_unknowns(film) -> bool:
     return hasattr(film, "unknowns")
 
 
-def film_module(name: str, film=None):
-    """The film called `name`, found by file (or folder) name; "auto" is the highest film that takes the faces of a
-    `Film` table (None: plain cones), until a choice is certified."""
-    if name == "auto":
-        name = max(film_names(film), key=lambda n: film_module(n).RUNG)
-    return _module(name)
-
-
 @cache
-def _module(name: str):
+def film_module(name: str):
+    """The film called `name`, found by file (or folder) name."""
     found = importlib.import_module(f"{__name__}.{name}")
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 
@@ -80,20 +75,31 @@ def film_names(film=None, waves=()) -> list[str]:
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 
 
-def check_film(film, waves=(), module=None) -> None:
-    """Raises SceneError if the film that a `Film` table asks for, or a `module` given instead, cannot take its faces
-    with these waves."""
-    if module is not None:
-        words = module.accepts(film, waves)
-        if words:
-            raise SceneError("film", f"faces that the film {film_name(module)} does not take", words)
-        return
-    able = film_names(film, waves)
-    said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
-    if able if film.model == "auto" else not said[film.model]:
-        return
+def film_of(scene, module=None):
+    """The film that a scene (or what has its tables) asks for, or the `module` given instead; "auto" is the highest
+    that takes the scene's faces, until a choice is certified.  Raises SceneError where it cannot take them."""
+    film, waves = scene.film, waves_of(scene)
+    if module is None:
+        able, name = film_names(film, waves), film.model
+        if name == "auto":
+            name = max(able, key=lambda n: film_module(n).RUNG, default=None)
+        if name is None or film_module(name).accepts(film, waves):
+            raise _refused(film, waves, able)
+        module = film_module(name)
+    elif module.accepts(film, waves):
+        found = f"faces that the film {film_name(module)} does not take"
+        raise SceneError("film", found, module.accepts(film, waves))
+    for key, found, expected in profile_errors(film):
+        raise SceneError(f"film.{key}", found, expected)
+    for error in waviness_errors(scene):
+        raise SceneError(*error)
+    return module
+
+
+def _refused(film, waves, able) -> SceneError:
     faces = "wavy faces" if waves else "a profile"
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
+        said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
         expected = "a film that takes them: " + "; ".join(f"{name} takes {words}" for name, words in said.items())
-    raise SceneError("film.model", f'"{film.model}" with {faces}', expected)
+    return SceneError("film.model", f'"{film.model}" with {faces}', expected)

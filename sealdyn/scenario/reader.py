@@ -12,11 +12,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from ..films import all_film_names, check_film
+from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
-from ..scene.waviness import waves_of
 from ..units import Length, QuantityError, Time, quoted
 from .errors import ScenarioError, explain, tables, without_indices
 from .overrides import override_key
@@ -143,7 +142,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         file = _reader().validate_python(raw)
         _check_film_name(file.film.model)
         check_scene(file, file.run)
-        check_film(file.film, waves_of(file))
+        film_of(file)
     except ValidationError as error:
         raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
     except SceneError as error:

@@ -7,15 +7,14 @@ import numpy as np
 
 from ..dynamics.equilibrium import (
     ClosingForce,
-    closed_below,
     equilibria,
+    extent,
     film_stiffness,
     initially,
-    rise,
     settle,
     support_stiffness,
 )
-from ..films import film_module
+from ..films import film_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length
@@ -39,7 +38,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_module(scene.film.model, scene.film).opening_law(scene.film)
+    film, opening = scene.film, film_of(scene).opening_law(scene.film)
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
@@ -49,7 +48,7 @@ def run(scenario, settings, tools) -> dict:
     clearance = np.geomspace(low, high, max(3, settings.points))
     force = np.array([opening(c, inner, outer) for c in clearance])
     # Steps smaller than the distance to closed faces.
-    steps = 1e-4 * (clearance - closed_below(film))
+    steps = 1e-4 * (clearance - extent(film)[1])
     stiffness = np.array(
         [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
     )
@@ -86,8 +85,8 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
 
 def _range(film, roots, settings) -> tuple[float, float]:
     """Clearances to look at, (m): a decade around what was found, open faces only."""
-    least, drop = closed_below(film), rise(film)
-    found = [root.clearance for root in roots] or [film.clearance or max(drop, 1e-6)]
+    rise, least = extent(film)
+    found = [root.clearance for root in roots] or [film.clearance or max(rise, 1e-6)]
     least *= 1 + 1e-6
     low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10
     high = settings.clearance_to if settings.clearance_to is not None else max(found) * 10
