@@ -1,4 +1,7 @@
-"""Aligned and linearised liquid film of a coned face: the narrow seal, and exact over the radius."""
+"""Aligned and linearised liquid film of a coned face: the narrow seal, and exact over the radius.
+
+Arguments, scalars or arrays that broadcast: radii and clearance (m), coning (rad), viscosity (Pa s), pressures (Pa).
+"""
 
 import math
 from typing import Literal, NamedTuple
@@ -10,7 +13,10 @@ Geometry = Literal["cylindrical", "planar"]
 
 
 class FilmCoefficients(NamedTuple):
-    """Linear film: moment on the stator `-K g - D (g' - i w/2 g)`, force `F_0 - K_z z - D_z z'`."""
+    """Linear film: moment on the stator `-K g - D (g' - i w/2 g)`, force `F_0 - K_z z - D_z z'`.
+
+    K (N m/rad), D (N m s/rad), K_z (N/m), D_z (N s/m), of the shape of the arguments.
+    """
 
     tilt_stiffness: Real
     tilt_damping: Real

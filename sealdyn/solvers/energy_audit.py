@@ -6,8 +6,8 @@ from ..numerics.hermite import integrals
 
 
 class EnergyAudit:
-    """An observer of the energy balance: largest |dE - sum of works| over the sum of integrals of |power|, at every
-    step.
+    """An observer of the energy balance: largest |dE - sum of works| (J) over the sum of integrals of |power| (J), at
+    every step.
 
     Works are those among the unknowns; or better (`from_powers`), where steps are short, the integrals of the powers at
     the steps: of the errors that a multistep method makes in works, nothing forgets.
@@ -19,8 +19,8 @@ class EnergyAudit:
         self.energy0 = self.works0 = self.last = None
 
     def begin(self, segment, tau, y):
-        """A segment begins; the first fixes the zero of energy and works.  At a step of an imposed motion the
-        spring energy jumps (its end is moved in no time): that work is booked here."""
+        """A segment begins at `tau` (s), `y` (size,); the first fixes the zero of energy and works.  At a step of an
+        imposed motion the spring energy jumps (its end is moved in no time): that work is booked here."""
         self.segment = segment
         energy = float(segment.energies(np.array([tau]), y[None, :])[0])
         if self.energy0 is None:
@@ -58,5 +58,5 @@ class EnergyAudit:
         self.done = state.get("done", 0.0)
 
     def residual(self) -> float:
-        """The one number; 0 when nothing is exchanged."""
+        """The largest defect over the energy exchanged, dimensionless; 0 when nothing is exchanged."""
         return self.worst / self.moved if self.moved > 0 else 0.0

@@ -1,5 +1,5 @@
-"""How far a run is from the exact motion, from its own accepted steps: what each step leaves over of the equations of
-motion, answered linearly (simulation/film_error.py does the same for what a film leaves over).
+"""Defect-based global error estimate (Zadunaisky): what each accepted step leaves over of the equations of motion,
+answered linearly (simulation/film_error.py does the same for what a film leaves over).
 
 **Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the defect of an interpolant gives the global error.
 **Valid** multistep methods, whose steps are short beside the motion (a tenth of a radian leaves 1e-9); errors small
@@ -21,7 +21,8 @@ SHARPER = 10.0
 class GlobalErrorEstimate:
     """An observer of the error of the displacements so far, carried along a run of constant conditions; every ring has
     mass.  `worst` is the largest of any displacement at any step, relative to its scale; beyond `allowed` a run had
-    better use a sharper tolerance than its own `tolerance`, down to `least`."""
+    better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the eigenvectors nearly
+    coincide, and nothing is estimated."""
 
     def __init__(self, segment, allowed: float = math.inf, least: float = 0.0):
         self.segment, self.motion, self.allowed, self.least = segment, segment.exact_motion(), allowed, least
@@ -32,6 +33,7 @@ class GlobalErrorEstimate:
             self.shapes = self.motion.vectors[: segment.n] / segment.scales[: segment.n, None]
 
     def begin(self, segment, tau, y):
+        """Nothing to do: errors go on over a segment's start."""
         pass
 
     def accept(self, block):

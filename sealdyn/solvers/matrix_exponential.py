@@ -12,7 +12,8 @@ CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5
 
 
 def expm(segment, tau, y, method, tolerance, counts):
-    """Exact steps of a linear scene, as long as what moves in it allows; the works by Gauss quadrature on them."""
+    """Exact steps of a linear scene, with the contract of contract.py, as long as what moves in it allows; the works by
+    Gauss quadrature on them.  **Valid** linear film, constant conditions, rings with mass."""
     motion, n, fresh = segment.exact_motion(), segment.n_mechanical, True
     points, weights = np.polynomial.legendre.leggauss(POINTS)
     while tau < segment.length:
