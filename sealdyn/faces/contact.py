@@ -4,9 +4,10 @@
 law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
 **Valid** rigid coned faces, rough at a scale far below their width; dry, and without memory.
 
-Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and
-moments are minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli
-between its radii, which faces/contact_annulus.py integrates.
+Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and moments are
+minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli between its
+radii, which faces/contact_annulus.py integrates.  The kernels take `k` this module's block, `f` a film's block (its
+leading slots the faces) and `s` the gap state (slots in faces/geometry.py).
 """
 
 import math
@@ -151,14 +152,15 @@ def _face(k, f, s, complete):
 @njit(cache=True)
 def contact_load(k, f, s):
     """Contact force (N, opening) and moments (N m) on the stator, into the gap state: minus the derivatives of
-    CONTACT_ENERGY.  `k` this module's block, `f` a film's (faces), `s` the gap state."""
+    CONTACT_ENERGY by gap and tilt."""
     _face(k, f, s, False)
 
 
 @njit(cache=True)
 def contact_load_and_friction(k, f, s):
-    """As `press`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face in
-    contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s).
+    """As `contact_load`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face
+    in contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s), into
+    the gap state.
 
     The normal pressure needs no torque on the slope of the faces: p_c is a function of h, so around any circle
     `int p_c dh/dtheta dtheta = -[W] = 0`.
@@ -168,11 +170,12 @@ def contact_load_and_friction(k, f, s):
 
 @njit(cache=True)
 def wear_rates(k, f, s, out):
-    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j
-    the hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
+    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j the
+    hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
 
     The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over
-    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.  `k`, `f`, `s` as in `press`.
+    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.
+    **Source** Archard's law, as the module.
     """
     out[:] = 0.0
     tilt = math.hypot(s[GX], s[GY])

@@ -1,15 +1,15 @@
-"""Films: one file (or folder) per rung of the ladder, found by file name.
+"""Films: one file (or folder) per fidelity level, found by file name.
 
 What every film module offers (the contract):
 
-`RUNG`            int, its place on the ladder (1 linear, 2 radial, ...); "auto" climbs it.
+`RUNG`            int, its fidelity level (1 linear, 2 radial, ...); "auto" climbs it.
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
-`parameters(film, clearance)`
-                  float64 array: the film's block of the parameter array, for a `Film` table and the
-                  design clearance (m).  The kernels below get this block.
+`parameters(film, clearance, error)`
+                  float64 array: the film's block of the parameter array, for a `Film` table and the design clearance
+                  (m); `error` is the relative error allowed to its quadrature.  The kernels below get this block.
 `opening_law(film)`
                   function `force(clearance, inner_pressure, outer_pressure, floor)`: opening force (N) of the aligned
                   film at rest, for the equilibrium; `floor` (m) of the film thickness, without it the film's own.
@@ -46,7 +46,7 @@ from ..scene.waviness import waves_of, waviness_errors
 
 
 def has_unknowns(film) -> bool:
-    """Whether a film has unknowns of its own."""
+    """Whether a film (module) has unknowns of its own."""
     return hasattr(film, "unknowns")
 
 
@@ -69,8 +69,8 @@ def all_film_names() -> list[str]:
 
 
 def film_names(film=None, waves=()) -> list[str]:
-    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves, without those
-    that are another one of them once more."""
+    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves (Waviness),
+    sorted, without those that are another one of them once more."""
     able = [name for name in all_film_names() if not film_module(name).accepts(film, waves)]
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 

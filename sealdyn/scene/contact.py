@@ -12,9 +12,9 @@ HALF_HEIGHT, REACH = 3.0, 5.0
 
 @dataclass(frozen=True)
 class Contact:
-    """The `[contact]` table.  `roughness` is the composite rms of both faces, `compressive_strength` that of the
-    softer one; shear of the touching area is `shear_strength`, or `friction_coefficient` (0.1 when neither is given)
-    times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
+    """The `[contact]` table.  `roughness` (m) is the composite rms of both faces, `compressive_strength` (Pa) that of
+    the softer one; shear of the touching area is `shear_strength` (Pa), or `friction_coefficient` (0.1 when neither is
+    given) times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

@@ -7,7 +7,7 @@ from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length,
 
 @dataclass(frozen=True)
 class Whirl:
-    """Non-synchronous angular whirl of the shaft, `angle exp(i (ratio * shaft angle + phase))`."""
+    """Non-synchronous angular whirl of the shaft, `angle exp(i (ratio * shaft angle + phase))`, in rad."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

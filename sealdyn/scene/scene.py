@@ -24,7 +24,8 @@ class Closing:
 
 @dataclass(frozen=True)
 class RingStart:
-    """Where a flexible ring starts: displacement from equilibrium, tilt, and their rates (SI)."""
+    """Where a floating ring starts, in place of what `run.start` gives: displacement, tilt, and their rates (m, rad,
+    m/s, rad/s)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -56,7 +57,7 @@ class Initial:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything physical a scenario says."""
+    """Everything physical a scenario describes, SI."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

@@ -34,7 +34,8 @@ CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", 
 
 
 def part(scene, key: str) -> Any:
-    """The value at a dotted key, "rotor.runout" or "housing.axial.0.frequency".  Raises AttributeError, IndexError."""
+    """The value at a dotted key, "rotor.runout" or "housing.axial.0.frequency".  Raises AttributeError, IndexError,
+    ValueError."""
     for step in key.split("."):
         scene = scene[int(step)] if isinstance(scene, list | tuple) else getattr(scene, step)
     return scene
