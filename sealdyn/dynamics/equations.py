@@ -93,8 +93,9 @@ PLAIN = 5
 
 @njit(cache=True)
 def kinematics(tau, y, yp, p, w, s):
-    """Imposed motion, ring states and the gap state `s` at segment time tau (s) and unknowns `y`.
-    `yp` is read only for the rates of a massless ring."""
+    """Imposed motion, ring states and the gap state `s` (GAP_STATE_SIZE,) at segment time tau (s) and unknowns `y`
+    (size,); `p` the parameters, `w` (SCRATCH,) scratch, which it fills.  `yp` is read only for the rates of a massless
+    ring."""
     leg = p[LEG_AT:]
     imposed_state(tau, leg, w[: 2 * PER_RING])
     for k in range(2):
@@ -290,7 +291,7 @@ def residual(tau, y, yp, p, w, s, work, res):
 
 @njit(cache=True)
 def energies(taus, ys, yp, p, w, s, out):
-    """Energy at several steps, `ys` (m, unknowns), into `out` (m,)."""
+    """Energy (J) at several steps, `taus` (m,) (s) and `ys` (m, unknowns), into `out` (m,)."""
     for k in range(len(taus)):
         kinematics(taus[k], ys[k], yp, p, w, s)
         out[k] = energy(p, w)

@@ -29,7 +29,8 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class ClosingForce:
-    """`F = [p_hi B + p_lo (1 - B)] area + spring`.  `outer_is_high` says which side is sealed."""
+    """`F = [p_hi B + p_lo (1 - B)] area + spring` (N); `area` of the face (m^2), `balance_ratio` B, `spring` (N).
+    `outer_is_high` says which side is sealed."""
 
     area: float
     balance_ratio: float
@@ -111,7 +112,8 @@ def extent(film) -> tuple[float, float]:
 
 
 def equilibria(film, opening_force, closing: float, inner: float, outer: float) -> list[Equilibrium]:
-    """Every clearance where the aligned film's opening force equals `closing` (N), increasing."""
+    """Every clearance where the aligned film's `opening_force(clearance, inner, outer)` (N) equals `closing` (N),
+    increasing; pressures `inner`, `outer` (Pa)."""
     rise, closed_below = extent(film)
     reference, least = max(rise, 1e-6), closed_below * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
@@ -128,13 +130,15 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float) 
 
 
 def film_stiffness(opening_force, clearance, inner, outer, step) -> float:
-    """Axial film stiffness -dF/dC (N/m), fourth-order central difference of this step (m)."""
+    """Axial film stiffness -dF/dC (N/m) at a `clearance` (m), pressures (Pa): fourth-order central difference of this
+    step (m)."""
     f = [opening_force(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 
 def crossing(excess, low: float, high: float) -> float:
-    """The clearance, or its change (m), between `low` and `high` at which an excess of opening force is zero."""
+    """The clearance, or its change (m), between `low` and `high` at which an `excess` of opening force (N) is zero.
+    Raises ValueError if it has one sign."""
     return float(brentq(excess, low, high, xtol=1e-18, rtol=1e-14))
 
 

@@ -30,10 +30,10 @@ PER_RING = 13
 
 
 def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.ndarray:
-    """All harmonic motions imposed during an interval, shape (n, ROW).
+    """All harmonic motions imposed during an interval by Shaft, Housing, Rotor and Stator, shape (n, ROW).
 
-    A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or
-    misalignment is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
+    A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or misalignment
+    is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
     """
     turning = {ROTOR: (leg.rotor_angle, shaft.speed), STATOR: (leg.stator_angle, stator.speed)}
     rows = []
@@ -74,7 +74,8 @@ def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.nda
 
 @njit(cache=True)
 def imposed_state(tau, p, c):
-    """Fill the imposed state `c` (2 x PER_RING: stator, rotor) at segment time tau from the block `p`."""
+    """Fill the imposed state `c` (2 x PER_RING: stator, rotor; m, rad, their rates and accelerations) at segment time
+    tau (s) from the block `p` (the layout above)."""
     c[:] = 0.0
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k

@@ -1,8 +1,8 @@
 """Time cut into intervals, on each of which every imposed quantity is linear in time.
 
-A leg starts at a break point (a kink or step of a table) or after `LONGEST` turns.  Within a leg the
-clock `tau` starts at zero, a table is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with
-`a0` reduced modulo one turn in exact arithmetic: a phase after a million turns is as exact as the first.
+An interval starts at a break point (a kink or step of a function of time) or after `LONGEST` turns.  Within one the
+clock `tau` starts at zero, a function of time is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with `a0`
+reduced modulo one turn in exact arithmetic: a phase after a million turns is as exact as the first.
 """
 
 import math
@@ -42,7 +42,8 @@ class Interval:
 
 
 def constant_and_slope(quantity, leg: Interval) -> tuple[float, float]:
-    """Value and slope over one interval of a number or a `Table` (which has no kink inside the interval)."""
+    """Value at the start and slope (per s) over one interval of a number or a `PiecewiseLinear` (which has no kink
+    inside the interval), in its own unit."""
     if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
     t0, t1 = leg.time, leg.time + leg.length
@@ -62,13 +63,14 @@ def modulo_turn(angle: Fraction) -> float:
 
 
 def angle_turned(speed, leg: Interval) -> Fraction:
-    """Exact integral of the speed (rad/s, number or table) over a segment."""
+    """Exact integral (rad) of the speed (rad/s, number or function of time) over an interval."""
     w, slope = constant_and_slope(speed, leg)
     return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
 
 
 def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> list[Interval]:
-    """Legs from 0 to `duration` (s).  `quantities` are all imposed numbers and tables, speeds included."""
+    """Intervals from 0 to `duration` (s) of shaft and stator speeds (rad/s).  `quantities` are all imposed numbers and
+    functions of time, speeds included."""
     breaks = {0.0, duration}
     for quantity in quantities:
         if isinstance(quantity, PiecewiseLinear):
@@ -88,13 +90,14 @@ def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> l
 
 
 def first_interval(quantities) -> Interval:
-    """From time zero to the first break of any table, or 1 s: where a scene starts, whatever the run."""
+    """From time zero to the first break of any function of time among `quantities`, or 1 s: where a scene starts,
+    whatever the run."""
     breaks = [t for q in quantities if isinstance(q, PiecewiseLinear) for t in q.time if t > 0.0]
     return Interval(Fraction(0), Fraction(min(breaks, default=1.0)), Fraction(0), Fraction(0))
 
 
 def largest_value(quantity) -> float:
-    """Largest absolute value that a number or table takes."""
+    """Largest absolute value that a number or function of time takes."""
     return max(map(abs, quantity.value)) if isinstance(quantity, PiecewiseLinear) else abs(float(quantity))
 
 
@@ -104,7 +107,8 @@ def _fastest(speed, leg: Interval) -> float:
 
 
 def time_of_angle(speed, angle: float) -> float:
-    """Time (s) at which the shaft has turned through `angle` (rad), speed a number or table.
+    """Time (s) at which the shaft has turned through `angle` (rad, either way), `speed` (rad/s) a number or function of
+    time.
     Raises ValueError if it never does."""
     if not isinstance(speed, PiecewiseLinear):
         if speed == 0.0:

@@ -112,8 +112,8 @@ class Model:
         return self._linear_scenes[key]
 
     def still_film(self, interval: Interval, shift: float):
-        """Stiffness and damping (3, 3) of the film at an interval's start without mean spin, the gap `shift` (m) wider;
-        not to be changed."""
+        """Stiffness and damping, each (3, 3), as `film_matrices`, at an interval's start without mean spin, the gap
+        `shift` (m) wider; not to be changed."""
         key = interval.start, shift
         if key not in self._still_films:
             found = self.interface.linearised(interval, mean_spin=0.0, shift=shift, pace=self.reference_rate)
@@ -127,7 +127,7 @@ class Model:
     # --- vectors ------------------------------------------------------------------------------------
 
     def vector(self, q, q_rate) -> np.ndarray:
-        """Unknowns `y` (size,), works zero, from displacements and rates (n,)."""
+        """Unknowns `y` (size,), works and film zero, from displacements (m, rad) and rates (n,)."""
         unknowns, y = self.unknowns, np.zeros(self.unknowns.size)
         y[: unknowns.n] = q
         for i, place in enumerate(unknowns.rate_places):

@@ -41,8 +41,8 @@ DEGREES, MILLIMETRES, MICROMETRES_PER_HOUR = ("deg", 180 / np.pi), ("mm", 1e3), 
 
 @dataclass(frozen=True)
 class Samples:
-    """Instants of a segment: `taus` (m,), and there the states of the gap, of the equations' scratch, and the thinnest
-    film, its angle and its radius, a row each."""
+    """Instants `taus` (m,) (s) of a segment, and there the states `gap` (m, GAP_STATE_SIZE), `scratch` of the equations
+    (m, SCRATCH), and `low` (m, 3): the thinnest film (m), its angle (rad) and its radius (m)."""
 
     segment: object
     taus: np.ndarray
@@ -52,22 +52,22 @@ class Samples:
 
     @cached_property
     def waves(self) -> np.ndarray:
-        """Cosine and sine parts (m, orders, 2) of the gap's waves."""
+        """Cosine and sine parts (m), shape (m, orders, 2), of the gap's waves."""
         return wave_parts_along(self.segment.model.face, self.gap)
 
     @cached_property
     def shaft(self) -> tuple[float, float]:
-        """Shaft speed (rad/s) at the start of the interval, and its slope."""
+        """Shaft speed (rad/s) at the start of the interval, and its slope (rad/s^2)."""
         return constant_and_slope(self.segment.model.scene.shaft.speed, self.segment.interval)
 
     @cached_property
     def tilt(self) -> np.ndarray:
-        """Complex relative tilt (m,)."""
+        """Complex relative tilt (m,), in rad."""
         return self.gap[:, GX] + 1j * self.gap[:, GY]
 
     @cached_property
     def torque(self) -> np.ndarray:
-        """Friction torque (m,) of film and contact on the rotor."""
+        """Friction torque (m,), in N m, of film and contact on the rotor."""
         return self.gap[:, TORQUE] + self.gap[:, CONTACT_TORQUE]
 
 

@@ -1,8 +1,8 @@
 """When a ring on its secondary seal sticks and when it slips: found between steps, to the time.
 
-A sliding ring is captured when its sliding speed has fallen below the band (1.25 times the accuracy times the scale of
-the rates) and what it would have to hold lies inside the limit surface; a stuck ring slips when that load reaches the
-surface.
+A sliding ring is captured when its sliding speed has fallen below the model's `capture_speed` (1.25 times the accuracy
+times the scale of the axial rates) and what it would have to hold lies inside the limit surface; a stuck ring slips
+when that load reaches the surface.
 """
 
 import numpy as np
@@ -50,8 +50,7 @@ LOOKS = 2
 
 class StickSlip:
     """Which rings stick (`stuck` {ring: bool}); finds and makes the changes: `sticks`, `slips` counts them, `dropped`
-    is
-    the kinetic energy (J) lost at captures."""
+    is the kinetic energy (J) lost at captures."""
 
     def __init__(self, model):
         self.model, self.rings, self.segment = model, model.unknowns.coulomb_rings, None
@@ -61,16 +60,18 @@ class StickSlip:
         self._yp = np.empty(model.unknowns.size)
 
     def begin(self, segment, tau, y):
+        """A segment begins: its equations are asked from now on."""
         self.segment = segment
 
     def sliding_state(self, k: int, tau: float, y) -> tuple[float, float]:
-        """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface."""
+        """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface (dimensionless,
+        `secondary_seal.excess`), at segment time `tau` (s) and unknowns `y` (size,)."""
         self.segment.ring_rates(tau, y, self._yp)
         at = SEALS + PER_SEAL * k
         return self.segment.w[at + SEAL_SPEED], self.segment.w[at + SEAL_EXCESS]
 
     def start(self, segment, tau: float, y) -> dict:
-        """The rings that stick at the very start: those at rest on a load that they can hold."""
+        """The rings that stick at the very start ({ring: bool}): those at rest on a load that they can hold."""
         self.begin(segment, tau, y)
         for k in self.rings:
             speed, outside = self.sliding_state(k, tau, y)
@@ -88,7 +89,8 @@ class StickSlip:
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
     def accept(self, block, advance) -> Transition | None:
-        """The first transition in a block of steps.  `advance(tau, y, until)` integrates."""
+        """The first transition in a block of steps, or None.  `advance(tau, y, until)` integrates from `tau` to `until`
+        (s) and returns the unknowns (size,) there."""
         found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
         return Transition(found[0], float(found[1]), *found[2:]) if found else None
 
@@ -116,7 +118,7 @@ class StickSlip:
         return None
 
     def make(self, transition: Transition) -> Change:
-        """Let the ring of a transition stick or slip."""
+        """Let the ring of a transition stick or slip; the event's `value` is the kinetic energy (J) lost."""
         k, tau, y = transition.what, transition.time, transition.y
         name = RING_NAMES[k]
         if self.stuck[k]:

@@ -139,7 +139,8 @@ class Unknowns:
         self.ring_block[equations.WORKS_AT], self.ring_block[equations.EXTENDED] = self.works.start, self.extended
 
     def algebraic(self, film_damping: np.ndarray) -> list[int]:
-        """Algebraic unknowns: displacements without mass and without any damping on them, and those of the film."""
+        """Places of the algebraic unknowns: displacements without mass and without any damping on them, and those of
+        the film.  `film_damping` (3, 3)."""
         places = []
         for k in range(2):
             block = self.ring_block[equations.RING * k : equations.RING * (k + 1)]
