@@ -1,4 +1,5 @@
-"""The verbs: run, check, schema, show, plot, validate.  Everything heavy is imported by the verb that needs it."""
+"""The verbs: run, check, schema, show, plot, validate, study.  Everything heavy is imported by the verb that
+needs it."""
 
 import contextlib
 import json

@@ -45,8 +45,8 @@ class FilmCollapsed(RuntimeError):
 
 
 def ramp_to(scene, key, last, x, point):
-    """Unknowns (n,) after the ramp to the scene from the value `last` and its end `x`, or from a seal without any
-    misalignment (x None).  Raises FilmCollapsed."""
+    """Unknowns (n,) after the ramp to the scene from the value `last` of `key` and its end `x` (n,), or from a seal
+    without any misalignment (x None).  `point` {"accuracy", "ramp" (periods)}.  Raises FilmCollapsed."""
     starts = {key: last} if x is not None and key in LED else {}
     if x is None:
         starts = {k: 0.0 for k in LED[:3] if part(scene, k)}
@@ -69,7 +69,11 @@ def ramp_to(scene, key, last, x, point):
 
 
 def sweep_branch(scene, point: dict) -> dict:
-    """The points of one direction, each from the end of the one before."""
+    """{"rows": the points of one direction, each from the end of the one before}.
+
+    `point` {"key", "values", "direction", and what `characterise` and `ramp_to` take}.  A row has `value`, `direction`,
+    `start` ("continued" or "aligned"), `status`, and the keys of `characterise`, or `message` and `class` "collapse".
+    """
     scene, x, last, rows = frozen_at_end(scene), None, None, []
     for value in point["values"]:
         here = with_values(scene, {point["key"]: value})
@@ -85,14 +89,21 @@ def sweep_branch(scene, point: dict) -> dict:
 
 
 def neighbours(scene, x, turns, accuracy, method=None):
-    """Exponent by two trajectories, integrated FINER than the rest: their distance must be far above the integrator's
-    error even after a turn that draws them together."""
+    """Exponent per period by two trajectories over `turns` periods from `x` (n,), integrated FINER than the rest: their
+    distance must be far above the integrator's error even after a period that draws them together."""
     fine = PeriodMap(scene, accuracy / FINER, method)
     return two_trajectories(fine.step, x, fine.scales, turns, distance=APART)
 
 
 def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
-    """Where the motion ends up at one point: its last unknowns, and what it is like.  Raises FilmCollapsed."""
+    """Where the motion ends up at one point: its last unknowns (n,), and what it is like.  Raises FilmCollapsed.
+
+    `x` (n,) to start from; `point` {"accuracy", "drop" and "keep" (periods left out and kept), "exponent_turns"}.
+    Returns `class`, `period` (returns), `distinct`, `contacts` per period, `contact_share`, `contact_force` over the
+    closing force, `impulse` (N s), `contact_power` (W), `exponent`, `uncertainty`, `multiplier`, `section` [m][2]
+    (rad), `h_min` [m] (m), `lines`, `orders`, `amplitude` (rad), `end` [n], `evaluations` and `wall_time` (s) per
+    period.
+    """
     stroboscope = PeriodMap(scene, point["accuracy"])
     for periods in (point["drop"], point["keep"]):
         turns = stroboscope.run(x, periods)

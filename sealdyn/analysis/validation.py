@@ -34,7 +34,8 @@ MISALIGNMENT_EXPLAINED = "follows from the printed transmissibilities within the
 def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float = 0.0, turning: float = 0.0, speed=None):
     """Green's (1989) reference seal as an FMR or FMS scene with a linear film in his coefficients.
 
-    `fixed` and `turning` are the misalignments (rad) at rest in space (stator's) and turning with the shaft (rotor's).
+    `inertia_ratio` I/J; `fixed` and `turning` are the misalignments (rad) at rest in space (stator's) and turning with
+    the shaft (rotor's); `speed` (rad/s, default his).
     """
     seal = cf.GREEN_1989_SEAL
     support = Support(
@@ -147,10 +148,12 @@ def _critical_speeds(arrangement: str, c: float):
 
 
 def validate_all() -> list[dict]:
-    """Every row of Green's Table 1: source, quantity, published, the three methods, deviation, verdict, remark.
+    """Every row of Green's Table 1: source, arrangement, inertia_ratio, quantity, published, the three methods
+    (formula, linear_algebra, time_domain), deviation of the formula from the print, roads_apart (largest difference of
+    the methods), both relative, verdict, remark.
 
-    Verdicts: "agrees" (within one unit of the last printed digit), "rounding" (explained by the digits printed),
-    "print differs" (the print is wrong or unexplained, the methods agree), "FAILED" (they disagree).
+    Verdicts: "agrees" (within one unit of the last printed digit), "rounding" (explained by the digits printed), "print
+    differs" (the print is wrong or unexplained, the methods agree), "FAILED" (they disagree).
     """
     cases, rows = {}, []
     for entry in cf.GREEN_1989:
@@ -194,7 +197,7 @@ def _row(entry, roads) -> dict:
 
 
 def report(rows: list[dict]) -> None:
-    """Print the rows as a table, remarks below."""
+    """Print the rows of `validate_all` as a table, remarks below."""
     head = ("seal", "c", "quantity", "published", "formula", "lin. algebra", "time domain", "deviation", "verdict")
     cells = [head]
     for row in rows:

@@ -11,7 +11,8 @@ from .errors import ScenarioError
 
 
 def override_key(raw: dict, override: str, name: str) -> None:
-    """Set one "key=value": the value is TOML where it can be, else a string."""
+    """Set one "key=value" in the tables `raw` of the scenario `name`: the value is TOML where it can be, else a string.
+    Raises ScenarioError."""
     key, equals, written = (part.strip() for part in override.partition("="))
     name = f"{name} (--set {quoted(override)})"
     if not key or not equals:

@@ -37,8 +37,8 @@ STARTS = r"^(rest|steady|.+\.h5)$"
 class Run:
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
-    `turns` of the shaft (default 60) or `duration`; `samples_per_turn` (default 64; of a shaft at rest:
-    1000 in all) or `samples` in all.
+    `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
+    all) or `samples` in all.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -75,8 +75,9 @@ class ScenarioFile(Scene):
 class Scenario:
     """A scene with its run, and the file it came from.
 
-    `text` and `overrides` say where the scene came from; nobody reads them again.  `given`: dotted keys that the user
-    wrote.  `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.
+    `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
+    `question` the comment at the head of the file; `given`: dotted keys that the user wrote.  `reading`: the runout as
+    written where it is a total indicator reading, which follows the outer radius.
     """
 
     scene: Scene
@@ -211,7 +212,7 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
 
 
 def given_keys(tree: dict, key: str = "") -> list[str]:
-    """Dotted keys of a scenario's tables, down to what is no table."""
+    """Dotted keys of a scenario's tables (`tree`), down to what is no table; `key` is the path to the tree."""
     found = []
     for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
         path = f"{key}.{step}" if key else str(step)

@@ -1,9 +1,9 @@
 """What tolerance a run needs, and how wrong it is.
 
-A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial
-with a loose tolerance: if that errs little enough the run goes on from there, else it starts again as much sharper as
-that told. Any other run has the cautious tolerance of solvers/methods.py, and a stretch of it is done again thirty
-times sharper; what the two differ by grows over the periods that the scene remembers.
+A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial with
+a loose tolerance: if that errs little enough the run goes on from there, else it starts again with a tolerance sharper
+in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and a stretch of it is done again
+thirty times sharper; what the two differ by grows over the periods that the scene remembers.
 **Valid** estimates, not bounds.
 """
 
@@ -43,8 +43,8 @@ OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau":
 
 @dataclass(frozen=True)
 class TrialRun:
-    """A tolerance and why; the steps of the first stretch to go on from (times, unknowns; none if it was done in vain)
-    and what they cost."""
+    """A tolerance and a sentence why; the steps of the first stretch to go on from (`times` (m,) (s), `unknowns` (m,
+    size); none if it was done in vain) and what they cost."""
 
     tolerance: float
     said: str
@@ -65,8 +65,8 @@ class TrialRun:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Estimated errors relative to the scales of `accuracy`: of the solver, of the film against the next rung (None
-    where there is no higher one, or it cannot be estimated), both together, and a sentence."""
+    """Estimated errors relative to the scales of `accuracy`: of the solver, of the film against the next higher film
+    model (each None where it cannot be estimated, or there is no higher one), both together, and a sentence."""
 
     asked: float
     solver: float | None
@@ -81,8 +81,9 @@ class Certificate:
 
 
 def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
-    """What follows the errors of a run by this method; None where its steps do not tell them: contact, friction,
-    changing conditions, a massless ring, methods of long steps, a whirl that grows until it is not linear."""
+    """What follows the errors of a run by this method; None where its steps cannot show them: contact, friction,
+    changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear.
+    """
     model, unknowns = run.model, run.model.unknowns
     told = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
     if not told or method not in ("adams", "bdf"):
@@ -97,8 +98,8 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
 
 def choose_tolerance(run: RunState, method: str) -> TrialRun | None:
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
-    the cautious one.  None where the start does not tell of the run: where errors cannot be followed, an unstable
-    scene, errors that add up over the whole run."""
+    the cautious one.  None where the start does not represent the run: where errors cannot be followed, an unstable
+    scene, errors that add up over the whole run; and where the method fails on trial."""
     model = run.model
     if run.memory * model.shortest_period > 0.5 * run.duration:
         return None
@@ -165,8 +166,8 @@ def solver_error(run: RunState, method: str) -> float | None:
 def certify(
     run: RunState, method: str, errors: GlobalErrorEstimate | None = None, by_model: float | None = None
 ) -> Certificate:
-    """Certificate of a finished run by this method, with the errors of its steps (`errors`) and of its
-    film (`by_model`) as far as they have been followed."""
+    """Certificate of a finished run by this method, with the errors of its steps (`errors`) and of its film
+    (`by_model`, relative) as far as they have been followed."""
     by_solver = errors.worst if errors else solver_error(run, method)
     if by_model is None and run.model.interface.name == "linear":
         by_model = model_error(run)

@@ -1,7 +1,9 @@
-"""How far a linear film's scene is from the next film rung, without running that one.
+"""How far the motion of a scene with a linear film is from that with the next higher film model, without running that
+one.
 
-On the states the linear film visits, the next rung's film pushes differently; that difference, as a force on the
-linearised rings, gives the difference of the motions (the defect of the lower rung, answered linearly).
+On the states the linear film visits, the higher film pushes differently; that difference, as a force on the linearised
+rings, gives the difference of the motions (the defect of the lower film, answered linearly).
+**Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the error from the defect; here of a model, derived here.
 """
 
 import math
@@ -20,18 +22,18 @@ FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 
 
 def model_error(run, higher: str = "radial", enough: float = math.inf) -> float | None:
-    """The larger of `model_errors`, or None."""
+    """The larger of `model_errors` (relative), or None."""
     found = model_errors(run, higher, enough)
     return None if found is None else float(found.max())
 
 
 def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
-    """Estimated difference of a linear film's scene from that with the film rung `higher` over the run.
+    """Estimated difference of a linear film's scene from that with the film model `higher` over the run.
 
-    **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
     `run` a RunState with a linear film and its start; looking further ends once an error exceeds `enough`.
-    Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None
-    where it cannot be estimated.
+    **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
+    Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None where
+    it cannot be estimated.
     """
     model, unknowns = run.model, run.model.unknowns
     if unknowns.has_residual_form or not unknowns.constant or not unknowns.linear:
@@ -125,7 +127,8 @@ def _steady_error(period, linear, seen, answers) -> np.ndarray:
 
 @dataclass
 class FilmComparison:
-    """What the higher film makes of the states of the lower one."""
+    """What the higher film (`film`, block `block`) makes of the states of the lower one; `gaps` (m, GAP_STATE_SIZE) the
+    states last seen, `leakage` (m^3/s) the largest so far."""
 
     segment: object
     linear: object
@@ -135,7 +138,8 @@ class FilmComparison:
     leakage: float = 0.0
 
     def defects(self, times, states) -> np.ndarray:
-        """Forces and moments (m, n) by which the higher film pushes more than the lower one; `states` (m, 2 n)."""
+        """Forces (N) and moments (N m), shape (m, n), by which the higher film pushes more than the lower one, at
+        segment `times` (m,) (s) and `states` (m, 2 n), displacements and rates."""
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each, states_along
 
@@ -155,8 +159,8 @@ class FilmComparison:
         return np.concatenate([linear.rings[k].sign * more for k in linear.floating], axis=1)
 
     def errors(self, moved) -> np.ndarray:
-        """Largest change of what is looked at, by displacements and rates `moved` (m, 2 n) at the states last seen:
-        film at the outer radius in clearances, leakage relative to its largest."""
+        """Largest change (2,) by displacements and rates `moved` (m, 2 n) at the states last seen: of the film at the
+        outer radius in clearances, of the leakage relative to its largest."""
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each
 

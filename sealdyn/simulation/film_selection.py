@@ -11,11 +11,11 @@ from .film_error import model_error
 def select_film(
     scene, duration: float, accuracy: float, start: Callable[[RunState], None]
 ) -> tuple[RunState, float | None]:
-    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
-    that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
+    """A run (of `duration`, s) of the scene with the lowest film model that keeps the accuracy, and the estimated error
+    of a linear film that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
 
-    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
-    below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
+    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is below
+    half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
     """
     film = scene.film
 

@@ -14,11 +14,13 @@ SMALL, STEADY = 0.02, 1e-3
 
 
 def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> dict:
-    """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", or
-    "unsettled" after `most` turns.
+    """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", "failed",
+    or "unsettled" after `most` turns.
 
-    `amplitude` (least and largest relative tilt, rad), `whirl_ratio`, `contact_share` of the time, `contact_force` over
-    the closing force, `contact_power` and `friction_power` (W) over the last turns; `first_contact` and `turns`.
+    Returns `speed`, `fate` (`message` if the run ended early), `from` (rad) it starts, `first_contact` and `turns`
+    (turns of the shaft), `amplitudes` (largest relative tilt of each turn, rad), and over the last turns `amplitude`
+    (least and largest relative tilt, rad), `whirl_ratio`, `contact_share` of the time, `contact_force` over the closing
+    force, `contact_power` and `friction_power` (W), `h_min` (m).
     """
     model = free_model(scene, speed)
     unit, whirling = contact_tilt_aligned(model), RotatingWave(model)
