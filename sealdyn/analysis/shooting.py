@@ -134,8 +134,8 @@ class Shooter:
             before = size
         else:
             raise NoOrbit(f"Newton did not converge in {most} steps (defect {size:.1e} of the scales)")
-        if monodromy is None or not frozen:
-            monodromy = self.monodromy(x) if monodromy is None else monodromy
+        if monodromy is None:
+            monodromy = self.monodromy(x)
         return Orbit(
             self.period, x, monodromy, np.linalg.eigvals(monodromy), size, self.flows - begun, self.extremes(x)
         )

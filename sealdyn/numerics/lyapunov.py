@@ -17,12 +17,11 @@ BLOCKS = (8, 12, 16, 24, 32)
 
 @dataclass(frozen=True)
 class Exponent:
-    """Largest exponent per iteration (`value`), its uncertainty (95 % of cases, by blocks), growths (m,) it is the mean
-    of, and the spectrum (k,): as many exponents as directions were followed, largest first."""
+    """Largest exponent per iteration (`value`), its uncertainty (95 % of cases, by blocks), and the spectrum (k,): as
+    many exponents as directions were followed, largest first."""
 
     value: float
     uncertainty: float
-    growths: np.ndarray
     spectrum: np.ndarray
 
 
@@ -44,7 +43,7 @@ def two_trajectories(step, start, scales, iterations: int, settle: int = 20, dis
         growths[k] = np.log(size / distance)
         apart *= distance / size
     growths = growths[settle:]
-    return Exponent(float(growths.mean()), uncertainty(growths), growths, growths.mean(keepdims=True))
+    return Exponent(float(growths.mean()), uncertainty(growths), growths.mean(keepdims=True))
 
 
 def tangent_product(step, start, iterations: int, directions: int = 1, settle: int = 20) -> Exponent:
@@ -62,7 +61,7 @@ def tangent_product(step, start, iterations: int, directions: int = 1, settle: i
         growths[k] = np.log(np.abs(np.diag(r)))
     growths = growths[settle:]
     spectrum = growths.mean(axis=0)
-    return Exponent(float(spectrum[0]), uncertainty(growths[:, 0]), growths[:, 0], spectrum)
+    return Exponent(float(spectrum[0]), uncertainty(growths[:, 0]), spectrum)
 
 
 def _direction(n: int) -> np.ndarray:
@@ -86,5 +85,6 @@ def uncertainty(series) -> float:
 
 
 def horizon(exponent: float, error: float, scale: float = 1.0) -> float:
-    """Iterations after which an error has grown to `scale`: ln(scale/error)/exponent; infinite if nothing grows."""
+    """Iterations after which an error has grown to `scale` (same unit): ln(scale/error)/exponent; infinite if nothing
+    grows."""
     return float(np.log(scale / error) / exponent) if exponent > 0 else float("inf")

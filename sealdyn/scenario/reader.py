@@ -26,7 +26,6 @@ __all__ = [
     "ScenarioError",
     "parse_scenario",
     "read_scenario",
-    "unused_keys",
 ]
 
 
@@ -152,11 +151,6 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     return {"scene": scene, "run": file.run, "study": file.study, "given": given, "reading": reading}
-
-
-def unused_keys(scenario: Scenario) -> list[str]:
-    """`scenario.unused()`, as a function."""
-    return scenario.unused()
 
 
 def film_choices() -> list[str]:

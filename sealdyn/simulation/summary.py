@@ -10,7 +10,6 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import TOUCH
-from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
@@ -27,7 +26,7 @@ def model_chosen(scenario, run, method: str, why: str) -> dict:
         "unknowns": run.model.unknowns.names,
         "solver": method,
         "reasons": [*run.reasons, f"solver: {why}", run.model.interface.message],
-        "unused": unused_keys(scenario),
+        "unused": scenario.unused(),
     }
 
 

@@ -44,8 +44,8 @@ CHEAPER = 4
 # ln of the film ratios at which points in r are tried.
 TRIED = np.linspace(0.0, 3.5, 351)
 
-# Rows of the nodes: distance from r_i, arm of the tilt, film of the aligned faces, film at this angle (m).
-D, ARM, ALIGNED, HERE = range(4)
+# Rows of the nodes: distance from r_i, arm of the tilt, film of the aligned faces (m).
+D, ARM, ALIGNED = range(3)
 # Rows of the pieces (between a node and the next): index of the rule, whether its points are in r, its first point.
 RULE, IN_R, FIRST = range(3)
 # Rows of the points: radius, integrals of 1 and of the arm (r dr; planar: dr), arm and film of the aligned faces,
@@ -77,9 +77,9 @@ def plain_ratios(radius_ratio: float, error: float) -> tuple[float, ...]:
 
 @njit(cache=True)
 def nodes_of(f, dz):
-    """The radii of the profile: rows named above, (4, radii)."""
+    """The radii of the profile: rows named above (m), (3, radii); `dz` change of the axial gap (m)."""
     r_i, count, mean = f[INNER_RADIUS], int(f[PROFILE]), f[TILT_AT_MEAN] != 0.0
-    nodes = np.empty((4, count))
+    nodes = np.empty((3, count))
     for n in range(count):
         r = f[PROFILE_RADII + n]
         nodes[D, n], nodes[ARM, n] = r - r_i, 0.5 * (r_i + f[OUTER_RADIUS]) if mean else r
@@ -90,7 +90,7 @@ def nodes_of(f, dz):
 @njit(cache=True)
 def pieces_of(f, nodes, tilt):
     """The pieces: rows named above, (3, pieces); the number of points and of angles, and whether any film is below the
-    floor."""
+    floor.  `nodes` (3, radii), `tilt` (rad)."""
     floor, room, low, total = f[FLOOR], 1e9, False, 0
     pieces = np.zeros((3, nodes.shape[1] - 1), np.int64)
     last_thin = last_thick = 0.0
