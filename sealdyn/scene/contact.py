@@ -19,7 +19,7 @@ class Contact:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     roughness: Length
-    """Composite rms roughness of both faces; they meet at 3 rms."""
+    """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5."""
     law: Literal["christensen", "greenwood-williamson"] = "christensen"
     """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
     compressive_strength: Stress | None = None

@@ -29,7 +29,7 @@ LENGTH = Length.__metadata__[0]
 
 
 class Lengths(Quantity):
-    """A list of lengths."""
+    """A list of lengths (m), as a profile has."""
 
     def expected(self) -> str:
         """What the key expects, in words, for a message."""
@@ -121,7 +121,7 @@ class Film:
     coefficients: Literal["green", "radial"] | Coefficients = "green"
     """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3
-    """Share of the clearance below which the film counts as collapsed."""
+    """Share of the clearance below which the film counts as collapsed; with [contact] the asperities decide."""
     profile: Profile | None = None
     """Faces that are no plain cones."""
 

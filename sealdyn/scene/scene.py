@@ -11,8 +11,8 @@ from .rings import Rotor, Stator
 
 @dataclass(frozen=True)
 class Closing:
-    """The `[closing]` table: hydraulic balance and spring.  Give two of balance ratio, spring force and
-    film clearance and the third follows; give the clearance alone and the closing force is what holds it."""
+    """The `[closing]` table: hydraulic balance and spring force (N).  Give two of balance ratio, spring force and film
+    clearance and the third follows; give the clearance alone and the closing force is what holds it."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

@@ -1,4 +1,4 @@
-"""Asperity contact against the sheet's law written out here and summed over a dense grid of the face."""
+"""Asperity contact against Christensen's law, written out here and summed over a dense grid of the face."""
 
 import mpmath
 import numpy as np
