@@ -85,7 +85,7 @@ class Quantity:
         number, unit = match[1], match[2]
         if not unit:
             raise QuantityError(f"{quoted(text)} (no unit)", self.expected())
-        unit = unit.translate(WRITTEN)
+        unit = unit.translate(UNICODE_UNITS)
         if self.name == "acceleration":
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
@@ -111,7 +111,7 @@ class Quantity:
         return {"description": self.expected(), "quantity": self.name, "unit": self.unit, "anyOf": [number, text]}
 
 
-WRITTEN = {
+UNICODE_UNITS = {
     ord("µ"): "u",
     ord("μ"): "u",
     ord("·"): "*",
@@ -120,7 +120,7 @@ WRITTEN = {
     ord("²"): "^2",
     ord("³"): "^3",
 }
-WRITTEN |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
+UNICODE_UNITS |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
 
 
 def quoted(value: Any, most: int = 60) -> str:
@@ -141,7 +141,7 @@ def quoted(value: Any, most: int = 60) -> str:
 
 @dataclass(frozen=True)
 class VaryingQuantity:
-    """A quantity that may also be `PiecewiseLinear`."""
+    """A `Quantity` that may also be a function of time, `PiecewiseLinear`."""
 
     quantity: Quantity
 
@@ -216,7 +216,7 @@ def _entries(quantity: Quantity, column: list, name: str) -> tuple[float, ...]:
 
 
 class Varying:
-    """`Varying[X]`: an X that may be a table of times."""
+    """`Varying[X]`: the field type of an X that may be a function of time."""
 
     def __class_getitem__(cls, kind):
         return Annotated[float | PiecewiseLinear, VaryingQuantity(kind.__metadata__[0])]

@@ -77,7 +77,7 @@ class PeriodMap:
         """The unknowns (n,) one period later.  Raises SceneError for a ring that sticks, SolverFailure."""
         run = self.one_period
         if run.stick_slip:
-            raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "smooth" for exponents')
+            raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "regularised" for exponents')
         y = np.zeros(run.model.unknowns.size)
         y[: self.size] = x
         tolerance = tolerance_for(self.method, self.accuracy, run.memory)
@@ -120,11 +120,11 @@ class PeriodMap:
         """What is kept of a motion sampled SAMPLES times a period: displacements and rates (m, n) at times `t` (m,)
         (s); the arrays of PeriodSamples but `touching` and `last`, by name."""
         run = run or self.one_period
-        starts = np.array([leg.time for leg in run.intervals])
-        legs = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
+        starts = np.array([interval.time for interval in run.intervals])
+        indices = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
         parts = []
-        for k in np.unique(legs):
-            inside = legs == k
+        for k in np.unique(indices):
+            inside = indices == k
             parts.append(signals(run.segment(int(k)), t[inside] - starts[k], q[inside], rate[inside]))
         names = parts[0] if parts else ()
         seen = {name: np.concatenate([p[name] for p in parts]).reshape(-1, SAMPLES) for name in names}
@@ -214,7 +214,8 @@ def dips(h) -> np.ndarray:
 
 
 def joined(parts: list[PeriodSamples]) -> PeriodSamples:
-    """Runs that follow each other as one."""
+    """Runs that follow each other as one: impulse, evaluations and wall time per period are their means, contacts their
+    sum."""
     if len(parts) == 1:
         return parts[0]
     rows = {name: np.concatenate([getattr(p, name) for p in parts]) for name in PeriodSamples.__annotations__

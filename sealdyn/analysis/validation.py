@@ -22,8 +22,8 @@ from ..solvers.recorder import Recorder
 
 ACCURACY = 1e-8
 # The three methods must agree to this, relative.
-ROADS_AGREE = {"critical_speed": 1e-3, "critical_misalignment": 1e-5}
-ROADS_AGREE_ELSE = 1e-5
+TOLERANCE = {"critical_speed": 1e-3, "critical_misalignment": 1e-5}
+TOLERANCE_ELSE = 1e-5
 SPEED_EXPLAINED = (
     "printed 8.4e3 does not follow from the paper's own formula; film stiffness alone instead of support plus film "
     "stiffness gives 8.399e3, which rounds to the print"
@@ -74,7 +74,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
     numbers = cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
     formulas = (cf.fmr_static, cf.fmr_dynamic) if arrangement == "FMR" else (cf.fms_static, cf.fms_dynamic)
     unit = 1e-5
-    roads = [[float(f(**numbers)) for f in formulas]]
+    formula = [float(f(**numbers)) for f in formulas]
     pairs = ((unit, 0.0), (0.0, unit), (unit, unit))
     algebra, time_domain = [], []
     for fixed, turning in pairs:
@@ -84,8 +84,8 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
         algebra.append(modes.steady_extremes(linear, answers, run.period())[0] / unit)
         solve(run, "adams", ACCURACY, Recorder())
         time_domain.append(run.extrema.records[1, 4] / unit)
-    roads[0].append(sum(roads[0]))
-    rows = [roads[0], algebra, time_domain]
+    formula.append(sum(formula))
+    rows = [formula, algebra, time_domain]
     radius_ratio = seal["inner_radius"] / seal["outer_radius"]
     # In units of C/r_o: the faces touch at 1/R; the ring's own misalignment is the FMR's turning one, the
     # FMS's critical forcing is its runout.
@@ -166,8 +166,8 @@ def validate_all() -> list[dict]:
     return rows
 
 
-def _row(entry, roads) -> dict:
-    formula, algebra, time_domain = roads
+def _row(entry, methods) -> dict:
+    formula, algebra, time_domain = methods
     row = {
         "source": entry.source,
         "arrangement": entry.arrangement,
@@ -187,7 +187,7 @@ def _row(entry, roads) -> dict:
     values = np.array([formula, algebra, time_domain], dtype=float)
     apart = float(np.max(np.abs(values / formula - 1)))
     row |= {"deviation": formula / entry.value - 1, "roads_apart": apart}
-    if not apart <= ROADS_AGREE.get(entry.quantity, ROADS_AGREE_ELSE):
+    if not apart <= TOLERANCE.get(entry.quantity, TOLERANCE_ELSE):
         return row | {"verdict": "FAILED", "remark": "the three methods disagree"}
     if abs(formula - entry.value) <= 1.0001 * entry.last_digit:
         return row | {"verdict": "agrees"}

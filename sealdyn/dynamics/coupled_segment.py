@@ -28,7 +28,7 @@ class CoupledSegment(Segment):
         film, f, block = model.interface.film, model.f, model.contact
         self._of_film = FilmDerivatives(film, model.unknowns.film_unknowns, f)
         count = at.stop - at.start
-        x, x_rate, left, work = np.empty(count), np.empty(count), np.empty(count), np.zeros(self.size)
+        x, x_rate, rest, work = np.empty(count), np.empty(count), np.empty(count), np.zeros(self.size)
 
         def loads(tau, y, yp):
             equations.kinematics(tau, y, yp, p, w, s)
@@ -41,10 +41,10 @@ class CoupledSegment(Segment):
             loads(tau, y, yp)
             equations.residual(tau, y, yp, p, w, s, work, res)
             x_rate[:] = yp[at]
-            code = film.residual(f, s, x, x_rate, left)
+            code = film.residual(f, s, x, x_rate, rest)
             if code:
                 raise SolverFailure(f"{film.STATUS[code]} (at {tau:.6g} s into this segment)")
-            res[at] = left
+            res[at] = rest
 
         def rhs(tau, y, yp):
             raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")

@@ -42,18 +42,18 @@ class ClosingForce:
         high, low = (outer, inner) if self.outer_is_high else (inner, outer)
         return self.area * (self.balance_ratio * high + (1 - self.balance_ratio) * low) + spring
 
-    def over(self, leg: Interval, film) -> tuple[float, float]:
+    def over(self, interval: Interval, film) -> tuple[float, float]:
         """Closing force (N) and its slope (N/s) over a segment."""
         inner, outer = (
-            constant_and_slope(film.inner_pressure, leg),
-            constant_and_slope(film.outer_pressure, leg),
+            constant_and_slope(film.inner_pressure, interval),
+            constant_and_slope(film.outer_pressure, interval),
         )
-        spring = constant_and_slope(self.spring, leg)
+        spring = constant_and_slope(self.spring, interval)
         return tuple(self.at(inner[k], outer[k], spring[k]) for k in range(2))
 
 
 def initially(quantity) -> float:
-    """Value of a number or table at time zero."""
+    """Value of a number or function of time at time zero."""
     return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
 
 

@@ -140,23 +140,23 @@ def current_record(record, kind, tolerance):
 
 
 @njit(cache=True)
-def store(record, kind, out, at, theta, radius, leg):
+def store(record, kind, out, at, theta, radius, index):
     """A new record in the measure of this kind: its value `out`, segment time `at` (s), angle (rad), radius (m) and
     segment index."""
     if kind == THICKNESS:
-        record[H], record[H_TAU], record[H_LEG] = out[kind], at, leg
+        record[H], record[H_TAU], record[H_LEG] = out[kind], at, index
         record[H_THETA], record[H_RADIUS] = theta, radius
     elif kind == MINUS_TILT:
-        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, leg
+        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, index
     else:
-        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, leg
+        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, index
 
 
 @njit(cache=True)
-def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach):
+def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, index, records, tolerance, pace, reach):
     """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
-    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in segment time;
     `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
     fastest imposed motion (rad/s).  `reach` (count,) is filled: no film in the step is thinner than that (m).
     """
@@ -210,10 +210,10 @@ def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, 
                         for other in range(3):
                             # The tilt's extremes up to the last instant, which belongs to the run.
                             if other == THICKNESS or out[other] < current_record(record, other, tolerance)[0]:
-                                store(record, other, out, fallen, theta, radius, leg)
+                                store(record, other, out, fallen, theta, radius, index)
                         return fallen
                     if out[kind] < held:
-                        store(record, kind, out, at, theta, radius, leg)
+                        store(record, kind, out, at, theta, radius, index)
     return -1.0
 
 
@@ -248,8 +248,8 @@ class ExtremaTracker:
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 
-    def state(self) -> list:
-        """What a continued run needs: the records, flat."""
+    def state(self) -> np.ndarray:
+        """What a continued run needs: the records, flat (WINDOWS RECORD,)."""
         return self.records.ravel()
 
     def restore(self, state):

@@ -41,12 +41,12 @@ class Interval:
         return float(self.start)
 
 
-def constant_and_slope(quantity, leg: Interval) -> tuple[float, float]:
+def constant_and_slope(quantity, interval: Interval) -> tuple[float, float]:
     """Value at the start and slope (per s) over one interval of a number or a `PiecewiseLinear` (which has no kink
     inside the interval), in its own unit."""
     if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
-    t0, t1 = leg.time, leg.time + leg.length
+    t0, t1 = interval.time, interval.time + interval.length
     # Ask just inside, so that a step at either end counts on the right side.
     inside = t0 + 0.5 * (t1 - t0)
     middle, early = quantity.at(inside), quantity.at(t0 + 0.25 * (t1 - t0))
@@ -62,10 +62,10 @@ def modulo_turn(angle: Fraction) -> float:
     return float(exact % TURN)
 
 
-def angle_turned(speed, leg: Interval) -> Fraction:
+def angle_turned(speed, interval: Interval) -> Fraction:
     """Exact integral (rad) of the speed (rad/s, number or function of time) over an interval."""
-    w, slope = constant_and_slope(speed, leg)
-    return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
+    w, slope = constant_and_slope(speed, interval)
+    return Fraction(w) * interval.span + Fraction(slope) * interval.span**2 / 2
 
 
 def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> list[Interval]:
@@ -75,18 +75,18 @@ def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> l
     for quantity in quantities:
         if isinstance(quantity, PiecewiseLinear):
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
-    legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
+    intervals, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
     points = sorted(breaks)
     for begin, end in pairwise(points):
         whole = Interval(Fraction(begin), Fraction(end) - Fraction(begin), rotor_angle, stator_angle)
         fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
         pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))
         for k in range(pieces):
-            leg = Interval(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
-            legs.append(leg)
-            rotor_angle += angle_turned(rotor_speed, leg)
-            stator_angle += angle_turned(stator_speed, leg)
-    return legs
+            interval = Interval(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
+            intervals.append(interval)
+            rotor_angle += angle_turned(rotor_speed, interval)
+            stator_angle += angle_turned(stator_speed, interval)
+    return intervals
 
 
 def first_interval(quantities) -> Interval:
@@ -101,9 +101,9 @@ def largest_value(quantity) -> float:
     return max(map(abs, quantity.value)) if isinstance(quantity, PiecewiseLinear) else abs(float(quantity))
 
 
-def _fastest(speed, leg: Interval) -> float:
-    w, slope = constant_and_slope(speed, leg)
-    return max(abs(w), abs(w + slope * leg.length))
+def _fastest(speed, interval: Interval) -> float:
+    w, slope = constant_and_slope(speed, interval)
+    return max(abs(w), abs(w + slope * interval.length))
 
 
 def time_of_angle(speed, angle: float) -> float:
@@ -114,19 +114,19 @@ def time_of_angle(speed, angle: float) -> float:
         if speed == 0.0:
             raise ValueError("the shaft does not turn")
         return angle / abs(speed)
-    t, left = 0.0, angle
+    t, remaining = 0.0, angle
     for end in [b for b in _with_reversals(speed) if b > 0.0] + [math.inf]:
         w0 = abs(speed.at(t))
         if end == math.inf:
             if w0 == 0.0:
                 raise ValueError("the shaft stops before it has turned so far")
-            return t + left / w0
+            return t + remaining / w0
         middle = abs(speed.at(0.5 * (t + end)))
         turned_here, slope = middle * (end - t), 2 * (middle - w0) / (end - t)
-        if turned_here >= left:
-            # w0 x + slope x^2 / 2 = left, in the form that does not cancel.
-            return t + 2 * left / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * left, 0.0)))
-        t, left = end, left - turned_here
+        if turned_here >= remaining:
+            # w0 x + slope x^2 / 2 = remaining, in the form that does not cancel.
+            return t + 2 * remaining / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * remaining, 0.0)))
+        t, remaining = end, remaining - turned_here
     raise AssertionError
 
 

@@ -10,7 +10,7 @@ from .equilibrium import axial_shift
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
 from .segments import Segment
-from .stick_slip import FADES
+from .stick_slip import FRICTION_FADE
 from .unknowns import Unknowns
 
 
@@ -42,7 +42,7 @@ class Model:
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
-        self.capture_speed = accuracy * self.clearance * self.reference_rate / FADES
+        self.capture_speed = accuracy * self.clearance * self.reference_rate / FRICTION_FADE
         self._set_bands()
 
     def _imposed(self) -> list:
@@ -57,7 +57,7 @@ class Model:
         """Sliding speeds (m/s) below which friction fades: the user's width, or a little below the capture speed."""
         for k in self.unknowns.seals:
             coulomb = k in self.unknowns.coulomb_rings
-            band = FADES * self.capture_speed if coulomb else self.unknowns.seal(k).width
+            band = FRICTION_FADE * self.capture_speed if coulomb else self.unknowns.seal(k).width
             self.unknowns.ring_block[equations.RING * k + equations.SEAL_BAND] = band
 
     # --- time ---------------------------------------------------------------------------------------

@@ -40,10 +40,10 @@ INSIDE = 1e-9
 # ... and this far when it has only just slipped and not yet left the band: else it would chatter.
 WITHDRAWN = 1e-3
 # Each approach to standstill goes so much of the way that a constant deceleration would leave.
-NEARER, SHORTEST = 0.9, 0.2
+APPROACH_FACTOR, SHORTEST = 0.9, 0.2
 # Friction fades only below this share of the band, and the last approach ends above it: where a ring is captured its
 # deceleration is the sliding one, with which the motion of the last step is interpolated.
-FADES, ABOVE = 0.8, 0.9
+FRICTION_FADE, ABOVE = 0.8, 0.9
 # Looks into each step of a stuck ring.
 LOOKS = 2
 
@@ -79,7 +79,7 @@ class StickSlip:
         return dict(self.stuck)
 
     def state(self) -> dict:
-        """What a continued run needs."""
+        """What a continued run needs: `stuck` {ring: bool}, the counts and the energy lost (J)."""
         return {"stuck": {str(k): bool(v) for k, v in self.stuck.items()}, "sticks": self.sticks,
                 "slips": self.slips, "dropped": self.dropped}  # fmt: skip
 
@@ -219,7 +219,7 @@ class StickSlip:
         if float(np.linalg.norm(a + nearest * change)) > band + 0.5 * length**0.5:
             return None
         # From here each integration ends before standstill, so that the friction's direction stays smooth.
-        tau, y, part, latest = t[step], ys[step].copy(), NEARER, 2 * t[step + 1] - t[step]
+        tau, y, part, latest = t[step], ys[step].copy(), APPROACH_FACTOR, 2 * t[step + 1] - t[step]
         before = (tau, y)
         for _ in range(60):
             v, rate, outside = self._velocity(k, tau, y)

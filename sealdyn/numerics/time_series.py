@@ -22,10 +22,10 @@ def period_of(section, scale: float, same: float = SAME) -> int | None:
     between which as many points are seen; None if there is none up to LONGEST."""
     section = np.asarray(section)
     for k in range(1, min(LONGEST, len(section) // 3) + 1):
-        left = np.max(np.abs(section[k:] - section[:-k])) / scale
-        if left <= same:
+        mismatch = np.max(np.abs(section[k:] - section[:-k])) / scale
+        if mismatch <= same:
             # A slow spiral also comes near where it was, but is seen at too few or too many places.
-            apart = same if left <= EXACT * same else 3 * same
+            apart = same if mismatch <= EXACT * same else 3 * same
             return k if distinct_points(section, scale, apart) == k else None
     return None
 

@@ -107,8 +107,8 @@ def explain(name: str, kind: type, raw: dict, errors: list[dict]) -> ScenarioErr
     """A ScenarioError from the most telling of pydantic's errors: an unknown key first, then a wrong value, then a
     missing key.  `name` of the scenario, `kind` its dataclass, `raw` its tables."""
     rank = {"unexpected_keyword_argument": 0, "missing": 2}
-    told = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
-    error = min(told, key=lambda e: rank.get(e["type"], 1))
+    relevant = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
+    error = min(relevant, key=lambda e: rank.get(e["type"], 1))
     unknown = error["type"] == "unexpected_keyword_argument"
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)

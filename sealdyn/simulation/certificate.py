@@ -85,8 +85,8 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear.
     """
     model, unknowns = run.model, run.model.unknowns
-    told = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
-    if not told or method not in ("adams", "bdf"):
+    follows = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
+    if not follows or method not in ("adams", "bdf"):
         return None
     asked = model.accuracy
     errors = GlobalErrorEstimate(run.segment(0), ERROR_SHARE * asked, tolerance_for(method, asked, run.memory))
@@ -127,17 +127,18 @@ def choose_tolerance(run: RunState, method: str) -> TrialRun | None:
     remembered = min(run.memory, run.duration / model.shortest_period)
     error = TRIAL_SAFETY * errors.worst * max(1.0, remembered * model.shortest_period / length)
     most = max(error / (SHARE * asked), audit.residual() / (ENERGY * asked))
-    said = f"tolerance {{:.1e}} by a trial over {TRIAL_PERIODS:.0f} fastest periods"
+    reason = f"tolerance {{:.1e}} by a trial over {TRIAL_PERIODS:.0f} fastest periods"
     if most <= 1.0:
-        return TrialRun(tolerance, said.format(tolerance), t, ys, counts)
+        return TrialRun(tolerance, reason.format(tolerance), t, ys, counts)
     # Errors are proportional to tolerances, as far as they are at all.
     tolerance = max(cautious, tolerance / most)
-    return TrialRun(tolerance, said.format(tolerance), t[:0], ys[:0], counts)
+    return TrialRun(tolerance, reason.format(tolerance), t[:0], ys[:0], counts)
 
 
 def solver_error(run: RunState, method: str) -> float | None:
     """Estimated error of displacements over a run with the cautious tolerance, relative to their scales, from a stretch
-    of it done twice.  None if the stretch does not end well."""
+    of it done twice.  None if the stretch does not end well.
+    **Valid** as the module; of the matrix exponential the interpolation error, which the tolerance bounds."""
     model, memory = run.model, run.memory
     tolerance = tolerance_for(method, model.accuracy, memory)
     if method == "expm":
@@ -159,8 +160,8 @@ def solver_error(run: RunState, method: str) -> float | None:
     count = min(len(part) for part in parts)
     difference = np.abs(parts[0][:count] - parts[1][:count]) / model.scales[: model.unknowns.n]
     remembered = min(memory, run.duration / model.shortest_period)
-    shown = STRETCH_SAFETY * float(difference.max()) * max(1.0, remembered * model.shortest_period / stretch)
-    return max(shown, ERROR_FLOOR * tolerance)
+    estimate = STRETCH_SAFETY * float(difference.max()) * max(1.0, remembered * model.shortest_period / stretch)
+    return max(estimate, ERROR_FLOOR * tolerance)
 
 
 def certify(
@@ -180,12 +181,12 @@ def certify(
         parts.append(f"the {run.model.interface.name} film is the highest rung")
     known = [error for error in (by_solver, by_model) if error is not None]
     asked = run.model.accuracy
-    said = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
+    sentence = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
     if known and sum(known) > asked:
         cure = (
             "a higher film rung"
             if by_model and by_model > 0.5 * sum(known)
             else 'run.solver = "dop853" or a shorter run'
         )
-        said += f"; NOT met: try {cure}"
-    return Certificate(asked, by_solver, by_model, said)
+        sentence += f"; NOT met: try {cure}"
+    return Certificate(asked, by_solver, by_model, sentence)

@@ -33,8 +33,8 @@ from .summary import summarise
 
 @dataclass(frozen=True)
 class Result:
-    """What a run leaves: status, a sentence, the summary as a dict (as `run --json` prints it), and where the archive
-    is."""
+    """What a run leaves: `status` (a value of Status), a sentence, the summary as a dict (as `run --json` prints it,
+    SI), and the path of the archive."""
 
     status: str
     message: str

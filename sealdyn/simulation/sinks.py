@@ -75,7 +75,8 @@ class ArchiveSink:
         self.log([{**event, "time": segment.time + tau}])
 
     def log(self, events):
-        """Keep events until the next flush; beyond the most that an archive keeps they are only counted."""
+        """Keep events until the next flush; beyond the most that an archive keeps they are dropped (ContactSummary
+        counts them)."""
         kept = events[: max(MOST_EVENTS - self.logged, 0)]
         self.logged += len(kept)
         self.pending += kept
@@ -90,7 +91,8 @@ class ArchiveSink:
             raise KeyboardInterrupt
 
     def flush(self, index, tau, y):
-        """Write rows, what happened, and the state to go on from: all three belong together."""
+        """Write rows, what happened, and the state to go on from (segment index, `tau` (s), `y` (size,)): all three
+        belong together."""
         if self.waiting is None:
             return
         run = self.run

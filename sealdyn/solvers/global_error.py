@@ -42,12 +42,12 @@ class GlobalErrorEstimate:
             return None
         before, t, ys, begin, end = self.state(), block.t, block.ys, block.begin, block.end
         n, places = self.segment.n, self.segment.rate_places
-        left = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
-        left[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
-        left[:, places] -= integrals(t, block.accelerations, begin, end)
-        found = np.empty((end - begin, len(self.modal)), dtype=complex)
-        _answer(self.motion.values, np.diff(t[begin : end + 1]), left @ self.motion.inverse.T, self.modal, found)
-        self.worst = max(self.worst, float(np.max(np.abs((found @ self.shapes.T).real))))
+        defects = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
+        defects[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
+        defects[:, places] -= integrals(t, block.accelerations, begin, end)
+        errors = np.empty((end - begin, len(self.modal)), dtype=complex)
+        _answer(self.motion.values, np.diff(t[begin : end + 1]), defects @ self.motion.inverse.T, self.modal, errors)
+        self.worst = max(self.worst, float(np.max(np.abs((errors @ self.shapes.T).real))))
         if self.worst > self.allowed and self.tolerance > self.least:
             self.restore(before)
             self.tolerance = max(self.tolerance / SHARPER, self.least)
@@ -55,7 +55,7 @@ class GlobalErrorEstimate:
         return None
 
     def state(self) -> dict:
-        """What a continued run needs."""
+        """What a continued run needs: `worst`, and the modal errors (modes,) as real and imaginary parts."""
         return {"worst": self.worst, "real": self.modal.real.tolist(), "imag": self.modal.imag.tolist()}
 
     def restore(self, state: dict):

@@ -59,13 +59,13 @@ def _exact_step(exponents, sizes, tolerance) -> tuple[float, int]:
     return min(step, longest(np.maximum(sizes, after(CHANGING * step)))), CHANGING
 
 
-def _widths(left, step, count, fresh) -> np.ndarray:
-    """Widths of the next `count` steps, or of all that are `left` (s), the last few of them and fresh ones half as
+def _widths(remaining, step, count, fresh) -> np.ndarray:
+    """Widths of the next `count` steps, or of all that are `remaining` (s), the last few of them and fresh ones half as
     long."""
     if fresh:
-        return np.full(count, min(0.5 * step, left / (2 * count)))
-    if left > (count + AT_ENDS) * step:
+        return np.full(count, min(0.5 * step, remaining / (2 * count)))
+    if remaining > (count + AT_ENDS) * step:
         return np.full(count, step)
-    whole = int(np.ceil(max(left / step - 0.5 * AT_ENDS, 0.0)))
+    whole = int(np.ceil(max(remaining / step - 0.5 * AT_ENDS, 0.0)))
     widths = np.concatenate([np.ones(whole), np.full(AT_ENDS, 0.5)])
-    return widths * left / widths.sum()
+    return widths * remaining / widths.sum()

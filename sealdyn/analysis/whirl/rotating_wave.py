@@ -95,9 +95,9 @@ class RotatingWave:
         q, frequency, speed = x[: self.n] * self.scales, x[-2] * self.pace, x[-1] * self.pace
         yp = self._accelerations(self.state(q, frequency), speed)
         wanted = frequency**2 * self.turned(self.turned(q))
-        left = (yp[self.places] - wanted) / (self.scales * self.pace**2)
-        fault = (self.relative(q) - amplitude) / self.scales[self.tilts[0]]
-        return np.concatenate([left, [fault.real, fault.imag]])
+        rest = (yp[self.places] - wanted) / (self.scales * self.pace**2)
+        condition = (self.relative(q) - amplitude) / self.scales[self.tilts[0]]
+        return np.concatenate([rest, [condition.real, condition.imag]])
 
     def solve(self, amplitude: float, guess) -> Whirl | None:
         """The whirl of a relative amplitude (rad) near `guess` = (q (n,), frequency (rad/s), speed (rad/s)); None if
@@ -164,19 +164,19 @@ def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
 
     The last one has its film at the floor, unless the family ends before (a fold in the amplitude).
     """
-    whirling = RotatingWave(model)
-    shape, frequency, speed = whirling.onset(threshold)
+    wave = RotatingWave(model)
+    shape, frequency, speed = wave.onset(threshold)
     floor = model.face[4]
     touching = contact_tilt_aligned(model)
     found, amplitude, step = [], 0.0, touching / steps
     while len(found) < 6 * steps and step > 1e-4 * touching:
         guess = _ahead(found, amplitude + step) if found else (shape * step, frequency, speed)
-        whirl = whirling.solve(amplitude + step, guess)
+        whirl = wave.solve(amplitude + step, guess)
         if whirl is None:
             step /= 2
             continue
         if whirl.h_min < floor:
-            return [*found, _at_contact(whirling, found, whirl, floor)]
+            return [*found, _at_contact(wave, found, whirl, floor)]
         found.append(whirl)
         amplitude += step
     return found
@@ -199,13 +199,13 @@ def _ahead(found, amplitude):
     return tuple(getattr(last, n) + t * (getattr(last, n) - getattr(found[-2], n)) for n in ("q", "frequency", "speed"))
 
 
-def _at_contact(whirling, found, beyond, floor):
+def _at_contact(wave, found, beyond, floor):
     """The whirl between the last one found and one beyond contact whose film is at the floor."""
     last = found[-1]
     kept = {}
 
     def excess(amplitude):
-        kept[amplitude] = whirling.solve(amplitude, (last.q * amplitude / last.amplitude, last.frequency, last.speed))
+        kept[amplitude] = wave.solve(amplitude, (last.q * amplitude / last.amplitude, last.frequency, last.speed))
         return kept[amplitude].h_min - floor
 
     low = last.amplitude

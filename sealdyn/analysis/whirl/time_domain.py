@@ -19,14 +19,14 @@ TIGHTER = 1 / 30
 class Until(Recorder):
     """Records displacements every `interval` (s), and ends the run once the relative tilt falls below `least` (rad)."""
 
-    def __init__(self, whirling, interval, least=0.0):
+    def __init__(self, wave, interval, least=0.0):
         super().__init__(interval)
-        self.whirling, self.least = whirling, least
+        self.wave, self.least = wave, least
 
     def state(self, segment, tau, y):
         """Raises KeyboardInterrupt, which ends the run, where the tilt of the unknowns `y` (size,) is below
         the least."""
-        if abs(self.whirling.relative(y[: self.whirling.n])) < self.least:
+        if abs(self.wave.relative(y[: self.wave.n])) < self.least:
             raise KeyboardInterrupt
 
 
@@ -38,15 +38,15 @@ def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=m
     turn = 2 * math.pi / abs(speed)
     run = RunState(free_model(scene, speed, accuracy), turns * turn)
     model = run.model
-    whirling = RotatingWave(model)
+    wave = RotatingWave(model)
     if isinstance(start, float):
         frequency, shape = least_damped(model, speed)
         start = (start * shape, frequency)
-    run.y0 = whirling.state(*start)
-    sink = Until(whirling, min(turn / PER_TURN, interval), least)
+    run.y0 = wave.state(*start)
+    sink = Until(wave, min(turn / PER_TURN, interval), least)
     outcome = solve(run, method, accuracy, sink)
     t, q, _ = sink.arrays()
-    return outcome, t, whirling.relative(q.T), run
+    return outcome, t, wave.relative(q.T), run
 
 
 def fitted(t, tilt) -> tuple[float, float]:
