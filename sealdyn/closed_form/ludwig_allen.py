@@ -62,8 +62,8 @@ def wedge_force(viscosity: Real, sliding_speed: Real, face_width: Real, mean_fil
 
 def sine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_radius: Real,
                 mean_film: Real, amplitude: Real) -> Real:  # fmt: skip
-    """Moment (N m) about the diameter through thickest and thinnest film, perpendicular to the tilt axis: `(pi/4) mu U
-    R dR^3 h1 / (h0^2 - h1^2)^(3/2)`.
+    """Moment (N m) about the diameter through thickest and thinnest film, perpendicular to the tilt axis:
+    `(pi/4) mu U R dR^3 h1 / (h0^2 - h1^2)^(3/2)`.
 
     **Source** as the module, with R_o^2 - R_i^2 = 2 R dR.  **Valid**, arguments as the module; over a face of finite
     width the arm is longer by dR^2 / (20 R^2).  **Raises** ValueError when the faces touch.

@@ -206,8 +206,8 @@ class ContactEvents:
         self.waiting.extend(rows[:found])
 
     def tell(self, log, end: tuple | None = None):
-        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time,
-        unknowns) of a run also one that goes on, without a lift-off."""
+        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time (s),
+        unknowns (size,)) of a run also one that goes on, without a lift-off."""
         rows, self.waiting = self.waiting, []
         if end and self.open[OPEN]:
             row = self.open[:ROW].copy()

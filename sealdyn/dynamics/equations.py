@@ -10,9 +10,10 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on its
 ring, and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
 
-Unknowns `y`: displacements, then their rates (a massless ring has none), with contact or a secondary seal the
-impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both rings, the index of the
-works, whether there are two more of them, then the leg (dynamics/imposed_motion.py).
+Unknowns `y`: displacements, then their rates (a massless ring has none), those of the film if it has any, with contact
+or a secondary seal the impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both
+rings, the index of the works, whether there are two more of them, then the imposed motion of the segment
+(dynamics/imposed_motion.py).
 """
 
 from numba import njit

@@ -33,7 +33,8 @@ class RunState:
         self.last = (0, 0.0, self.y0)
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
-        """The equations over the interval `index` (negative: from the end)."""
+        """The equations over the interval `index` (negative: from the end); `stuck` {ring: bool} in place of the rings
+        that stick now."""
         index %= len(self.intervals)
         if stuck is None and self.stick_slip:
             stuck = self.stick_slip.stuck

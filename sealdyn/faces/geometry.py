@@ -1,7 +1,7 @@
 """The gap between the faces: axes, signs, gap-state array, face block, closed forms of faces the same all around.
 
-Axes (see README): z runs along the shaft from the rotor to the stator, theta is measured from the x axis.  `gap =
-stator surface - rotor surface`; the tilt of a ring is a small rotation vector, and `g = tilt of stator - tilt of
+Axes (see README): z runs along the shaft from the rotor to the stator, theta is measured from the x axis.  The gap is
+the stator's surface less the rotor's; the tilt of a ring is a small rotation vector, and `g = tilt of stator - tilt of
 rotor`.  Film thickness of two rigid coned faces:
 
     h(r, theta, t) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta)) + waves(theta, t)

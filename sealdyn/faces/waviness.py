@@ -42,7 +42,7 @@ def lay_waves(f, stator, rotor) -> None:
 
 
 def highest_orders(f) -> tuple[int, int]:
-    """Highest order on the stator's and on the rotor's face, 0 without waves."""
+    """Highest order (waves to the circle) on the stator's and on the rotor's face of a block, 0 without waves."""
     rows = f[WAVE_ROWS : WAVE_ROWS + WAVE_ROW * int(f[WAVES])].reshape(-1, WAVE_ROW)
     return tuple(int(max(rows[rows[:, SIGN] == sign, ORDER], default=0)) for sign in (1.0, -1.0))
 

@@ -71,7 +71,7 @@ def value_of(written: str) -> Any:
 
 
 def override_of(key: str, value: Any) -> str:
-    """The override "key=value" that sets a value: a string as it stands, anything else written as TOML."""
+    """The override "key=value" that sets a value: a string as it stands, anything else (SI) written as TOML."""
     if isinstance(value, str):
         return f"{key}={value}"
     return f"{key}={toml_line(as_written(value))}"

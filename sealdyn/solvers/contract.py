@@ -10,8 +10,9 @@ displacements (first in the unknowns) and the `rate_places` (n,) of their rates,
 constant conditions also has its `exact_motion()`.
 
 An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
-returns None, a Stop, a Retry or a Transition (which `make` turns into a Change); `state()` and `restore(state)` for a
-run that is continued.
+returns None, a Stop or a Retry; `state()` and `restore(state)` for a run that is continued.  What finds changes of the
+equations sees the steps first: its `accept(block, advance)` returns None or a Transition, which its `make` turns into a
+Change.
 """
 
 from dataclasses import dataclass
