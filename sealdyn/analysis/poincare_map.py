@@ -14,6 +14,7 @@ import numpy as np
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..simulation.method_selection import choose_method
 from ..solvers.contract import Counts, SolverFailure, Status, tolerance_for
@@ -77,7 +78,8 @@ class PeriodMap:
         """The unknowns (n,) one period later.  Raises SceneError for a ring that sticks, SolverFailure."""
         run = self.one_period
         if run.stick_slip:
-            raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "regularised" for exponents')
+            key = f"{RING_NAMES[run.model.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+            raise SceneError(key, "a ring that sticks", 'law = "regularised" for exponents')
         y = np.zeros(run.model.unknowns.size)
         y[: self.size] = x
         tolerance = tolerance_for(self.method, self.accuracy, run.memory)
@@ -153,7 +155,7 @@ class PeriodMap:
 
         run, n, k = self.one_period, self.size, q.shape[1]
         if run.model.unknowns.has_residual_form or run.stick_slip:
-            raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
+            raise SceneError("run.solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
         segment = run.segment(0)
         y, yp, scales = np.zeros(segment.size), np.zeros(segment.size), self.scales
 

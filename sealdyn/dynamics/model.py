@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
+from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .coupled_segment import CoupledSegment
@@ -38,7 +39,8 @@ class Model:
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
         if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
-            raise SceneError("secondary_seal.law", "sticking beside a film with unknowns of its own", '"regularised"')
+            key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+            raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)

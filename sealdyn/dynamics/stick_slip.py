@@ -80,12 +80,13 @@ class StickSlip:
 
     def state(self) -> dict:
         """What a continued run needs: `stuck` {ring: bool}, the counts and the energy lost (J)."""
-        return {"stuck": {str(k): bool(v) for k, v in self.stuck.items()}, "sticks": self.sticks,
-                "slips": self.slips, "dropped": self.dropped}  # fmt: skip
+        stuck, leaving = ({str(k): bool(v) for k, v in of.items()} for of in (self.stuck, self.leaving))
+        return {"stuck": stuck, "leaving": leaving, "sticks": self.sticks, "slips": self.slips, "dropped": self.dropped}
 
     def restore(self, state: dict):
         """Go on from `state`."""
         self.stuck = {int(k): v for k, v in state["stuck"].items()}
+        self.leaving |= {int(k): v for k, v in state.get("leaving", {}).items()}
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
     def accept(self, block, advance) -> Transition | None:
