@@ -19,6 +19,7 @@ from .errors import errors, observe, worst
 JUDGE, TIGHT = 1e-11, 1e-11
 # Points over a period at which the harmonic balance is looked at.
 POINTS = 4096
+WORDS = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}
 
 
 def rungs(scenario) -> list[tuple[str, dict]]:
@@ -170,41 +171,19 @@ def harmonic_balance(run) -> dict:
     }
 
 
-def verdict(answer: dict, least_time) -> list[str]:
-    """How much model and how much solver: sentences."""
-    where = "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
-    rows = [row for row in answer["models"] if row["error"][where] is not None]
-    if not rows:
-        return ["no rung of the ladder ended: nothing to say about models"]
-    words = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}[where]
-    lines, before = [], None
-    for error in (1e-2, 1e-4):
-        enough = [row for row in rows if row["error"][where] <= error]
-        if not enough:
-            best = min(rows, key=lambda row: row["error"][where])
-            lines.append(f"no rung below {error:.0e} {words}; the best, {best['label']}: {_said(best, where)}")
-            continue
-        wall, name = least_time(error)
-        solver = "" if wall is None else f"{name} at that error, {wall * 1e3:.3g} ms"
-        if enough[0] is before:
-            lines[-1] += f"; for {error:.0e} the same" + (f", {solver}" if solver else "")
-            continue
-        line = f"this scene needs, for {error:.0e} {words}: {enough[0]['label']} ({_said(enough[0], where)})"
-        in_time = next((row for row in enough if "balance" not in row["label"]), None)
-        if in_time is not None and solver:
-            line += f"; in time {in_time['label']}, {solver}" if in_time is not enough[0] else f"; {solver}"
-        lines.append(line)
-        before = enough[0]
-    linear = [row for row in rows if row["label"].startswith("linear") and row["error"][where] > 0]
-    if linear and len(rows) > len(linear):
-        best = min(linear, key=lambda row: row["error"][where])
-        wrong = best["error"][where]
-        of_use = f"with it, errors below {wrong / 10:.0e} are wasted" if wrong < 0.1 else "no use here"
-        lines.append(f"{best['label']} is wrong by {wrong:.1e} whatever the solver: {of_use}")
-    return lines
+def looked_at(answer: dict) -> str:
+    """Where errors of models are told: in the steady state if there is one, else where the study looks."""
+    return "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
 
 
-def _said(row, where):
-    leakage = (row.get("leakage_error") or {}).get(where)
-    more = "" if not leakage else f", its leakage {leakage:.1e}"
-    return f"error of the motion {row['error'][where]:.1e}{more}; {row['wall'] * 1e3:.3g} ms"
+def sentence(answer: dict) -> str:
+    """The lowest model that is good enough for 1e-2 and for 1e-4, and how wrong the linear film is."""
+    where = looked_at(answer)
+    errors_of = {row["label"]: row["error"][where] for row in answer["models"] if row["error"][where] is not None}
+    if not errors_of:
+        return "No rung of the ladder ended: nothing to say about models."
+    needs = [f"for {most:.0e} {next((label for label, error in errors_of.items() if error <= most), 'none of them')}"
+             for most in (1e-2, 1e-4)]  # fmt: skip
+    linear = [error for label, error in errors_of.items() if label.startswith("linear") and error > 0]
+    wrong = f"; the linear film is wrong by {min(linear):.1e} whatever the solver" if linear else ""
+    return f"Film model needed {WORDS[where]}: {', '.join(needs)}{wrong}."
