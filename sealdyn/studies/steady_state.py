@@ -48,7 +48,7 @@ def run(scenario, settings, tools) -> dict:
         orbit = shooter.find()
     except NoOrbit as reason:
         threshold = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
-        said = (f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict}, {threshold}.")
+        said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
         return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None, "h_min": None,
                 "relative_misalignment": None, "critical_speed": critical, "near_threshold": [], "orbit": None,
                 "verdict": list(said)}  # fmt: skip

@@ -44,22 +44,15 @@ def compare(scenario, samples: int, longest: float, repeats: int, exact=None) ->
     """Rows `{label, error{where}, wall, rhs, failed}` of every rung, cheapest model first, each run with the method
     and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run."""
     ladder = rungs(scenario)
-    own = scenario.scene.film.model
-    if (
-        exact is not None
-        and exact.status == Status.OK
-        and own not in ("linear", "auto")
-        and ladder[-1][1]["film.model"] == own
-    ):
-        highest, top = exact, ladder[-1]
-    else:
+    highest, top = exact, ladder[-1]
+    # The scenario's own film may be the highest, and then its exact run is there already.
+    own = top[1]["film.model"] == scenario.scene.film.model != "linear"
+    if not own or exact is None or exact.status != Status.OK:
         highest, top = _highest(scenario, ladder, samples, longest)
     if highest is None:
         return []
-    lowest = ladder[0]
-    out = [_balanced(scenario, lowest, highest, repeats)]
-    if top != lowest:
-        out.append(_balanced(scenario, top, highest, repeats))
+    ends = ladder[:1] if top == ladder[0] else [ladder[0], top]
+    out = [_balanced(scenario, rung, highest, repeats) for rung in ends]
     out += [_run(scenario, rung, highest, samples, longest, repeats) for rung in ladder]
     return [row for row in out if row]
 
@@ -141,12 +134,8 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     ]
     whose = "Green's" if "green" in overrides.values() else label.partition(" film")[0] + " film's"
     whose = "given" if "as given" in label else whose
-    return {
-        "label": f"harmonic balance, {whose} coefficients",
-        "error": {"end": None, "over_time": None, "steady": float(max(off))},
-        "wall": wall,
-        "failed": None,
-    }
+    error = {"end": None, "over_time": None, "steady": float(max(off))}
+    return {"label": f"harmonic balance, {whose} coefficients", "error": error, "wall": wall, "failed": None}
 
 
 def harmonic_balance(run) -> dict:
@@ -165,10 +154,7 @@ def harmonic_balance(run) -> dict:
     tilt = np.hypot(motion[1], motion[2])
     shift = run.model.axial_shift(segment.interval) + motion[0]
     thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(run.model.scene.film, run.model.clearance))
-    return {
-        "h_min": float(thinnest),
-        "relative_misalignment": [float(tilt.min()), float(tilt.max())],
-    }
+    return {"h_min": float(thinnest), "relative_misalignment": [float(tilt.min()), float(tilt.max())]}
 
 
 def looked_at(answer: dict) -> str:
