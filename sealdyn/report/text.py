@@ -6,8 +6,6 @@ from ..status import Status
 from ..toml_line import toml_line
 
 MICRO, MILLI = 1e6, 1e3
-# Rows of a study's table that are printed: of more, so many evenly spread ones.
-MOST_ROWS = 24
 
 
 def lines(scenario, summary: dict) -> list[str]:
@@ -175,6 +173,10 @@ def _table_lines(name, value):
         if k not in plain:
             out += _table_lines(f"{name}.{k}", v)
     return out
+
+
+# Rows of a study's table that are printed: of more, so many evenly spread ones.
+MOST_ROWS = 24
 
 
 def study_lines(answer: dict, tables) -> list[str]:

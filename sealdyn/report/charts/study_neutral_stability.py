@@ -30,7 +30,7 @@ def draw(path, out):
         figure = sheet(12, 6.4)
         title = f"What do the methods themselves add to {info['name'].replace('_', ' ')} where nothing damps?"
         figure.text(0.035, 0.955, shortened(title, 110), fontsize=13, weight="bold", va="center")
-        words = " ".join(answer["verdict"][:2])
+        words = next((line for line in answer["verdict"] if line.startswith("the default")), answer["verdict"][0])
         for k, line in enumerate(textwrap.wrap(words, 165)[:2]):
             figure.text(0.035, 0.908 - 0.033 * k, line, fontsize=9, va="center")
         left = figure.add_axes((0.07, 0.1, 0.4, 0.64))

@@ -29,8 +29,8 @@ def draw(archive_path, out_path):
         figure.text(
             0.03, 0.968, shortened(study["question"].split("?")[0] + "?", 110), fontsize=13, weight="bold", va="center"
         )
-        words = f"{study['name']}: {answer['verdict'][0]}"
-        figure.text(0.03, 0.937, shortened(words, 165), fontsize=9, va="center")
+        words = next((v for v in answer["verdict"] if v.startswith(answer["key"])), study["name"])
+        figure.text(0.03, 0.937, shortened(f"{study['name']}: {words}", 165), fontsize=9, va="center")
         diagram = figure.add_axes((LEFT, 0.575, WIDTH, 0.305))
         below = figure.add_axes((LEFT, 0.355, WIDTH, 0.17), sharex=diagram)
         rows = [row for row in answer["rows"] if row["status"] == Status.OK]
