@@ -28,8 +28,6 @@ class Settings:
     """Clearances from `clearance_from` to `clearance_to` (default: a range that shows every equilibrium), `points`
     of the curve of opening force."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     clearance_from: Length | None = None
     clearance_to: Length | None = None
     points: int = 241
@@ -97,23 +95,26 @@ def _range(film, roots, settings) -> tuple[float, float]:
     return float(low), float(high)
 
 
+def tables(answer) -> list:
+    """Every clearance of balance."""
+    columns = (("clearance, um", "clearance", 1e6), ("film stiffness, N/m", "stiffness"), ("stable", "stable"))
+    return [(answer["roots"], columns)]
+
+
 def _verdict(answer) -> list[str]:
-    low, high = answer["range"]
-    roots, stable = answer["roots"], [r for r in answer["roots"] if r["stable"]]
+    (low, high), roots, support = answer["range"], answer["roots"], answer["support_stiffness"]
+    stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
     said = [
+        f"Film and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} um; "
+        f"stable: {', '.join(stable) or 'none'}.",
         f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
         f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
-        f"{len(roots)} equilibrium clearance(s) from {low * 1e6:.4g} to {high * 1e6:.4g} um, {len(stable)} stable.",
     ]
-    for root in roots:
-        kind = "stable" if root["stable"] else "unstable"
-        words = f"{root['clearance'] * 1e6:.6g} um: {kind}, film stiffness {root['stiffness']:.5g} N/m"
-        if not root["stable"] and root["stiffness"] + answer["support_stiffness"] > 0:
-            words += f" (the support's {answer['support_stiffness']:.3g} N/m would hold it)"
-        said.append(words + ".")
-    if len(stable) > 1:
-        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
     if not roots:
         curve = answer["curve"]["opening_force"]
         said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
+    elif len(stable) > 1:
+        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
+    elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
+        said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
     return said

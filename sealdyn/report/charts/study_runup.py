@@ -32,10 +32,7 @@ def draw(path, out):
 
 def _story(answer) -> list[str]:
     """The sentences of the verdict that a reader needs first."""
-    said = answer["verdict"]
-    told = [said[0], *([said[-1]] if len(said) > 1 else [])]
-    capital = [f"{words[0].upper()}{words[1:]}." if "." not in words.split()[0] else f"{words}." for words in told]
-    return [words.replace("s^2", "s²") for words in capital]
+    return [words.replace("s^2", "s²") for words in answer["verdict"][:3]]
 
 
 def _runs(answer):

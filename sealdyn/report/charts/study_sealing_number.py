@@ -32,7 +32,7 @@ def draw(archive_path, out_path):
             weight="bold",
             va="center",
         )
-        figure.text(0.035, 0.932, shortened(f"{study['name']}: {_story(answer)}", 175), fontsize=9, va="center")
+        figure.text(0.035, 0.932, shortened(f"{study['name']}: {answer['verdict'][0]}", 175), fontsize=9, va="center")
         main = figure.add_axes((0.06, 0.075, 0.51, 0.79))
         ratio = figure.add_axes((0.645, 0.55, 0.335, 0.315), sharex=main)
         fates = figure.add_axes((0.645, 0.075, 0.335, 0.36), sharex=main)
@@ -48,11 +48,6 @@ def draw(archive_path, out_path):
             ax.set_xlim(min(ratios) / 1.06, max(ratios) * 1.1)
             ax.set_xlabel("spring force over friction of half the secondary seal, q = F_s/F_d")
         return save(figure, out_path)
-
-
-def _story(answer) -> str:
-    words = next((v for v in answer["verdict"] if v.startswith("released on its own support")), "")
-    return words.rpartition("; foreseen")[0] or words
 
 
 def _numbers(ax, answer, rows):
