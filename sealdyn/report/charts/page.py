@@ -164,6 +164,13 @@ def once(ax, label: str) -> str:
     return "_" if label in ax.get_legend_handles_labels()[1] else label
 
 
+def stacked(*panels) -> None:
+    """Panels above one another share the x axis; the lowest has its numbers.  To be said before anything is drawn."""
+    for ax in panels[:-1]:
+        ax.sharex(panels[-1])
+        ax.tick_params(labelbottom=False, which="both")
+
+
 def right_axis(ax, label: str, colour: str):
     """A second y axis on the right, its name in the colour of what is drawn against it."""
     other = ax.twinx()

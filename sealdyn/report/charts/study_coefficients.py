@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import logarithmic, look, number, right_axis, save, shortened, study_page
+from .page import logarithmic, look, number, right_axis, save, shortened, stacked, study_page
 from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 
 DASHED = (0, (5, 2))
@@ -19,20 +19,17 @@ def draw(archive_path, out_path):
     """Three panels of stiffness above three of damping, and two matrices, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "How stiff is the film, and how does it damp?"
-    mosaic = [[f"K {name}" for name in SWEEPS for _ in "ab"], [f"D {name}" for name in SWEEPS for _ in "ab"],
-              3 * ["aligned"] + 3 * ["tilted"]]  # fmt: skip
-    figure, ax = study_page(study, 11.5, 8.0, mosaic, title, height_ratios=(5, 5, 5))
+    sweeps, matrices = [[f"{matrix} {name}" for name in SWEEPS] for matrix in "KD"], [["aligned", "tilted"]]
+    figure, ax = study_page(study, 11.5, 8.0, [[sweeps], [matrices]], title, height_ratios=(9, 4))
     for name, (words, scale, label) in SWEEPS.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
-        below.sharex(above)
+        stacked(above, below)
         x = scale * np.array(sweep[name])
         _stiffness(above, sweep, x, words)
         _damping(below, sweep, x, name)
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
-            logarithmic(above, "x")
             logarithmic(below, "x")
-        above.tick_params(labelbottom=False, which="both")
     ax["K speed"].set_ylabel("tilt stiffness, N m/rad")
     ax["K speed"].legend(loc="best", ncols=2)
     ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)

@@ -5,7 +5,7 @@ import numpy as np
 
 from ...archive import read_study
 from ...status import Status
-from .page import legend, level, look, save, study_page
+from .page import legend, level, look, save, stacked, study_page
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 from .poincare import frame
 
@@ -39,7 +39,7 @@ def draw(archive_path, out_path):
     words = next((v for v in answer["verdict"] if v.startswith(answer["key"])), answer["verdict"][0])
     words = f"{study['name']}: {words}"
     figure, ax = study_page(study, 13.0, 8.6, [[left, right]], below=words, width_ratios=(5, 4))
-    ax["exponents"].sharex(ax["diagram"])
+    stacked(ax["diagram"], ax["exponents"])
     _diagram(ax["diagram"], answer, rows, factor)
     _exponents(ax["exponents"], answer, rows, factor)
     ax["exponents"].set_xlabel(f"{name}, {unit}")
@@ -75,7 +75,6 @@ def _diagram(ax, answer, rows, factor):
         ax.plot(lost, np.full(len(lost), low), "x", color=BLACK, ms=7, clip_on=False, label="crushed: no motion")
     ax.set(ylabel="smallest film, µm", title="Smallest film of each turn")
     legend(ax, "above", ncols=3)
-    ax.tick_params(labelbottom=False)
 
 
 def _exponents(ax, answer, rows, factor):

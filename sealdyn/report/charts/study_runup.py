@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import absent, legend, level, look, right_axis, save, study_page, upright
+from .page import absent, legend, level, look, right_axis, save, stacked, study_page, upright
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREY, ORANGE, THICKNESS
 from .record import done
 
@@ -47,7 +47,7 @@ def _speed_ramps(study, answer, title, story):
     ways = [way for way in ("up", "down") if fall and len(fall[way]["speed"]) > 1]
     mosaic = [[[["amplitude"], ["phase"]], [ways or ["none"]]], ["growth", "curve"]]
     figure, ax = study_page(study, 12.5, 8.6, mosaic, title, story, height_ratios=(3, 2))
-    ax["phase"].sharex(ax["amplitude"])
+    stacked(ax["amplitude"], ax["phase"])
     _order(ax["amplitude"], ax["phase"], answer)
     _waterfall([ax[way] for way in ways or ["none"]], ways, answer)
     _growth(ax["growth"], answer)
@@ -83,7 +83,6 @@ def _order(top, below, answer):
     what = f"Relative {'tilt' if answer['tilting'] else 'gap'}, order {answer['order']:g}×"
     top.set(ylabel=f"amplitude, {unit}", title=f"{what}: up full, down dashed")
     below.set(ylabel="phase to the shaft, °", xlabel="shaft speed, rad/s", xlim=(answer["begin"], answer["end"]))
-    top.tick_params(labelbottom=False)
     at = answer["threshold"]
     if at is not None and answer["begin"] < at < answer["end"]:
         upright(top, at, "threshold", CONTACT, height=1.02, ha="center", ls=":")

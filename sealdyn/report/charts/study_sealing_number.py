@@ -86,7 +86,7 @@ def _zones(ax, answer):
     ax.axvspan(least, attracting, color=SKY, alpha=0.3, lw=0)
     words = f"closed form: hang-up, no balance below {least:.3f} (grey),\none that repels below {attracting:.3f} (blue)"
     ax.annotate(words, (attracting, 0.80), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0),
-                textcoords="offset points")  # fmt: skip
+                textcoords="offset points", annotation_clip=True)  # fmt: skip
 
 
 def _released(ax, rows):

@@ -94,11 +94,11 @@ def _marks(ax, answer):
         ax.plot(x["here"] * per_x, y["here"] * per_y, "*", ms=15, mfc=YELLOW, mec=BLACK, clip_on=False, zorder=5,
                 label="this scenario")  # fmt: skip
     for point in answer["confirmed"]:
-        mark, words, edge = "x", "not confirmed", VERMILLION
+        mark, words, edge, width = "x", "not confirmed", VERMILLION, 2.0
         if "failed" not in point:
-            edge, grows = BLACK, point["time_domain"] > 0
+            edge, width, grows = BLACK, 1.0, point["time_domain"] > 0
             mark, words = ("^", "grows in the time domain") if grows else ("v", "decays in the time domain")
-        ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=8, mfc="white", mec=edge, zorder=5,
+        ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=8, mfc="white", mec=edge, mew=width, zorder=5,
                 label=once(ax, words))  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
-from .page import logarithmic, look, number, save, study_page
+from .page import logarithmic, look, number, save, stacked, study_page
 from .palette import BLACK, GREY, PALE, RING
 from .record import done
 
@@ -35,12 +35,11 @@ def draw(archive_path, out_path):
     mosaic = [list(TITLES), ["static phase", "dynamic phase", "legend"]] + ([3 * ["table"]] if answer["table"] else [])
     heights = (9, 6, 6)[: len(mosaic)]
     figure, ax = study_page(study, 11.5, 9.6 if answer["table"] else 7.2, mosaic, title, height_ratios=heights)
+    for quantity in ("static", "dynamic"):
+        stacked(ax[quantity], ax[f"{quantity} phase"])
+        _phases(ax[f"{quantity} phase"], answer, f"{quantity}_phase")
     for quantity in TITLES:
         _amplitudes(ax[quantity], answer, quantity)
-    for quantity in ("static", "dynamic"):
-        ax[f"{quantity} phase"].sharex(ax[quantity])
-        _phases(ax[f"{quantity} phase"], answer, f"{quantity}_phase")
-        ax[quantity].tick_params(labelbottom=False)
     for name in ("static phase", "dynamic phase", "total"):
         ax[name].set_xlabel(f"shaft speed, {answer['unit']}")
     ax["static"].set_ylabel("relative misalignment per unit forcing")

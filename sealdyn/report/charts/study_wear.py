@@ -7,7 +7,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from ...archive import read_study
-from .page import absent, legend, look, save, study_page
+from .page import absent, legend, look, save, stacked, study_page
 from .palette import BLACK, CONTACT, FILM, GREY, LEAK, ORANGE, RING, THICKNESS
 
 # Profiles drawn of one face.
@@ -25,17 +25,14 @@ def draw(archive_path, out_path):
         absent(ax["none"], "No profile", said)
         return save(figure, out_path)
     unit, factor = _time_unit(history["time"][-1])
-    panels = _over_time(history)
-    left = [[[["stator", "rotor"]]], ["gap"], ["pressed"]]
-    mosaic = [[left, [[title] for title in panels]]]
-    figure, ax = study_page(study, 13.0, 8.6, mosaic, bold=said, width_ratios=(4, 3))
+    panels, left = _over_time(history), [[[["stator", "rotor"]]], ["gap"], ["pressed"]]
+    right = [[title] for title in panels]
+    figure, ax = study_page(study, 13.0, 8.6, [[left, right]], bold=said, width_ratios=(4, 3))
     _faces(figure, ax, answer, unit, factor)
     _pressed(ax["pressed"], answer)
+    stacked(*(ax[title] for title in panels))
     for title, panel in panels.items():
-        if title != "Leakage":
-            ax[title].sharex(ax["Leakage"])
         _history(ax[title], factor * np.array(history["time"]), history, title, *panel)
-        ax[title].tick_params(labelbottom=title == "Worn volume")
     ax["Worn volume"].set_xlabel(f"time of operation, {unit}")
     return save(figure, out_path)
 
