@@ -15,6 +15,7 @@ from sealdyn.analysis.whirl.time_domain import fitted
 from sealdyn.dynamics import modes
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import Initial, RingStart
@@ -62,8 +63,9 @@ def whole_system(model):
 @pytest.mark.parametrize(
     "scene",
     [aligned(fms, speed=5000.0), aligned(fmr, speed=9000.0, c=3.0), aligned(fmsr, speed=3000.0),
-     aligned(fms, stator=MASSLESS)],
-    ids=["stator", "rotor", "both rings", "massless stator"],
+     aligned(fms, stator=MASSLESS),
+     replace(aligned(fms), contact=Contact(roughness=3.8e-6, compressive_strength=3e8))],
+    ids=["stator", "rotor", "both rings", "massless stator", "asperities beside"],
 )  # fmt: skip
 def test_modes_are_those_of_rings_and_film_together(scene, compressibility):
     model = stored(scene, compressibility)
