@@ -252,8 +252,6 @@ def _verdict(answer) -> list[str]:
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad: {_ratio(k[1, 2], d[1, 1], at)}",
     ]
-    if "against_frequency" in answer:
-        said.append("The film stores: these are of slow motion, those of faster motion are in `against_frequency`.")
     tilted = answer["tilted"]
     if tilted["stiffness"] is None:
         return [*said, f"Tilted: {tilted['said']}."]
