@@ -85,7 +85,9 @@ class Arrangement:
         }
 
     def formula_holds(self, speed: float) -> bool:
-        """Whether the film is isotropic with the wedge of the mean spin, and the stator stands still."""
+        """Whether the film is isotropic with the wedge of the mean spin and stores nothing, and the stator stands."""
+        if self.model.interface.stores:
+            return False
         k, d = self.linear(speed).film_k, self.linear(speed).film_d
         wanted_k, wanted_d = modes.film_matrices(k[1, 1], d[1, 1], k[0, 0], d[0, 0], 0.5 * speed)
         near = np.allclose(k[1:, 1:], wanted_k[1:, 1:], rtol=0, atol=1e-7 * np.abs(k[1:, 1:]).max())

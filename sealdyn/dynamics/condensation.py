@@ -1,44 +1,103 @@
-"""Stiffness and damping of a film with unknowns, these eliminated at one frequency (dynamic condensation)."""
+"""A film linearised: derivatives by the gap, and what a film with unknowns answers to a small motion of the gap, its
+unknowns eliminated (dynamic condensation)."""
+
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse.linalg import splu
 
 from ..faces.geometry import FORCE
-from .modes import gap_slopes
 
 
-def condensed(derivatives, s, x, steps, omega: float = 0.0):
-    """Stiffness and damping matrices (3, 3) of a film with unknowns about a gap state `s` and its unknowns `x`, on
-    (dz, g_x, g_y), for a motion of angular frequency `omega` (rad/s).
+def gap_slopes(values_at, s: np.ndarray, steps: tuple[float, float, float, float], count: int) -> np.ndarray:
+    """Derivatives (count, 6) of `values_at(s)` (count,) by (dz, g_x, g_y) and their rates about a gap state: central
+    differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates."""
+    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+    offsets = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
+    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+    moved = np.empty((len(offsets), 6, len(s)))
+    moved[:] = s
+    moved[:, range(6), range(6)] += offsets[:, None] * sizes
+    values = np.empty((len(offsets) * 6, count))
+    for k, row in enumerate(moved.reshape(-1, len(s))):
+        values[k] = values_at(row)
+    values = values.reshape(len(offsets), 6, count)
+    return (weights[:, None, None] * values / sizes[:, None]).sum(axis=0).T
 
-    With gap g exp(i w t), unknowns x exp(i w t) and the residual's derivatives R, force's F:
 
-        (R_x + i w R_x') x = -(R_g + i w R_g') g,     K + i w D = -[F_x x / g + F_g + i w F_g']
+def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):
+    """Stiffness and damping matrices (3, 3) of any film about a gap state, on (dz, g_x, g_y).
 
-    At w = 0 D is the limit.  `derivatives` FilmDerivatives; `steps` as in modes.gap_slopes.
+    A film law is analytic in the gap, so the error of `gap_slopes` is rounding (about 1e-11 relative at steps of 2 %
+    of the clearance).
+    """
+
+    def force_at(moved):
+        wrench(f, moved)
+        return moved[FORCE : FORCE + 3]
+
+    jacobian = gap_slopes(force_at, s, steps, 3)
+    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+    # What is below the rounding of the force is nothing.
+    wrench(f, s)
+    noise = 1e-14 * abs(s[FORCE]) * np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
+    jacobian[np.abs(jacobian) < noise[:, None] / sizes] = 0.0
+    return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
+
+
+class LinearFilm:
+    """A film with unknowns about a gap state `s` and its unknowns `x` (n,).
+
+    With gap g exp(p t) and unknowns x exp(p t), p (1/s) complex, derivatives R of the residual and F of the force:
+
+        (R_x + p R_x') x = -(R_g + p R_g') g,     H(p) = -[F_x x / g + F_g + p F_g']
+
+    H is the dynamic stiffness (3, 3) on (dz, g_x, g_y), K + p D at small p.  `derivatives` FilmDerivatives; `steps` as
+    in `gap_slopes`; `scales` (n,) of the unknowns.
     **Source** derived here from the two lines above; against the exact solution of a flat annulus that stores in
     tests/ladder/test_film_with_unknowns.py.
     **Valid** small motion about an equilibrium: neither x nor the gap changes in the state.
     """
-    film, f, rest, res = derivatives.film, derivatives.f, np.zeros_like(x), np.empty_like(x)
 
-    def residual_at(moved):
-        film.residual(f, moved, x, rest, res)
-        return res
+    def __init__(self, derivatives, s, x, steps):
+        film, f, rest, res = derivatives.film, derivatives.f, np.zeros_like(x), np.empty_like(x)
 
-    def force_at(moved):
-        film.wrench(f, moved, x)
-        return moved[FORCE : FORCE + 3]
+        def residual_at(moved):
+            film.residual(f, moved, x, rest, res)
+            return res
 
-    by_gap, force_by_gap = gap_slopes(residual_at, s, steps, len(x)), gap_slopes(force_at, s, steps, 3)
-    by_x, force_by_x = derivatives.matrix(s, x, rest, 0.0), derivatives.wrench(s, x)
-    by_rate = derivatives.matrix(s, x, rest, 1.0) - by_x
-    if omega == 0.0:
-        solved = splu(by_x.tocsc())
-        moved = -solved.solve(by_gap[:, :3])
-        stiffness = -(force_by_x @ moved + force_by_gap[:, :3])
-        return stiffness, force_by_x @ solved.solve(by_gap[:, 3:] + by_rate @ moved) - force_by_gap[:, 3:]
-    pushed = by_gap[:, :3] + 1j * omega * by_gap[:, 3:]
-    moved = -splu((by_x + 1j * omega * by_rate).tocsc()).solve(pushed)
-    total = -(force_by_x @ moved + force_by_gap[:, :3] + 1j * omega * force_by_gap[:, 3:])
-    return total.real, total.imag / omega
+        def force_at(moved):
+            film.wrench(f, moved, x)
+            return moved[FORCE : FORCE + 3]
+
+        by_gap, force_by_gap = gap_slopes(residual_at, s, steps, len(x)), gap_slopes(force_at, s, steps, 3)
+        self.by_gap, self.by_gap_rate = by_gap[:, :3], by_gap[:, 3:]
+        self.force_by_gap, self.force_by_gap_rate = force_by_gap[:, :3], force_by_gap[:, 3:]
+        self.by_x, self.force_by_x = derivatives.matrix(s, x, rest, 0.0), derivatives.wrench(s, x)
+        self.by_rate = derivatives.matrix(s, x, rest, 1.0) - self.by_x
+        self.scales = derivatives.unknowns.scales
+
+    @cached_property
+    def slow(self) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness K and damping D (3, 3) of slow motion: value and slope of H at p = 0."""
+        solved = splu(self.by_x.tocsc())
+        moved = -solved.solve(self.by_gap)
+        stiffness = -(self.force_by_x @ moved + self.force_by_gap)
+        damping = self.force_by_x @ solved.solve(self.by_gap_rate + self.by_rate @ moved) - self.force_by_gap_rate
+        return stiffness, damping
+
+    def unknowns(self, p: complex) -> np.ndarray:
+        """Unknowns (n, 3) of the film per unit of the gap's three amplitudes, moving as exp(p t)."""
+        pushed = self.by_gap + p * self.by_gap_rate
+        return -splu((self.by_x + p * self.by_rate).tocsc()).solve(pushed)
+
+    def stiffness(self, p: complex) -> np.ndarray:
+        """Dynamic stiffness H(p) (3, 3), complex."""
+        return -(self.force_by_x @ self.unknowns(p) + self.force_by_gap + p * self.force_by_gap_rate)
+
+    def matrices(self, omega: float) -> tuple[np.ndarray, np.ndarray]:
+        """Stiffness and damping matrices (3, 3) of a motion of angular frequency `omega` (rad/s)."""
+        if omega == 0.0:
+            return self.slow
+        total = self.stiffness(1j * omega)
+        return total.real, total.imag / omega

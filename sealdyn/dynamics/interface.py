@@ -28,10 +28,9 @@ from ..films import film_module, film_name, film_of, has_unknowns
 from ..films._unknowns import FilmDerivatives
 from ..scene.film import Coefficients
 from ..scene.scene import SceneError
-from .condensation import condensed
+from .condensation import LinearFilm, linearise
 from .equilibrium import initially, settle
 from .intervals import constant_and_slope
-from .modes import linearise
 
 
 class Interface:
@@ -118,25 +117,29 @@ class Interface:
             raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
         return x
 
-    def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None):
+    def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
         """Stiffness and damping matrices (3, 3) of film and asperities about the aligned rest state, as
-        `linearised_film`; of a film with unknowns at the frequency `omega` (rad/s)."""
+        `linearised_film`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if given."""
         if self.unknowns is None:
             return linearised_film(self.wrench, self.f, self.scene, self.clearance, interval, mean_spin, shift, pace)
         s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
-        stiffness, damping = self.film_about(s, steps, omega)
+        stiffness, damping = (film or self.linear_film(s, steps)).matrices(omega)
         if self.contact is not None:
             rough = linearise(self._asperities_alone, self.f, s, steps)
             stiffness, damping = stiffness + rough[0], damping + rough[1]
         return stiffness, damping
 
+    def linear_film(self, s, steps) -> LinearFilm:
+        """A film with unknowns about a gap state, these steady; `steps` as in condensation.gap_slopes."""
+        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
+        return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
+
     def film_about(self, s, steps, omega=0.0):
-        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in modes.gap_slopes; of
-        a film with unknowns at the frequency `omega` (rad/s)."""
+        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in
+        condensation.gap_slopes; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
             return linearise(self.film.wrench, self.f, s, steps)
-        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
-        return condensed(derivatives, s, self.steady(self.f, s), steps, omega)
+        return self.linear_film(s, steps).matrices(omega)
 
     def _asperities_alone(self, f, s):
         contact.contact_load(self.contact, f, s)

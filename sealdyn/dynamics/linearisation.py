@@ -5,6 +5,7 @@ from scipy.linalg import expm
 
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
+from .interface import rest_state
 from .intervals import constant_and_slope
 from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
 
@@ -19,12 +20,15 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     shift = model.axial_shift(interval) if shift is None else shift
-    spun = model.scene.film.cavitation_pressure is not None or model.interface.unknowns is not None
+    interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
+    spun = model.scene.film.cavitation_pressure is not None or interface.unknowns is not None
     if speed is None or spun:
-        stiffness, damping = model.interface.linearised(interval, 0.5 * (w_r + w_s), shift)
+        if interface.stores:
+            film = interface.linear_film(*rest_state(model.scene, interface.clearance, interval, spin, shift))
+        stiffness, damping = interface.linearised(interval, spin, shift, film=film)
     else:
         still, damping = model.still_film(interval, shift)
-        stiffness = still - 0.5 * (w_r + w_s) * damping @ QUARTER_TURN
+        stiffness = still - spin * damping @ QUARTER_TURN
     rings = []
     for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
         support = ring.support
@@ -43,7 +47,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
                 spin=w_s if k == STATOR else w_r,
             )
         )
-    return LinearScene(rings, stiffness, damping)
+    return LinearScene(rings, stiffness, damping, film)
 
 
 def harmonics(segment) -> list[Harmonic]:

@@ -86,7 +86,8 @@ class Model:
     # --- the linear side ----------------------------------------------------------------------------
 
     def film_matrices(self, interval: Interval | None = None):
-        """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of an interval's start."""
+        """Stiffness and damping (3, 3) of the film about the aligned equilibrium, speed of an interval's start; of a
+        film that stores those of slow motion."""
         linear = self.linear_scene(interval)
         return linear.film_k, linear.film_d
 

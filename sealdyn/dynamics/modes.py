@@ -5,13 +5,14 @@ of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of e
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import eig
+from scipy.linalg import block_diag, eig
 from scipy.optimize import brentq
 
-from ..faces.geometry import FORCE
+from .film_modes import coupled_modes, reach_of
 
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
 QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -63,11 +64,17 @@ def film_matrices(tilt_stiffness, tilt_damping, axial_stiffness, axial_damping, 
 
 
 class LinearScene:
-    """Mass, damping and stiffness matrices of the floating rings and what drives them."""
+    """Mass, damping and stiffness matrices of the floating rings and what drives them.
 
-    def __init__(self, rings: list[RingNumbers], film_stiffness: np.ndarray, film_damping: np.ndarray):
-        self.rings, self.film_k, self.film_d = rings, film_stiffness, film_damping
-        self.floating, self._eigen = [k for k, ring in enumerate(rings) if ring.floats], None
+    `film_k`, `film_d` (3, 3) of the film's slow motion, of which the matrices are made; `film` a LinearFilm
+    (condensation.py) if they hang on the frequency, which responses and eigenvalues then reckon with; `gap` (3, n):
+    (dz, g_x, g_y) of the displacements.
+    """
+
+    def __init__(self, rings: list[RingNumbers], film_stiffness: np.ndarray, film_damping: np.ndarray, film=None):
+        self.rings, self.film_k, self.film_d, self.film = rings, film_stiffness, film_damping, film
+        self.floating = [k for k, ring in enumerate(rings) if ring.floats]
+        self.gap = np.hstack([rings[k].sign * np.eye(3) for k in self.floating])
         n = 3 * len(self.floating)
         self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
         for a, k in enumerate(self.floating):
@@ -83,21 +90,49 @@ class LinearScene:
                 self.stiffness[at, to] += ring.sign * rings[j].sign * film_stiffness
 
     def eigen(self) -> tuple[np.ndarray, np.ndarray]:
-        """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed."""
-        if self._eigen is None:
-            self._eigen = self._found_eigen()
-        return self._eigen
+        """Finite eigenvalues (m,) and displacement shapes (n, m), not to be changed; massless unknowns are allowed.
+        Of a film that stores those of its own modes too, as far as film_modes.py looks."""
+        return self._eigen if self.film is None else self._coupled[:2]
 
-    def _found_eigen(self):
+    @cached_property
+    def _eigen(self):
         n = len(self.mass)
         if np.all(np.diag(self.mass) != 0.0):
             values, vectors = np.linalg.eig(self.state_matrix())
             return values, vectors[:n]
-        left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
-        right = np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), self.mass]])
-        values, vectors = eig(left, right)
+        values, vectors = eig(*self.pencil())
         finite = np.isfinite(values) & (np.abs(values) < 1e12)
         return values[finite], vectors[:n, finite]
+
+    @cached_property
+    def _coupled(self):
+        return coupled_modes(self, self.reach)
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest size (1/s) of an eigenvalue that `eigen` looks for."""
+        return np.inf if self.film is None else reach_of(self)
+
+    def at_frequency(self, omega: float) -> "LinearScene":
+        """The scene with the film's stiffness and damping at one frequency (rad/s), whatever moves."""
+        if self.film is None:
+            return self
+        (k, d), (slow_k, slow_d) = self.film.matrices(omega), self.film.slow
+        return LinearScene(self.rings, self.film_k + (k - slow_k), self.film_d + (d - slow_d))
+
+    def pencil(self) -> tuple[np.ndarray, ...]:
+        """Matrices (m, m) of `left y = p right y`, y the displacements, the rates and what stands for a film that
+        stores; of such a film also (m, N) `right` and (N, m) y on its unknowns, the same ones at any speed."""
+        n = len(self.mass)
+        if self.film is None:
+            left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
+            return left, np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), self.mass]])
+        reduced = self._coupled[2]
+        left, right, rows, columns = reduced.pencil(self)
+        whole = block_diag(np.eye(n), self.mass, reduced.stored_by_unknowns())
+        lift = block_diag(np.eye(2 * n), reduced.basis)
+        rows = rows[:, None]
+        return rows * left * columns, rows * right * columns, rows * whole, lift * columns
 
     def modes(self) -> list[Mode]:
         """Modes with non-negative frequency, least damped first."""
@@ -121,7 +156,10 @@ class LinearScene:
         return sorted(found, key=lambda mode: -mode.value.real)
 
     def state_matrix(self) -> np.ndarray:
-        """First-order matrix (2n, 2n) on (displacements, rates).  Raises if a mass is zero."""
+        """First-order matrix (2n, 2n) on (displacements, rates).  Raises ValueError for a film that stores, whose state
+        is more, and if a mass is zero."""
+        if self.film is not None:
+            raise ValueError("a film that stores has more to its state than displacements and rates")
         n, inverse = len(self.mass), np.linalg.inv(self.mass)
         matrix = np.zeros((2 * n, 2 * n))
         matrix[:n, n:] = np.eye(n)
@@ -131,6 +169,8 @@ class LinearScene:
     def response(self, harmonic: Harmonic) -> np.ndarray:
         """Complex displacement amplitudes (n,) answering one imposed harmonic."""
         w = harmonic.frequency
+        if self.film is not None:
+            return self.at_frequency(w).response(harmonic)
         force = np.zeros(len(self.mass), dtype=complex)
         ring = self.rings[harmonic.ring]
         if ring.floats:
@@ -217,42 +257,6 @@ def _crossing(distances, i, a, b):
     except (IndexError, ValueError):
         # The mode stops oscillating inside the bracket: no crossing.
         return None
-
-
-def gap_slopes(values_at, s: np.ndarray, steps: tuple[float, float, float, float], count: int) -> np.ndarray:
-    """Derivatives (count, 6) of `values_at(s)` (count,) by (dz, g_x, g_y) and their rates about a gap state: central
-    differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates."""
-    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    offsets = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
-    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
-    moved = np.empty((len(offsets), 6, len(s)))
-    moved[:] = s
-    moved[:, range(6), range(6)] += offsets[:, None] * sizes
-    values = np.empty((len(offsets) * 6, count))
-    for k, row in enumerate(moved.reshape(-1, len(s))):
-        values[k] = values_at(row)
-    values = values.reshape(len(offsets), 6, count)
-    return (weights[:, None, None] * values / sizes[:, None]).sum(axis=0).T
-
-
-def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):
-    """Stiffness and damping matrices (3, 3) of any film about a gap state, on (dz, g_x, g_y).
-
-    A film law is analytic in the gap, so the error of `gap_slopes` is rounding (about 1e-11 relative at steps of 2 %
-    of the clearance).
-    """
-
-    def force_at(moved):
-        wrench(f, moved)
-        return moved[FORCE : FORCE + 3]
-
-    jacobian = gap_slopes(force_at, s, steps, 3)
-    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
-    # What is below the rounding of the force is nothing.
-    wrench(f, s)
-    noise = 1e-14 * abs(s[FORCE]) * np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
-    jacobian[np.abs(jacobian) < noise[:, None] / sizes] = 0.0
-    return 0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:]
 
 
 def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:

@@ -59,7 +59,7 @@ class Unknowns:
         if film_unknowns:
             self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form (IDA)")
             if np.any(film_unknowns.differential):
-                self.reasons.append("film that stores: linear numbers have its stiffness and damping of slow motion")
+                self.reasons.append("film that stores: each mode and response meets it at its own frequency")
 
     def seal(self, k: int):
         """Secondary seal of ring k (0 stator, 1 rotor), or None."""

@@ -31,7 +31,8 @@ Its kernels are `wrench(f, s, x)` and `flow(f, s, x)`, and it offers besides:
 `wrench_jacobian(f, s, x, rows)`
                   (optional) compiled: d (force, moments) / d x, (3, n).
 
-Its stiffness and damping follow by condensation (dynamics/condensation.py).
+Its stiffness and damping follow by condensation (dynamics/condensation.py); where some unknowns are differential they
+hang on the frequency, and modes and responses have them at their own (dynamics/film_modes.py).
 
 A film never asks which ring floats, and imports no other film.
 """

@@ -269,7 +269,8 @@ def _closed_form(segment, linear, tilt):
         found["road"] += "; frequencies incommensurate: sum of amplitudes"
     scene, floats = segment.model.scene, segment.model.unknowns.floats
     arrangement = (floats[STATOR], floats[ROTOR])
-    if arrangement == (True, True) or scene.stator.speed != 0.0:
+    # The formulas know one stiffness and damping, whatever the frequency.
+    if arrangement == (True, True) or scene.stator.speed != 0.0 or segment.model.interface.stores:
         return found
     ring = scene.stator if arrangement[0] else scene.rotor
     stiffness, damping = ring.support.tilt()

@@ -42,14 +42,11 @@ def run(scenario, settings, tools) -> dict:
     speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
 
     def pencil(w):
-        linear = model.linear_scene(speed=float(w))
-        n = len(linear.mass)
-        zero, one = np.zeros((n, n)), np.eye(n)
-        left = np.block([[zero, one], [-linear.stiffness, -linear.damping]])
-        return left, np.block([[one, zero], [zero, linear.mass]])
+        return model.linear_scene(speed=float(w)).pencil()
 
-    values, shapes = follow(pencil, speeds, tools.say)
-    count = len(model.linear_scene().mass)
+    begin = model.linear_scene(speed=float(speeds[0]))
+    values, shapes = follow(pencil, speeds, tools.say, begin.reach)
+    count = len(begin.mass)
     modes = described(values, shapes[:, :, :count], speeds)
     more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
     lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)
@@ -68,13 +65,17 @@ def run(scenario, settings, tools) -> dict:
 # --- following modes -----------------------------------------------------------------------------------
 
 
-def follow(pencil, speeds, say=lambda fraction: None) -> tuple[np.ndarray, np.ndarray]:
+def follow(pencil, speeds, say=lambda fraction: None, reach=np.inf) -> tuple[np.ndarray, np.ndarray]:
     """Eigenvalues (modes, speeds) and shapes (modes, speeds, n) of `left x = s right x`, each row one mode.
 
-    `pencil(speed)` gives (left, right).  Neighbours are matched by biorthogonality of left and right vectors, which
-    two modes that merely meet in frequency do not share; where the match is weak, speeds between are looked at.
+    `pencil(speed)` gives (left, right), and more where x is another one at every speed (LinearScene.pencil).  Modes
+    within `reach` (1/s) at the first speed are followed.  Neighbours are matched by biorthogonality of left and right
+    vectors, which two modes that merely meet in frequency do not share; where the match is weak, speeds between are
+    looked at.
     """
     here = _solve(*pencil(speeds[0]))
+    near = np.abs(here[0]) < reach
+    here = here[0][near], here[1][:, near], here[2][near]
     values, shapes = [here[0]], [here[1]]
     for k, (a, b) in enumerate(pairwise(speeds)):
         here = _step(pencil, a, here, b, HALVINGS)
@@ -84,13 +85,14 @@ def follow(pencil, speeds, say=lambda fraction: None) -> tuple[np.ndarray, np.nd
     return np.array(values).T, np.array(shapes).transpose(2, 0, 1)
 
 
-def _solve(left, right):
+def _solve(left, right, whole=None, lift=None):
     """Finite eigenvalues (m,), right vectors (n, m) and left vectors times `right` (m, n), so scaled that the product
-    of both is one."""
+    of both is one; with `whole` and `lift` (LinearScene.pencil) on the unknowns that are the same at any speed."""
     values, from_left, vectors = eig(left, right, left=True, right=True)
     finite = np.isfinite(values) & (np.abs(values) < 1e12)
     values, vectors, from_left = values[finite], vectors[:, finite], from_left[:, finite]
-    duals = from_left.conj().T @ right
+    duals = from_left.conj().T @ (right if whole is None else whole)
+    vectors = vectors if lift is None else lift @ vectors
     products = np.einsum("mn,nm->m", duals, vectors)
     # A defective pair has no such scale; its frequency must do.
     products = np.where(np.abs(products) < 1e-14, 1.0, products)

@@ -68,6 +68,8 @@ def run(scenario, settings, tools) -> dict:
 def by_formula(model) -> tuple[float | None, str]:
     """Closed form fed with the film's own coefficients (rad/s or None), and why there is none."""
     scene = model.scene
+    if model.interface.stores:
+        return None, "a film that stores: no published formula"
     if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
         return None, "both rings float: no published formula"
     if scene.stator.speed != 0.0:
@@ -175,6 +177,8 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
         return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
     if threshold is None:
         return {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+    if model.unknowns.film_unknowns:
+        return {"verdict": "a film with unknowns of its own: its whirls beyond linear are not followed", "tipping": []}
     at_threshold = free_model(scene, threshold)
     family = branch(at_threshold, threshold)
     if not family:

@@ -179,6 +179,8 @@ def measured(scene, point: dict) -> dict:
     """Static, dynamic and total of one arrangement at one speed, from a run on the linear film in the film's own
     coefficients; `error`: the difference to a run at a hundred times coarser accuracy."""
     seal = seals_of(scene)[point["seal"]]
+    if seal.model.interface.stores:
+        raise ValueError("a film that stores: no linear film with one stiffness and damping stands for it in time")
     decay = -seal.growth(point["speed"])
     if point["speed"] == seal.stator_speed:
         raise ValueError("the stator turns with the shaft: static and dynamic are one")

@@ -65,7 +65,7 @@ class ModeOverSpeed:
 
 def along(model, low: float, high: float, at: float, interval=None) -> ModeOverSpeed:
     """The tilt mode that is least damped at the speed `at` (rad/s), over speeds from low to high.
-    Raises ValueError for a scene with a massless ring."""
+    Raises ValueError for a scene with a massless ring or a film that stores."""
     if not np.all(np.diag(model.linear_scene(interval).mass) > 0):
         raise ValueError("a massless ring has no rates to follow its whirl by")
     speeds = np.linspace(low, high, POINTS)

@@ -7,6 +7,7 @@ coefficients; one flexible ring is a complex quadratic, solved in closed form.
 **Source** Green (1989), eqs. 1-6, homogeneous.  **Valid** small motion about the aligned equilibrium.
 """
 
+from functools import cached_property
 from itertools import product
 
 import numpy as np
@@ -83,14 +84,14 @@ def _pencil(mass, damping, stiffness) -> float:
 
 class Grid:
     """A scenario over two axes: `axes` maps a dotted key (or "inertia_ratio") to its values; the first is x, the
-    second y, and every result has shape (y, x)."""
+    second y, and every result has shape (y, x).
+    **Valid** a film with one stiffness and damping at any frequency: not one that stores."""
 
     def __init__(self, scenario, axes: dict[str, np.ndarray]):
         self.scenario, self.scene = scenario, frozen_at_start(scenario.scene)
         self.axes = {key: np.asarray(values, dtype=float) for key, values in axes.items()}
         self.model = Model(self.scene)
         self.floating = [n for n, f in zip(("stator", "rotor"), self.model.unknowns.floats.values(), strict=True) if f]
-        self.films = self._films()
 
     def rates(self) -> tuple[np.ndarray, np.ndarray]:
         """Growth rates (1/s) of all degrees of freedom and of the tilts alone; NaN where the scene cannot be."""
@@ -124,7 +125,8 @@ class Grid:
 
     # --- film coefficients ---------------------------------------------------------------------------
 
-    def _films(self):
+    @cached_property
+    def films(self):
         """A function of the given values and rows: tilt and axial stiffness and damping of the film."""
         closed = self._closed_form()
         if closed and self._reproduces(closed):

@@ -50,9 +50,9 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.stability.y", axes[1]["key"], "another key than x has")
     try:
         grid = Grid(scenario, {a["key"]: np.array(a["values"]) for a in axes})
+        total, tilt = _one_by_one(scenario, axes, tools) if grid.model.interface.stores else grid.rates()
     except SceneError as error:
         raise ScenarioError(scenario.name, error.key, error.found, error.expected) from None
-    total, tilt = grid.rates()
     tools.say(0.3)
     for a in axes:
         a["here"] = _here(scene, a["key"])
@@ -155,6 +155,26 @@ def _listed(rates) -> list:
     return [[float(v) if np.isfinite(v) else None for v in row] for row in rates]
 
 
+def _one_by_one(scenario, axes, tools) -> tuple[np.ndarray, np.ndarray]:
+    """Growth rates (y, x) of all degrees of freedom and of the tilts, each scene made anew: a film that stores has no
+    one stiffness and damping for the formulas of the grid."""
+    x, y = axes
+    points = [{"values": {x["key"]: a, y["key"]: b}} for b in y["values"] for a in x["values"]]
+    rows = tools.map(partial(rates_of, scenario), points, "map")
+    found = np.array([[row.get(name, np.nan) for row in rows] for name in ("total", "tilt")])
+    return tuple(found.reshape(2, len(y["values"]), len(x["values"])))
+
+
+def rates_of(scenario, point: dict) -> dict:
+    """Growth rates (1/s) of one point of the map: `total` of all modes, `tilt` of the tilt modes."""
+    keys = _scenario_keys(scenario.scene, point["values"])
+    found = Model(frozen_at_start(with_values(scenario, {**keys, "run.start": "steady"}).scene)).linear_scene().modes()
+    rates = found[0].value.real, max(mode.value.real for mode in found if mode.kind == "tilt")
+    rounding = modes.NEUTRAL * max(abs(mode.value) for mode in found)
+    total, tilt = (rate if abs(rate) > rounding else 0.0 for rate in rates)
+    return {"total": total, "tilt": tilt}
+
+
 # --- at the scenario's own values ---------------------------------------------------------------------
 
 
@@ -174,12 +194,14 @@ def margins(scene) -> dict:
 
 
 def unconditional(scene) -> dict:
-    """The inertia ratio up to which a flexible rotor is stable at every speed, `c <= 1/nu`; None for other seals."""
+    """The inertia ratio up to which a flexible rotor is stable at every speed, `c <= 1/nu`; None for other seals, and
+    for a film that stores, of which there is no such formula."""
     nothing = {"limit": None, "inertia_ratio": None, "holds": None}
-    if arrangement(scene) != "FMR":
+    model = Model(scene)
+    if arrangement(scene) != "FMR" or model.interface.stores:
         return nothing
     damping = scene.rotor.support.tilt()[1]
-    stiffness, film_damping = Model(scene).film_matrices()
+    stiffness, film_damping = model.film_matrices()
     if damping + film_damping[1, 1] <= 0 or scene.rotor.support.tilt()[0] + stiffness[1, 1] <= 0:
         return nothing
     limit = cf.unconditional_inertia_ratio(support_damping=damping, film_damping=film_damping[1, 1])

@@ -1,0 +1,124 @@
+"""Studies of a film that stores (radial_cells.py): right at the motion's frequency, or refused with one sentence."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from in_process import InProcess
+from radial_cells import film_of
+
+from sealdyn import read_scenario
+from sealdyn.analysis.arrangements import seals_of
+from sealdyn.analysis.shooting import NoOrbit
+from sealdyn.dynamics import interface, modes
+from sealdyn.dynamics.model import Model
+from sealdyn.scenario.settings import with_values
+from sealdyn.scene.variants import frozen_at_start
+from sealdyn.simulation.simulate import simulate_in_memory
+from sealdyn.studies import campbell, contact_onset, critical_speed, transmissibility
+from sealdyn.studies.runup.plan import planned
+from sealdyn.studies.runup.study import Settings as RunupSettings
+from sealdyn.studies.stability import study as stability
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+STORING = 1e-6
+
+
+@pytest.fixture(autouse=True)
+def stored(monkeypatch):
+    """Every film is one that stores."""
+    monkeypatch.setattr(interface, "film_of", lambda scene, film=None: film_of(8, 8, STORING))
+
+
+def reference(arrangement="fms", *overrides):
+    return read_scenario(SCENARIOS / f"{arrangement}_reference.toml", ["film.model=radial", *overrides])
+
+
+def modes_at(scenario, speed):
+    return Model(frozen_at_start(scenario.scene)).linear_scene(speed=speed).modes()
+
+
+@pytest.mark.parametrize("arrangement", ["fms", "fmr"])
+def test_campbell_follows_the_modes_of_every_speed(arrangement):
+    scenario = reference(arrangement)
+    found = campbell.run(scenario, campbell.Settings(points=25, speed_to=9000.0), InProcess())
+    for i in (0, 8, 24):
+        expected = [m.value for m in modes_at(scenario, found["speed"][i])]
+        for mode in found["modes"]:
+            signed = mode["growth_rate"][i] + 1j * mode["signed_frequency"][i]
+            assert min(min(abs(signed - v), abs(signed - v.conjugate())) for v in expected) < 1e-6 * abs(signed)
+    # What oscillates is smooth.
+    for mode in found["modes"]:
+        signed = np.array(mode["signed_frequency"])
+        assert np.abs(np.diff(signed, 2)).max() < 0.5 * max(np.ptp(signed), 1.0)
+
+
+def test_campbell_crosses_zero_damping_at_the_critical_speed():
+    scenario = reference()
+    found = campbell.run(scenario, campbell.Settings(points=61, speed_to=12000.0), InProcess())
+    model = Model(frozen_at_start(scenario.scene))
+    critical = modes.critical_speed(lambda w: model.linear_scene(speed=w), 300.0, 3e4, 40)
+    crossing = next(p["speed"] for p in found["thresholds"] if p["what"] == "damping")
+    assert crossing == pytest.approx(critical, rel=1e-4)
+
+
+def test_stability_map_is_that_of_every_scene():
+    scenario = reference()
+    settings = stability.Settings(x="shaft.speed=1000:9000:3", y="film.viscosity=3e-4,5e-4", confirm=0)
+    found = stability.run(scenario, settings, InProcess())
+    for j, viscosity in enumerate((3e-4, 5e-4)):
+        for i, speed in enumerate((1000.0, 5000.0, 9000.0)):
+            expected = modes_at(with_values(scenario, {"film.viscosity": viscosity}), speed)
+            assert found["growth_rate"][j][i] == pytest.approx(expected[0].value.real, rel=1e-8)
+    rotor = frozen_at_start(reference("fmr").scene)
+    assert stability.unconditional(rotor)["limit"] is None
+
+
+@pytest.mark.slow
+def test_critical_speed_has_no_formula_and_no_family_of_whirls():
+    scenario = reference()
+    answer = critical_speed.run(scenario, critical_speed.Settings(turns=20), InProcess())
+    assert answer["formula"] is None and answer["formula_reason"]
+    assert answer["time_domain"]["value"] == pytest.approx(answer["eigenvalue"], rel=1e-3)
+    assert answer["nonlinear"]["tipping"] == [] and answer["nonlinear"]["verdict"]
+
+
+def test_transmissibility_is_harmonic_balance_alone():
+    scenario = reference()
+    settings = transmissibility.Settings(points=5, speed_to=3000.0, time_points=1)
+    answer = transmissibility.run(scenario, settings, InProcess())
+    assert not answer["formula_holds"] and all("failed" in row for row in answer["time_domain"])
+    seal = seals_of(scenario.scene)["fms"]
+    linear = seal.linear(3000.0)
+    slow = linear.at_frequency(0.0)
+    assert not seal.formula_holds(0.0)
+    turning = modes.Harmonic(3000.0, 1, np.array([0, 1, -1j]), np.zeros(3))
+    fast, other = (abs(np.dot([0, 1, 1j], s.relative(turning, s.response(turning)))) / 2 for s in (linear, slow))
+    assert answer["fms"]["dynamic"][-1] == pytest.approx(fast, rel=1e-9)
+    assert abs(fast / other - 1) > 0.05
+
+
+def test_orbits_are_refused_or_run_in_time():
+    scenario = reference("fms", "run.duration=5 ms")
+    point = {"key": "rotor.runout", "margin": 1e-3, "tolerance": 1e-6, "set": {}, "floor": False}
+    with pytest.raises(NoOrbit):
+        contact_onset.onset(scenario, point)
+
+
+def test_runup_is_planned_by_the_modes_at_speed():
+    scenario = reference()
+    plan = planned(scenario, RunupSettings())
+    model = Model(frozen_at_start(scenario.scene))
+    expected = modes.critical_speed(lambda w: model.linear_scene(speed=w), 300.0, 3e4, 40)
+    assert plan["threshold"] == pytest.approx(expected, rel=1e-6) and plan["mode"] is None
+
+
+def test_summary_has_modes_and_steady_state_at_their_frequencies():
+    scenario = reference("fms", "run.duration=30 ms", "run.start=steady")
+    summary = simulate_in_memory(scenario)
+    expected = modes_at(scenario, scenario.scene.shaft.speed)
+    assert summary["stability"]["growth_rate"] == pytest.approx(expected[0].value.real, rel=1e-8)
+    assert "static_transmissibility" not in summary["closed_form"]
+    tilt, theory = summary["relative_misalignment"], summary["closed_form"]
+    # The rest is the film's nonlinearity.
+    assert theory["relative_max"] == pytest.approx(tilt["steady_max"], rel=1e-4)
