@@ -42,8 +42,8 @@ from .modes import linearise
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
     the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
-    is that of the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction
-    and film force are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
+    is that of the aligned faces at rest, film and asperities; `observed`: film and block from which leakage, friction,
+    film force and fields are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
 
     def __init__(self, scene, error: float, film=None):
         self.scene = scene
@@ -64,7 +64,7 @@ class Interface:
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
-        self.observed = self.film.flow, self.f
+        self.observed = self.film, self.f
         self.contact = None
         if scene.contact:
             self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact_thresholds(scene.contact)
