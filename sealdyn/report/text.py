@@ -194,6 +194,9 @@ def archive_lines(path, info: dict) -> list[str]:
     for event in info.get("events", []):
         out.append(f"  event         {event['kind']} at t = {_n(event['time'])} s")
     out.append("  series        " + ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items()))
+    if info["fields"]:
+        over = " x ".join(f"{count} {name}" for name, count in info["grid"].items())
+        out.append("  fields        " + ", ".join(f"{n} [{s.units}]" for n, s in info["fields"].items()) + f": {over}")
     return out
 
 
