@@ -87,7 +87,7 @@ def test_the_grid_holds_the_edges_and_the_nodes_of_a_profile():
 def test_below_the_floor_the_film_is_as_its_force_sees_it():
     """Faces that overlap: the pressures sum up to the film's force."""
     for faces in ("cone", "profile"):
-        table, s = film(floor=0.2, **FACES[faces]), gap_state(share=-0.02)
+        table, s = film(floor=0.2, **FACES[faces]), gap_state(share=-0.3)
         module = film_module(table.model)
         f = module.parameters(table, CLEARANCE)
         radii, angles = module.grid(f)
@@ -95,4 +95,4 @@ def test_below_the_floor_the_film_is_as_its_force_sees_it():
         module.fields(f, s, found)
         module.wrench(f, s)
         force = simpson(found[0] * radii[:, None], x=radii, axis=0).mean() * 2 * np.pi
-        assert force == pytest.approx(s[geometry.FORCE], rel=0.02)
+        assert force == pytest.approx(s[geometry.FORCE], rel=0.03)
