@@ -11,7 +11,7 @@ def fields_of(model) -> tuple:
 
 
 def field_grid(model) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (m) and angles (rad, from xi) at which they are given."""
+    """Radii (m) and angles (rad, from the x axis) at which they are given."""
     film, f = model.observed
     return film.grid(f)
 

@@ -20,7 +20,7 @@ What every film module offers (the contract):
 What it may show over the faces, kept by archives at a few instants (a film that says nothing shows nothing):
 
 `FIELDS`          tuple of Field (films/_fields.py): names, units, long names.
-`grid(f)`         radii (m) and angles (rad, from xi) at which it gives them; they do not change during a run.
+`grid(f)`         radii (m) and angles (rad, from the x axis) at which it gives them; they do not change during a run.
 `fields(f, s, out)`
                   compiled kernel: their values at a gap state into `out` (fields, radii, angles).
 

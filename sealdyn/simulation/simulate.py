@@ -240,7 +240,7 @@ def _fields(model) -> Fields | None:
     r, theta = field_grid(model)
     grid = {
         "r": (Series("m", "radius", *MILLIMETRES), r),
-        "theta": (Series("rad", "angle, from xi", *DEGREES), theta),
+        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
     }
     return Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
