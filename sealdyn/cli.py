@@ -1,4 +1,5 @@
-"""The verbs: run, check, schema, show, plot, validate.  Everything heavy is imported by the verb that needs it."""
+"""The verbs: run, check, schema, show, plot, validate, study.  Everything heavy is imported by the verb that
+needs it."""
 
 import contextlib
 import json
@@ -315,9 +316,10 @@ def study(
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
     import importlib
 
+    from .report.text import study_lines
     from .scenario.reader import ScenarioError
     from .scene.scene import SceneError
-    from .studies._runner import run_study, study_names
+    from .studies._runner import run_study, study_names, study_tables
 
     names = study_names()
     if name.replace("_", "-") not in names:
@@ -342,8 +344,8 @@ def study(
         print(json.dumps(answer))
     else:
         print(f"{scenario.name}, study {name}:")
-        for line in answer.get("verdict", []):
-            print(f"  {line}")
+        for line in study_lines(answer, study_tables(name, answer)):
+            print(line)
         print("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
     raise typer.Exit(EXIT[answer["status"]])
 

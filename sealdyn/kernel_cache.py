@@ -74,7 +74,8 @@ def kept_kernels() -> list[Path]:
 
 
 def clear_stale_kernels() -> bool:
-    """Delete the kept kernels if any source of kernels differs from when they were made; says whether it did.
+    """Delete the kept kernels if any source of kernels differs from when they were made; returns whether it deleted
+    any.
     Where no kernel can be kept at all, this process and its children keep them in a temporary folder, with a warning
     (numba would raise)."""
     digest = hashlib.sha256()

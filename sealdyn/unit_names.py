@@ -76,7 +76,7 @@ def _registry():
 
 @lru_cache(maxsize=1024)
 def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
-    """Dimension (with angle counted) and factor to SI of a unit; ValueError when it is none."""
+    """Dimension (with angle counted) and exact factor to SI of a unit such as "mPa*s"; ValueError when it is none."""
     if len(text) > 60 or not UNIT.fullmatch(text):
         raise ValueError(text)
     registry = _registry()

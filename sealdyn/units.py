@@ -1,7 +1,7 @@
-"""The door: "10 um", "9550 rpm", "5 bar" become SI floats; the field types of the scenario's tables.
+"""Unit parsing: "10 um", "9550 rpm", "5 bar" become SI floats; the field types of the scenario's tables.
 
-A bare number is SI.  A string needs a unit.  Angles are counted: a revolution is 2 pi rad and Hz and rpm
-are revolutions per time, so a speed in Hz and a frequency in rad/s both come out right.
+A bare number is SI.  A string needs a unit.  Angles are counted: a revolution is 2 pi rad and Hz and rpm are
+revolutions per time, so a speed in Hz and a frequency in rad/s both come out right.
 """
 
 import difflib
@@ -29,7 +29,8 @@ class QuantityError(ValueError):
 
 @dataclass(frozen=True)
 class Quantity:
-    """What a key holds: its name, SI unit, other units it takes at the same factor, and its least value."""
+    """What a key holds: its name, SI unit, an example for messages, other units it takes at the same factor (`also`),
+    and its `least` value (SI), itself excluded if `open`."""
 
     name: str
     unit: str
@@ -39,7 +40,8 @@ class Quantity:
     open: bool = False
 
     def read(self, value: Any) -> float:
-        """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`."""
+        """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`: no number, another
+        dimension, not finite, below the least value."""
         if isinstance(value, str):
             return self._limited(self._from_string(value), quoted(value))
         if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -50,6 +52,7 @@ class Quantity:
             raise QuantityError("a number beyond 1e308", self.expected()) from None
 
     def expected(self) -> str:
+        """What the key expects, in words, for a message."""
         article = "an" if self.name[0] in "aeiou" else "a"
         limit = "" if self.least == -math.inf else f" {'>' if self.open else '>='} {self.least:g}"
         return f"{article} {self.name}{limit} in {self.unit} or with its unit, e.g. {self.example}"
@@ -82,7 +85,7 @@ class Quantity:
         number, unit = match[1], match[2]
         if not unit:
             raise QuantityError(f"{quoted(text)} (no unit)", self.expected())
-        unit = unit.translate(WRITTEN)
+        unit = unit.translate(UNICODE_UNITS)
         if self.name == "acceleration":
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
@@ -108,7 +111,7 @@ class Quantity:
         return {"description": self.expected(), "quantity": self.name, "unit": self.unit, "anyOf": [number, text]}
 
 
-WRITTEN = {
+UNICODE_UNITS = {
     ord("µ"): "u",
     ord("μ"): "u",
     ord("·"): "*",
@@ -117,11 +120,11 @@ WRITTEN = {
     ord("²"): "^2",
     ord("³"): "^3",
 }
-WRITTEN |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
+UNICODE_UNITS |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
 
 
 def quoted(value: Any, most: int = 60) -> str:
-    """What a file held, in a few printable words."""
+    """What a file held, in a few printable words; at most `most` characters."""
     if isinstance(value, dict) or is_dataclass(value):
         return "a table"
     if isinstance(value, (list, tuple)):
@@ -138,7 +141,7 @@ def quoted(value: Any, most: int = 60) -> str:
 
 @dataclass(frozen=True)
 class VaryingQuantity:
-    """A quantity that may also be `PiecewiseLinear`."""
+    """A `Quantity` that may also be a function of time, `PiecewiseLinear`."""
 
     quantity: Quantity
 
@@ -213,7 +216,7 @@ def _entries(quantity: Quantity, column: list, name: str) -> tuple[float, ...]:
 
 
 class Varying:
-    """`Varying[X]`: an X that may be a table of times."""
+    """`Varying[X]`: the field type of an X that may be a function of time."""
 
     def __class_getitem__(cls, kind):
         return Annotated[float | PiecewiseLinear, VaryingQuantity(kind.__metadata__[0])]

@@ -74,7 +74,7 @@ def text_trouble(figure):
 def _hidden(figure):
     """Texts that are there and not drawn: labels of ticks out of view, of hidden axes, unused titles."""
     found = set()
-    for ax in figure.axes:
+    for ax in [*figure.axes, *(inner for outer in figure.axes for inner in outer.child_axes)]:
         for axis in (ax.xaxis, ax.yaxis):
             visible = axis.get_visible() and ax.axison
             seen = {tick.label1 for tick in axis._update_ticks()} if visible else set()
@@ -91,7 +91,7 @@ def crossed(ax):
     found = []
     for text in ax.texts:
         box = text.get_window_extent()
-        for line in ax.lines:
+        for line in (line for line in ax.lines if len(line.get_xdata())):
             points = line.get_transform().transform(np.column_stack(line.get_data()).astype(float))
             along = np.linspace(0, 1, 4000)
             at = np.linspace(0, 1, len(points))

@@ -17,7 +17,7 @@ FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fm
 
 
 class Arrangement:
-    """One arrangement of the scenario's seal: its linear answers at any shaft speed (rad/s)."""
+    """One arrangement ("fmr" or "fms") of the scenario's seal: its linear answers at any shaft speed (rad/s)."""
 
     def __init__(self, scene: Scene, name: str):
         self.name, self.scene = name, with_single_flexible_ring(scene, name.upper())
@@ -25,10 +25,12 @@ class Arrangement:
         self.stator_speed = scene.stator.speed
 
     def linear(self, speed: float) -> modes.LinearScene:
+        """The LinearScene at a shaft speed (rad/s)."""
         return self.model.linear_scene(speed=float(speed))
 
     def relative_tilts(self, speed: float) -> tuple[complex, complex]:
-        """Static and dynamic relative tilt (stator minus rotor) per unit forcing, in its frame, by harmonic balance."""
+        """Static and dynamic relative tilt (stator minus rotor) per unit forcing (rad/rad), each in its frame, by
+        harmonic balance."""
         linear, found = self.linear(speed), []
         for ring, frequency in ((STATOR, self.stator_speed), (ROTOR, speed)):
             none, circle = np.zeros(3, dtype=complex), np.array([0, 1, -1j])
@@ -39,7 +41,11 @@ class Arrangement:
         return tuple(found)
 
     def formula_tilts(self, speeds) -> np.ndarray:
-        """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives; complex, shape (2, n)."""
+        """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives; complex, shape (2, n), at
+        speeds (n,) (rad/s).
+
+        **Source**, **Valid** closed_form/response.py.
+        """
         n = self.tilt_numbers(speeds)
         w, k_s, d_s, k, d = (n[name] for name in ("speed", "support_stiffness", "support_damping",
                                                        "film_stiffness", "film_damping"))  # fmt: skip
@@ -52,7 +58,7 @@ class Arrangement:
         return np.array([k_s / (k_s + behind), -ring / (ring + behind.conj())])
 
     def algebra(self, speed: float) -> tuple[float, float, float]:
-        """Static, dynamic, total by harmonic balance."""
+        """Static, dynamic, total transmissibility (rad/rad) by harmonic balance at a speed (rad/s)."""
         static, dynamic = map(abs, self.relative_tilts(speed))
         return static, dynamic, static + dynamic
 
@@ -63,7 +69,8 @@ class Arrangement:
         return rate if abs(rate) > modes.NEUTRAL * max(map(abs, values)) else 0.0
 
     def tilt_numbers(self, speed) -> dict:
-        """The keywords of the closed forms; film coefficients re-evaluated at each speed."""
+        """The seven keywords of the closed forms (SI), speed (rad/s, number or array) among them; film coefficients
+        re-evaluated at each speed."""
         films = [(s.film_k[1, 1], s.film_d[1, 1]) for s in map(self.linear, np.atleast_1d(speed))]
         ring = self.scene.rotor if self.name == "fmr" else self.scene.stator
         stiffness, damping = ring.support.tilt()
@@ -85,13 +92,14 @@ class Arrangement:
         return bool(self.stator_speed == 0 and near and np.allclose(d[1:, 1:], wanted_d[1:, 1:], rtol=1e-7, atol=1e-12))
 
     def formula(self, speed):
-        """Static, dynamic, total by the closed forms."""
+        """Static, dynamic, total transmissibility (rad/rad) by the closed forms, at a speed (rad/s, number or
+        array)."""
         static, dynamic = (f(**self.tilt_numbers(speed)) for f in FORMULAS[self.name])
         return static, dynamic, static + dynamic
 
 
 def seals_of(scene: Scene) -> dict[str, Arrangement]:
-    """Both arrangements of the scene's seal, nothing imposed, clearance kept."""
+    """Both arrangements {"fmr": ..., "fms": ...} of the scene's seal, nothing imposed, clearance kept."""
     clearance = Model(frozen_at_start(scene)).clearance
     scene = frozen_at_start(scene, clearance=clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[]))

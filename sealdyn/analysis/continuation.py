@@ -17,8 +17,8 @@ from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 from .poincare_map import SAMPLES, PeriodMap
 
-# What is led to its new value in time; anything else changes between two turns.
-LED = ("rotor.runout", "rotor.misalignment", "stator.misalignment", "shaft.speed")
+# What is ramped to its new value in time; anything else changes between two turns.
+RAMPED = ("rotor.runout", "rotor.misalignment", "stator.misalignment", "shaft.speed")
 # Highest order kept of a spectrum.
 ORDERS = 5.0
 # Distance of two neighbours, in units of the scales, and how much finer they are integrated.
@@ -26,7 +26,8 @@ FINER, APART = 100.0, 1e-4
 
 
 def frozen_at_end(scene):
-    """The scene with every table at its last value: what it drives to, closed by the law that its start decides."""
+    """The scene with every function of time at its last value: what it drives to, closed by the law that its start
+    decides."""
     film = scene.film
     if film.clearance is not None and any(
         isinstance(p, PiecewiseLinear) for p in (film.inner_pressure, film.outer_pressure)
@@ -45,15 +46,15 @@ class FilmCollapsed(RuntimeError):
 
 
 def ramp_to(scene, key, last, x, point):
-    """Unknowns (n,) after the ramp to the scene from the value `last` and its end `x`, or from a seal without any
-    misalignment (x None).  Raises FilmCollapsed."""
-    starts = {key: last} if x is not None and key in LED else {}
+    """Unknowns (n,) after the ramp to the scene from the value `last` of `key` and its end `x` (n,), or from a seal
+    without any misalignment (x None).  `point` {"accuracy", "ramp" (periods)}.  Raises FilmCollapsed."""
+    starts = {key: last} if x is not None and key in RAMPED else {}
     if x is None:
-        starts = {k: 0.0 for k in LED[:3] if part(scene, k)}
-    stroboscope = PeriodMap(scene, point["accuracy"])
+        starts = {k: 0.0 for k in RAMPED[:3] if part(scene, k)}
+    period_map = PeriodMap(scene, point["accuracy"])
     if not starts:
-        return np.zeros(stroboscope.size) if x is None else x
-    span, moving = point["ramp"] * stroboscope.period, scene
+        return np.zeros(period_map.size) if x is None else x
+    span, moving = point["ramp"] * period_map.period, scene
     if key == "shaft.speed" and x is not None:
         # Whole turns, so that the phases meet.
         span *= 2 * scene.shaft.speed / (scene.shaft.speed + last)
@@ -61,15 +62,19 @@ def ramp_to(scene, key, last, x, point):
         moving = with_values(moving, {k: PiecewiseLinear((0.0, span), (start, part(scene, k)))})
     run = RunState(Model(moving, point["accuracy"]), span)
     if x is not None:
-        run.y0[: stroboscope.size] = x
-    outcome = solve(run, stroboscope.method, point["accuracy"], Recorder())
+        run.y0[: period_map.size] = x
+    outcome = solve(run, period_map.method, point["accuracy"], Recorder())
     if outcome.status != Status.OK:
         raise FilmCollapsed(outcome.message, outcome.cause)
-    return outcome.y[: stroboscope.size]
+    return outcome.y[: period_map.size]
 
 
 def sweep_branch(scene, point: dict) -> dict:
-    """The points of one direction, each from the end of the one before."""
+    """{"rows": the points of one direction, each from the end of the one before}.
+
+    `point` {"key", "values", "direction", and what `characterise` and `ramp_to` take}.  A row has `value`, `direction`,
+    `start` ("continued" or "aligned"), `status`, and the keys of `characterise`, or `message` and `class` "collapse".
+    """
     scene, x, last, rows = frozen_at_end(scene), None, None, []
     for value in point["values"]:
         here = with_values(scene, {point["key"]: value})
@@ -85,28 +90,35 @@ def sweep_branch(scene, point: dict) -> dict:
 
 
 def neighbours(scene, x, turns, accuracy, method=None):
-    """Exponent by two trajectories, integrated FINER than the rest: their distance must be far above the integrator's
-    error even after a turn that draws them together."""
+    """Exponent per period by two trajectories over `turns` periods from `x` (n,), integrated FINER than the rest: their
+    distance must be far above the integrator's error even after a period that draws them together."""
     fine = PeriodMap(scene, accuracy / FINER, method)
     return two_trajectories(fine.step, x, fine.scales, turns, distance=APART)
 
 
 def characterise(scene, x, point) -> tuple[np.ndarray, dict]:
-    """Where the motion ends up at one point: its last unknowns, and what it is like.  Raises FilmCollapsed."""
-    stroboscope = PeriodMap(scene, point["accuracy"])
+    """Where the motion ends up at one point: its last unknowns (n,), and what it is like.  Raises FilmCollapsed.
+
+    `x` (n,) to start from; `point` {"accuracy", "drop" and "keep" (periods left out and kept), "exponent_turns"}.
+    Returns `class`, `period` (returns), `distinct`, `contacts` per period, `contact_share`, `contact_force` over the
+    closing force, `impulse` (N s), `contact_power` (W), `exponent`, `uncertainty`, `multiplier`, `section` [m][2]
+    (rad), `h_min` [m] (m), `lines`, `orders`, `amplitude` (rad), `end` [n], `evaluations` and `wall_time` (s) per
+    period.
+    """
+    period_map = PeriodMap(scene, point["accuracy"])
     for periods in (point["drop"], point["keep"]):
-        turns = stroboscope.run(x, periods)
+        turns = period_map.run(x, periods)
         x = turns.last
         if turns.status != Status.OK:
             raise FilmCollapsed(turns.message)
-    model = stroboscope.model
+    model = period_map.model
     scale = model.clearance / model.face[1]
     exponent = neighbours(scene, x, point["exponent_turns"], point["accuracy"])
     size = max(scale, float(np.ptp(turns.section.real)), float(np.ptp(turns.section.imag)))
     period = time_series.period_of(turns.section[len(turns.section) // 2 :], size)
     points, still = time_series.distinct_points(turns.section, size), time_series.shrinking(turns.section)
     kind = time_series.classify(period, exponent.value, exponent.uncertainty, still, points)
-    orders, amplitude = time_series.spectrum(turns.ring.ravel(), SAMPLES / stroboscope.turns_per_period)
+    orders, amplitude = time_series.spectrum(turns.ring.ravel(), SAMPLES / period_map.turns_per_period)
     kept = orders <= ORDERS
     return x, {
         "class": "no contact" if not turns.touching.any() and period == 1 else kind,

@@ -15,14 +15,14 @@ POINTS, TURNS = 2000, 20
 
 
 def followability(model) -> list[dict]:
-    """Whether the spring keeps a flexible ring on a partner that runs out axially (hang-up).
+    """Whether the spring keeps a flexible stator on a rotor that runs out axially (hang-up).
 
     The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its
     inertia and the change of its support springs at every angle: F > -m z_r'' - k z_r + F_f where it moves away.
-    **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of
-    following the runout.  **Valid** balanced or absent pressures, no film force, constant speed, one ring floats.
-    Returns one dict for the ring that floats, or none: `ring`, `available` (spring, N), `needed` (N), `friction`,
-    `inertia` (N), `holds`, `said`.
+    **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of following
+    the runout.  **Valid** balanced or absent pressures, no film force, constant speed, only the stator floats.
+    Returns one dict, or none where there is nothing to follow: `rule`, `ring`, `available` (spring, N), `needed` (N),
+    `friction`, `inertia` (N), `holds`, `said`.
     """
     scene = model.scene
     floating = [k for k, floats in model.unknowns.floats.items() if floats]

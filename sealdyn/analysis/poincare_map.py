@@ -14,6 +14,7 @@ import numpy as np
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..simulation.method_selection import choose_method
 from ..solvers.contract import Counts, SolverFailure, Status, tolerance_for
@@ -29,12 +30,11 @@ ACROSS, TANGENT = 1e-6, 1e-6
 
 @dataclass(frozen=True)
 class PeriodSamples:
-    """Whole periods of a run.  `section` (m,) relative tilt (rad, complex, fixed axes) at the start of each; `tilt`
-    (m, samples) the same all along; `ring` (m, samples) tilt of a flexible ring about xi (rad); `h_min`,
+    """Whole periods of a run.  `section` (m,) relative tilt (rad, complex, fixed axes) at the start of each; `tilt` (m,
+    samples) the same all along; `ring` (m, samples) tilt of a flexible ring about the x axis (rad); `h_min`,
     `contact_force`, `friction_power`, `contact_power` (m, samples) in SI; `lowest` (m,) smallest film of each period
-    (m); `touching` (m,) share of each period in contact; `contacts` touches that ended or go on; `impulse` of contact
-    per period (N s); `last` (n,) unknowns at the end; `status`, `message`;
-    `evaluations` and wall time (s) per period."""
+    (m); `touching` (m,) share of each period in contact; `contacts` that ended or go on; `impulse` of contact per
+    period (N s); `last` (n,) unknowns at the end; `status`, `message`; `evaluations` and wall time (s) per period."""
 
     section: np.ndarray
     tilt: np.ndarray
@@ -55,8 +55,9 @@ class PeriodSamples:
 
 
 class PeriodMap:
-    """The period map of a scene by one method at one accuracy; `method` None: what the scene wants.
-    Raises SceneError if there is no period."""
+    """The period map of a scene by one method at one accuracy; `method` None: what the scene wants.  `period` (s),
+    `size` n of its points: the mechanical unknowns, of a massless ring the displacements, and their `scales` (n,).
+    Raises SceneError if there is no period, or the film stores."""
 
     def __init__(self, scene, accuracy: float = 1e-6, method: str | None = None):
         self.scene, self.accuracy = scene, accuracy
@@ -74,10 +75,11 @@ class PeriodMap:
         self.turns_per_period = self.period * abs(scene.shaft.speed) / (2 * math.pi)
 
     def step(self, x) -> np.ndarray:
-        """The unknowns (n,) one period later."""
+        """The unknowns (n,) one period later.  Raises SceneError for a ring that sticks, SolverFailure."""
         run = self.one_period
         if run.stick_slip:
-            raise SceneError("secondary_seal.law", "a ring that sticks", 'law = "smooth" for exponents')
+            key = f"{RING_NAMES[run.model.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+            raise SceneError(key, "a ring that sticks", 'law = "regularised" for exponents')
         y = np.zeros(run.model.unknowns.size)
         y[: self.size] = x
         tolerance = tolerance_for(self.method, self.accuracy, run.memory)
@@ -117,13 +119,14 @@ class PeriodMap:
         )  # fmt: skip
 
     def looked_at(self, t, q, rate, run=None) -> dict:
-        """What is kept of a motion sampled SAMPLES times a period: displacements and rates (m, n)."""
+        """What is kept of a motion sampled SAMPLES times a period: displacements and rates (m, n) at times `t` (m,)
+        (s); the arrays of PeriodSamples but `touching` and `last`, by name."""
         run = run or self.one_period
-        starts = np.array([leg.time for leg in run.intervals])
-        legs = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
+        starts = np.array([interval.time for interval in run.intervals])
+        indices = np.searchsorted(starts, t * (1 + 1e-12), side="right") - 1
         parts = []
-        for k in np.unique(legs):
-            inside = legs == k
+        for k in np.unique(indices):
+            inside = indices == k
             parts.append(signals(run.segment(int(k)), t[inside] - starts[k], q[inside], rate[inside]))
         names = parts[0] if parts else ()
         seen = {name: np.concatenate([p[name] for p in parts]).reshape(-1, SAMPLES) for name in names}
@@ -142,13 +145,17 @@ class PeriodMap:
         }  # fmt: skip
 
     def tangents(self, x, q, samples: list | None = None):
-        """One period by DOP853: the unknowns (n,) and the tangents (n, k), in units of the scales; keeps the motion,
-        SAMPLES times, in `samples` as (displacements, rates)."""
+        """One period by DOP853: the unknowns (n,) and the tangents (n, k) from `x` (n,) and `q` (n, k), in units of the
+        scales; keeps the motion, SAMPLES times, in `samples` as (displacements, rates).
+
+        **Source** Hairer, Norsett & Wanner (1993), Solving ODEs I (DOP853); variations by central differences.
+        **Valid** rings with mass that do not stick (SceneError); raises SolverFailure.
+        """
         from scipy.integrate import DOP853
 
         run, n, k = self.one_period, self.size, q.shape[1]
         if run.model.unknowns.has_residual_form or run.stick_slip:
-            raise SceneError("solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
+            raise SceneError("run.solver", "a massless ring, or one that sticks", "rings with mass, friction smooth")
         segment = run.segment(0)
         y, yp, scales = np.zeros(segment.size), np.zeros(segment.size), self.scales
 
@@ -187,7 +194,8 @@ class PeriodMap:
 
 
 def touching(touched: list[dict], starts, end: float) -> np.ndarray:
-    """Share of each period, `starts` (m + 1,) s, in contact."""
+    """Share (m,) of each period, `starts` (m + 1,) (s), in contact; `touched` the contacts as events, `end` (s) of the
+    run for one that goes on."""
     spans = [(e["time"], e["lift_off"] if np.isfinite(e["lift_off"]) else end)
              for e in touched if e["kind"] == "contact"]  # fmt: skip
     total = np.zeros(len(starts))
@@ -197,7 +205,8 @@ def touching(touched: list[dict], starts, end: float) -> np.ndarray:
 
 
 def dips(h) -> np.ndarray:
-    """Smallest of each row of samples (m, samples) of a smooth series: the vertex of a parabola where it is low."""
+    """Smallest (m,) of each row of samples (m, samples) of a smooth series: the vertex of a parabola where it
+    is low."""
     flat = h.ravel()
     at = np.clip(np.argmin(h, axis=1) + h.shape[1] * np.arange(len(h)), 1, len(flat) - 2)
     a, b, c = flat[at - 1], flat[at], flat[at + 1]
@@ -207,7 +216,8 @@ def dips(h) -> np.ndarray:
 
 
 def joined(parts: list[PeriodSamples]) -> PeriodSamples:
-    """Runs that follow each other as one."""
+    """Runs that follow each other as one: impulse, evaluations and wall time per period are their means, contacts their
+    sum."""
     if len(parts) == 1:
         return parts[0]
     rows = {name: np.concatenate([getattr(p, name) for p in parts]) for name in PeriodSamples.__annotations__
@@ -221,7 +231,7 @@ def joined(parts: list[PeriodSamples]) -> PeriodSamples:
 
 
 def share_below(h, level: float) -> np.ndarray:
-    """Share of each row (m, samples) of an evenly sampled film below a level, straight between samples."""
+    """Share (m,) of each row (m, samples) of an evenly sampled film (m) below a level (m), straight between samples."""
     flat = h.ravel()
     a, b = flat - level, np.append(flat[1:], flat[-1]) - level
     below = np.where(a < 0, 1.0, 0.0)

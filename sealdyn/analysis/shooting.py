@@ -34,8 +34,9 @@ class NoOrbit(ValueError):
 
 @dataclass(frozen=True)
 class Orbit:
-    """A periodic steady state: period (s), mechanical unknowns at its start, monodromy matrix and its eigenvalues,
-    what Newton left (in units of the scales), periods integrated on the way, and the extremes over the orbit."""
+    """A periodic steady state: period (s), mechanical unknowns (n,) at its start, monodromy matrix (n, n) in units of
+    the scales and its eigenvalues (n,), what Newton left (in units of the scales), periods integrated on the way, and
+    the extremes over the orbit (`Shooter.extremes`)."""
 
     period: float
     start: np.ndarray
@@ -52,8 +53,9 @@ class Orbit:
 
 
 class Shooter:
-    """The period map of a scene, integrated at the tolerance `tight`.
-    Raises NoOrbit if the forcing has no common period."""
+    """The period map of a scene, over `turns` periods of its forcing, integrated at the tolerance `tight`; `size` n of
+    its points: the mechanical unknowns, of a massless ring the displacements, and their `scales` (n,).
+    Raises NoOrbit if the forcing has no common period, a ring sticks or the film stores."""
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
         self.scene, self.accuracy, self.tight = scene, accuracy, tight
@@ -76,7 +78,7 @@ class Shooter:
         self.flows = 0
 
     def flow(self, start: np.ndarray) -> np.ndarray:
-        """The unknowns one period later."""
+        """The unknowns (n,) one period later.  Raises NoOrbit where the map crawls, SolverFailure."""
         segment = RunState(self.model, self.period).segment(0).until(self.period)
         y = np.zeros(segment.size)
         y[: self.size] = start
@@ -90,7 +92,7 @@ class Shooter:
         return last[: self.size].copy()
 
     def monodromy(self, start: np.ndarray) -> np.ndarray:
-        """Derivative of the period map at `start`, (size, size), in units of the scales."""
+        """Derivative of the period map at `start` (n,), (n, n), in units of the scales."""
         matrix = np.empty((self.size, self.size))
         for j in range(self.size):
             column = np.zeros(self.size)
@@ -102,12 +104,13 @@ class Shooter:
         return matrix
 
     def guess(self) -> np.ndarray:
-        """The linear steady state at the start of the period."""
+        """The linear steady state (n,) at the start of the period."""
         return RunState(self.model, self.period).steady_start()[: self.size]
 
     def find(self, guess=None, monodromy=None, target: float = 1e-11, most: int = 12) -> Orbit:
-        """Newton from `guess` (default: the linear steady state).  A `monodromy` handed in is used unchanged as
-        long as it contracts (chord method), and only the last one is computed anew.  Raises NoOrbit."""
+        """Newton from `guess` (n,) (default: the linear steady state) until the defect is below `target` (in units of
+        the scales), in `most` steps.  A `monodromy` (n, n) handed in is used unchanged as long as it contracts (chord
+        method) and is then the orbit's; its multipliers are those of that matrix.  Raises NoOrbit."""
         x = self.guess() if guess is None else np.array(guess, dtype=float)
         frozen = monodromy is not None
         before = np.inf
@@ -131,8 +134,8 @@ class Shooter:
             before = size
         else:
             raise NoOrbit(f"Newton did not converge in {most} steps (defect {size:.1e} of the scales)")
-        if monodromy is None or not frozen:
-            monodromy = self.monodromy(x) if monodromy is None else monodromy
+        if monodromy is None:
+            monodromy = self.monodromy(x)
         return Orbit(
             self.period, x, monodromy, np.linalg.eigvals(monodromy), size, self.flows - begun, self.extremes(x)
         )
@@ -144,7 +147,9 @@ class Shooter:
         return np.linalg.solve(matrix, defect)
 
     def extremes(self, start: np.ndarray, per_period: int | None = None) -> dict:
-        """Located extremes over one period: h_min with place and time, relative misalignment."""
+        """Located extremes over one period from `start` (n,): `h_min` {value (m), time (s), theta (rad), radius (m),
+        of_clearance}, `relative_misalignment` {max, min} (rad), `collapsed`; with `per_period` also that many samples:
+        `times` (m,) (s), `displacements` and `rates` (m, n)."""
         run = RunState(self.model, self.period)
         run.y0[: self.size] = start
         recorder = Recorder(self.period / per_period if per_period else None)

@@ -17,13 +17,14 @@ from ..scene.excitation import Shaft
 from ..scene.film import Film
 from ..scene.rings import Rotor, Stator, Support
 from ..scene.scene import Initial, RingStart, Scene
+from ..simulation.stability import critical_speed
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 
 ACCURACY = 1e-8
 # The three methods must agree to this, relative.
-ROADS_AGREE = {"critical_speed": 1e-3, "critical_misalignment": 1e-5}
-ROADS_AGREE_ELSE = 1e-5
+TOLERANCE = {"critical_speed": 1e-3, "critical_misalignment": 1e-5}
+TOLERANCE_ELSE = 1e-5
 SPEED_EXPLAINED = (
     "printed 8.4e3 does not follow from the paper's own formula; film stiffness alone instead of support plus film "
     "stiffness gives 8.399e3, which rounds to the print"
@@ -34,7 +35,8 @@ MISALIGNMENT_EXPLAINED = "follows from the printed transmissibilities within the
 def reference_scene(arrangement: str, inertia_ratio: float = 0.5, fixed: float = 0.0, turning: float = 0.0, speed=None):
     """Green's (1989) reference seal as an FMR or FMS scene with a linear film in his coefficients.
 
-    `fixed` and `turning` are the misalignments (rad) at rest in space (stator's) and turning with the shaft (rotor's).
+    `inertia_ratio` I/J; `fixed` and `turning` are the misalignments (rad) at rest in space (stator's) and turning with
+    the shaft (rotor's); `speed` (rad/s, default his).
     """
     seal = cf.GREEN_1989_SEAL
     support = Support(
@@ -73,7 +75,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
     numbers = cf.green_1989_tilt(film.tilt_stiffness, film.tilt_damping, c)
     formulas = (cf.fmr_static, cf.fmr_dynamic) if arrangement == "FMR" else (cf.fms_static, cf.fms_dynamic)
     unit = 1e-5
-    roads = [[float(f(**numbers)) for f in formulas]]
+    formula = [float(f(**numbers)) for f in formulas]
     pairs = ((unit, 0.0), (0.0, unit), (unit, unit))
     algebra, time_domain = [], []
     for fixed, turning in pairs:
@@ -83,8 +85,8 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
         algebra.append(modes.steady_extremes(linear, answers, run.period())[0] / unit)
         solve(run, "adams", ACCURACY, Recorder())
         time_domain.append(run.extrema.records[1, 4] / unit)
-    roads[0].append(sum(roads[0]))
-    rows = [roads[0], algebra, time_domain]
+    formula.append(sum(formula))
+    rows = [formula, algebra, time_domain]
     radius_ratio = seal["inner_radius"] / seal["outer_radius"]
     # In units of C/r_o: the faces touch at 1/R; the ring's own misalignment is the FMR's turning one, the
     # FMS's critical forcing is its runout.
@@ -130,7 +132,7 @@ def _critical_speeds(arrangement: str, c: float):
     numbers.pop("speed")
     formula = (cf.fmr_critical_speed if arrangement == "FMR" else cf.fms_critical_speed)(**numbers)
     run = _ready(reference_scene(arrangement, c), 1)
-    eigen = modes.critical_speed(lambda w: run.model.linear_scene(speed=w), 100.0, 1e6)
+    eigen = critical_speed(run.model)
     if eigen is None:
         # No threshold to bisect for: far above any speed of use the disturbance must still die out.
         still = all(growth_rate(reference_scene(arrangement, c, speed=w), 40) < 0 for w in (1e4, 3e4))
@@ -147,10 +149,12 @@ def _critical_speeds(arrangement: str, c: float):
 
 
 def validate_all() -> list[dict]:
-    """Every row of Green's Table 1: source, quantity, published, the three methods, deviation, verdict, remark.
+    """Every row of Green's Table 1: source, arrangement, inertia_ratio, quantity, published, the three methods
+    (formula, linear_algebra, time_domain), deviation of the formula from the print, roads_apart (largest difference of
+    the methods), both relative, verdict, remark.
 
-    Verdicts: "agrees" (within one unit of the last printed digit), "rounding" (explained by the digits printed),
-    "print differs" (the print is wrong or unexplained, the methods agree), "FAILED" (they disagree).
+    Verdicts: "agrees" (within one unit of the last printed digit), "rounding" (explained by the digits printed), "print
+    differs" (the print is wrong or unexplained, the methods agree), "FAILED" (they disagree).
     """
     cases, rows = {}, []
     for entry in cf.GREEN_1989:
@@ -163,8 +167,8 @@ def validate_all() -> list[dict]:
     return rows
 
 
-def _row(entry, roads) -> dict:
-    formula, algebra, time_domain = roads
+def _row(entry, methods) -> dict:
+    formula, algebra, time_domain = methods
     row = {
         "source": entry.source,
         "arrangement": entry.arrangement,
@@ -184,7 +188,7 @@ def _row(entry, roads) -> dict:
     values = np.array([formula, algebra, time_domain], dtype=float)
     apart = float(np.max(np.abs(values / formula - 1)))
     row |= {"deviation": formula / entry.value - 1, "roads_apart": apart}
-    if not apart <= ROADS_AGREE.get(entry.quantity, ROADS_AGREE_ELSE):
+    if not apart <= TOLERANCE.get(entry.quantity, TOLERANCE_ELSE):
         return row | {"verdict": "FAILED", "remark": "the three methods disagree"}
     if abs(formula - entry.value) <= 1.0001 * entry.last_digit:
         return row | {"verdict": "agrees"}
@@ -194,7 +198,7 @@ def _row(entry, roads) -> dict:
 
 
 def report(rows: list[dict]) -> None:
-    """Print the rows as a table, remarks below."""
+    """Print the rows of `validate_all` as a table, remarks below."""
     head = ("seal", "c", "quantity", "published", "formula", "lin. algebra", "time domain", "deviation", "verdict")
     cells = [head]
     for row in rows:

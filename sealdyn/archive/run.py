@@ -133,7 +133,7 @@ class ArchiveWriter:
         self._waiting, self._written = [], clock.monotonic()
 
     def finish(self, status: str, message: str, summary: dict) -> Path:
-        """Completes the archive and gives it its name; returns where it is.
+        """Completes the archive and gives it its name; returns where it is.  `status` one of STATUSES, else ValueError.
 
         An interrupted run does not replace a complete archive: it stays at `partial_path(path)`.
         """
@@ -390,13 +390,13 @@ def _series(attributes) -> Series:
 
 
 def last_state(path) -> dict:
-    """What a continued run starts from: the state given with the last row that counts."""
+    """What a continued run starts from: the state given with the last row that counts.  Raises `ArchiveError`."""
     with _opened(path) as (_, record):
         return record["state"]
 
 
 def column(path, name: str, rows: slice = slice(None)) -> np.ndarray:
-    """One series, float64, or a slice of it, without loading the rest."""
+    """One series (rows,), float64, SI, or a slice of it, without loading the rest.  Raises `ArchiveError`."""
     with _opened(path) as (file, record):
         if scale_of(file, name) != "time":
             raise ArchiveError(f"{path}: has no series {name!r}")

@@ -14,8 +14,9 @@ FORMAT = "sealdyn study 1"
 
 
 def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict[str, str]) -> Path:
-    """Write the answer: whole as JSON (`/answer`), and every list of numbers in it as a float64 dataset under its
-    dotted key with `units`, so that any HDF5 reader can plot it.  Replaces an existing file only when complete."""
+    """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers in it as a float64 dataset
+    `/data/KEY` (keys of nested tables joined by "/") with `units` {KEY: unit}, so that any HDF5 reader can plot it.
+    `meta` becomes root attributes.  Replaces an existing file only when complete; returns its path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")

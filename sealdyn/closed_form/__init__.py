@@ -1,9 +1,10 @@
 """Closed forms that a run must confirm: film coefficients, steady response, contact onset, stability.
 
-Dimensional (SI).  Radii, clearances and films in m, angles and coning in rad, pressures in Pa, tilt stiffness
-in N m/rad, tilt damping in N m s/rad, inertia in kg m^2, speeds in rad/s.  Arguments broadcast over numpy
-arrays unless a function says scalar.  The clearance is the film thickness at the inner radius of the aligned
-seal, `h = clearance + coning (r - inner_radius)`; the pressure drop is outer minus inner pressure.
+Dimensional (SI).  Radii, clearances and films in m, angles and coning in rad, pressures in Pa, viscosity in Pa s, axial
+stiffness in N/m, axial damping in N s/m, tilt stiffness in N m/rad, tilt damping in N m s/rad, mass in kg, inertia in
+kg m^2, speeds in rad/s.  Arguments broadcast over numpy arrays unless a function says scalar.  The clearance is the
+film thickness at the inner radius of the aligned seal, `h = clearance + coning (r - inner_radius)`; the pressure drop
+is outer minus inner pressure.
 """
 
 from .film import (

@@ -1,4 +1,7 @@
-"""Aligned and linearised liquid film of a coned face: the narrow seal, and exact over the radius."""
+"""Aligned and linearised liquid film of a coned face: the narrow seal, and exact over the radius.
+
+Arguments, scalars or arrays that broadcast: radii and clearance (m), coning (rad), viscosity (Pa s), pressures (Pa).
+"""
 
 import math
 from typing import Literal, NamedTuple
@@ -10,7 +13,10 @@ Geometry = Literal["cylindrical", "planar"]
 
 
 class FilmCoefficients(NamedTuple):
-    """Linear film: moment on the stator `-K g - D (g' - i w/2 g)`, force `F_0 - K_z z - D_z z'`."""
+    """Linear film: moment on the stator `-K g - D (g' - i w/2 g)`, force `F_0 - K_z z - D_z z'`.
+
+    K (N m/rad), D (N m s/rad), K_z (N/m), D_z (N s/m), of the shape of the arguments.
+    """
 
     tilt_stiffness: Real
     tilt_damping: Real
@@ -50,18 +56,19 @@ def film_coefficients(
     viscosity: Real,
     pressure_drop: Real,
 ) -> FilmCoefficients:
-    """Stiffness and damping of the narrow coned film: Green's tilt pair, and its axial pair.
+    """Stiffness and damping of the narrow coned film: Green's tilt pair, and its axial pair.  Arguments as the module.
 
     With h_i, h_o the films at the edges, L the face width, r_m the mean radius:
     `K_f = pi dp (coning r_i - h_i) [r_m L / (h_i + h_o)]^2` and
-    `D_f = 24 pi mu r_m^3 [L / (h_i + h_o)]^3 (artanh y - y) / y^3`; neither depends on speed.
+    `D_f = 24 pi mu r_m^3 [L / (h_i + h_o)]^3 (artanh y - y) / y^3`, y = (h_o - h_i) / (h_o + h_i); independent of
+    speed.
     The axial pair is the same film moved without tilt: `K_z = 2 pi r_m L dp (h_o - h_i) / (h_i + h_o)^2`,
     `D_z = 2 D_f / r_m^2`.
 
-    **Source** Green (1989), appendix, after Green (1987), made dimensional; rewritten so that no digits are
-    lost for flat or diverging faces.  Axial pair derived here.
-    **Valid** narrow face, full film, small motion.  At R = 0.8 the film integrated over the radius is 7 %
-    (planar) to 12 % (cylindrical) softer: `radial_film_coefficients`.
+    **Source** Green (1989), appendix, after Green (1987), made dimensional; rewritten so that no digits are lost for
+    flat or diverging faces.  Axial pair derived here.
+    **Valid** narrow face, full film, small motion.  At R = 0.8 the film integrated over the radius is 7 % (planar) to
+    12 % (cylindrical) softer: `radial_film_coefficients`.
     **Raises** ValueError when the faces cross.
     """
     inner, outer = _edge_films(inner_radius, outer_radius, clearance, coning)
@@ -82,7 +89,8 @@ def narrow_seal_opening_force(
     inner_pressure: Real,
     outer_pressure: Real,
 ) -> Real:
-    """Opening force (N) of the aligned narrow film, `2 pi r_m L [p_i + dp h_o / (h_i + h_o)]`.
+    """Opening force (N) of the aligned narrow film, `2 pi r_m L [p_i + dp h_o / (h_i + h_o)]`.  Arguments as the
+    module.
 
     **Source** planar Reynolds equation with the area at the mean radius, as Green (1987).
     **Valid** narrow face, full film.  **Raises** ValueError when the faces cross.
@@ -125,7 +133,7 @@ def aligned_opening_force(
     outer_pressure: Real,
     geometry: Geometry = "cylindrical",
 ) -> Real:
-    """Opening force (N) of the aligned radial film, area elements exact: `int p 2 pi r dr`.
+    """Opening force (N) of the aligned radial film, area elements exact: `int p 2 pi r dr`.  Arguments as the module.
 
     **Source** `r h^3 p' = const` (planar: `h^3 p' = const`), integrated by parts.
     **Valid** aligned faces, full film, incompressible; any face width if cylindrical.
@@ -147,7 +155,8 @@ def aligned_leakage(
     pressure_drop: Real,
     geometry: Geometry = "cylindrical",
 ) -> Real:
-    """Volume flow (m^3/s) through the aligned film, positive inwards for a positive pressure drop.
+    """Volume flow (m^3/s) through the aligned film, positive inwards for a positive pressure drop.  Arguments as the
+    module.
 
     **Source** Poiseuille flow `r h^3 p' / (12 mu)` per radian; planar: the strip is `2 pi r_m` long.
     **Valid** aligned faces, laminar, incompressible.  **Raises** ValueError when the faces cross.
@@ -166,10 +175,11 @@ def radial_film_coefficients(
     pressure_drop: Real,
     geometry: Geometry = "cylindrical",
 ) -> FilmCoefficients:
-    """Stiffness and damping of the radial film at zero tilt, tilt and area taken at their own radius.
+    """Stiffness and damping of the radial film at zero tilt, tilt and area taken at their own radius.  Arguments as the
+    module.
 
-    **Source** linearised `r h^3 p' = 12 mu (Phi + c)`, films without circumferential pressure flow.  A motion
-    `r^j` of the film (j = 0 axial, 1 tilt) leaves covariances over the face, which do not cancel.
+    **Source** linearised `r h^3 p' = 12 mu (Phi + c)`, films without circumferential pressure flow.  A motion `r^j` of
+    the film (j = 0 axial, 1 tilt) leaves covariances over the face, which do not cancel.
     **Valid** full film, small motion.  **Raises** ValueError when the faces cross.
     """
     r, h, weight = _radial_weight(inner_radius, outer_radius, clearance, coning, geometry)

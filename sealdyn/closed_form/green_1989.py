@@ -10,7 +10,9 @@ SOURCE = "Green (1989), Table 1"
 
 
 class Published(NamedTuple):
-    """One printed number.  `last_digit` is one unit of its last printed digit, in the same unit."""
+    """One printed number: `value` (None: the table says that there is none) of a `quantity` for an `arrangement` and
+    `inertia_ratio` c = I/J (None where it does not matter); `last_digit` is one unit of its last printed digit.  Units:
+    GREEN_1989."""
 
     source: str
     quantity: str
@@ -68,9 +70,10 @@ GREEN_1989_ROUNDED = {
 
 
 def green_1989_tilt(film_stiffness: float, film_damping: float, inertia_ratio: float = 0.5) -> dict[str, float]:
-    """The seven keywords of the tilt formulas (SI) for the reference seal on a film of the caller's choice.
+    """The seven keywords of the tilt formulas (response.py; SI) for the reference seal on a film of the caller's tilt
+    stiffness (N m/rad) and tilt damping (N m s/rad); `inertia_ratio` c = I/J.  Scalar.
 
-    **Source** support at radius r_s: `K_s = K_z r_s^2 / 2`, the same for damping.
+    **Source** Green (1989), eqs. 1-2: support at radius r_s, `K_s = K_z r_s^2 / 2`, the same for damping.
     """
     seal = GREEN_1989_SEAL
     half = seal["support_radius"] ** 2 / 2

@@ -1,10 +1,12 @@
 """A ring kept from following its misaligned seat by secondary-seal friction, carried by the wedge of its own tilt.
 
-**Source** Ludwig, L. P. & Allen, G. P., "Face-seal lubrication. II - Theory of response to angular misalignment",
-NASA TN D-8102 (1976); eigenvalues and the moment about the tilt axis derived here from their film.
+**Source** Ludwig, L. P. & Allen, G. P., "Face-seal lubrication. II - Theory of response to angular misalignment", NASA
+TN D-8102 (1976); eigenvalues and the moment about the tilt axis derived here from their film.
 **Valid** zero sealed pressure, film `h = h0 + h1 cos(theta)` constant over a narrow face (short bearing), pressure
-ambient in the diverging half, no inertia.  U is the sliding speed at the mean radius R, dR the face width,
-F_s the spring force, F_d the friction force on one half of the secondary seal, q = F_s / F_d.
+ambient in the diverging half, no inertia.  U is the sliding speed at the mean radius R, dR the face width, F_s the
+spring force, F_d the friction force on one half of the secondary seal, q = F_s / F_d.
+Arguments: `viscosity` mu (Pa s), `sliding_speed` U (m/s), `face_width` dR, `mean_radius` R, `mean_film` h0 and
+`amplitude` h1 (m), forces (N), `force_ratio` q; scalars or arrays that broadcast.
 """
 
 import math
@@ -45,7 +47,7 @@ def wedge_pressure(viscosity: Real, sliding_speed: Real, face_width: Real, mean_
                    film: Real, film_slope: Real) -> Real:  # fmt: skip
     """Pressure (Pa) averaged over the face width, `-(mu U dR^2 / 2R) h^-3 dh/dtheta`, ambient where that is negative.
 
-    `film` in m, `film_slope` dh/dtheta in m/rad.  **Source**, **Valid** as the module.
+    `film` in m, `film_slope` dh/dtheta in m/rad.  **Source**, **Valid**, other arguments as the module.
     """
     return np.maximum(-viscosity * sliding_speed * face_width**2 / (2 * mean_radius) * film_slope / film**3, 0.0)
 
@@ -53,7 +55,7 @@ def wedge_pressure(viscosity: Real, sliding_speed: Real, face_width: Real, mean_
 def wedge_force(viscosity: Real, sliding_speed: Real, face_width: Real, mean_film: Real, amplitude: Real) -> Real:
     """Force (N) of the wedge, `mu U dR^3 h0 h1 / (h0^2 - h1^2)^2`.
 
-    **Source**, **Valid** as the module.  **Raises** ValueError when the faces touch.
+    **Source**, **Valid**, arguments as the module.  **Raises** ValueError when the faces touch.
     """
     return viscosity * sliding_speed * face_width**3 * mean_film * amplitude / _open(mean_film, amplitude) ** 2
 
@@ -63,8 +65,8 @@ def sine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_rad
     """Moment (N m) about the diameter through thickest and thinnest film, perpendicular to the tilt axis:
     `(pi/4) mu U R dR^3 h1 / (h0^2 - h1^2)^(3/2)`.
 
-    **Source** as the module, with R_o^2 - R_i^2 = 2 R dR.  **Valid** as the module; over a face of finite width the
-    arm is longer by dR^2 / (20 R^2).  **Raises** ValueError when the faces touch.
+    **Source** as the module, with R_o^2 - R_i^2 = 2 R dR.  **Valid**, arguments as the module; over a face of finite
+    width the arm is longer by dR^2 / (20 R^2).  **Raises** ValueError when the faces touch.
     """
     strength = math.pi / 4 * viscosity * sliding_speed * mean_radius * face_width**3
     return strength * amplitude / _open(mean_film, amplitude) ** 1.5
@@ -74,7 +76,7 @@ def cosine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_r
                   mean_film: Real, amplitude: Real) -> Real:  # fmt: skip
     """Moment (N m) about the tilt axis, negative: it straightens the ring; `-mu U R dR^3 h1^2 / (h0^2 - h1^2)^2`.
 
-    **Source** derived here; Ludwig & Allen leave it unbalanced.  **Valid** as the module.
+    **Source** derived here; Ludwig & Allen leave it unbalanced.  **Valid**, arguments as the module.
     **Raises** ValueError when the faces touch.
     """
     strength = viscosity * sliding_speed * mean_radius * face_width**3
@@ -82,12 +84,13 @@ def cosine_moment(viscosity: Real, sliding_speed: Real, face_width: Real, mean_r
 
 
 def friction_moment(friction_force: Real, mean_radius: Real) -> Real:
-    """Moment (N m) `4 R F_d / pi` of the friction on both halves of the secondary seal.  **Source** as the module."""
+    """Moment (N m) `4 R F_d / pi` of the friction on both halves of the secondary seal.  **Source**, arguments as the
+    module: F_d in N, R in m."""
     return 4 * mean_radius * friction_force / math.pi
 
 
 def amplitude_ratio(force_ratio: Real) -> Real:
-    """h1 / h0 `= sqrt(1 - (256 / pi^4) / q^2)`.
+    """h1 / h0 `= sqrt(1 - (256 / pi^4) / q^2)`, dimensionless.
 
     **Source** as the module.  **Valid** q >= LEAST_FORCE_RATIO.  **Raises** ValueError below it: hang-up.
     """
@@ -100,7 +103,7 @@ def amplitude_ratio(force_ratio: Real) -> Real:
 
 
 def sealing_number(force_ratio: Real) -> Real:
-    """`h0^2 F_s / (mu U dR^3) = (pi^4/256)^2 q^4 h1/h0`, a function of q alone.
+    """`h0^2 F_s / (mu U dR^3) = (pi^4/256)^2 q^4 h1/h0`, dimensionless, a function of q alone.
 
     **Source** as the module.  **Valid** q >= LEAST_FORCE_RATIO.  **Raises** ValueError below it: hang-up.
     """
@@ -117,11 +120,13 @@ def equilibrium(force_ratio: Real, group: Real) -> tuple[Real, Real]:
 
 
 def eigenvalues(force_ratio: float, mean_spin: float) -> np.ndarray:
-    """The two eigenvalues (1/s) of h0, h1 under force and sine moment, squeeze included; scalar arguments.
+    """The two eigenvalues (2,) (1/s, complex) of h0, h1 under force and sine moment, squeeze included; scalar
+    arguments.
 
-    `A h' + B h = 0` with A, B the derivatives of the half film's force and sine moment, all elementary integrals
-    over the half circle; proportional to `mean_spin` (rad/s, half the shaft's speed over a still seat).
+    `A h' + B h = 0` with A, B the derivatives of the half film's force and sine moment, all elementary integrals over
+    the half circle; proportional to `mean_spin` (rad/s, half the shaft's speed over a still seat).
     **Source** derived here.  **Valid** as the module, q > LEAST_FORCE_RATIO; small motion about the equilibrium.
+    **Raises** ValueError below LEAST_FORCE_RATIO: hang-up.
     """
     e = float(amplitude_ratio(force_ratio))
     s, w = (1 - e) * (1 + e), mean_spin

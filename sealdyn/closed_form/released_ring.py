@@ -31,12 +31,14 @@ LEAST_MOMENT, MOST_MOMENT = math.pi / 4, 1.0
 
 
 def moment_ratio(force_ratio, guide=0.0):
-    """|M_film| / (R F_s) that friction and support ask for.  **Source**, **Valid** as the module."""
+    """|M_film| / (R F_s), dimensionless, that friction (`force_ratio` q = F_s / F_d) and support (`guide`) ask for;
+    scalars or arrays.  **Source**, **Valid** as the module."""
     return np.hypot(4 / (math.pi * np.asarray(force_ratio, dtype=float)), guide)[()]
 
 
 def film(force_ratio: float, guide: float, group: float) -> tuple[float, float]:
-    """Mean film h0 and amplitude h1 (m) of the released ring.  **Source**, **Valid** as the module.
+    """Mean film h0 and amplitude h1 (m) of the released ring; scalar arguments: `force_ratio` q = F_s / F_d, `guide`,
+    `group` (m^2).  **Source**, **Valid** as the module.
 
     **Raises** ValueError that says whether the ring straightens or hangs up.
     """
@@ -53,12 +55,17 @@ def film(force_ratio: float, guide: float, group: float) -> tuple[float, float]:
 
 
 def film_range(guide: float = 0.0) -> tuple[float, float]:
-    """F_s / F_d between which the released ring has a film: it hangs up below and straightens above (inf: never)."""
+    """Force ratios F_s / F_d between which the released ring has a film: it hangs up below and straightens above (inf:
+    never); scalar `guide`.  **Source**, **Valid** as the module."""
     least = math.inf if guide >= MOST_MOMENT else 4 / math.pi / math.sqrt(1 - guide**2)
     most = math.inf if guide >= LEAST_MOMENT else closed.LEAST_FORCE_RATIO / math.sqrt(1 - (guide / LEAST_MOMENT) ** 2)
     return least, most
 
 
 def closed_form_guide(force_ratio: float) -> float:
-    """K_s gamma / (R F_s) with which the released ring keeps Ludwig & Allen's film: h1/h0 of it."""
+    """K_s gamma / (R F_s), dimensionless, with which the released ring keeps Ludwig & Allen's film at `force_ratio` q:
+    h1/h0 of it.
+
+    **Source** derived here.  **Valid** q >= LEAST_FORCE_RATIO.  **Raises** ValueError below it: hang-up.
+    """
     return float(closed.amplitude_ratio(force_ratio))

@@ -1,11 +1,13 @@
 """Steady response of one flexible ring in tilt, and the forcing at which its faces touch.
 
-Every transmissibility takes the same seven keywords, so that one set of numbers serves all of them, whether a
-formula uses each or not.  With K = K_s + K_f, D = D_s + D_f the ring obeys
+Every transmissibility takes the same seven keywords, so that one set of numbers serves all of them, whether a formula
+uses each or not: `speed` w (rad/s), `transverse_inertia` I and `polar_inertia` J (kg m^2), `support_stiffness` K_s and
+`film_stiffness` K_f (N m/rad), `support_damping` D_s and `film_damping` D_f (N m s/rad), of tilt; scalars or arrays
+that broadcast.  With K = K_s + K_f, D = D_s + D_f the ring obeys
     FMR: I y'' - i J w y' + D_s (y' - i w y) + K_s (y - y_i e^{iwt}) = K_f g + D_f (g' - i w/2 g)
     FMS: I y'' + D_s y' + K_s (y - y_i) = -K_f g - D_f (g' - i w/2 g)
-in the fixed frame, with g = y_s - y (FMR) or y - y_r e^{iwt} (FMS).  Multiplying every term by the same
-number changes nothing: dimensionless numbers with speed 1 are as good as SI.
+in the fixed frame, with g = y_s - y (FMR) or y - y_r e^{iwt} (FMS).  Multiplying every term by the same number changes
+nothing: dimensionless numbers with speed 1 are as good as SI.
 """
 
 import numpy as np
@@ -23,7 +25,7 @@ def fmr_static(
     film_stiffness: Real,
     film_damping: Real,
 ) -> Real:
-    """Relative misalignment of a flexible rotor per unit fixed stator misalignment.
+    """Relative misalignment of a flexible rotor per unit fixed stator misalignment, rad/rad.  Keywords as the module.
 
     **Source** Green (1989), steady response to the stator: `|K_s - i D_s w| / |K - i (D_s + D_f/2) w|`.
     **Valid** linear film and support, steady and stable.
@@ -43,7 +45,8 @@ def fmr_absolute_static(
     film_stiffness: Real,
     film_damping: Real,
 ) -> Real:
-    """Absolute tilt of a flexible rotor per unit fixed stator misalignment; 1 is perfect tracking.
+    """Absolute tilt of a flexible rotor per unit fixed stator misalignment, rad/rad; 1 is perfect tracking.  Keywords
+    as the module.
 
     **Source** Green (1989): `|K_f - i w D_f/2| / |K - i (D_s + D_f/2) w|`.  **Valid** as `fmr_static`.
     """
@@ -62,10 +65,11 @@ def fmr_dynamic(
     film_stiffness: Real,
     film_damping: Real,
 ) -> Real:
-    """Relative misalignment of a flexible rotor per unit own initial misalignment; it turns with the shaft.
+    """Relative misalignment of a flexible rotor per unit own initial misalignment, rad/rad; it turns with the shaft.
+    Keywords as the module.
 
-    **Source** Green (1989): `K_s / |(J - I) w^2 + K + i w D_f/2|`; support damping drops out because the
-    response stands still in the shaft.  **Valid** as `fmr_static`.
+    **Source** Green (1989): `K_s / |(J - I) w^2 + K + i w D_f/2|`; support damping drops out because the response
+    stands still in the shaft.  **Valid** as `fmr_static`.
     """
     inertial = (polar_inertia - transverse_inertia) * speed**2
     film = film_stiffness + 0.5j * film_damping * speed
@@ -82,7 +86,8 @@ def fms_static(
     film_stiffness: Real,
     film_damping: Real,
 ) -> Real:
-    """Relative misalignment of a flexible stator per unit own initial misalignment; it stands still.
+    """Relative misalignment of a flexible stator per unit own initial misalignment, rad/rad; it stands still.  Keywords
+    as the module.
 
     **Source** Green and Etsion (1985), Green (1989): `K_s / |K - i w D_f/2|`.  **Valid** as `fmr_static`.
     """
@@ -100,17 +105,19 @@ def fms_dynamic(
     film_stiffness: Real,
     film_damping: Real,
 ) -> Real:
-    """Relative misalignment of a flexible stator per unit rotor runout; it turns with the shaft.
+    """Relative misalignment of a flexible stator per unit rotor runout, rad/rad; it turns with the shaft.  Keywords as
+    the module.
 
-    **Source** Green and Etsion (1985), Green (1989):
-    `|K_s - I w^2 + i w D_s| / |K - I w^2 + i w (D_s + D_f/2)|`.  **Valid** as `fmr_static`.
+    **Source** Green and Etsion (1985), Green (1989): `|K_s - I w^2 + i w D_s| / |K - I w^2 + i w (D_s + D_f/2)|`.
+    **Valid** as `fmr_static`.
     """
     ring = support_stiffness - transverse_inertia * speed**2 + 1j * support_damping * speed
     return abs(ring / (ring + film_stiffness + 0.5j * film_damping * speed))
 
 
 def superposed(static: Real, dynamic: Real) -> tuple[Real, Real]:
-    """Largest and smallest relative misalignment of a constant vector plus a turning one, once a turn each.
+    """Largest and smallest relative misalignment of a constant vector (`static`) plus a turning one (`dynamic`), once a
+    turn each; in the unit of the two (rad).
 
     **Source** Green (1989); triangle inequality.  **Valid** linear response to both forcings at once.
     """
@@ -121,18 +128,20 @@ def superposed(static: Real, dynamic: Real) -> tuple[Real, Real]:
 
 
 def critical_tilt_inner(clearance: Real, inner_radius: Real) -> Real:
-    """Relative tilt (rad) at which the inner edges touch.  **Valid** rings held at the aligned clearance."""
+    """Relative tilt (rad) at which the inner edges touch; arguments in m.  **Valid** rings held at the aligned
+    clearance."""
     return clearance / inner_radius
 
 
 def critical_tilt_outer(inner_radius: Real, outer_radius: Real, clearance: Real, coning: Real) -> Real:
-    """Relative tilt (rad) at which the outer edges touch.  **Valid** as `critical_tilt_inner`."""
+    """Relative tilt (rad) at which the outer edges touch; arguments in m, coning in rad.  **Valid** as
+    `critical_tilt_inner`."""
     return (clearance + coning * (outer_radius - inner_radius)) / outer_radius
 
 
 def critical_coning(clearance: Real, inner_radius: Real) -> Real:
-    """Coning (rad) at which both edges touch at once; above it the inner edge touches first, and the
-    narrow film is stiff against tilt.
+    """Coning (rad) at which both edges touch at once; above it the inner edge touches first, and the narrow film is
+    stiff against tilt.  Arguments in m.
 
     **Source** Green and Etsion (1985), `b = 1/R` with `b = coning r_o / C`.  **Valid** flat cones.
     """
@@ -140,10 +149,10 @@ def critical_coning(clearance: Real, inner_radius: Real) -> Real:
 
 
 def contact_tilt(inner_radius: Real, outer_radius: Real, clearance: Real, coning: Real) -> Real:
-    """Relative tilt (rad) at which the faces first touch, at whichever edge.
+    """Relative tilt (rad) at which the faces first touch, at whichever edge; arguments in m, coning in rad.
 
-    **Source** Green (1989): inner edge above the critical coning, outer edge below.  The film is linear in
-    the radius, so an edge is always the thinnest place.
+    **Source** Green (1989): inner edge above the critical coning, outer edge below.  The film is linear in the radius,
+    so an edge is always the thinnest place.
     **Valid** small perturbation: the real seal opens axially as it tilts and touches later.
     """
     return np.minimum(
@@ -153,10 +162,11 @@ def contact_tilt(inner_radius: Real, outer_radius: Real, clearance: Real, coning
 
 
 def critical_forcing(contact_tilt: Real, own_response: Real, transmissibility: Real) -> Real:
-    """Forcing (rad) at which the relative misalignment reaches the contact tilt.
+    """Forcing (rad) at which the relative misalignment reaches the contact tilt (rad).
 
-    `own_response` (rad) is what the ring's own initial misalignment already takes; the result is zero or
-    negative when that alone touches, and infinite when nothing is transmitted.
+    `own_response` (rad) is what the ring's own initial misalignment already takes, `transmissibility` (rad/rad) that of
+    the forcing; the result is zero or negative when the own response alone touches, and infinite when nothing is
+    transmitted.
     **Source** Green (1989), `(1/R - T_own) / T` in units of C/r_o.  **Valid** as `contact_tilt`.
     """
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,6 +1,7 @@
 """Thresholds of half-frequency whirl of one flexible ring, from `lambda = i w_whirl` in its tilt equation.
 
-K = K_s + K_f > 0 and D = D_s + D_f > 0 throughout (ValueError otherwise: ask the eigenvalues).  All scalar.
+Keywords: inertias I, J (kg m^2), tilt stiffness K_s, K_f (N m/rad), tilt damping D_s, D_f (N m s/rad); all scalar.
+K = K_s + K_f > 0 and D = D_s + D_f > 0 throughout (ValueError otherwise: ask the eigenvalues).
 """
 
 import math
@@ -17,26 +18,29 @@ def _totals(support_stiffness, support_damping, film_stiffness, film_damping) ->
 
 
 def fms_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
-    """Whirl frequency over shaft speed of a flexible stator at its threshold.
+    """Whirl frequency over shaft speed of a flexible stator at its threshold.  Keywords as the module.
 
     **Source** Green and Etsion (1985): `(D_f / 2) / (D_s + D_f)`; at most one half.  **Valid** D > 0.
+    **Raises** ValueError otherwise.
     """
     return film_damping / 2 / _totals(1.0, support_damping, 0.0, film_damping)[1]
 
 
 def fmr_whirl_ratio(*, support_damping: float, film_damping: float) -> float:
-    """Whirl frequency over shaft speed of a flexible rotor at its threshold, in the fixed frame.
+    """Whirl frequency over shaft speed of a flexible rotor at its threshold, in the fixed frame.  Keywords as the
+    module.
 
     **Source** Green (1989): `(D_s + D_f / 2) / (D_s + D_f)`; at least one half, because the support turns.
-    **Valid** D > 0.
+    **Valid** D > 0.  **Raises** ValueError otherwise.
     """
     return (support_damping + film_damping / 2) / _totals(1.0, support_damping, 0.0, film_damping)[1]
 
 
 def unconditional_inertia_ratio(*, support_damping: float, film_damping: float) -> float:
-    """Largest c = I/J (transverse over polar inertia) for which a flexible rotor is stable at every speed.
+    """Largest c = I/J (transverse over polar inertia) for which a flexible rotor is stable at every speed.  Keywords as
+    the module.
 
-    **Source** Green (1989): `c <= 1/nu` with nu the whirl ratio.  **Valid** K > 0, D > 0, nu > 0.
+    **Source** Green (1989): `c <= 1/nu` with nu the whirl ratio.  **Valid** K > 0, D > 0 (ValueError), nu > 0.
     """
     return 1 / fmr_whirl_ratio(support_damping=support_damping, film_damping=film_damping)
 
@@ -50,11 +54,11 @@ def fms_critical_speed(
     film_stiffness: float,
     film_damping: float,
 ) -> float | None:
-    """Shaft speed (rad/s) above which a flexible stator whirls; None if it never does.
+    """Shaft speed (rad/s) above which a flexible stator whirls; None if it never does: no inertia, or no film damping.
 
-    **Source** Green and Etsion (1985): `2 (1 + D_s/D_f) sqrt(K/I)`.  A stator does not spin:
-    `polar_inertia` is taken so that one set of numbers serves both seals, and not used.
-    **Valid** K > 0, D > 0, linear film whose coefficients do not change with speed.
+    **Source** Green and Etsion (1985): `2 (1 + D_s/D_f) sqrt(K/I)`.  A stator does not spin: `polar_inertia` is taken
+    so that one set of numbers serves both seals, and not used.  Keywords as the module.
+    **Valid** K > 0, D > 0 (ValueError), linear film whose coefficients do not change with speed.
     """
     stiffness, _ = _totals(support_stiffness, support_damping, film_stiffness, film_damping)
     whirl_ratio = fms_whirl_ratio(support_damping=support_damping, film_damping=film_damping)
@@ -72,11 +76,12 @@ def fmr_critical_speed(
     film_stiffness: float,
     film_damping: float,
 ) -> float | None:
-    """Shaft speed (rad/s) above which a flexible rotor whirls; None if it is stable at every speed.
+    """Shaft speed (rad/s) above which a flexible rotor whirls; None if it is stable at every speed.  Keywords as the
+    module.
 
-    **Source** Green (1989): `sqrt((K/I) / (nu (nu - 1/c)))`, c = I/J.  His Table 1 prints 8.4e3 for c = 3
-    where this formula and the eigenvalues give 8.684e3; K_f in place of K would give 8.399e3.
-    **Valid** K > 0, D > 0, linear film whose coefficients do not change with speed.
+    **Source** Green (1989): `sqrt((K/I) / (nu (nu - 1/c)))`, c = I/J.  His Table 1 prints 8.4e3 for c = 3 where this
+    formula and the eigenvalues give 8.684e3; K_f in place of K would give 8.399e3.
+    **Valid** K > 0, D > 0 (ValueError), linear film whose coefficients do not change with speed.
     """
     stiffness, _ = _totals(support_stiffness, support_damping, film_stiffness, film_damping)
     whirl_ratio = fmr_whirl_ratio(support_damping=support_damping, film_damping=film_damping)
@@ -86,5 +91,5 @@ def fmr_critical_speed(
 
 
 def axial_mode_stable(*, support_stiffness: float, film_stiffness: float) -> bool:
-    """Whether the aligned ring returns axially: `K_z + K_fz > 0` (N/m).  **Valid** linear, damped."""
+    """Whether the aligned ring returns axially: `K_z + K_fz > 0`, both in N/m.  **Valid** linear, damped."""
     return support_stiffness + film_stiffness > 0

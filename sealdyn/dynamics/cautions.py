@@ -14,7 +14,7 @@ class Concern(StrEnum):
 
 
 class Caution(NamedTuple):
-    """A warning: what it is about, and a sentence."""
+    """A warning: what it is about, and a sentence for a person."""
 
     concern: Concern
     sentence: str

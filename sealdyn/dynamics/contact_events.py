@@ -26,8 +26,8 @@ STATE = ROW + 2
 
 @dataclass
 class ContactSummary:
-    """Contacts so far: how many, grazing ones, the first touch (s), the deepest below touch (m), the longest (s), and
-    the sum of impulses (N s)."""
+    """Contacts so far: how many, grazing ones, the first touch (s), the thinnest film in any (`lowest`, m), the longest
+    (s), and the sum of impulses (N s)."""
 
     count: int = 0
     grazing: int = 0
@@ -37,6 +37,7 @@ class ContactSummary:
     impulse: float = 0.0
 
     def add(self, rows):
+        """Count the contacts of `rows` (k, ROW), as `locate_contacts` writes them."""
         for row in rows:
             if row[KIND] == 0.0:
                 self.grazing += 1
@@ -50,7 +51,9 @@ class ContactSummary:
 
 
 def contact_event(row, level: float) -> dict:
-    """A row as an event of the archive."""
+    """A row (ROW,) as an event of the archive, `level` the film thickness (m) of touch: kind ("contact" or "grazing"),
+    time, lift_off, deepest (s), value (thinnest film, m), theta (rad), radius (m), depth below touch (m), impulse (N
+    s), text."""
     kind = "contact" if row[KIND] else "grazing"
     depth = level - row[DEPTH_H]
     text = (
@@ -93,11 +96,13 @@ def _close(state, lifted, impulse, level, error, rows, count):
 def locate_contacts(
     t, q_all, q_rate_all, impulse, count, begin, end, reach, p, f, y, yp, w, s, start, pace, error, state, rows
 ):
-    """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows`; returns how many ended.
+    """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows` (k, ROW); returns how many
+    ended.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
-    `reach` (count,) what no film of a step is thinner than (m);
-    `error` of the gap (m); `pace` the fastest imposed motion (rad/s); `state` is carried from call to call.
+    `reach` (count,) what no film of a step is thinner than (m); `p`, `w`, `s` as in dynamics/equations.py, `f` the
+    film's block, `y`, `yp` (size,) scratch; `error` of the gap (m); `pace` the fastest imposed motion (rad/s); `state`
+    (STATE,) is carried from call to call.
     """
     n, level = q_all.shape[1], f[TOUCH]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
@@ -175,14 +180,16 @@ def locate_contacts(
 
 
 class ContactEvents:
-    """An observer of contacts: `summary` of those so far (ContactSummary), those not yet told, and one that goes on.
-    It follows the tracker of extremes, whose bound on each step's film tells where nothing can touch."""
+    """An observer of contacts: `summary` of those so far (ContactSummary), those that have ended but are not yet events
+    (`waiting`), and one that goes on (`open`).  It follows the ExtremaTracker, whose bound on each step's film tells
+    where nothing can touch."""
 
     def __init__(self, model, extrema):
         self.model, self.extrema, self.summary = model, extrema, ContactSummary()
         self.open, self.waiting, self.segment = _no_contact(), [], None
 
     def begin(self, segment, tau, y):
+        """A segment begins: a contact that goes on stays open."""
         self.segment = segment
 
     def accept(self, block):
@@ -199,8 +206,8 @@ class ContactEvents:
         self.waiting.extend(rows[:found])
 
     def tell(self, log, end: tuple | None = None):
-        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time,
-        unknowns) of a run also one that goes on, without a lift-off."""
+        """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time (s),
+        unknowns (size,)) of a run also one that goes on, without a lift-off."""
         rows, self.waiting = self.waiting, []
         if end and self.open[OPEN]:
             row = self.open[:ROW].copy()
@@ -213,7 +220,7 @@ class ContactEvents:
             log([contact_event(row, self.model.face[TOUCH]) for row in rows])
 
     def state(self) -> dict:
-        """What a continued run needs."""
+        """What a continued run needs: {"touching": (STATE,), "contacts": counts}."""
         return {"touching": self.open, "contacts": vars(self.summary)}
 
     def restore(self, state: dict):

@@ -19,15 +19,16 @@ MOST_STEPS, ARRIVED = 12, 1e-12
 
 
 class CoupledSegment(Segment):
-    """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side; `ring_rates`
-    are those of the rings at given unknowns of the film."""
+    """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side (SolverFailure);
+    `ring_rates` are those of the rings at given unknowns of the film.  The residual raises SolverFailure with the
+    film's sentence where the film has no solution."""
 
     def _bind(self):
         model, at, p, w, s = self.model, self.film, self.p, self.w, self.s
         film, f, block = model.interface.film, model.f, model.contact
         self._of_film = FilmDerivatives(film, model.unknowns.film_unknowns, f)
         count = at.stop - at.start
-        x, x_rate, left, work = np.empty(count), np.empty(count), np.empty(count), np.zeros(self.size)
+        x, x_rate, rest, work = np.empty(count), np.empty(count), np.empty(count), np.zeros(self.size)
 
         def loads(tau, y, yp):
             equations.kinematics(tau, y, yp, p, w, s)
@@ -40,10 +41,10 @@ class CoupledSegment(Segment):
             loads(tau, y, yp)
             equations.residual(tau, y, yp, p, w, s, work, res)
             x_rate[:] = yp[at]
-            code = film.residual(f, s, x, x_rate, left)
+            code = film.residual(f, s, x, x_rate, rest)
             if code:
                 raise SolverFailure(f"{film.STATUS[code]} (at {tau:.6g} s into this segment)")
-            res[at] = left
+            res[at] = rest
 
         def rhs(tau, y, yp):
             raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
@@ -84,8 +85,9 @@ class CoupledSegment(Segment):
         return block, np.hstack([above, below])
 
     def residual_derivatives(self, tau, y, yp, alpha, data, by_y=1.0):
-        """`by_y` d res / d y + `alpha` d res / d y', the values (nnz,) of the pattern.  The rings' columns are
-        differences of the whole residual; the film's are its own, and its force's into the rings' rows."""
+        """`by_y` d res / d y + `alpha` d res / d y' at segment time `tau` (s), the values `data` (nnz,) of the pattern.
+        The rings' columns are differences of the whole residual; the film's are its own, and its force's into the
+        rings' rows."""
         m, size, at = self.n_mechanical, self.size, self.film
         base, moved = np.empty(size), np.empty(size)
         y, yp, data[:] = y.copy(), yp.copy(), 0.0
@@ -133,8 +135,9 @@ class CoupledSegment(Segment):
         y[self.film] = self.model.interface.steady(self.model.f, self.gap_state(tau, y))
 
     def start(self, tau, y):
-        """Consistent unknowns and derivatives: Newton on the residual for the algebraic unknowns of the film and the
-        derivatives of all others.  Displacements without mass and damping stay as they are."""
+        """Consistent unknowns and derivatives, each (size,), from `y` at segment time `tau` (s): Newton on the residual
+        for the algebraic unknowns of the film and the derivatives of all others.  Displacements without mass and
+        damping stay as they are."""
         y, yp, res = y.copy(), np.zeros(self.size), np.empty(self.size)
         held = [i for i in self.algebraic if i < self.n]
         free = np.setdiff1d(np.arange(self.size), held)
@@ -170,7 +173,7 @@ class CoupledSegment(Segment):
         return out
 
     def states(self, taus, ys, yps, gaps, scratch, low):
-        """As kernels.states_along, with the film's unknowns among `ys` (m, size)."""
+        """As kernels.states_along, into `gaps`, `scratch` and `low`, with the film's unknowns among `ys` (m, size)."""
         model, s, rates = self.model, self.s, np.zeros(self.size)
         for i, tau in enumerate(taus):
             equations.kinematics(tau, ys[i], yps[i], self.p, self.w, s)

@@ -10,9 +10,10 @@ both rings (k = stator, rotor; W_k the spin of the carrier; sg = +1 stator, -1 r
 Contact of the faces adds to F_film and M_film; friction of a secondary seal (dynamics/secondary_seal.py) acts on its
 ring, and a ring that sticks follows its carrier: gamma' = gamma_c' + i W (gamma - gamma_c).
 
-Unknowns `y`: displacements, then their rates (a massless ring has none), with contact or a secondary seal the
-impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both rings, the index of the
-works, whether there are two more of them, then the leg (dynamics/imposed_motion.py).
+Unknowns `y`: displacements, then their rates (a massless ring has none), those of the film if it has any, with contact
+or a secondary seal the impulse of contact, then the works and the sum of absolute works.  Parameter block `p`: both
+rings, the index of the works, whether there are two more of them, then the imposed motion of the segment
+(dynamics/imposed_motion.py).
 """
 
 from numba import njit
@@ -93,8 +94,9 @@ PLAIN = 5
 
 @njit(cache=True)
 def kinematics(tau, y, yp, p, w, s):
-    """Imposed motion, ring states and the gap state `s` at segment time tau (s) and unknowns `y`.
-    `yp` is read only for the rates of a massless ring."""
+    """Imposed motion, ring states and the gap state `s` (GAP_STATE_SIZE,) at segment time tau (s) and unknowns `y`
+    (size,); `p` the parameters, `w` (SCRATCH,) scratch, which it fills.  `yp` is read only for the rates of a massless
+    ring."""
     leg = p[LEG_AT:]
     imposed_state(tau, leg, w[: 2 * PER_RING])
     for k in range(2):
@@ -290,7 +292,7 @@ def residual(tau, y, yp, p, w, s, work, res):
 
 @njit(cache=True)
 def energies(taus, ys, yp, p, w, s, out):
-    """Energy at several steps, `ys` (m, unknowns), into `out` (m,)."""
+    """Energy (J) at several steps, `taus` (m,) (s) and `ys` (m, unknowns), into `out` (m,)."""
     for k in range(len(taus)):
         kinematics(taus[k], ys[k], yp, p, w, s)
         out[k] = energy(p, w)

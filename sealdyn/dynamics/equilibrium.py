@@ -29,7 +29,8 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class ClosingForce:
-    """`F = [p_hi B + p_lo (1 - B)] area + spring`.  `outer_is_high` says which side is sealed."""
+    """`F = [p_hi B + p_lo (1 - B)] area + spring` (N); `area` of the face (m^2), `balance_ratio` B, `spring` (N).
+    `outer_is_high` says which side is sealed."""
 
     area: float
     balance_ratio: float
@@ -41,18 +42,18 @@ class ClosingForce:
         high, low = (outer, inner) if self.outer_is_high else (inner, outer)
         return self.area * (self.balance_ratio * high + (1 - self.balance_ratio) * low) + spring
 
-    def over(self, leg: Interval, film) -> tuple[float, float]:
+    def over(self, interval: Interval, film) -> tuple[float, float]:
         """Closing force (N) and its slope (N/s) over a segment."""
         inner, outer = (
-            constant_and_slope(film.inner_pressure, leg),
-            constant_and_slope(film.outer_pressure, leg),
+            constant_and_slope(film.inner_pressure, interval),
+            constant_and_slope(film.outer_pressure, interval),
         )
-        spring = constant_and_slope(self.spring, leg)
+        spring = constant_and_slope(self.spring, interval)
         return tuple(self.at(inner[k], outer[k], spring[k]) for k in range(2))
 
 
 def initially(quantity) -> float:
-    """Value of a number or table at time zero."""
+    """Value of a number or function of time at time zero."""
     return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
 
 
@@ -103,20 +104,18 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
-def rise(film) -> float:
-    """Difference (m) between the thickest and the thinnest place of the aligned film."""
+def extent(film) -> tuple[float, float]:
+    """Difference (m) between the thickest and the thinnest place of the aligned film, and the clearance (m) below which
+    it is closed somewhere, as a diverging one is at its outer edge."""
     gaps = [h for _, h in aligned_gaps(film, 0.0)]
-    return max(gaps) - min(gaps)
-
-
-def closed_below(film) -> float:
-    """Clearance (m) below which the aligned film is closed somewhere, as a diverging one is at its outer edge."""
-    return max(0.0, -min(h for _, h in aligned_gaps(film, 0.0)))
+    return max(gaps) - min(gaps), max(0.0, -min(gaps))
 
 
 def equilibria(film, opening_force, closing: float, inner: float, outer: float) -> list[Equilibrium]:
-    """Every clearance where the aligned film's opening force equals `closing` (N), increasing."""
-    reference, least = max(rise(film), 1e-6), closed_below(film) * (1 + 1e-9)
+    """Every clearance where the aligned film's `opening_force(clearance, inner, outer)` (N) equals `closing` (N),
+    increasing; pressures `inner`, `outer` (Pa)."""
+    rise, closed_below = extent(film)
+    reference, least = max(rise, 1e-6), closed_below * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
@@ -131,13 +130,15 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float) 
 
 
 def film_stiffness(opening_force, clearance, inner, outer, step) -> float:
-    """Axial film stiffness -dF/dC (N/m), fourth-order central difference of this step (m)."""
+    """Axial film stiffness -dF/dC (N/m) at a `clearance` (m), pressures (Pa): fourth-order central difference of this
+    step (m)."""
     f = [opening_force(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
     return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
 
 
 def crossing(excess, low: float, high: float) -> float:
-    """The clearance, or its change (m), between `low` and `high` at which an excess of opening force is zero."""
+    """The clearance, or its change (m), between `low` and `high` at which an `excess` of opening force (N) is zero.
+    Raises ValueError if it has one sign."""
     return float(brentq(excess, low, high, xtol=1e-18, rtol=1e-14))
 
 
@@ -183,7 +184,7 @@ def axial_shift(model, interval: Interval) -> tuple[float, bool]:
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
-    reference = max(rise(film), 1e-6)
+    reference = max(extent(film)[0], 1e-6)
     tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
     expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"

@@ -29,17 +29,18 @@ THICKNESS, MINUS_TILT, TILT = range(3)
 
 
 def empty_records() -> np.ndarray:
-    """Records of no motion yet, shape (WINDOWS, RECORD)."""
+    """Records of no motion yet, shape (WINDOWS, RECORD), in m, s, rad."""
     records = np.zeros((WINDOWS, RECORD))
     records[:, H], records[:, MOST], records[:, LEAST] = np.inf, -np.inf, np.inf
     return records
 
 
 def scan_pace(face, imposed: float, fastest: float, spins) -> float:
-    """Pace (rad/s) of the scan: of the `imposed` motion, or of waves that pass each other or the tilt, if faster.
+    """Pace (rad/s) of the scan: of the `imposed` motion (rad/s), or of waves that pass each other or the tilt, if
+    faster.
 
-    `fastest` motion of the rings (rad/s), `spins` of stator and rotor (rad/s), each at the ends of a stretch of time.
-    Waves of m and n to the circle are crest to trough at up to m n places a turn; a tilt is one wave.
+    `face` block, `fastest` motion of the rings (rad/s), `spins` of stator and rotor (rad/s), each at the ends of a
+    stretch of time.  Waves of m and n to the circle are crest to trough at up to m n places a turn; a tilt is one wave.
     """
     orders, turning = highest_orders(face), max(imposed, fastest)
     past_tilt = max(n * (np.max(np.abs(w)) + turning) if n else 0.0 for n, w in zip(orders, spins, strict=True))
@@ -48,13 +49,14 @@ def scan_pace(face, imposed: float, fastest: float, spins) -> float:
 
 
 def longest_scan(pace: float) -> float:
-    """Longest step (s) that can be scanned at a pace (rad/s)."""
+    """Longest step (s) that can be scanned at a pace (rad/s); infinite at none."""
     return MOST_SCAN / (PER_RADIAN * pace) if pace else math.inf
 
 
 @njit(cache=True)
 def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
-    """The three measures at displacements q and segment time tau, into `out`; returns angle and radius of h_min."""
+    """The three measures (m, rad^2) at displacements q (n,) and segment time tau (s), into `out` (3,); returns angle
+    (rad) and radius (m) of h_min.  Other arguments as `_track`."""
     y[: len(q)] = q
     kinematics(tau, y, yp, p, w, s)
     out[THICKNESS], theta, radius = h_min(f, s)
@@ -65,8 +67,8 @@ def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
 
 @njit(cache=True)
 def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
-    """Time in [low, high] where one measure is smallest on the full interpolant: three rounds of five
-    points, then the vertex of a parabola."""
+    """Time (s) in [low, high] where one measure (`kind`) is smallest on the full interpolant (`table`, `nodes`, `size`
+    of numerics/hermite.py): three rounds of five points, then the vertex of a parabola."""
     best, best_at = np.inf, low
     for _ in range(3):
         width = 0.25 * (high - low)
@@ -96,8 +98,8 @@ def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, 
 
 @njit(cache=True)
 def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
-    """Time at which the film crosses a level, by bisection between a time when it is above and one when it is below,
-    whichever is earlier; the film is below there."""
+    """Time (s) at which the film crosses a `level` (m), by bisection between a time `above` (s) when it is above and
+    one `below` when it is below, whichever is earlier; the film is below there."""
     for _ in range(60):
         middle = 0.5 * (above + below)
         value(table, nodes, size, middle, q, q_rate)
@@ -111,7 +113,8 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
 
 @njit(cache=True)
 def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan):
-    """The measures at scan + 1 times in [low, high] of step k, on the cubic between its ends."""
+    """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, on the cubic between its two
+    ends."""
     a, b = t[k], t[k + 1]
     span = b - a
     for i in range(scan + 1):
@@ -126,7 +129,7 @@ def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, see
 
 @njit(cache=True)
 def current_record(record, kind, tolerance):
-    """The record so far in the measure of this kind, and the improvement not worth locating."""
+    """The record so far in the measure of this kind (m, rad^2), and the improvement not worth locating."""
     if kind == THICKNESS:
         return record[H], tolerance[0]
     known = record[MOST] if kind == MINUS_TILT else record[LEAST]
@@ -137,21 +140,23 @@ def current_record(record, kind, tolerance):
 
 
 @njit(cache=True)
-def store(record, kind, out, at, theta, radius, leg):
+def store(record, kind, out, at, theta, radius, index):
+    """A new record in the measure of this kind: its value `out`, segment time `at` (s), angle (rad), radius (m) and
+    segment index."""
     if kind == THICKNESS:
-        record[H], record[H_TAU], record[H_LEG] = out[kind], at, leg
+        record[H], record[H_TAU], record[H_LEG] = out[kind], at, index
         record[H_THETA], record[H_RADIUS] = theta, radius
     elif kind == MINUS_TILT:
-        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, leg
+        record[MOST], record[MOST_TAU], record[MOST_LEG] = math.sqrt(out[TILT]), at, index
     else:
-        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, leg
+        record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, index
 
 
 @njit(cache=True)
-def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, leg, records, tolerance, pace, reach):
+def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, index, records, tolerance, pace, reach):
     """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
-    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in leg time;
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in segment time;
     `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
     fastest imposed motion (rad/s).  `reach` (count,) is filled: no film in the step is thinner than that (m).
     """
@@ -205,17 +210,17 @@ def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, 
                         for other in range(3):
                             # The tilt's extremes up to the last instant, which belongs to the run.
                             if other == THICKNESS or out[other] < current_record(record, other, tolerance)[0]:
-                                store(record, other, out, fallen, theta, radius, leg)
+                                store(record, other, out, fallen, theta, radius, index)
                         return fallen
                     if out[kind] < held:
-                        store(record, kind, out, at, theta, radius, leg)
+                        store(record, kind, out, at, theta, radius, index)
     return -1.0
 
 
 class ExtremaTracker:
     """An observer of the gap: `records` (WINDOWS, RECORD) of extremes in the `windows` [[from, to], ...] (s): the whole
-    run, its last forcing period and the one before.  `reach` (m,) bounds the film of each step last seen from below
-    (m).
+    run of `duration` (s), its last forcing period and the one before.  `reach` (m,) bounds the film of each step last
+    seen from below (m).
 
     A film that reaches its floor ends the run.
     """
@@ -226,6 +231,7 @@ class ExtremaTracker:
         self.segment = self.reach = None
 
     def begin(self, segment, tau, y):
+        """A segment begins: the records go on."""
         self.segment = segment
 
     def accept(self, block):
@@ -242,8 +248,8 @@ class ExtremaTracker:
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 
-    def state(self) -> list:
-        """What a continued run needs."""
+    def state(self) -> np.ndarray:
+        """What a continued run needs: the records, flat (WINDOWS RECORD,)."""
         return self.records.ravel()
 
     def restore(self, state):

@@ -29,22 +29,22 @@ Z_ACCELERATION, TILT_X_ACCELERATION, TILT_Y_ACCELERATION = range(10, 13)
 PER_RING = 13
 
 
-def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.ndarray:
-    """All harmonic motions imposed during an interval, shape (n, ROW).
+def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> np.ndarray:
+    """All harmonic motions imposed during an interval by Shaft, Housing, Rotor and Stator, shape (n, ROW).
 
-    A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or
-    misalignment is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
+    A flexible ring's own misalignment acts on its springs; a rigid ring is its carrier, so its runout or misalignment
+    is the carrier's tilt.  Phases are reduced modulo one turn in exact arithmetic.
     """
-    turning = {ROTOR: (leg.rotor_angle, shaft.speed), STATOR: (leg.stator_angle, stator.speed)}
+    turning = {ROTOR: (interval.rotor_angle, shaft.speed), STATOR: (interval.stator_angle, stator.speed)}
     rows = []
 
     def add(ring, kind, amplitude, phase, order=0.0, frequency=0.0, direction=0.0, clock=None):
-        value, slope = constant_and_slope(amplitude, leg)
+        value, slope = constant_and_slope(amplitude, interval)
         if value == 0.0 and slope == 0.0:
             return
         angle, speed = turning[ring if clock is None else clock]
-        w, w_slope = constant_and_slope(speed, leg)
-        cycles = Fraction(frequency) * leg.start if frequency else 0
+        w, w_slope = constant_and_slope(speed, interval)
+        cycles = Fraction(frequency) * interval.start if frequency else 0
         a0 = modulo_turn(Fraction(order) * angle) + 2 * math.pi * float(cycles % 1) + phase
         a1, a2 = order * w + 2 * math.pi * frequency, 0.5 * order * w_slope
         rows.append([ring, kind, value, slope, math.cos(direction), math.sin(direction), a0, a1, a2])
@@ -74,7 +74,8 @@ def harmonics_of_segment(shaft, housing, rotor, stator, leg: Interval) -> np.nda
 
 @njit(cache=True)
 def imposed_state(tau, p, c):
-    """Fill the imposed state `c` (2 x PER_RING: stator, rotor) at segment time tau from the block `p`."""
+    """Fill the imposed state `c` (2 x PER_RING: stator, rotor; m, rad, their rates and accelerations) at segment time
+    tau (s) from the block `p` (the layout above)."""
     c[:] = 0.0
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k

@@ -7,12 +7,10 @@ import numpy as np
 from ..faces import contact
 from ..faces.geometry import (
     CLEARANCE,
-    COLLAPSE,
     CONTACT_FORCE,
     CONTACT_X,
     CONTACT_Y,
     DZ,
-    FACE_SIZE,
     FLOOR,
     FORCE,
     GAP_STATE_SIZE,
@@ -22,17 +20,14 @@ from ..faces.geometry import (
     MOMENT_Y,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
-    TOUCH,
     VISCOSITY,
     face_parameters,
 )
-from ..faces.waviness import lay_waves
-from ..films import check_film, film_module, film_name, has_unknowns
+from ..faces.surfaces import lay_surfaces
+from ..films import film_module, film_name, film_of, has_unknowns
 from ..films._unknowns import FilmDerivatives
-from ..scene.contact import contact_thresholds
-from ..scene.film import Coefficients, profile_errors
+from ..scene.film import Coefficients
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of, waviness_errors
 from .condensation import condensed
 from .equilibrium import initially, settle
 from .intervals import constant_and_slope
@@ -47,28 +42,19 @@ class Interface:
 
     def __init__(self, scene, error: float, film=None):
         self.scene = scene
-        for key, found, expected in profile_errors(scene.film):
-            raise SceneError(f"film.{key}", found, expected)
-        for key, found, expected in waviness_errors(scene):
-            raise SceneError(key, found, expected)
-        check_film(scene.film, waves_of(scene), film)
-        self.film = film or film_module(scene.film.model, scene.film)
+        self.film = film_of(scene, film)
         self.name = film_name(self.film)
         force = self._borrowed().opening_law(scene.film)
         self.opening_force = self._with_asperities(force) if scene.contact else force
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
-        lay_waves(self.f, scene.stator.waviness, scene.rotor.waviness)
+        self.contact = lay_surfaces(self.f, scene)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
         self.observed = self.film, self.f
-        self.contact = None
-        if scene.contact:
-            self.f[FLOOR], self.f[TOUCH], self.f[COLLAPSE] = contact_thresholds(scene.contact)
-            self.contact = contact.parameters(scene.contact, self.f[:FACE_SIZE])
 
     def _borrowed(self):
         """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
@@ -89,15 +75,14 @@ class Interface:
 
     def _with_asperities(self, film_force):
         """`film_force` with the floor of rough faces, and the force of the asperities that touch."""
-        # Of the faces the asperities take the radii, and whether there is a profile.
-        face, s = face_parameters(self.scene.film, 1.0), np.zeros(GAP_STATE_SIZE)
-        asperities = contact.parameters(self.scene.contact, face)
-        floor, _, _ = contact_thresholds(self.scene.contact)
+        s = np.zeros(GAP_STATE_SIZE)
+        face = face_parameters(self.scene.film, 1.0)
+        asperities = lay_surfaces(face, self.scene)
 
         def force(clearance: float, inner_pressure: float, outer_pressure: float) -> float:
             face[CLEARANCE] = clearance
             contact.contact_load(asperities, face, s)
-            return film_force(clearance, inner_pressure, outer_pressure, floor) + s[CONTACT_FORCE]
+            return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]) + s[CONTACT_FORCE]
 
         return force
 

@@ -1,8 +1,8 @@
 """Time cut into intervals, on each of which every imposed quantity is linear in time.
 
-A leg starts at a break point (a kink or step of a table) or after `LONGEST` turns.  Within a leg the
-clock `tau` starts at zero, a table is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with
-`a0` reduced modulo one turn in exact arithmetic: a phase after a million turns is as exact as the first.
+An interval starts at a break point (a kink or step of a function of time) or after `LONGEST` turns.  Within one the
+clock `tau` starts at zero, a function of time is `value + slope tau`, and a phase is `a0 + a1 tau + a2 tau^2` with `a0`
+reduced modulo one turn in exact arithmetic: a phase after a million turns is as exact as the first.
 """
 
 import math
@@ -41,11 +41,12 @@ class Interval:
         return float(self.start)
 
 
-def constant_and_slope(quantity, leg: Interval) -> tuple[float, float]:
-    """Value and slope over one interval of a number or a `Table` (which has no kink inside the interval)."""
+def constant_and_slope(quantity, interval: Interval) -> tuple[float, float]:
+    """Value at the start and slope (per s) over one interval of a number or a `PiecewiseLinear` (which has no kink
+    inside the interval), in its own unit."""
     if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
-    t0, t1 = leg.time, leg.time + leg.length
+    t0, t1 = interval.time, interval.time + interval.length
     # Ask just inside, so that a step at either end counts on the right side.
     inside = t0 + 0.5 * (t1 - t0)
     middle, early = quantity.at(inside), quantity.at(t0 + 0.25 * (t1 - t0))
@@ -61,68 +62,71 @@ def modulo_turn(angle: Fraction) -> float:
     return float(exact % TURN)
 
 
-def angle_turned(speed, leg: Interval) -> Fraction:
-    """Exact integral of the speed (rad/s, number or table) over a segment."""
-    w, slope = constant_and_slope(speed, leg)
-    return Fraction(w) * leg.span + Fraction(slope) * leg.span**2 / 2
+def angle_turned(speed, interval: Interval) -> Fraction:
+    """Exact integral (rad) of the speed (rad/s, number or function of time) over an interval."""
+    w, slope = constant_and_slope(speed, interval)
+    return Fraction(w) * interval.span + Fraction(slope) * interval.span**2 / 2
 
 
 def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> list[Interval]:
-    """Legs from 0 to `duration` (s).  `quantities` are all imposed numbers and tables, speeds included."""
+    """Intervals from 0 to `duration` (s) of shaft and stator speeds (rad/s).  `quantities` are all imposed numbers and
+    functions of time, speeds included."""
     breaks = {0.0, duration}
     for quantity in quantities:
         if isinstance(quantity, PiecewiseLinear):
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
-    legs, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
+    intervals, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
     points = sorted(breaks)
     for begin, end in pairwise(points):
         whole = Interval(Fraction(begin), Fraction(end) - Fraction(begin), rotor_angle, stator_angle)
         fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
         pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))
         for k in range(pieces):
-            leg = Interval(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
-            legs.append(leg)
-            rotor_angle += angle_turned(rotor_speed, leg)
-            stator_angle += angle_turned(stator_speed, leg)
-    return legs
+            interval = Interval(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
+            intervals.append(interval)
+            rotor_angle += angle_turned(rotor_speed, interval)
+            stator_angle += angle_turned(stator_speed, interval)
+    return intervals
 
 
 def first_interval(quantities) -> Interval:
-    """From time zero to the first break of any table, or 1 s: where a scene starts, whatever the run."""
+    """From time zero to the first break of any function of time among `quantities`, or 1 s: where a scene starts,
+    whatever the run."""
     breaks = [t for q in quantities if isinstance(q, PiecewiseLinear) for t in q.time if t > 0.0]
     return Interval(Fraction(0), Fraction(min(breaks, default=1.0)), Fraction(0), Fraction(0))
 
 
 def largest_value(quantity) -> float:
-    """Largest absolute value that a number or table takes."""
+    """Largest absolute value that a number or function of time takes."""
     return max(map(abs, quantity.value)) if isinstance(quantity, PiecewiseLinear) else abs(float(quantity))
 
 
-def _fastest(speed, leg: Interval) -> float:
-    w, slope = constant_and_slope(speed, leg)
-    return max(abs(w), abs(w + slope * leg.length))
+def _fastest(speed, interval: Interval) -> float:
+    w, slope = constant_and_slope(speed, interval)
+    return max(abs(w), abs(w + slope * interval.length))
 
 
 def time_of_angle(speed, angle: float) -> float:
-    """Time (s) at which the shaft has turned through `angle` (rad), speed a number or table.
+    """Time (s) at which the shaft has turned through `angle` (rad, either way), `speed` (rad/s) a number or function of
+    time.
     Raises ValueError if it never does."""
     if not isinstance(speed, PiecewiseLinear):
         if speed == 0.0:
             raise ValueError("the shaft does not turn")
         return angle / abs(speed)
-    t, left = 0.0, angle
+    t, remaining = 0.0, angle
     for end in [b for b in _with_reversals(speed) if b > 0.0] + [math.inf]:
         w0 = abs(speed.at(t))
         if end == math.inf:
             if w0 == 0.0:
                 raise ValueError("the shaft stops before it has turned so far")
-            return t + left / w0
+            return t + remaining / w0
         middle = abs(speed.at(0.5 * (t + end)))
         turned_here, slope = middle * (end - t), 2 * (middle - w0) / (end - t)
-        if turned_here >= left:
-            # w0 x + slope x^2 / 2 = left, in the form that does not cancel.
-            return t + 2 * left / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * left, 0.0)))
-        t, left = end, left - turned_here
+        if turned_here >= remaining:
+            # w0 x + slope x^2 / 2 = remaining, in the form that does not cancel.
+            return t + 2 * remaining / (w0 + math.sqrt(max(w0 * w0 + 2 * slope * remaining, 0.0)))
+        t, remaining = end, remaining - turned_here
     raise AssertionError
 
 

@@ -28,14 +28,14 @@ class Value(types.WrapperAddressProtocol):
         return self.address
 
     def signature(self):
+        """The kernel's signature, which numba asks for."""
         return SIGNATURE
 
 
 @njit(types.void(KERNEL, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), cache=True)
 def rates_along(wrench, f, block, p, w, s, taus, ys, yps):
-    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) and unknowns `ys` (m, unknowns): film block `f`,
-    contact
-    `block` (empty: none), parameters `p`, scratch `w` and `s` as in dynamics/equations.py."""
+    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) (s) and unknowns `ys` (m, unknowns): film block `f`,
+    contact `block` (empty: none), parameters `p`, scratch `w` and `s` as in dynamics/equations.py."""
     for i in range(len(taus)):
         kinematics(taus[i], ys[i], yps[i], p, w, s)
         wrench(f, s)
@@ -52,8 +52,9 @@ def rates_along(wrench, f, block, p, w, s, taus, ys, yps):
 )
 def states_along(flow, f, block, seals, p, w, s, taus, ys, yps, face, gaps, scratch, low):
     """Gap states `gaps` (m, GAP_STATE_SIZE), scratch states `scratch` (m, SCRATCH) and `low` (m, 3), the thinnest film
-    of the `face` (m), its angle (rad) and radius (m), at leg times `taus` and unknowns `ys`; `yps` gives the rates of a
-    massless ring.  `flow` may be any kernel of a film; with `seals` the friction of secondary seals too."""
+    of the `face` (m), its angle (rad) and radius (m), at segment times `taus` (m,) (s) and unknowns `ys`; `yps` (m,
+    unknowns) gives the rates of a massless ring.  `flow` may be any kernel of a film; with `seals` the friction of
+    secondary seals too."""
     out = yps[0].copy() if len(taus) else yps.ravel()
     for i in range(len(taus)):
         kinematics(taus[i], ys[i], yps[i], p, w, s)

@@ -64,8 +64,8 @@ def harmonics(segment) -> list[Harmonic]:
 
 
 def steady_motion(segment):
-    """Linear steady state: a function of segment time giving (displacements, rates) of all floating rings' three
-    unknowns each, and the list of (harmonic, complex answer)."""
+    """Linear steady state of a segment: a function of its time (s) giving (displacements, rates) (m, rad) of all
+    floating rings' three unknowns each; the list of (harmonic, complex answer); and the LinearScene."""
     linear = segment.model.linear_scene(segment.interval)
     answers = [(h, linear.response(h)) for h in harmonics(segment)]
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
+from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .coupled_segment import CoupledSegment
@@ -10,7 +11,7 @@ from .equilibrium import axial_shift
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
 from .segments import Segment
-from .stick_slip import FADES
+from .stick_slip import FRICTION_FADE
 from .unknowns import Unknowns
 
 
@@ -38,11 +39,12 @@ class Model:
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
         if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
-            raise SceneError("secondary_seal.law", "sticking beside a film with unknowns of its own", '"regularised"')
+            key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"
+            raise SceneError(key, "sticking beside a film with unknowns of its own", '"regularised"')
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
-        self.capture_speed = accuracy * self.clearance * self.reference_rate / FADES
+        self.capture_speed = accuracy * self.clearance * self.reference_rate / FRICTION_FADE
         self._set_bands()
 
     def _imposed(self) -> list:
@@ -57,7 +59,7 @@ class Model:
         """Sliding speeds (m/s) below which friction fades: the user's width, or a little below the capture speed."""
         for k in self.unknowns.seals:
             coulomb = k in self.unknowns.coulomb_rings
-            band = FADES * self.capture_speed if coulomb else self.unknowns.seal(k).width
+            band = FRICTION_FADE * self.capture_speed if coulomb else self.unknowns.seal(k).width
             self.unknowns.ring_block[equations.RING * k + equations.SEAL_BAND] = band
 
     # --- time ---------------------------------------------------------------------------------------
@@ -112,8 +114,8 @@ class Model:
         return self._linear_scenes[key]
 
     def still_film(self, interval: Interval, shift: float):
-        """Stiffness and damping (3, 3) of the film at an interval's start without mean spin, the gap `shift` (m) wider;
-        not to be changed."""
+        """Stiffness and damping, each (3, 3), as `film_matrices`, at an interval's start without mean spin, the gap
+        `shift` (m) wider; not to be changed."""
         key = interval.start, shift
         if key not in self._still_films:
             found = self.interface.linearised(interval, mean_spin=0.0, shift=shift, pace=self.reference_rate)
@@ -127,7 +129,7 @@ class Model:
     # --- vectors ------------------------------------------------------------------------------------
 
     def vector(self, q, q_rate) -> np.ndarray:
-        """Unknowns `y` (size,), works zero, from displacements and rates (n,)."""
+        """Unknowns `y` (size,), works and film zero, from displacements (m, rad) and rates (n,)."""
         unknowns, y = self.unknowns, np.zeros(self.unknowns.size)
         y[: unknowns.n] = q
         for i, place in enumerate(unknowns.rate_places):

@@ -181,13 +181,13 @@ def critical_speed(at_speed, low: float, high: float, points: int = 160) -> floa
         rate = max(value.real for value in tilt)
         return rate if abs(rate) > NEUTRAL * max(map(abs, tilt)) else 0.0
 
-    speeds = np.geomspace(low, high, points)
-    previous = beyond_rounding(speeds[0])
-    for a, b in pairwise(speeds):
-        present = beyond_rounding(b)
-        if previous * present < 0:
-            return float(brentq(growth, a, b, rtol=1e-13))
-        previous = present
+    last = None
+    for w in np.geomspace(low, high, points):
+        rate = beyond_rounding(w)
+        if last and last[1] * rate < 0:
+            return float(brentq(growth, last[0], w, rtol=1e-13))
+        # A speed at the threshold itself, within rounding, hides no change of sign.
+        last = (w, rate) if rate else last
     return None
 
 

@@ -18,8 +18,8 @@ from .stick_slip import StickSlip
 
 
 class RunState:
-    """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`,
-    `stick_slip` or None), `reasons` (sentences) and `cautions`, and `last`, the segment's index, time and unknowns
+    """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`, `stick_slip`
+    or None), `reasons` (sentences) and `cautions`, and `last`: the segment's index, time in it (s) and unknowns (size,)
     reached so far."""
 
     def __init__(self, model: Model, duration: float):
@@ -33,7 +33,8 @@ class RunState:
         self.last = (0, 0.0, self.y0)
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
-        """The equations over the interval `index` (negative: from the end)."""
+        """The equations over the interval `index` (negative: from the end); `stuck` {ring: bool} in place of the rings
+        that stick now."""
         index %= len(self.intervals)
         if stuck is None and self.stick_slip:
             stuck = self.stick_slip.stuck
@@ -41,7 +42,7 @@ class RunState:
 
     @cached_property
     def memory(self) -> float:
-        """Shortest periods for which the linearised scene remembers an error, at most those of the run."""
+        """Number of shortest periods for which the linearised scene remembers an error, at most those of the run."""
         speeds = {self.model.speed_at(interval): interval for interval in self.intervals}
         rates = [self.model.linear_scene(interval).eigen()[0].real for interval in speeds.values()]
         # A massless undamped ring has no free motion: it forgets at once.
@@ -67,7 +68,7 @@ class RunState:
     # --- the start ----------------------------------------------------------------------------------
 
     def steady_start(self) -> np.ndarray:
-        """Unknowns on the linear steady state at time zero."""
+        """Unknowns (size,) on the linear steady state at time zero."""
         at, _, _ = self.segment(0).steady_motion()
         q, rate = at(0.0)
         places = self.model.unknowns.among_three()
@@ -103,7 +104,8 @@ class RunState:
     # --- going on -----------------------------------------------------------------------------------
 
     def modes(self) -> dict:
-        """What a continued run needs beside the unknowns: contacts so far, and which rings stick."""
+        """What a continued run needs beside the unknowns: contacts so far ("touching", "contacts"), and which rings
+        stick ("sticking")."""
         return {**self.contacts.state(), "sticking": self.stick_slip.state() if self.stick_slip else None}
 
     def restore_modes(self, modes: dict):

@@ -19,8 +19,10 @@ from numba import njit
 def sliding(v, q_x, q_y, line, radius, band, smooth, out):
     """Axial force (N) and moments (N m) on a ring that slides, into out[0:3]; returns its sliding speed (m/s).
 
-    `v` axial speed, `q_x`, `q_y` tilt rates relative to what the ring slides on; `band` sliding speed (m/s) below
-    which the friction fades linearly (Coulomb: a ring that slow is captured), or the width of the smooth law.
+    `v` axial speed (m/s), `q_x`, `q_y` tilt rates (rad/s) relative to what the ring slides on; `line` friction (N/m),
+    `radius` (m); `band` sliding speed (m/s) below which the friction fades linearly (Coulomb: a ring that slow is
+    captured), or the width of the `smooth` law.
+    **Source**, **Valid** as the module.
     """
     q = math.hypot(q_x, q_y)
     u = radius * q
@@ -42,8 +44,9 @@ def sliding(v, q_x, q_y, line, radius, band, smooth, out):
 
 @njit(cache=True)
 def excess(force, moment_x, moment_y, line, radius):
-    """How far a load lies outside the limit surface of a stuck ring: negative inside, 0 on it, in units of the
-    largest moment (or, beyond the largest force, of that force)."""
+    """How far a load (N, N m) lies outside the limit surface of a stuck ring: negative inside, 0 on it, in units of the
+    largest moment (or, beyond the largest force, of that force); `line` friction (N/m), `radius` (m).
+    **Source**, **Valid** as the module."""
     held = 2.0 * math.pi * radius * line
     most = 4.0 * radius**2 * line
     if line == 0.0:

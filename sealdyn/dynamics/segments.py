@@ -188,7 +188,8 @@ class Segment:
         return out
 
     def gap_state(self, tau, y) -> np.ndarray:
-        """Gap state `s` (faces/geometry.py) at one time and unknowns, kinematics only."""
+        """Gap state `s` (faces/geometry.py) at one time (s) and unknowns (size,), kinematics only; the segment's own
+        array, which the next call changes."""
         equations.kinematics(tau, y, np.zeros(self.size), self.p, self.w, self.s)
         return self.s
 

@@ -35,14 +35,20 @@ from . import equations
 from .intervals import constant_and_slope, modulo_turn
 
 # What people read instead of an SI unit, and how many of it make one.
-SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m/s": ("mm/s", 1e3), "m^3/s": ("ml/h", 3.6e9), "Pa": ("MPa", 1e-6)}
+DISPLAY_UNITS = {
+    "m": ("µm", 1e6),
+    "rad": ("µrad", 1e6),
+    "m/s": ("mm/s", 1e3),
+    "m^3/s": ("ml/h", 3.6e9),
+    "Pa": ("MPa", 1e-6),
+}
 DEGREES, MILLIMETRES, MICROMETRES_PER_HOUR = ("deg", 180 / np.pi), ("mm", 1e3), ("µm/h", 3.6e9)
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Instants of a segment: `taus` (m,), and there the states of the gap, of the equations' scratch, and the thinnest
-    film, its angle and its radius, a row each."""
+    """Instants `taus` (m,) (s) of a segment, and there the states `gap` (m, GAP_STATE_SIZE), `scratch` of the equations
+    (m, SCRATCH), and `low` (m, 3): the thinnest film (m), its angle (rad) and its radius (m)."""
 
     segment: object
     taus: np.ndarray
@@ -52,22 +58,22 @@ class Samples:
 
     @cached_property
     def waves(self) -> np.ndarray:
-        """Cosine and sine parts (m, orders, 2) of the gap's waves."""
+        """Cosine and sine parts (m), shape (m, orders, 2), of the gap's waves."""
         return wave_parts_along(self.segment.model.face, self.gap)
 
     @cached_property
     def shaft(self) -> tuple[float, float]:
-        """Shaft speed (rad/s) at the start of the interval, and its slope."""
+        """Shaft speed (rad/s) at the start of the interval, and its slope (rad/s^2)."""
         return constant_and_slope(self.segment.model.scene.shaft.speed, self.segment.interval)
 
     @cached_property
     def tilt(self) -> np.ndarray:
-        """Complex relative tilt (m,)."""
+        """Complex relative tilt (m,), in rad."""
         return self.gap[:, GX] + 1j * self.gap[:, GY]
 
     @cached_property
     def torque(self) -> np.ndarray:
-        """Friction torque (m,) of film and contact on the rotor."""
+        """Friction torque (m,), in N m, of film and contact on the rotor."""
         return self.gap[:, TORQUE] + self.gap[:, CONTACT_TORQUE]
 
 
@@ -86,7 +92,7 @@ class Signal:
     @property
     def display(self) -> tuple[str, float]:
         """Unit for people, and how many of it make one SI unit."""
-        return self.shown or SHOWN.get(self.unit, (self.unit, 1.0))
+        return self.shown or DISPLAY_UNITS.get(self.unit, (self.unit, 1.0))
 
 
 def _gap(slot):
@@ -121,19 +127,19 @@ def _leakage(slot):
 SHAFT_AND_FILM = (
     Signal("shaft_angle", "rad", "shaft angle, modulo one turn", _shaft_angle, DEGREES),
     Signal("shaft_speed", "rad/s", "shaft speed", lambda at: at.shaft[0] + at.shaft[1] * at.taus, tallied=True),
-    Signal("relative_tilt_x", "rad", "relative tilt about xi, stator minus rotor", _gap(GX)),
-    Signal("relative_tilt_y", "rad", "relative tilt about eta, stator minus rotor", _gap(GY)),
+    Signal("relative_tilt_x", "rad", "relative tilt about the x axis, stator minus rotor", _gap(GX)),
+    Signal("relative_tilt_y", "rad", "relative tilt about the y axis, stator minus rotor", _gap(GY)),
     Signal("relative_misalignment", "rad", "relative misalignment of the faces", lambda at: np.abs(at.tilt),
            tallied=True),
-    Signal("relative_precession", "rad", "direction of the relative tilt, from xi", lambda at: np.angle(at.tilt),
-           DEGREES),
+    Signal("relative_precession", "rad", "direction of the relative tilt, from the x axis",
+           lambda at: np.angle(at.tilt), DEGREES),
     Signal("axial_gap_change", "m", "change of the axial gap from the design clearance", _gap(DZ), tallied=True),
     Signal("h_min", "m", "smallest film thickness over the face", _low(0)),
-    Signal("h_min_angle", "rad", "angle of the smallest film thickness, from xi", _low(1), DEGREES),
+    Signal("h_min_angle", "rad", "angle of the smallest film thickness, from the x axis", _low(1), DEGREES),
     Signal("h_min_radius", "m", "radius of the smallest film thickness", _low(2), MILLIMETRES),
     Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
-    Signal("film_moment_x", "N m", "film moment on the stator about xi", _gap(MOMENT_X)),
-    Signal("film_moment_y", "N m", "film moment on the stator about eta", _gap(MOMENT_Y)),
+    Signal("film_moment_x", "N m", "film moment on the stator about the x axis", _gap(MOMENT_X)),
+    Signal("film_moment_y", "N m", "film moment on the stator about the y axis", _gap(MOMENT_Y)),
     Signal("closing_force", "N", "closing force", _closing_force, tallied=True),
     Signal("leakage_inner", "m^3/s", "leakage at the inner radius, from high to low pressure", _leakage(FLOW_INNER),
            tallied=True),
@@ -145,8 +151,8 @@ SHAFT_AND_FILM = (
 )  # fmt: skip
 CONTACT = (
     Signal("contact_force", "N", "contact force, opening", _gap(CONTACT_FORCE), tallied=True),
-    Signal("contact_moment_x", "N m", "contact moment on the stator about xi", _gap(CONTACT_X)),
-    Signal("contact_moment_y", "N m", "contact moment on the stator about eta", _gap(CONTACT_Y)),
+    Signal("contact_moment_x", "N m", "contact moment on the stator about the x axis", _gap(CONTACT_X)),
+    Signal("contact_moment_y", "N m", "contact moment on the stator about the y axis", _gap(CONTACT_Y)),
     Signal("contact_torque", "N m", "friction torque of contact on the rotor", _gap(CONTACT_TORQUE), tallied=True),
     Signal("contact_area_fraction", "1", "share of the face that touches", _gap(CONTACT_AREA), tallied=True),
     Signal("contact_pressure", "Pa", "largest contact pressure", _gap(CONTACT_PRESSURE), tallied=True),
@@ -157,16 +163,16 @@ TALLIED = tuple(signal.name for signal in SHAFT_AND_FILM + CONTACT if signal.tal
 # A ring's motion and its secondary seal, in the order of their slots: unit, what it is.
 PARTS = {
     "z": ("m", "axial displacement of the {}"),
-    "tilt_x": ("rad", "tilt about xi of the {}"),
-    "tilt_y": ("rad", "tilt about eta of the {}"),
+    "tilt_x": ("rad", "tilt of the {} about the x axis"),
+    "tilt_y": ("rad", "tilt of the {} about the y axis"),
     "z_rate": ("m/s", "axial velocity of the {}"),
-    "tilt_x_rate": ("rad/s", "tilt rate about xi of the {}"),
-    "tilt_y_rate": ("rad/s", "tilt rate about eta of the {}"),
+    "tilt_x_rate": ("rad/s", "tilt rate of the {} about the x axis"),
+    "tilt_y_rate": ("rad/s", "tilt rate of the {} about the y axis"),
 }
 SEAL = {
     "seal_friction": ("N", "axial friction of the secondary seal on the {}"),
-    "seal_moment_x": ("N m", "friction moment of the secondary seal on the {} about xi"),
-    "seal_moment_y": ("N m", "friction moment of the secondary seal on the {} about eta"),
+    "seal_moment_x": ("N m", "friction moment of the secondary seal on the {} about the x axis"),
+    "seal_moment_y": ("N m", "friction moment of the secondary seal on the {} about the y axis"),
     "seal_sliding_speed": ("m/s", "sliding speed of the {} on its secondary seal"),
 }
 
@@ -191,7 +197,7 @@ def _table(floats, orders, touching, seals):
         table += _of_ring(ring, dict(list(PARTS.items())[: 6 if floats[k] else 3]), at)
     for j, order in enumerate(orders):
         for i, (short, part) in enumerate((("cos", "cosine"), ("sin", "sine"))):
-            words = f"{part} part of the gap's wave of order {order:.0f}, from xi"
+            words = f"{part} part of the gap's wave of order {order:.0f}, from the x axis"
             table.append(Signal(f"gap_{short}_{order:.0f}", "m", words, lambda at, j=j, i=i: at.waves[:, j, i]))
     table += CONTACT if touching else ()
     for k in seals:

@@ -1,8 +1,8 @@
 """When a ring on its secondary seal sticks and when it slips: found between steps, to the time.
 
-A sliding ring is captured when its sliding speed has fallen below the band (1.25 times the accuracy times the scale of
-the rates) and what it would have to hold lies inside the limit surface; a stuck ring slips when that load reaches the
-surface.
+A sliding ring is captured when its sliding speed has fallen below the model's `capture_speed` (1.25 times the accuracy
+times the scale of the axial rates) and what it would have to hold lies inside the limit surface; a stuck ring slips
+when that load reaches the surface.
 """
 
 import numpy as np
@@ -40,18 +40,17 @@ INSIDE = 1e-9
 # ... and this far when it has only just slipped and not yet left the band: else it would chatter.
 WITHDRAWN = 1e-3
 # Each approach to standstill goes so much of the way that a constant deceleration would leave.
-NEARER, SHORTEST = 0.9, 0.2
+APPROACH_FACTOR, SHORTEST = 0.9, 0.2
 # Friction fades only below this share of the band, and the last approach ends above it: where a ring is captured its
 # deceleration is the sliding one, with which the motion of the last step is interpolated.
-FADES, ABOVE = 0.8, 0.9
+FRICTION_FADE, ABOVE = 0.8, 0.9
 # Looks into each step of a stuck ring.
 LOOKS = 2
 
 
 class StickSlip:
     """Which rings stick (`stuck` {ring: bool}); finds and makes the changes: `sticks`, `slips` counts them, `dropped`
-    is
-    the kinetic energy (J) lost at captures."""
+    is the kinetic energy (J) lost at captures."""
 
     def __init__(self, model):
         self.model, self.rings, self.segment = model, model.unknowns.coulomb_rings, None
@@ -61,16 +60,18 @@ class StickSlip:
         self._yp = np.empty(model.unknowns.size)
 
     def begin(self, segment, tau, y):
+        """A segment begins: its equations are asked from now on."""
         self.segment = segment
 
     def sliding_state(self, k: int, tau: float, y) -> tuple[float, float]:
-        """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface."""
+        """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface (dimensionless,
+        `secondary_seal.excess`), at segment time `tau` (s) and unknowns `y` (size,)."""
         self.segment.ring_rates(tau, y, self._yp)
         at = SEALS + PER_SEAL * k
         return self.segment.w[at + SEAL_SPEED], self.segment.w[at + SEAL_EXCESS]
 
     def start(self, segment, tau: float, y) -> dict:
-        """The rings that stick at the very start: those at rest on a load that they can hold."""
+        """The rings that stick at the very start ({ring: bool}): those at rest on a load that they can hold."""
         self.begin(segment, tau, y)
         for k in self.rings:
             speed, outside = self.sliding_state(k, tau, y)
@@ -78,17 +79,19 @@ class StickSlip:
         return dict(self.stuck)
 
     def state(self) -> dict:
-        """What a continued run needs."""
-        return {"stuck": {str(k): bool(v) for k, v in self.stuck.items()}, "sticks": self.sticks,
-                "slips": self.slips, "dropped": self.dropped}  # fmt: skip
+        """What a continued run needs: `stuck` {ring: bool}, the counts and the energy lost (J)."""
+        stuck, leaving = ({str(k): bool(v) for k, v in of.items()} for of in (self.stuck, self.leaving))
+        return {"stuck": stuck, "leaving": leaving, "sticks": self.sticks, "slips": self.slips, "dropped": self.dropped}
 
     def restore(self, state: dict):
         """Go on from `state`."""
         self.stuck = {int(k): v for k, v in state["stuck"].items()}
+        self.leaving |= {int(k): v for k, v in state.get("leaving", {}).items()}
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
     def accept(self, block, advance) -> Transition | None:
-        """The first transition in a block of steps.  `advance(tau, y, until)` integrates."""
+        """The first transition in a block of steps, or None.  `advance(tau, y, until)` integrates from `tau` to `until`
+        (s) and returns the unknowns (size,) there."""
         found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
         return Transition(found[0], float(found[1]), *found[2:]) if found else None
 
@@ -116,7 +119,7 @@ class StickSlip:
         return None
 
     def make(self, transition: Transition) -> Change:
-        """Let the ring of a transition stick or slip."""
+        """Let the ring of a transition stick or slip; the event's `value` is the kinetic energy (J) lost."""
         k, tau, y = transition.what, transition.time, transition.y
         name = RING_NAMES[k]
         if self.stuck[k]:
@@ -217,7 +220,7 @@ class StickSlip:
         if float(np.linalg.norm(a + nearest * change)) > band + 0.5 * length**0.5:
             return None
         # From here each integration ends before standstill, so that the friction's direction stays smooth.
-        tau, y, part, latest = t[step], ys[step].copy(), NEARER, 2 * t[step + 1] - t[step]
+        tau, y, part, latest = t[step], ys[step].copy(), APPROACH_FACTOR, 2 * t[step + 1] - t[step]
         before = (tau, y)
         for _ in range(60):
             v, rate, outside = self._velocity(k, tau, y)

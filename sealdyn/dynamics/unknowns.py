@@ -18,14 +18,13 @@ WORKS, MORE = 6, 3
 class Unknowns:
     """Unknowns of a scene.
 
-    `y` = [displacements | velocities | film | impulse | works | sum of absolute works]: slices `displacements`,
-    `velocities`, `film`, `works` and the place of the `impulse` (None without).  `names` of the `n` displacements;
-    `rate_places` where their rates stand, -1 for those of which `lacks_inertia` (n,) is true; `n_mechanical`
-    displacements and rates, `size` of y; `film_unknowns` what the film owns (films/_unknowns.py), None of an algebraic
-    one; `has_residual_form` whether they obey a residual only, since a ring is massless or the film has unknowns;
-    `ring_block` the constant part of the parameters; `floats` per ring, `seals` the rings with a secondary seal,
-    `with_axial`, `with_tilt`, `linear`, `constant` (no table anywhere), `extended` (contact or a secondary seal),
-    `reasons`.
+    `y` = [displacements | velocities | film | impulse | works | sum of absolute works]: slices `film` and `works`, and
+    the place of the `impulse` (None without).  `names` of the `n` displacements; `rate_places` where their rates stand,
+    -1 for those of which `lacks_inertia` (n,) is true; `n_mechanical` displacements and rates, `size` of y;
+    `film_unknowns` what the film owns (films/_unknowns.py), None of an algebraic one; `has_residual_form` whether they
+    obey a residual only, since a ring is massless or the film has unknowns; `ring_block` the constant part of the
+    parameters; `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `linear`,
+    `constant` (no table anywhere), `extended` (contact or a secondary seal), `reasons`.
     """
 
     def __init__(self, scene, closing, linear: bool, film_unknowns=None):
@@ -129,7 +128,6 @@ class Unknowns:
                 self.rate_places[tilt : tilt + 2] = place, place + 1
                 place += 2
         self.lacks_inertia = self.rate_places < 0
-        self.displacements, self.velocities = slice(0, self.n), slice(self.n, place)
         self.n_mechanical = place
         place += len(self.film_unknowns.names) if self.film_unknowns else 0
         self.film = slice(self.n_mechanical, place)
@@ -139,7 +137,8 @@ class Unknowns:
         self.ring_block[equations.WORKS_AT], self.ring_block[equations.EXTENDED] = self.works.start, self.extended
 
     def algebraic(self, film_damping: np.ndarray) -> list[int]:
-        """Algebraic unknowns: displacements without mass and without any damping on them, and those of the film."""
+        """Places of the algebraic unknowns: displacements without mass and without any damping on them, and those of
+        the film.  `film_damping` (3, 3)."""
         places = []
         for k in range(2):
             block = self.ring_block[equations.RING * k : equations.RING * (k + 1)]

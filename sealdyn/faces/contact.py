@@ -4,9 +4,10 @@
 law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
 **Valid** rigid coned faces, rough at a scale far below their width; dry, and without memory.
 
-Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and
-moments are minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli
-between its radii, which faces/contact_annulus.py integrates.
+Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and moments are
+minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli between its
+radii, which faces/contact_annulus.py integrates.  The kernels take `k` this module's block, `f` a film's block (its
+leading slots the faces) and `s` the gap state (slots in faces/geometry.py).
 """
 
 import math
@@ -33,6 +34,7 @@ from .contact_annulus import (
     pressed,
 )
 from .geometry import (
+    COLLAPSE,
     CONTACT_AREA,
     CONTACT_ENERGY,
     CONTACT_FORCE,
@@ -41,6 +43,7 @@ from .geometry import (
     CONTACT_X,
     CONTACT_Y,
     DZ,
+    FLOOR,
     GX,
     GY,
     INNER_RADIUS,
@@ -49,6 +52,7 @@ from .geometry import (
     PROFILE_RADII,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
+    TOUCH,
     WEAR,
     edge_gaps,
     node_gap,
@@ -61,10 +65,9 @@ ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
 _gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
 
 
-def parameters(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
-    """The contact's block of the parameter array, float64.
-
-    `face` the leading slots of a film's block, `points` Gauss points of each panel around the circle.
+def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None) -> np.ndarray:
+    """The contact's block of the parameter array, float64; the film thicknesses (m) of its floor, touch and collapse go
+    into the `face` block, or a film's that begins with it.  `points`: Gauss points of each panel around the circle.
     """
     points = points or ANGLE_POINTS[contact.law]
     if contact.law == "christensen":
@@ -77,7 +80,8 @@ def parameters(contact: Contact, face: np.ndarray, points: int | None = None) ->
     # Exact for u^4 Q(v) r^2, and for the energy u^5 R(v) r; with a profile also for u^4 Q(v) r^3.
     radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
-    _, top, bottom = contact_thresholds(contact)
+    face[FLOOR], top, bottom = contact_thresholds(contact)
+    face[TOUCH], face[COLLAPSE] = top, bottom
     k[TOP], k[SPAN] = top, top - bottom
     k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
     if contact.shear_strength is None:
@@ -148,14 +152,15 @@ def _face(k, f, s, complete):
 @njit(cache=True)
 def contact_load(k, f, s):
     """Contact force (N, opening) and moments (N m) on the stator, into the gap state: minus the derivatives of
-    CONTACT_ENERGY.  `k` this module's block, `f` a film's (faces), `s` the gap state."""
+    CONTACT_ENERGY by gap and tilt."""
     _face(k, f, s, False)
 
 
 @njit(cache=True)
 def contact_load_and_friction(k, f, s):
-    """As `press`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face in
-    contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s).
+    """As `contact_load`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face
+    in contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s), into
+    the gap state.
 
     The normal pressure needs no torque on the slope of the faces: p_c is a function of h, so around any circle
     `int p_c dh/dtheta dtheta = -[W] = 0`.
@@ -165,11 +170,12 @@ def contact_load_and_friction(k, f, s):
 
 @njit(cache=True)
 def wear_rates(k, f, s, out):
-    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j
-    the hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
+    """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j the
+    hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).
 
     The depth of a face grows at radius j by its wear coefficient times |SPIN_DIFFERENCE| times out[j] over
-    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.  `k`, `f`, `s` as in `press`.
+    `hat_areas`[j]; the sum of `out` is the integral that WEAR has.
+    **Source** Archard's law, as the module.
     """
     out[:] = 0.0
     tilt = math.hypot(s[GX], s[GY])

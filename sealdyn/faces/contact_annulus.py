@@ -21,7 +21,8 @@ NODES = ENERGY + SERIES_SIZE
 
 @njit(cache=True)
 def pressed(k, series, u, head):
-    """A law at u: head (u^4 or u^5) times its series in v = 2u - 1, or what continues it beyond u = 1."""
+    """A law at u: `head` (u^4 or u^5) times its series in v = 2u - 1, or what continues it beyond u = 1; in the unit of
+    the series (LOAD Pa, AREA 1, ENERGY J/m^2), whose first slot in the block `k` is `series`."""
     if u > 1.0:
         e, tail = u - 1.0, series + BEYOND
         return k[tail] + e * (k[tail + 1] + e * (k[tail + 2] + e * k[tail + 3]))
@@ -90,8 +91,8 @@ def annulus(k, r_i, r_o, r_m, tilt, low_i, low_o, complete):
     """Load (N), its integral with the radius (N m), its moment along the tilt (N m); and, if `complete`, touching area
     (m^2), its integral with the radius (m^3), stored energy (J), and the load's integral with r (r - r_i) (N m^2).
 
-    `k` the contact block; the gap is linear in r, smallest `low_i` at r_i and `low_o` at r_o (m), and tilted at its
-    own radius, or at `r_m` if that is not 0.
+    `k` the contact block; the gap is linear in r, smallest `low_i` at r_i and `low_o` at r_o (m), and tilted by `tilt`
+    (rad) at its own radius, or at `r_m` (m) if that is not 0.
     """
     mean, top, per_span = r_m != 0.0, k[TOP], 1.0 / k[SPAN]
     swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)

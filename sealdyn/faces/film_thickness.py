@@ -52,21 +52,22 @@ def _depth(f, r):
 
 @njit(cache=True)
 def film_thickness(f, s, r, theta):
-    """Film thickness (m) at radius r (m) and angle theta (rad, from xi)."""
+    """Film thickness (m) at radius r (m) and angle theta (rad, from the x axis)."""
     aligned = f[CLEARANCE] + s[DZ] + f[CONING] * (r - f[INNER_RADIUS]) + _depth(f, r)
     return aligned + _arm(f, r) * (s[GX] * math.sin(theta) - s[GY] * math.cos(theta)) + waves(f, s, theta)
 
 
 @njit(cache=True)
 def film_thickness_rate(f, s, r, theta):
-    """Its rate (m/s) at a fixed place: the rings' own rates, and the waves that pass with them."""
+    """Rate of the film thickness (m/s) at a fixed radius r (m) and angle theta (rad): the rings' own rates, and the
+    waves that pass with them."""
     tilting = s[GX_RATE] * math.sin(theta) - s[GY_RATE] * math.cos(theta)
     return s[DZ_RATE] + _arm(f, r) * tilting + waves_rate(f, s, theta)
 
 
 @njit(cache=True)
 def h_min(f, s):
-    """Smallest film thickness over the face (m), its angle (rad, from xi, within a half turn) and radius (m)."""
+    """Smallest film thickness (m) over the face, its angle (rad, from the x axis, up to half a turn) and radius (m)."""
     if f[WAVES] != 0.0:
         return thinnest_of_waves(f, s)
     # h = C + dz + ... - r G cos(beta): beta counts from the thinnest place (faces/geometry.py).

@@ -1,16 +1,16 @@
 """The gap between the faces: axes, signs, gap-state array, face block, closed forms of faces the same all around.
 
-Axes (see README): zeta is the shaft axis, theta is measured from xi.  The stator faces the rotor from
-above, `gap = stator surface - rotor surface`; the tilt of a ring is a small rotation vector, and
-`g = tilt of stator - tilt of rotor`.  Film thickness of two rigid coned faces:
+Axes (see README): z runs along the shaft from the rotor to the stator, theta is measured from the x axis.  The gap is
+the stator's surface less the rotor's; the tilt of a ring is a small rotation vector, and `g = tilt of stator - tilt of
+rotor`.  Film thickness of two rigid coned faces:
 
     h(r, theta, t) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta)) + waves(theta, t)
 
-where `depth` is what faces that are not plain cones (worn ones) are wider apart, linear between the radii of a
-profile, 0 without one, and `waves` what turns with either ring (faces/waviness.py).  Without waves and with
-`g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from there:
-h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).  Here are the slots and the closed forms of such faces; h
-itself, its rate and its smallest value are in faces/film_thickness.py.
+where `depth` is what faces that are not plain cones (worn ones) are wider apart, linear between the radii of a profile,
+0 without one, and `waves` what turns with either ring (faces/waviness.py).  Without waves and with `g = G exp(i alpha)`
+the thinnest place lies at theta = alpha - pi/2, and beta is counted from there: h = C + dz + coning (r - r_i) +
+depth(r) - r G cos(beta).  Here are the slots and the closed forms of such faces; h itself, its rate and its smallest
+value are in faces/film_thickness.py.
 """
 
 import numpy as np
@@ -43,10 +43,10 @@ FACE_SIZE = WAVE_ROWS + WAVE_ROW * MOST_WAVES
 
 
 def face_parameters(film, clearance: float) -> np.ndarray:
-    """The face part of a film's parameter block, shape (FACE_SIZE,): radii and clearance in m, coning in
-    rad, the floor of the film thickness in m, two flags, the thickness at which the faces touch and the one at
-    which the run ends (m), the profile (m); faces/contact.py moves the floor and the two thicknesses, faces/waviness.py
-    lays the waves."""
+    """The face part of a film's parameter block, shape (FACE_SIZE,), of a `Film` table and a `clearance` (m): radii and
+    clearance in m, coning in rad, the floor of the film thickness in m, two flags, the thickness at which the faces
+    touch and the one at which the run ends (m), the profile (m); with contact the floor and the two thicknesses are
+    moved, and faces/waviness.py lays the waves."""
     f = np.zeros(FACE_SIZE)
     f[:PROFILE] = (
         film.inner_radius,
@@ -71,7 +71,7 @@ def face_parameters(film, clearance: float) -> np.ndarray:
 def edge_gaps(f, dz, tilt):
     """Smallest film thickness (m) over the circle at the inner and at the outer edge.
 
-    `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
+    `f` a face block, `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
     **Valid** rigid faces without waves; without a profile the minimum over the face is the smaller of the two.
     """
     r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
@@ -88,7 +88,8 @@ def edge_gaps(f, dz, tilt):
 
 @njit(cache=True)
 def node_gap(f, node, dz, tilt):
-    """As `edge_gaps`, at a radius of the profile (counted from 0); between them it is linear in r."""
+    """As `edge_gaps`, one film thickness (m), at the radius `node` of the profile (counted from 0); between them it is
+    linear in r."""
     r_i, r = f[INNER_RADIUS], f[PROFILE_RADII + node]
     arm = 0.5 * (r_i + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else r
     return f[CLEARANCE] + dz + f[CONING] * (r - r_i) - arm * tilt + f[PROFILE_DEPTHS + node]
@@ -96,7 +97,7 @@ def node_gap(f, node, dz, tilt):
 
 @njit(cache=True)
 def smallest_gap(f, dz, tilt):
-    """Smallest film thickness over a face without waves (m), and its radius (m)."""
+    """Smallest film thickness over a face without waves (m), and its radius (m); arguments as `edge_gaps`."""
     if f[PROFILE] == 0.0:
         inner, outer = edge_gaps(f, dz, tilt)
         if inner <= outer:
@@ -113,8 +114,8 @@ def smallest_gap(f, dz, tilt):
 
 @njit(cache=True)
 def regularised_thickness(h, floor):
-    """Film thickness as the film laws see it: h itself above the floor, below it a positive
-    continuation with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""
+    """Film thickness (m) as the film laws see it: h (m) itself above the `floor` (m), below it a positive continuation
+    with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""
     if h >= floor:
         return h
     return floor * floor / (2.0 * floor - h)

@@ -30,7 +30,10 @@ def contact_fraction(x):
 
 
 def mean_film(x):
-    """E(H)/c of the film between Christensen's surfaces at mean film h = x c; elementwise.  0 for x <= -1."""
+    """E(H)/c of the film between Christensen's surfaces at mean film h = x c; elementwise.  0 for x <= -1.
+
+    **Source** Lebeck et al. (1979), ch. 2: the mean of max(h + d, 0) over Christensen's heights d, here factored.
+    """
     x = np.asarray(x, dtype=float)
     u = np.clip(0.5 * (1.0 - x), 0.0, 1.0)
     inside = x + 2.0 * u**5 * (7.0 - u * (14.0 - u * (10.0 - 2.5 * u)))
@@ -38,7 +41,10 @@ def mean_film(x):
 
 
 def mean_film_cubed(x):
-    """E(H^3)/c^3 of the film between Christensen's surfaces at mean film h = x c; elementwise.  0 for x <= -1."""
+    """E(H^3)/c^3 of the film between Christensen's surfaces at mean film h = x c; elementwise.  0 for x <= -1.
+
+    **Source** Lebeck et al. (1979), ch. 2: the mean cube, in place of h^3 in Poiseuille flow.
+    """
     x = np.asarray(x, dtype=float)
     t = np.clip(x, -1.0, 1.0)
     even = 7 / 256 + t**2 * (105 / 256 + t**2 * (35 / 128 + t**2 * (-7 / 128 + t**2 * (3 / 256 - t**2 / 768))))
@@ -46,7 +52,10 @@ def mean_film_cubed(x):
 
 
 def gaussian_overlap(n: float, d):
-    """F_n(d) = int_d^inf (s - d)^n phi(s) ds, phi the normal density; d elementwise, -4 <= d <= 6."""
+    """F_n(d) = int_d^inf (s - d)^n phi(s) ds, phi the normal density; dimensionless, d elementwise, -4 <= d <= 6.
+
+    **Source** Greenwood & Williamson (1966), eq. 12.
+    """
     node, weight = np.polynomial.legendre.leggauss(160)
     # s = d + w^2 makes half powers smooth; beyond d + 14 nothing is left.
     w = 0.5 * math.sqrt(14.0) * (1.0 + node)
@@ -57,14 +66,15 @@ def gaussian_overlap(n: float, d):
 
 @lru_cache(maxsize=1)
 def christensen_series() -> np.ndarray:
-    """Contact fraction of Christensen's heights, c (u = 0) to -c (u = 1): exact."""
+    """Slots (SERIES_SIZE,) of the contact fraction of Christensen's heights, c (u = 0) to -c (u = 1): exact."""
     return series(np.polynomial.Polynomial([35.0, -84.0, 70.0, -20.0])(np.polynomial.Polynomial([0.5, 0.5])).coef)
 
 
 @lru_cache(maxsize=4)
 def gaussian_series(n: float) -> np.ndarray:
-    """F_n(h / rms), from 5 rms (u = 0) to -3 rms (u = 1): least squares of the relative error where F_n is above
-    1e-5.  Within 1e-3 of F_n up to 3.5 rms; beyond, the load is below 1e-5 of that at h = 0 and ends smoothly."""
+    """Slots (SERIES_SIZE,) of F_n(h / rms), from 5 rms (u = 0) to -3 rms (u = 1): least squares of the relative error
+    where F_n is above 1e-5.  Within 1e-3 of F_n up to 3.5 rms; beyond, the load is below 1e-5 of that at h = 0 and ends
+    smoothly."""
     v = np.cos(np.pi * (np.arange(800) + 0.5) / 800)
     u = 0.5 * (1.0 + v)
     exact = gaussian_overlap(n, REACH - (REACH + HALF_HEIGHT) * u)
@@ -75,7 +85,8 @@ def gaussian_series(n: float) -> np.ndarray:
 
 
 def series(q: np.ndarray) -> np.ndarray:
-    """Slots of u^4 Q(v), continued beyond u = 1 with the same value, slope and bend."""
+    """Slots (SERIES_SIZE,) of u^4 Q(v), `q` (degree + 1,) the coefficients of Q, lowest first; continued beyond u = 1
+    with the same value, slope and bend."""
     slots = np.zeros(SERIES_SIZE)
     slots[0], slots[1 : 1 + len(q)] = len(q) - 1, q
     whole = np.polynomial.Polynomial([0.5, 0.5]) ** 4 * np.polynomial.Polynomial(q)
@@ -86,12 +97,13 @@ def series(q: np.ndarray) -> np.ndarray:
 
 
 def scaled(slots: np.ndarray, factor: float) -> np.ndarray:
-    """The series times a factor; its degree stays."""
+    """The slots (SERIES_SIZE,) of a series times a factor, whose unit it takes; its degree stays."""
     return np.concatenate([slots[:1], factor * slots[1:]])
 
 
 def stored(load: np.ndarray, span: float) -> np.ndarray:
-    """Slots of the energy W = span int_0^u p du = u^5 R(v): from 5 R + u dR/du = span Q, highest power first."""
+    """Slots (SERIES_SIZE,) of the energy W = span int_0^u p du = u^5 R(v) (J/m^2) from those of the load p (Pa) and the
+    span (m): from 5 R + u dR/du = span Q, highest power first."""
     degree = int(load[0])
     q, r = load[1 : 2 + degree], np.zeros(degree + 2)
     for n in range(degree, -1, -1):

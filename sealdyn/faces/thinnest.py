@@ -128,7 +128,8 @@ def _scan(step, orders, a, b, tilts, others):
 
 @njit(cache=True)
 def thinnest_of_waves(f, s):
-    """Smallest film thickness over wavy faces (m), its angle (rad, from xi) and radius (m)."""
+    """Smallest film thickness over wavy faces (m), its angle (rad, from the x axis, within half a turn) and radius (m);
+    NaN at a gap state that is not finite.  `f` a face block, `s` a gap state."""
     count = int(f[ORDERS]) + 1
     orders, a, b = np.empty(count), np.empty(count), np.empty(count)
     orders[0], a[0], b[0] = 1.0, -s[GY], s[GX]

@@ -4,8 +4,8 @@
     rotor   - a cos(n (theta - rotor angle) + phase)
 
 since the gap is the stator's surface less the rotor's and both heights are counted along the shaft.  A wave is the same
-at every radius.  Its row in the face block: sign, order, amplitude (m), phase (rad), and which of the list of different
-orders it has.
+at every radius.  Its row in the face block `f`: sign, order, amplitude (m), phase (rad), and which of the list of
+different orders it has.  `s` is a gap state (faces/geometry.py).
 **Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979): waviness h_n cos(n theta) of one face.
 **Valid** waves far lower than they are long.
 """
@@ -42,14 +42,14 @@ def lay_waves(f, stator, rotor) -> None:
 
 
 def highest_orders(f) -> tuple[int, int]:
-    """Highest order on the stator's and on the rotor's face, 0 without waves."""
+    """Highest order (waves to the circle) on the stator's and on the rotor's face of a block, 0 without waves."""
     rows = f[WAVE_ROWS : WAVE_ROWS + WAVE_ROW * int(f[WAVES])].reshape(-1, WAVE_ROW)
     return tuple(int(max(rows[rows[:, SIGN] == sign, ORDER], default=0)) for sign in (1.0, -1.0))
 
 
 @njit(cache=True)
 def waves(f, s, theta):
-    """What the waves add to the film thickness (m) at an angle (rad, from xi)."""
+    """What the waves add to the film thickness (m) at an angle (rad, from the x axis)."""
     total = 0.0
     for k in range(int(f[WAVES])):
         row = WAVE_ROWS + WAVE_ROW * k
@@ -60,7 +60,7 @@ def waves(f, s, theta):
 
 @njit(cache=True)
 def waves_rate(f, s, theta):
-    """Rate (m/s) of `waves` at a fixed angle: each wave passes with its ring's spin."""
+    """Rate (m/s) of `waves` at a fixed angle (rad): each wave passes with its ring's spin."""
     total = 0.0
     for k in range(int(f[WAVES])):
         row = WAVE_ROWS + WAVE_ROW * k
@@ -87,7 +87,7 @@ def wave_parts(f, s, cosines, sines):
 
 @njit(cache=True)
 def wave_parts_along(f, gaps):
-    """`wave_parts` at gap states `gaps` (m, GAP_STATE_SIZE): cosine and sine parts (m, orders, 2)."""
+    """`wave_parts` at gap states `gaps` (m, GAP_STATE_SIZE): cosine and sine parts (m), shape (m, orders, 2)."""
     parts = np.empty((len(gaps), int(f[ORDERS]), 2))
     for k in range(len(gaps)):
         wave_parts(f, gaps[k], parts[k, :, 0], parts[k, :, 1])

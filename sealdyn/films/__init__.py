@@ -1,15 +1,15 @@
-"""Films: one file (or folder) per rung of the ladder, found by file name.
+"""Films: one file (or folder) per fidelity level, found by file name.
 
 What every film module offers (the contract):
 
-`RUNG`            int, its place on the ladder (1 linear, 2 radial, ...); "auto" climbs it.
+`RUNG`            int, its fidelity level (1 linear, 2 radial, ...); "auto" climbs it.
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
-`parameters(film, clearance)`
-                  float64 array: the film's block of the parameter array, for a `Film` table and the
-                  design clearance (m).  The kernels below get this block.
+`parameters(film, clearance, error)`
+                  float64 array: the film's block of the parameter array, for a `Film` table and the design clearance
+                  (m); `error` is the relative error allowed to its quadrature.  The kernels below get this block.
 `opening_law(film)`
                   function `force(clearance, inner_pressure, outer_pressure, floor)`: opening force (N) of the aligned
                   film at rest, for the equilibrium; `floor` (m) of the film thickness, without it the film's own.
@@ -47,24 +47,19 @@ import importlib
 import pkgutil
 from functools import cache
 
+from ..scene.film import profile_errors
 from ..scene.scene import SceneError
+from ..scene.waviness import waves_of, waviness_errors
 
 
 def has_unknowns(film) -> bool:
-    """Whether a film has unknowns of its own."""
+    """Whether a film (module) has unknowns of its own."""
     return hasattr(film, "unknowns")
 
 
-def film_module(name: str, film=None):
-    """The film called `name`, found by file (or folder) name; "auto" is the highest film that takes the faces of a
-    `Film` table (None: plain cones), until a choice is certified."""
-    if name == "auto":
-        name = max(film_names(film), key=lambda n: film_module(n).RUNG)
-    return _module(name)
-
-
 @cache
-def _module(name: str):
+def film_module(name: str):
+    """The film called `name`, found by file (or folder) name."""
     found = importlib.import_module(f"{__name__}.{name}")
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 
@@ -81,26 +76,37 @@ def all_film_names() -> list[str]:
 
 
 def film_names(film=None, waves=()) -> list[str]:
-    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves, without those
-    that are another one of them once more."""
+    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves (Waviness),
+    sorted, without those that are another one of them once more."""
     able = [name for name in all_film_names() if not film_module(name).accepts(film, waves)]
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 
 
-def check_film(film, waves=(), module=None) -> None:
-    """Raises SceneError if the film that a `Film` table asks for, or a `module` given instead, cannot take its faces
-    with these waves."""
-    if module is not None:
-        words = module.accepts(film, waves)
-        if words:
-            raise SceneError("film", f"faces that the film {film_name(module)} does not take", words)
-        return
-    able = film_names(film, waves)
-    said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
-    if able if film.model == "auto" else not said[film.model]:
-        return
+def film_of(scene, module=None):
+    """The film that a scene (or what has its tables) asks for, or the `module` given instead; "auto" is the highest
+    that takes the scene's faces, until a choice is certified.  Raises SceneError where it cannot take them."""
+    film, waves = scene.film, waves_of(scene)
+    if module is None:
+        able, name = film_names(film, waves), film.model
+        if name == "auto":
+            name = max(able, key=lambda n: film_module(n).RUNG, default=None)
+        if name is None or film_module(name).accepts(film, waves):
+            raise _refused(film, waves, able)
+        module = film_module(name)
+    elif module.accepts(film, waves):
+        found = f"faces that the film {film_name(module)} does not take"
+        raise SceneError("film", found, module.accepts(film, waves))
+    for key, found, expected in profile_errors(film):
+        raise SceneError(f"film.{key}", found, expected)
+    for error in waviness_errors(scene):
+        raise SceneError(*error)
+    return module
+
+
+def _refused(film, waves, able) -> SceneError:
     faces = "wavy faces" if waves else "a profile"
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
+        said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
         expected = "a film that takes them: " + "; ".join(f"{name} takes {words}" for name, words in said.items())
-    raise SceneError("film.model", f'"{film.model}" with {faces}', expected)
+    return SceneError("film.model", f'"{film.model}" with {faces}', expected)

@@ -40,7 +40,7 @@ BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
 
 @lru_cache(maxsize=16)
 def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Gauss-Legendre points and weights on [-1, 1]."""
+    """Gauss-Legendre points and weights, each (points,), on [-1, 1]."""
     return np.polynomial.legendre.leggauss(points)
 
 
@@ -91,8 +91,8 @@ def _rules(radius_ratio: float, error: float) -> np.ndarray:
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     """The film's block of the parameter array, shape (BLOCK_SIZE,).
 
-    `film` a Film table, `clearance` design clearance at the inner radius (m), `error` relative error
-    allowed to the quadrature of force and moments; points and angles follow it and the gap.
+    `film` a Film table, `clearance` design clearance at the inner radius (m), `error` relative error allowed to the
+    quadrature of force and moments; points and angles follow it and the gap.
     """
     f = np.zeros(BLOCK_SIZE)
     f[:FACE_SIZE] = face_parameters(film, clearance)
@@ -109,7 +109,8 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
 
 
 def opening_law(film, parameters, wrench):
-    """The function `opening_law` of a radial film's contract, from its `parameters` and its kernel `wrench`."""
+    """The function `opening_law` of a radial film's contract (N, m, Pa), from the film's `parameters` and kernel
+    `wrench`."""
     s = np.zeros(GAP_STATE_SIZE)
     s[VISCOSITY] = 1.0
     # One block for all clearances: only the slots of the clearance differ.
@@ -126,7 +127,7 @@ def opening_law(film, parameters, wrench):
 
 @njit(cache=True)
 def points_for(f, h_i, h_o):
-    """Index of the Gauss rule that serves the film ratio between h_i and h_o."""
+    """Index of the Gauss rule that serves the film ratio between h_i and h_o (m, or any unit); `f` the film's block."""
     ratio = h_o / h_i if h_o > h_i else h_i / h_o
     for rule in range(len(RADIAL_POINTS) - 1):
         if ratio <= f[RULES + rule * RULE_SIZE + 1]:
@@ -136,7 +137,8 @@ def points_for(f, h_i, h_o):
 
 @njit(cache=True)
 def relative_clearance(h, swing):
-    """Mean film over its swing around the circle: 1 where the faces meet, 0 for a film closed all around."""
+    """Mean film `h` over its `swing` around the circle, in one unit: 1 where the faces meet, 0 for a film closed
+    somewhere, 1e9 without a swing."""
     if h <= swing:
         return 0.0
     return h / swing if swing > 0.0 else 1e9
@@ -144,7 +146,9 @@ def relative_clearance(h, swing):
 
 @njit(cache=True)
 def angle_count(f, ratio):
-    """Number of angles: the trapezoid's error falls as exp(-N eta), cosh(eta) = ratio of mean film to swing."""
+    """Number of angles for a `ratio` of mean film to swing; `f` the film's block.  The trapezoid's error falls as
+    exp(-N eta), cosh(eta) = ratio.
+    **Source** Trefethen & Weideman (2014), SIAM Review 56, 385: trapezoidal rule of periodic analytic functions."""
     if ratio <= 1.0:
         # Below the floor only trial states remain: smooth is enough.
         return MOST_ANGLES // 8

@@ -45,7 +45,8 @@ class FilmUnknowns:
 
 
 class FilmDerivatives:
-    """Derivatives of a film with unknowns: its own kernels where it has them, else central differences."""
+    """Derivatives of a film with unknowns: its own kernels where it has them, else central differences.  `film` the
+    module, `unknowns` its FilmUnknowns, `f` its block."""
 
     def __init__(self, film, unknowns: FilmUnknowns, f: np.ndarray):
         self.film, self.unknowns, self.f = film, unknowns, f
@@ -75,7 +76,8 @@ class FilmDerivatives:
         return csc_array((self.residual(s, x, x_rate, alpha).copy(), pattern.indices, pattern.indptr), pattern.shape)
 
     def wrench(self, s, x) -> np.ndarray:
-        """d (force, moments) / d x (3, n); every unknown may feel in all three."""
+        """d (force, moments) / d x, shape (3, n), in N and N m per unit of each unknown, at a gap state `s` and
+        unknowns `x` (n,); every unknown may feel in all three."""
         rows = np.empty((3, len(x)))
         if hasattr(self.film, "wrench_jacobian"):
             self.film.wrench_jacobian(self.f, s, x, rows)

@@ -23,7 +23,8 @@ GAUSS = math.sqrt(0.6)
 
 @njit(cache=True)
 def window(t, k, count):
-    """First and one-past-last step used for the interval [t[k], t[k+1]] out of `count` steps."""
+    """First and one-past-last step (int, int) that the interpolant of the interval [t[k], t[k+1]] uses; `t` (s) the
+    times of the `count` steps."""
     first, last = k, k + 2
     span = t[k + 1] - t[k]
     go_left = go_right = True
@@ -43,7 +44,7 @@ def fit(t, q, q_rate, k, count, table, nodes):
     """Divided differences (confluent, Newton form) of every displacement for interval k.
 
     `t` (count,), `q` and `q_rate` (count, n); `table` (n, 2 NODES) and `nodes` (2 NODES,) are filled.
-    Returns the number of conditions used.
+    Returns the number of conditions used: 4 (a cubic) to 2 NODES.
     """
     first, last = window(t, k, count)
     size = 2 * (last - first)
@@ -107,7 +108,8 @@ def _rate(t, q_rate, at, i, first, last):
 
 @njit(cache=True)
 def value(table, nodes, size, at, q, q_rate):
-    """Displacements and rates at one time from the fitted differences (Horner), into `q` and `q_rate`."""
+    """Displacements and rates (n,) at the time `at` from the differences of `fit` (Horner), into `q` and `q_rate`;
+    `size` conditions."""
     for i in range(q.shape[0]):
         p, dp = table[i, size - 1], 0.0
         for m in range(size - 2, -1, -1):
@@ -118,7 +120,8 @@ def value(table, nodes, size, at, q, q_rate):
 
 @njit(cache=True)
 def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
-    """Displacements and rates at increasing `times`, all inside steps [begin, end], into `out`."""
+    """Displacements and rates at increasing `times` (m,), all inside steps [begin, end] of the `count`, into `out` and
+    `out_rate` (m, n); `t` (count,), `q`, `q_rate` (count, n)."""
     n = q.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
     k, size = begin, 0
@@ -134,8 +137,9 @@ def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
 
 @njit(cache=True)
 def integrals(t, rates, begin, end):
-    """Integrals (end - begin, n) of `rates` (m, n) over each step of [begin, end]: of the polynomial through the steps
-    around it.  **Valid** steps short beside the motion: a tenth of a radian leaves 1e-10 of it."""
+    """Integrals (end - begin, n) of `rates` (m, n) at the times `t` (m,) over each step of [begin, end]: of the
+    polynomial through the steps around it.
+    **Valid** steps short beside the motion: a tenth of a radian leaves 1e-10 of it."""
     count, n = rates.shape
     out = np.zeros((end - begin, n))
     for k in range(begin, end):

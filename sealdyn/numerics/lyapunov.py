@@ -17,20 +17,20 @@ BLOCKS = (8, 12, 16, 24, 32)
 
 @dataclass(frozen=True)
 class Exponent:
-    """Largest exponent per iteration, its uncertainty (95 % of cases, by blocks), growths (m,) it is the mean of, and
-    the spectrum: as many exponents as directions were followed, largest first."""
+    """Largest exponent per iteration (`value`), its uncertainty (95 % of cases, by blocks), and the spectrum (k,): as
+    many exponents as directions were followed, largest first."""
 
     value: float
     uncertainty: float
-    growths: np.ndarray
     spectrum: np.ndarray
 
 
 def two_trajectories(step, start, scales, iterations: int, settle: int = 20, distance: float = 1e-5) -> Exponent:
     """Growth of the distance of two neighbours, pulled back to `distance` (in units of `scales`) at each iteration.
 
-    `step(x) -> x` the map; the first `settle` iterations only turn the distance into the direction that grows.
-    `distance` must be far above what the map itself is wrong by, and far below the size of the attractor.
+    `step(x) -> x` the map on points (n,), from `start`; `scales` (n,) of its unknowns; the first `settle` iterations
+    only turn the distance into the direction that grows, `iterations` more are counted.
+    **Valid** `distance` far above the map's own error, and far below the size of the attractor.
     """
     x, scales = np.array(start, dtype=float), np.asarray(scales, dtype=float)
     apart = _direction(len(x)) * distance
@@ -43,14 +43,14 @@ def two_trajectories(step, start, scales, iterations: int, settle: int = 20, dis
         growths[k] = np.log(size / distance)
         apart *= distance / size
     growths = growths[settle:]
-    return Exponent(float(growths.mean()), uncertainty(growths), growths, growths.mean(keepdims=True))
+    return Exponent(float(growths.mean()), uncertainty(growths), growths.mean(keepdims=True))
 
 
 def tangent_product(step, start, iterations: int, directions: int = 1, settle: int = 20) -> Exponent:
     """Growth of tangent vectors under the products of the map's derivative, made orthonormal at each iteration (QR).
 
-    `step(x, q) -> (x, dq)`: the map and its derivative applied to the columns of q (n, directions); `q` and `dq` in
-    units in which lengths are compared.
+    `step(x, q) -> (x, dq)`: the map on points (n,), from `start`, and its derivative applied to the columns of q (n,
+    directions); `q` and `dq` in units in which lengths are compared.  `settle` iterations are not counted.
     """
     x = np.array(start, dtype=float)
     q = np.linalg.qr(np.column_stack([np.roll(_direction(len(x)), k) for k in range(directions)]))[0]
@@ -61,7 +61,7 @@ def tangent_product(step, start, iterations: int, directions: int = 1, settle: i
         growths[k] = np.log(np.abs(np.diag(r)))
     growths = growths[settle:]
     spectrum = growths.mean(axis=0)
-    return Exponent(float(spectrum[0]), uncertainty(growths[:, 0]), growths[:, 0], spectrum)
+    return Exponent(float(spectrum[0]), uncertainty(growths[:, 0]), spectrum)
 
 
 def _direction(n: int) -> np.ndarray:
@@ -71,8 +71,8 @@ def _direction(n: int) -> np.ndarray:
 
 
 def uncertainty(series) -> float:
-    """How far (95 % of cases) the mean of a correlated series is from the truth: spread of the means of blocks, the
-    largest over several lengths of blocks.  Infinite for fewer than two per block."""
+    """Half-width (95 % of cases) of the mean of a correlated series (m,): spread of the means of blocks, the largest
+    over several lengths of blocks, in units of the series.  Infinite for fewer than two values a block (m < 16)."""
     series = np.asarray(series, dtype=float)
     found = [0.0]
     for count in BLOCKS:
@@ -85,5 +85,6 @@ def uncertainty(series) -> float:
 
 
 def horizon(exponent: float, error: float, scale: float = 1.0) -> float:
-    """Iterations after which an error has grown to `scale`: ln(scale/error)/exponent; infinite if nothing grows."""
+    """Iterations after which an error has grown to `scale` (same unit): ln(scale/error)/exponent; infinite if nothing
+    grows."""
     return float(np.log(scale / error) / exponent) if exponent > 0 else float("inf")

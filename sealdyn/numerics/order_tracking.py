@@ -1,9 +1,8 @@
 """One order of a signal followed over a ramp, and spectra in orders against speed: all over the shaft's angle.
 
 A signal sampled evenly in shaft angle has its orders standing still however the speed changes; windows of whole turns
-put every whole order on a line.  A Hann window over `turns` turns lets orders nearer than 2/turns into each other,
-and sees everything that happens while the shaft turns through it as one: the speed then changes by rate times its
-duration.
+put every whole order on a line.  A Hann window over `turns` turns lets orders nearer than 2/turns into each other, and
+sees everything that happens while the shaft turns through it as one: the speed then changes by rate times its duration.
 **Source** Fyfe and Munck (1997), Mech. Systems and Signal Processing 11(2), order tracking; Harris (1978), windows.
 """
 
@@ -16,7 +15,7 @@ FOLDED = 1e-4
 
 
 def hann(count: int) -> np.ndarray:
-    """Periodic Hann window (count,), its sum one."""
+    """Hann window (count,) at the middles of its samples, symmetric, its sum one."""
     window = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(count) + 0.5) / count)
     return window / window.sum()
 
@@ -27,7 +26,8 @@ def resolution(turns: int) -> float:
 
 
 def centres(begin: int, end: int, length: int, speed, most: int) -> np.ndarray:
-    """First samples of at most `most` windows of `length` samples inside [begin, end), even in `speed` (m,)."""
+    """First samples (ints) of at most `most` windows of `length` samples inside [begin, end), even in `speed` (m,)
+    (rad/s), which is monotonic there; empty if no window fits."""
     firsts = np.arange(begin, end - length + 1)
     if not len(firsts):
         return firsts
@@ -40,10 +40,10 @@ def centres(begin: int, end: int, length: int, speed, most: int) -> np.ndarray:
 
 
 def tracked(signal, phase_index, per_turn: int, turns: int, order: float, firsts) -> np.ndarray:
-    """Complex amplitude of `exp(i order angle)` in windows of whole turns beginning at samples `firsts`.
+    """Complex amplitudes (windows,) of `exp(i order angle)` in windows of whole turns beginning at samples `firsts`.
 
-    `signal` (m,) complex, `per_turn` samples a turn; sample k stands at the angle `2 pi phase_index[k] / per_turn`.
-    Of a real signal: amplitude and phase of the cosine.
+    `signal` (m,), `per_turn` samples a turn; sample k stands at the angle `2 pi phase_index[k] / per_turn`.
+    Of a real signal: amplitude and phase of the cosine, in its unit.
     """
     length = turns * per_turn
     window, twice = hann(length), 2.0 if np.isrealobj(signal) and order != 0.0 else 1.0
@@ -58,8 +58,9 @@ def tracked(signal, phase_index, per_turn: int, turns: int, order: float, firsts
 
 
 def waterfall(signal, per_turn: int, turns: int, firsts, low: float, high: float, still: float = 0.0):
-    """Amplitudes (windows, orders) of `signal` in windows of whole turns, the orders (n,) within [low, high], and the
-    largest share of power in the top tenth of the band; an amplitude below `still` counts as none."""
+    """Amplitudes (windows, orders) of `signal` (m,), real or complex, in windows of whole turns beginning at samples
+    `firsts`, two-sided; the orders (n,) within [low, high]; the largest share of power in the top tenth of the band
+    (`at_the_edge`)."""
     length = turns * per_turn
     window = hann(length)
     orders = np.fft.fftshift(np.fft.fftfreq(length, 1.0 / per_turn))
@@ -73,8 +74,9 @@ def waterfall(signal, per_turn: int, turns: int, firsts, low: float, high: float
 
 
 def at_the_edge(orders, amplitude, near: float, still: float = 0.0) -> float:
-    """Share of the power of all that moves (orders beyond `near` of zero) in the top tenth of the sampled band: a
-    response that has not died out there is folded."""
+    """Share of the power in the top tenth of the sampled band, of all orders farther than 2 `near` from zero: a
+    response that has not died out there is folded.  `orders`, `amplitude` (n,); 0 if all that moves stays below `still`
+    (unit of the amplitude)."""
     power = np.where(np.abs(orders) > 2 * near, amplitude**2, 0.0)
     total = power.sum()
     edge = power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum()
@@ -86,8 +88,9 @@ TOP = 0.98
 
 
 def peak(speed, amplitude) -> tuple[float, float] | None:
-    """Speed and height of the largest amplitude, by the parabola fitted to the top two per cent around it (three points
-    at least); None where the largest is at an end."""
+    """Speed and height of the largest of `amplitude` (n,) over `speed` (n,), by the parabola fitted to the top two per
+    cent around it (three points at least; from nine points on a fourth-order fit's parabola); None where the largest is
+    at an end."""
     speed, amplitude = np.asarray(speed), np.asarray(amplitude)
     k = int(np.argmax(amplitude)) if len(speed) > 2 else 0
     if k in (0, len(speed) - 1):

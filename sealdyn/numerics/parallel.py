@@ -1,6 +1,6 @@
 """Many points on all cores, each remembered as soon as it is done.
 
-Finished points go to a journal, one JSON line each, flushed at once: a study killed half-way and started again
+Finished points go to a checkpoint file, one JSON line each, flushed at once: a study killed half-way and started again
 repeats nothing.  A point that fails is a row with its reason.
 """
 
@@ -13,8 +13,8 @@ from pathlib import Path
 
 
 class Checkpoint:
-    """Finished points of one study on disk.  `identity` is everything that decides the answers (scenario, settings,
-    version): a journal of another identity is not used."""
+    """Finished points of one study on disk: `rows` {key: row}.  `identity` is everything that decides the answers
+    (scenario, settings, version): a file of another identity is not used."""
 
     def __init__(self, path: Path, identity: str):
         self.path, self.rows = Path(path), {}
@@ -41,6 +41,7 @@ class Checkpoint:
         self.path.write_text("\n".join([lines[0], *whole]) + "\n")
 
     def add(self, key: str, row: dict):
+        """Keep the row of a point (a dict that JSON takes) under its key, on disk at once."""
         # No file before the first point: a refused study leaves nothing behind.
         if not self.rows:
             self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -50,12 +51,17 @@ class Checkpoint:
             file.write(json.dumps({"key": key, "row": row}) + "\n")
 
     def done(self):
-        """The study is complete: its archive holds everything."""
+        """Delete the file: the study is complete, its archive holds everything."""
         self.path.unlink(missing_ok=True)
 
 
 def evaluate(function, points: list, journal: Checkpoint, workers: int | None, say, what: str) -> list[dict]:
-    """Rows of `function(point)` for all points, in their order; `say(done, all)` after each."""
+    """Rows (dicts) of `function(point)` for all points, in their order; one that raises is {"failed": reason}.
+
+    `points` dicts that JSON takes; `journal` the Checkpoint, which spares the points it has; `workers` processes (None:
+    all cores); `say(done, all)` is called after each; `what` sets these points apart from others of the study.
+    **Valid** more than one worker: `function` and its answers can be pickled.
+    """
     keys = [f"{what}:{json.dumps(point, sort_keys=True)}" for point in points]
     todo = [i for i, key in enumerate(keys) if key not in journal.rows]
     say(len(points) - len(todo), len(points))

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PiecewiseLinear:
-    """A function of time given at points (s): linear between, held before the first and after the last.
+    """A function of time given by values at points in time (s), of equal number: linear between, held before the first
+    and after the last.
 
     The same time twice is a step; from that time on the second value holds.
     """
@@ -15,7 +16,7 @@ class PiecewiseLinear:
     value: tuple[float, ...]
 
     def at(self, t: float) -> float:
-        """Value at time t (s)."""
+        """Value at time t (s), in the unit of the values."""
         k = bisect_right(self.time, t)
         if k == 0:
             return self.value[0]

@@ -1,6 +1,7 @@
-"""What a motion looks like once it has settled: its period, its class in words, its spectrum, and averages with their
-uncertainty.  Nothing here knows of seals.
+"""What a motion looks like once it has settled: its period, its class, its spectrum, and averages with their
+uncertainty.
 
+A section holds one point (real or complex) per return of the motion, such as one per period of a forcing.
 **Source** Moon, *Chaotic Vibrations* (1987), ch. 2 and 5: sections, spectra and exponents as the tests of chaos.
 """
 
@@ -17,26 +18,26 @@ BLOCKS = (8, 16)
 
 
 def period_of(section, scale: float, same: float = SAME) -> int | None:
-    """Smallest number of returns after which all later ones repeat within `same` x scale, and between which as many
-    points are seen; None if there is none up to LONGEST."""
+    """Smallest number of returns after which all later points of a section (m,) repeat within `same` x scale, and
+    between which as many points are seen; None if there is none up to LONGEST."""
     section = np.asarray(section)
     for k in range(1, min(LONGEST, len(section) // 3) + 1):
-        left = np.max(np.abs(section[k:] - section[:-k])) / scale
-        if left <= same:
+        mismatch = np.max(np.abs(section[k:] - section[:-k])) / scale
+        if mismatch <= same:
             # A slow spiral also comes near where it was, but is seen at too few or too many places.
-            apart = same if left <= EXACT * same else 3 * same
+            apart = same if mismatch <= EXACT * same else 3 * same
             return k if distinct_points(section, scale, apart) == k else None
     return None
 
 
 def shrinking(section) -> bool:
-    """Whether the section still draws together: its last third is spread less than seven tenths of its first."""
+    """Whether the section (m,) still draws together: its last third is spread less than seven tenths of its first."""
     third = len(section) // 3
     return bool(np.std(section[-third:]) < 0.7 * np.std(section[:third]))
 
 
 def distinct_points(section, scale: float, same: float = SAME) -> int:
-    """How many points of a section differ by more than `same` x scale."""
+    """How many points of a section (m,) differ by more than `same` x scale."""
     kept: list[complex] = []
     for point in section:
         if all(abs(point - other) > same * scale for other in kept):
@@ -45,7 +46,8 @@ def distinct_points(section, scale: float, same: float = SAME) -> int:
 
 
 def spread(section) -> float:
-    """Size of an attractor: standard deviation of its section, of one band if it visits several in turn."""
+    """Size of an attractor, in units of its section (m,): standard deviation of the section, of one band if it visits
+    several in turn; 0 for fewer than eight points."""
     section = np.asarray(section)
     bands = [[np.var(section[j::k]) for j in range(k)] for k in (1, 2, 3, 4, 6, 8) if len(section) >= 8 * k]
     return float(np.sqrt(min(np.mean(variances) for variances in bands))) if bands else 0.0
@@ -56,11 +58,13 @@ SLIGHT = 0.02
 
 
 def classify(period: int | None, exponent: float, uncertainty: float, still: bool = False, points: int = 1000) -> str:
-    """ "period k", "chaotic", "quasi-periodic", "settling" or "undecided".
+    """The class of a motion: "period k", "chaotic", "quasi-periodic", "settling" or "undecided".
 
-    Period: the section repeats, and nothing grows.  Chaotic: it does not, and the largest exponent is above zero by
-    more than its uncertainty; below zero by as much, or `still` drawing together, or seen at a few `points` only, it is
-    settling; known to be zero, quasi-periodic.
+    `period` (returns, or None), largest `exponent` per return and its `uncertainty`, `still` whether the section draws
+    together, `points` its distinct points.  Period: the section repeats, and nothing grows (else settling).  Chaotic:
+    it does not repeat, and the exponent is above zero by more than its uncertainty and above SLIGHT (else undecided).
+    Settling: the exponent is below zero by as much, or the section draws together or has few points.  Quasi-periodic:
+    none of these, and the exponent is known to be zero within TORUS (else undecided).
     """
     if period is not None:
         # On an orbit that repels, or still coming nearer to another one: the motion is not yet what it will be.
@@ -75,7 +79,8 @@ def classify(period: int | None, exponent: float, uncertainty: float, still: boo
 
 
 def spectrum(series, per_return: int) -> tuple[np.ndarray, np.ndarray]:
-    """Orders (cycles per return) and amplitudes of an evenly sampled series, Hann window: exact for a line on a bin."""
+    """Orders (cycles per return) and amplitudes, both (m // 2 + 1,), of a series (m,) with `per_return` even samples a
+    return, mean taken off, Hann window: exact for a line on a bin."""
     series = np.asarray(series, dtype=float)
     window = 1.0 - np.cos(2 * np.pi * np.arange(len(series)) / len(series))
     amplitude = 2.0 / len(series) * np.abs(np.fft.rfft((series - series.mean()) * window))
@@ -83,8 +88,9 @@ def spectrum(series, per_return: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def lines(orders, amplitude, wanted=(0.5, 1.0, 1.5, 2.0, 3.0, 4.0)) -> dict[str, float]:
-    """Amplitudes at some orders (largest within a bin and a half), and `between`: share of the power more than two bins
-    off every integer order, of all above a quarter order."""
+    """Amplitudes {"0.5": a, "1": a, ...} at the `wanted` orders (the largest within 1.6 bins) of a spectrum (`orders`,
+    `amplitude`, (m,)), and `between`: share of the power more than two bins off every integer order, of all above a
+    quarter order."""
     width = orders[1] - orders[0]
     found = {f"{w:g}": float(amplitude[np.abs(orders - w) < 1.6 * width].max()) for w in wanted}
     seen, off = orders > 0.25, np.abs(orders - np.round(orders)) > 2.1 * width
@@ -93,7 +99,9 @@ def lines(orders, amplitude, wanted=(0.5, 1.0, 1.5, 2.0, 3.0, 4.0)) -> dict[str,
 
 
 def average(series, statistic=np.mean) -> dict:
-    """A statistic of a stationary series, and how uncertain it is (95 % of cases): spread of the same over blocks."""
+    """{"value", "uncertainty"} of a statistic of a stationary series (m,), in the unit of the statistic: the
+    uncertainty (95 % of cases) is the spread of the same over blocks, and 0 for fewer than 32 samples, which have none.
+    """
     series = np.asarray(series, dtype=float)
     errors = [0.0]
     for count in BLOCKS:
@@ -106,7 +114,7 @@ def average(series, statistic=np.mean) -> dict:
 
 
 def statistics(series, name: str) -> dict:
-    """Mean, standard deviation and quantiles of a series, each with its uncertainty."""
+    """{NAME_mean, NAME_std, NAME_median, NAME_q05, NAME_q95} of a series (m,), each as `average`."""
     return {
         f"{name}_mean": average(series),
         f"{name}_std": average(series, np.std),
@@ -117,7 +125,9 @@ def statistics(series, name: str) -> dict:
 
 
 def compared(one: dict, other: dict, floors: dict) -> dict:
-    """Two sets of averages side by side; `agree` where they differ by no more than both uncertainties and the floor."""
+    """Two sets of averages {name: `average`} side by side: {name: {"values" [2], "uncertainties" [2], "allowed",
+    "agree"}}; they agree where they differ by no more than both uncertainties and the floor of that name in `floors`.
+    """
     rows = {}
     for name, a in one.items():
         b = other[name]

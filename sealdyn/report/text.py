@@ -1,133 +1,110 @@
-"""Words for people: the summary of a run, a resolved scene, what an archive holds."""
+"""Words for people: the summary of a run, a resolved scene, the answer of a study, what an archive holds."""
 
 import math
 
 from ..status import Status
 from ..toml_line import toml_line
 
-MICRO, MILLI = 1e6, 1e3
+MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 
 
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
-    model, stability, film, closing = (summary[k] for k in ("model", "stability", "film", "closing"))
-    out = [
-        f"{scenario.name}: {summary['status']}" + ("" if summary["status"] == Status.OK else f" - {summary['message']}")
-    ]
-    out.append(
-        f"  model         {model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
-        f"{summary['counts']['steps']} steps, {summary['counts']['rhs']} evaluations, {summary['wall_time']:.2g} s"
-    )
-    out += [f"                {reason}" for reason in model["reasons"]]
+    message = "" if summary["status"] == Status.OK else summary["message"]
+    return _table(scenario.name, summary["status"], message, _rows(summary))
+
+
+def _table(title, status, message, rows) -> list[str]:
+    ended = f"{title}: {status}" + (f" - {message}" if message else "")
+    return [ended, *(f"  {name:<14}{words}" for name, words in rows)]
+
+
+def _rows(summary):
+    """(name, words) of every line; a line that goes on has no name."""
+    model, film, closing = (summary[k] for k in ("model", "film", "closing"))
+    yield "model", (f"{model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
+                    f"{summary['counts']['steps']} steps, {summary['counts']['rhs']} evaluations, "
+                    f"{summary['wall_time']:.2g} s")  # fmt: skip
+    yield from (("", reason) for reason in model["reasons"])
     if model["unused"]:
-        out.append(f"  not used      {', '.join(model['unused'])}")
-    low = summary["h_min"]
+        yield "not used", ", ".join(model["unused"])
+    low, leak, friction = (summary[k] for k in ("h_min", "leakage", "friction"))
     if low["value"] is not None:
-        out.append(
-            f"  h_min         {_n(low['value'], MICRO)} um ({_n(low['of_clearance'], 100)} % of the clearance) at "
-            f"t = {_n(low['time'])} s, theta = {_n(low['theta'], 180 / math.pi)} deg, r = {_n(low['radius'], MILLI)} mm"
-        )
-    out += _tilt_lines(summary)
-    leak, friction = summary["leakage"], summary["friction"]
-    out.append(
-        f"  leakage       {_n(leak['mean'])} m^3/s = {_n(leak['mean_ml_per_h'])} ml/h = "
-        f"{_n(leak['mean_kg_per_h'])} kg/h (mean)"
-    )
-    out.append(
-        f"  friction      {_n(friction['power'])} W, torque {_n(friction['torque'])} N m; "
-        f"would heat the leakage by {_n(friction['temperature_rise'])} K"
-    )
-    out.append(
-        f"  film          clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} "
-        f"N m/rad, tilt damping {_n(film['tilt_damping'])} N m s/rad, axial stiffness {_n(film['axial_stiffness'])} N/m"
-    )
-    out.append(
-        f"  closing       {_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
-        f"{_n(closing['spring_force'])} N, duty {_n(closing['duty'], 1e-5)} bar)"
-    )
-    out += _contact_lines(summary["contact"]) + _seal_lines(summary["secondary_seal"])
+        yield "h_min", (f"{_n(low['value'], MICRO)} um ({_n(low['of_clearance'], 100)} % of the clearance) at t = "
+                        f"{_n(low['time'])} s, theta = {_n(low['theta'], DEGREES)} deg, r = "
+                        f"{_n(low['radius'], MILLI)} mm")  # fmt: skip
+    yield from _tilt_rows(summary)
+    yield "leakage", (f"{_n(leak['mean'])} m^3/s = {_n(leak['mean_ml_per_h'])} ml/h = {_n(leak['mean_kg_per_h'])} kg/h "
+                      "(mean)")  # fmt: skip
+    yield "friction", (f"{_n(friction['power'])} W, torque {_n(friction['torque'])} N m; would heat the leakage by "
+                       f"{_n(friction['temperature_rise'])} K")  # fmt: skip
+    yield "film", (f"clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} N m/rad, "
+                   f"tilt damping {_n(film['tilt_damping'])} N m s/rad, axial stiffness "
+                   f"{_n(film['axial_stiffness'])} N/m")  # fmt: skip
+    yield "closing", (f"{_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
+                      f"{_n(closing['spring_force'])} N, duty {_n(closing['duty'], 1e-5)} bar)")  # fmt: skip
+    if summary["contact"]:
+        yield from _contact_rows(summary["contact"])
+    if summary["secondary_seal"]:
+        yield from _seal_rows(summary["secondary_seal"])
     if film["max_cavitated_fraction"]:
-        out.append(
-            f"  cavitation    up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure "
-            "(floored after solving: does not conserve mass)"
-        )
-    out.append(_stability_line(stability))
+        yield "cavitation", (f"up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure "
+                             "(floored after solving: does not conserve mass)")  # fmt: skip
+    yield "stability", _stability(summary["stability"])
     if summary["energy_residual"] is not None:
         bound = 10 * summary["accuracy"]
         warn = "" if summary["energy_residual"] < bound else f"  ABOVE {bound:.0e}: do not trust this run"
-        out.append(f"  energy audit  residual {summary['energy_residual']:.1e} of the work exchanged{warn}")
+        yield "energy audit", f"residual {summary['energy_residual']:.1e} of the work exchanged{warn}"
     if summary.get("certificate"):
-        out.append(f"  accuracy      {summary['certificate']['said']}")
-    out += [f"  WARNING       {warning}" for warning in summary["warnings"]]
-    files = [summary["archive"]] + ([summary["figure"]] if summary.get("figure") else [])
-    out.append(f"  files         {', '.join(files)}")
-    return out
+        yield "accuracy", summary["certificate"]["said"]
+    yield from (("WARNING", warning) for warning in summary["warnings"])
+    yield "files", ", ".join(filter(None, (summary["archive"], summary.get("figure"))))
 
 
-def _contact_lines(contact):
-    if contact is None:
-        return []
+def _contact_rows(contact):
     grazing = f"; {contact['grazing']} grazing within {_n(contact['gap_error'], MICRO)} um, undecided"
     grazing = grazing if contact["grazing"] else ""
     if not contact["touches"]:
-        return [f"  touch         never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"]
-    return [
-        f"  touch         {contact['touches']} contacts, first at t = {_n(contact['first'])} s, deepest "
-        f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse {_n(contact['impulse'])} N s"
-        + grazing,
-        f"                carries {_n(contact['share_of_closing'], 100)} % of the closing force, up to "
-        f"{_n(contact['force']['max'])} N and {_n(contact['max_pressure'], 1e-6)} MPa on "
-        f"{_n(contact['max_area_fraction'], 100)} % of the face; wear {_n(contact['wear_rate'], 3.6e9)} um/h",
-    ]
+        yield "touch", f"never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"
+        return
+    yield "touch", (f"{contact['touches']} contacts, first at t = {_n(contact['first'])} s, deepest "
+                    f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse "
+                    f"{_n(contact['impulse'])} N s{grazing}")  # fmt: skip
+    yield "", (f"carries {_n(contact['share_of_closing'], 100)} % of the closing force, up to "
+               f"{_n(contact['force']['max'])} N and {_n(contact['max_pressure'], 1e-6)} MPa on "
+               f"{_n(contact['max_area_fraction'], 100)} % of the face; wear {_n(contact['wear_rate'], 3.6e9)} "
+               "um/h")  # fmt: skip
 
 
-def _seal_lines(seals):
-    if seals is None:
-        return []
-    out = [
-        f"  o-ring        {name}: {seal['law']} friction, breaks away at {_n(seal['breakaway_force'])} N or "
-        f"{_n(seal['breakaway_moment'])} N m"
-        for name, seal in seals["rings"].items()
-    ]
+def _seal_rows(seals):
+    for name, seal in seals["rings"].items():
+        yield "o-ring", (f"{name}: {seal['law']} friction, breaks away at {_n(seal['breakaway_force'])} N or "
+                         f"{_n(seal['breakaway_moment'])} N m")  # fmt: skip
     if seals["sticks"] is not None:
         held = ", ".join(seals["stuck_at_end"])
-        out.append(
-            f"                stuck {seals['sticks']} times, slipped {seals['slips']} times"
-            + (f"; at the end stuck: {held}" if held else "; at the end sliding")
-        )
-    return out
+        held = f"stuck: {held}" if held else "sliding"
+        yield "", f"stuck {seals['sticks']} times, slipped {seals['slips']} times; at the end {held}"
 
 
-def _tilt_lines(summary):
-    tilt, form = summary["relative_misalignment"], summary["closed_form"]
-    out = []
+def _tilt_rows(summary):
+    tilt, form, margin = (summary[k] for k in ("relative_misalignment", "closed_form", "contact_margin"))
     if tilt["max"] is not None:
-        out.append(
-            f"  misalignment  relative, urad: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, "
-            f"mean {_n(tilt['mean'], MICRO)}"
-        )
+        yield "misalignment", (f"relative, urad: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
+                               f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
+    words = tilt.get("steady_said")
     if tilt["steady_max"] is not None:
-        out.append(
-            f"  steady state  urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
-            + (
-                f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
-                f"({form['road']})"
-                if "relative_max" in form
-                else ""
-            )
-        )
-    else:
-        out.append(f"  steady state  {tilt['steady_said']}")
-    margin = summary["contact_margin"]
+        words = f"urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
+        if "relative_max" in form:
+            words += f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
+            words += f"({form['road']})"
+    yield "steady state", words
     if margin is not None:
-        out.append(f"  contact       linear theory: forcing may grow {_n(margin)} times before the faces touch")
-    return out
+        yield "contact", f"linear theory: forcing may grow {_n(margin)} times before the faces touch"
 
 
-def _stability_line(stability):
-    critical = stability["critical_speed"]
-    whirl = stability["whirl_ratio"]
-    text = f"  stability     {stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
+def _stability(stability):
+    critical, whirl = stability["critical_speed"], stability["whirl_ratio"]
+    text = f"{stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
     if critical:
@@ -175,29 +152,72 @@ def _table_lines(name, value):
     return out
 
 
+# Rows of a study's table that are printed: of more, so many evenly spread ones.
+MOST_ROWS = 24
+
+
+def study_lines(answer: dict, tables) -> list[str]:
+    """The verdict of a study and its tables.
+
+    `tables`: pairs of rows (dicts) and columns `(heading, key of a row, factor)`, the factor 1 if left out; a dotted
+    key goes into the dicts of a row.  A row with the key `failed` ends with that reason.
+    """
+    out = [f"  {sentence}" for sentence in answer["verdict"]]
+    for rows, columns in tables:
+        if rows:
+            step = -(-len(rows) // MOST_ROWS)
+            out += [f"    {line}" for line in _aligned([*rows[:-1:step], rows[-1]], columns)]
+            out += [f"    ({len(rows)} rows in the archive)"] if step > 1 else []
+    return out
+
+
+def _aligned(rows, columns) -> list[str]:
+    """Headings and rows, each column as wide as its widest cell; numbers to the right, words to the left; after the
+    first no column without a value."""
+    first, *others = columns
+    columns = [first, *(column for column in others if any(_value(row, column[1]) is not None for row in rows))]
+    cells = [[heading, *(_cell(row, *where) for row in rows)] for heading, *where in columns]
+    widths = [max(map(len, column)) for column in cells]
+    words = [isinstance(_value(rows[0], key), str) for _, key, *_ in columns]
+    reasons = ["", *(row.get("failed") or "" for row in rows)]
+    return [
+        "  ".join([c.ljust(w) if left else c.rjust(w) for c, w, left in zip(line, widths, words, strict=True)] + [why])
+        .rstrip()
+        for *line, why in zip(*cells, reasons, strict=True)
+    ]  # fmt: skip
+
+
+def _cell(row, key, factor=1.0) -> str:
+    value = _value(row, key)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else _n(value, factor)
+
+
+def _value(row, key):
+    for name in key.split("."):
+        row = row.get(name) if isinstance(row, dict) else None
+    return row
+
+
 def archive_lines(path, info: dict) -> list[str]:
     """What an archive holds."""
-    out = [
-        f"{path}: {info['status']}" + (f" - {info['message']}" if info.get("message") else ""),
-        f"  made          {info['created']} by sealdyn {info.get('version', '?')}, solver {info.get('solver', '?')}, "
-        f"accuracy {info.get('accuracy', '?')}",
-        f"  rows          {info['rows']}",
-    ]
+    rows = [("made", f"{info['created']} by sealdyn {info.get('version', '?')}, solver {info.get('solver', '?')}, "
+                     f"accuracy {info.get('accuracy', '?')}"), ("rows", info["rows"])]  # fmt: skip
     restart = info.get("restart") or {}
     if info["status"] == Status.RUNNING and restart:
-        out.append(f"  state kept    leg {restart.get('leg')}, leg time {restart.get('tau')} s")
+        rows.append(("state kept", f"leg {restart.get('leg')}, leg time {restart.get('tau')} s"))
     summary = info.get("summary") or {}
     if summary:
         low = summary["h_min"]
-        out.append(f"  h_min         {_n(low['value'], MICRO)} um at t = {_n(low['time'])} s")
-        out.append(_stability_line(summary["stability"]))
-    for event in info.get("events", []):
-        out.append(f"  event         {event['kind']} at t = {_n(event['time'])} s")
-    out.append("  series        " + ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items()))
+        rows.append(("h_min", f"{_n(low['value'], MICRO)} um at t = {_n(low['time'])} s"))
+        rows.append(("stability", _stability(summary["stability"])))
+    rows += [("event", f"{event['kind']} at t = {_n(event['time'])} s") for event in info.get("events", [])]
+    rows.append(("series", ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items())))
     if info["fields"]:
         over = " x ".join(f"{count} {name}" for name, count in info["grid"].items())
-        out.append("  fields        " + ", ".join(f"{n} [{s.units}]" for n, s in info["fields"].items()) + f": {over}")
-    return out
+        rows.append(("fields", ", ".join(f"{n} [{s.units}]" for n, s in info["fields"].items()) + f": {over}"))
+    return _table(path, info["status"], info.get("message"), rows)
 
 
 def csv_rows(info: dict, column, block: int = 4096):

@@ -25,7 +25,8 @@ class ScenarioError(Exception):
 
 @cache
 def tables(kind: type, path: str = "") -> dict[str, dict[str, Any]]:
-    """Every table a scenario may have, by dotted path, with its keys and what they hold."""
+    """Every table a scenario may have, by dotted path: {path: {key: what it holds (a type)}}, from the dataclass
+    `kind`."""
     keys = {f.name: f.type for f in dataclasses.fields(kind)}
     found = {path: keys}
     for key, holds in keys.items():
@@ -45,6 +46,7 @@ def table_in(holds: Any) -> type | None:
 
 
 def is_list(holds: Any) -> bool:
+    """Whether a key holds a list of tables."""
     return typing.get_origin(holds) is list
 
 
@@ -71,10 +73,12 @@ def expected_of(key: str, holds: Any) -> str:
 
 
 def keys_in(kind: type) -> list[str]:
+    """Keys of the table that a dataclass describes."""
     return [f.name for f in dataclasses.fields(kind)]
 
 
 def without_indices(path: str) -> str:
+    """A dotted path without the numbers of list entries: "housing.axial.0.frequency" is "housing.axial.frequency"."""
     return ".".join(part for part in path.split(".") if not part.isdigit())
 
 
@@ -100,10 +104,11 @@ def nearest(kind: type, path: str, key: str) -> str:
 
 
 def explain(name: str, kind: type, raw: dict, errors: list[dict]) -> ScenarioError:
-    """The most telling of pydantic's errors: an unknown key first, then a wrong value, then a missing key."""
+    """A ScenarioError from the most telling of pydantic's errors: an unknown key first, then a wrong value, then a
+    missing key.  `name` of the scenario, `kind` its dataclass, `raw` its tables."""
     rank = {"unexpected_keyword_argument": 0, "missing": 2}
-    told = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
-    error = min(told, key=lambda e: rank.get(e["type"], 1))
+    relevant = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
+    error = min(relevant, key=lambda e: rank.get(e["type"], 1))
     unknown = error["type"] == "unexpected_keyword_argument"
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)

@@ -11,7 +11,8 @@ from .errors import ScenarioError
 
 
 def override_key(raw: dict, override: str, name: str) -> None:
-    """Set one "key=value": the value is TOML where it can be, else a string."""
+    """Set one "key=value" in the tables `raw` of the scenario `name`: the value is TOML where it can be, else a string.
+    Raises ScenarioError."""
     key, equals, written = (part.strip() for part in override.partition("="))
     name = f"{name} (--set {quoted(override)})"
     if not key or not equals:
@@ -70,7 +71,7 @@ def value_of(written: str) -> Any:
 
 
 def override_of(key: str, value: Any) -> str:
-    """The override "key=value" that sets a value: a string as it stands, anything else written as TOML."""
+    """The override "key=value" that sets a value: a string as it stands, anything else (SI) written as TOML."""
     if isinstance(value, str):
         return f"{key}={value}"
     return f"{key}={toml_line(as_written(value))}"

@@ -12,11 +12,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, ValidationError
 
-from ..films import all_film_names, check_film
+from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
-from ..scene.waviness import waves_of
 from ..units import Length, QuantityError, Time, quoted
 from .errors import ScenarioError, explain, tables, without_indices
 from .overrides import override_key
@@ -27,7 +26,6 @@ __all__ = [
     "ScenarioError",
     "parse_scenario",
     "read_scenario",
-    "unused_keys",
 ]
 
 
@@ -38,8 +36,8 @@ STARTS = r"^(rest|steady|.+\.h5)$"
 class Run:
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
-    `turns` of the shaft (default 60) or `duration`; `samples_per_turn` (default 64; of a shaft at rest:
-    1000 in all) or `samples` in all.
+    `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
+    all) or `samples` in all.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -76,8 +74,9 @@ class ScenarioFile(Scene):
 class Scenario:
     """A scene with its run, and the file it came from.
 
-    `text` and `overrides` say where the scene came from; nobody reads them again.  `given`: dotted keys that the user
-    wrote.  `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.
+    `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
+    `question` the comment at the head of the file; `given`: dotted keys that the user wrote.  `reading`: the runout as
+    written where it is a total indicator reading, which follows the outer radius.
     """
 
     scene: Scene
@@ -143,7 +142,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         file = _reader().validate_python(raw)
         _check_film_name(file.film.model)
         check_scene(file, file.run)
-        check_film(file.film, waves_of(file))
+        film_of(file)
     except ValidationError as error:
         raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
     except SceneError as error:
@@ -152,11 +151,6 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     return {"scene": scene, "run": file.run, "study": file.study, "given": given, "reading": reading}
-
-
-def unused_keys(scenario: Scenario) -> list[str]:
-    """`scenario.unused()`, as a function."""
-    return scenario.unused()
 
 
 def film_choices() -> list[str]:
@@ -212,7 +206,7 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
 
 
 def given_keys(tree: dict, key: str = "") -> list[str]:
-    """Dotted keys of a scenario's tables, down to what is no table."""
+    """Dotted keys of a scenario's tables (`tree`), down to what is no table; `key` is the path to the tree."""
     found = []
     for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
         path = f"{key}.{step}" if key else str(step)

@@ -150,6 +150,29 @@ def axis(words: str, name: str, where: str) -> dict:
     return {"key": key, "unit": unit, "given": [f"{v!r} {unit}".strip() for v in values], "values": values}
 
 
+def si_unit(scene, key: str) -> str:
+    """SI unit of the quantity at a dotted key of a scene, "SI" if it has none.  Raises AttributeError or KeyError for a
+    key that there is not."""
+    owner, _, name = key.rpartition(".")
+    kind = typing.get_type_hints(type(variants.part(scene, owner)), include_extras=True)[name]
+    for told in [kind, *typing.get_args(kind)]:
+        for meta in getattr(told, "__metadata__", ()):
+            return getattr(meta, "quantity", meta).unit
+    return "SI"
+
+
+def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[float]:
+    """Numbers of "from:to:count[:log]" or "a, b, c" in SI, of a quantity with the SI unit `unit`; those without a unit
+    are SI.  Raises ScenarioError that names the setting `where`."""
+    given = axis(f"values={words}", scenario.name, where)
+    written = given["unit"]
+    if written is None or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit))):
+        expected = f'numbers, "a, b, c" or "from:to:count[:log]", in {unit} or its like'
+        raise ScenarioError(scenario.name, where, f'"{words}"', expected)
+    factor = float(dimension_and_factor(written)[1]) if written else 1.0
+    return [float(f"{factor * v:.12g}") for v in given["values"]]
+
+
 def _is_unit(words: str) -> bool:
     if not words:
         return True
@@ -163,7 +186,11 @@ def _is_unit(words: str) -> bool:
 def _alike(matches) -> bool:
     """Whether the units written are units, and of one kind: none is converted into another's."""
     units = [m[2] for m in matches]
-    return all(map(_is_unit, units)) and len({dimension_and_factor(unit)[0] for unit in units if unit}) < 2
+    return all(map(_is_unit, units)) and _one_kind(*filter(None, units))
+
+
+def _one_kind(*units) -> bool:
+    return len({dimension_and_factor(unit)[0] for unit in units}) < 2
 
 
 def _in_one_unit(matches) -> tuple[list[float], str]:

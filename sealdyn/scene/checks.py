@@ -11,7 +11,7 @@ from .waviness import waves_of, waviness_errors
 
 
 def check_scene(scene, run) -> None:
-    """Raises `SceneError` with the first rule that the scene breaks."""
+    """Raises `SceneError` with the first rule that a Scene, or its `run` (the `[run]` table), breaks."""
     _film(scene.film)
     _profile(scene)
     for key, found, expected in waviness_errors(scene):
@@ -131,7 +131,8 @@ def _ring(name: str, ring) -> None:
 
 
 def check_no_step(name: str, ring) -> None:
-    """A face cannot be somewhere else at once: the film, or the support's damper, would push without bound."""
+    """Raises `SceneError` if the runout or misalignment (rad) of the ring called `name` has a step in time: a face
+    cannot be somewhere else at once, the film, or the support's damper, would push without bound."""
     for key in ("runout", "misalignment"):
         value = getattr(ring, key, 0.0)
         if not isinstance(value, PiecewiseLinear):
@@ -211,15 +212,18 @@ def _given(initial) -> bool:
 
 
 def initially(value) -> float:
+    """Value at time zero of a number or a function of time."""
     return value.at(0.0) if isinstance(value, PiecewiseLinear) else value
 
 
 def points(value) -> tuple[float, ...]:
+    """All values of a function of time, or the number itself."""
     return value.value if isinstance(value, PiecewiseLinear) else (value,)
 
 
 def turns_of(speed) -> float:
-    """Turns the shaft makes in all (either way): endless unless its speed ends at zero."""
+    """Turns the shaft makes in all (either way) at a `speed` (rad/s, number or function of time): endless unless it
+    ends at zero."""
     if points(speed)[-1] != 0:
         return math.inf
     if not isinstance(speed, PiecewiseLinear):
@@ -237,7 +241,7 @@ RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inert
 
 
 def unused(scene, given: set[str]) -> list[str]:
-    """Known keys that were given and that this scene does not use."""
+    """Known keys, dotted and sorted, that were `given` (dotted) and that this scene does not use."""
     leaves = []
     for name, ring in (("rotor", scene.rotor), ("stator", scene.stator)):
         if ring.support is None:

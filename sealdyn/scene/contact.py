@@ -12,14 +12,14 @@ HALF_HEIGHT, REACH = 3.0, 5.0
 
 @dataclass(frozen=True)
 class Contact:
-    """The `[contact]` table.  `roughness` is the composite rms of both faces, `compressive_strength` that of the
-    softer one; shear of the touching area is `shear_strength`, or `friction_coefficient` (0.1 when neither is given)
-    times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
+    """The `[contact]` table.  `roughness` (m) is the composite rms of both faces, `compressive_strength` (Pa) that of
+    the softer one; shear of the touching area is `shear_strength` (Pa), or `friction_coefficient` (0.1 when neither is
+    given) times the contact pressure; `asperity_...` and the composite `modulus` belong to Greenwood and Williamson."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     roughness: Length
-    """Composite rms roughness of both faces; they meet at 3 rms."""
+    """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5."""
     law: Literal["christensen", "greenwood-williamson"] = "christensen"
     """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
     compressive_strength: Stress | None = None

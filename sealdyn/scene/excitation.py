@@ -7,7 +7,7 @@ from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length,
 
 @dataclass(frozen=True)
 class Whirl:
-    """Non-synchronous angular whirl of the shaft, `angle exp(i (ratio * shaft angle + phase))`."""
+    """Non-synchronous angular whirl of the shaft, `angle exp(i (ratio * shaft angle + phase))`, in rad."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -21,7 +21,7 @@ class Whirl:
 
 @dataclass(frozen=True)
 class Shaft:
-    """The `[shaft]` table."""
+    """The `[shaft]` table: speed (rad/s) and whirls."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -33,7 +33,8 @@ class Shaft:
 
 @dataclass(frozen=True)
 class AxialVibration:
-    """Axial vibration of the housing, cos(2 pi frequency t + phase), as displacement or acceleration."""
+    """Axial vibration of the housing, cos(2 pi frequency t + phase), frequency in Hz, as displacement (m) or
+    acceleration (m/s^2)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -49,7 +50,8 @@ class AxialVibration:
 
 @dataclass(frozen=True)
 class AngularVibration:
-    """Angular vibration of the housing about a fixed axis at `direction` from the x axis."""
+    """Angular vibration of the housing about a fixed axis at `direction` (rad) from the x axis, cos(2 pi frequency t +
+    phase)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

@@ -29,9 +29,10 @@ LENGTH = Length.__metadata__[0]
 
 
 class Lengths(Quantity):
-    """A list of lengths."""
+    """A list of lengths (m), as a profile has."""
 
     def expected(self) -> str:
+        """What the key expects, in words, for a message."""
         return 'a list of lengths, ["32 mm", "36 mm", ...]'
 
     def read(self, value: Any) -> tuple[float, ...]:
@@ -70,8 +71,8 @@ class Profile:
 
 @dataclass(frozen=True)
 class Coefficients:
-    """A linear film in the user's own numbers (a vendor's, a test's): forces fall by `stiffness` times
-    displacement and `damping` times rate.  `cross` terms follow from the wedge, mean spin times damping."""
+    """A linear film in the user's own numbers (a vendor's, a test's), SI: forces fall by stiffness times displacement
+    and damping times rate.  The cross stiffness follows from the wedge, mean spin times tilt damping."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -87,7 +88,7 @@ class Coefficients:
 
 @dataclass(frozen=True)
 class Film:
-    """The `[film]` table: faces, fluid, pressures and the rung of the ladder."""
+    """The `[film]` table: faces, fluid, pressures and the film model."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -120,13 +121,13 @@ class Film:
     coefficients: Literal["green", "radial"] | Coefficients = "green"
     """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3
-    """Share of the clearance below which the film counts as collapsed."""
+    """Share of the clearance below which the film counts as collapsed; with [contact] the asperities decide."""
     profile: Profile | None = None
     """Faces that are no plain cones."""
 
 
 def profile_errors(film) -> list[tuple[str, str, str]]:
-    """What cannot be in a `[film]` with a profile: (key below film, found, expected)."""
+    """What cannot be in a `Film` with a profile: (key below film, found, expected), empty without one."""
     profile = film.profile
     if profile is None:
         return []
@@ -153,7 +154,8 @@ def profile_errors(film) -> list[tuple[str, str, str]]:
 
 
 def aligned_gaps(film, clearance: float) -> list[tuple[float, float]]:
-    """(radius, film thickness) in m at the edges of the aligned faces and at the radii of the profile."""
+    """(radius, film thickness) in m at the edges of the aligned faces, or at the radii of the profile of a `Film`, for
+    a `clearance` (m)."""
     radii, depths = (film.inner_radius, film.outer_radius), (0.0, 0.0)
     if film.profile is not None:
         radii, depths = film.profile.radius, film.profile.depth

@@ -14,10 +14,10 @@ FORBID_UNKNOWN = {"extra": "forbid"}
 
 @dataclass(frozen=True)
 class Support:
-    """Springs and dampers between a ring and its carrier (housing or shaft).
+    """Springs and dampers between a ring and its carrier (housing or shaft), SI.
 
-    A ring of springs at `radius` r_s gives `tilt_stiffness = axial_stiffness r_s**2 / 2`, and the
-    same for damping; or give the two tilt coefficients themselves.
+    A ring of springs at `radius` r_s gives `tilt_stiffness = axial_stiffness r_s**2 / 2`, and the same for damping; or
+    give the two tilt coefficients themselves.
     **Source** Green (1989), eq. 1-2 (sum over the circle of spring elements).
     """
 
@@ -44,7 +44,7 @@ class Support:
 
 @dataclass(frozen=True)
 class AxialRunout:
-    """One harmonic of the rotor's axial runout, `amplitude cos(order * shaft angle + phase)`."""
+    """One harmonic of the rotor's axial runout (m), `amplitude cos(order * shaft angle + phase)`."""
 
     __pydantic_config__ = FORBID_UNKNOWN
 

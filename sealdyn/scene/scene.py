@@ -11,8 +11,8 @@ from .rings import Rotor, Stator
 
 @dataclass(frozen=True)
 class Closing:
-    """The `[closing]` table: hydraulic balance and spring.  Give two of balance ratio, spring force and
-    film clearance and the third follows; give the clearance alone and the closing force is what holds it."""
+    """The `[closing]` table: hydraulic balance and spring force (N).  Give two of balance ratio, spring force and film
+    clearance and the third follows; give the clearance alone and the closing force is what holds it."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -24,7 +24,8 @@ class Closing:
 
 @dataclass(frozen=True)
 class RingStart:
-    """Where a flexible ring starts: displacement from equilibrium, tilt, and their rates (SI)."""
+    """Where a floating ring starts, in place of what `run.start` gives: displacement, tilt, and their rates (m, rad,
+    m/s, rad/s)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -56,7 +57,7 @@ class Initial:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything physical a scenario says."""
+    """Everything physical a scenario describes, SI."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

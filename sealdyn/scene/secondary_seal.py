@@ -9,9 +9,9 @@ from ..units import Force, Length, LineForce, Velocity
 
 @dataclass(frozen=True)
 class SecondarySeal:
-    """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` of the circle, and `line_friction`
-    (F', force per length) or `friction_force` (axial breakaway force, 2 pi R F').  `law = "regularised"` replaces
-    the sign of the sliding speed by v/sqrt(v^2 + width^2): smooth, and creeping where a real seal sticks."""
+    """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` (m) of the circle, and `line_friction`
+    (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` replaces the sign of the
+    sliding speed v by v/sqrt(v^2 + width^2): smooth, and creeping where a real seal sticks."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -33,12 +33,15 @@ class SecondarySeal:
         return self.friction_force / (2 * math.pi * self.radius)
 
     def breakaway(self) -> tuple[float, float]:
-        """Axial force (N) and moment (N m) that make a stuck ring slide, each alone."""
+        """Axial force `2 pi R F'` (N) and moment `4 R^2 F'` (N m) that make a stuck ring slide, each alone.
+
+        **Source** Ludwig & Allen, NASA TN D-8102 (1976); circle integral of -F' sign(v).
+        """
         return 2 * math.pi * self.radius * self.line(), 4 * self.radius**2 * self.line()
 
 
 def secondary_seal_errors(seal) -> list[tuple[str, str, str]]:
-    """What is wrong with a table: (key, found, expected)."""
+    """What is wrong with a `SecondarySeal`: (key, found, expected)."""
     out = []
     if seal.radius <= 0:
         out.append(("radius", f"{seal.radius:g} m", "a length > 0"))

@@ -34,7 +34,8 @@ CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", 
 
 
 def part(scene, key: str) -> Any:
-    """The value at a dotted key, "rotor.runout" or "housing.axial.0.frequency".  Raises AttributeError, IndexError."""
+    """The value at a dotted key, "rotor.runout" or "housing.axial.0.frequency".  Raises AttributeError, IndexError,
+    ValueError."""
     for step in key.split("."):
         scene = scene[int(step)] if isinstance(scene, list | tuple) else getattr(scene, step)
     return scene
@@ -72,7 +73,7 @@ def _with_value(table, path: list[str], value, key: str):
 
 
 def not_smooth(scene: Scene) -> list[str]:
-    """Dotted names of the tables that the scene has of contact and secondary seals."""
+    """Dotted names of the tables of contact and secondary seals that the scene has."""
     return [name for name in NOT_SMOOTH if part(scene, name)]
 
 
@@ -138,7 +139,7 @@ def counterpart(scene: Scene) -> Scene:
     """
     rotor, stator = scene.rotor, scene.stator
     if rotor.support and stator.support:
-        raise SceneError("stator.support", "a support under both rings", "one flexible ring, to have a twin")
+        raise SceneError("stator.support", "a support under both rings", "one flexible ring, to have a counterpart")
     if rotor.support:
         moved = {name: getattr(rotor, name) for name in CARRIED}
         new_stator = Stator(**moved, misalignment_direction=rotor.misalignment_phase, speed=stator.speed)

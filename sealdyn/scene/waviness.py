@@ -27,12 +27,12 @@ class Waviness:
 
 
 def waves_of(scene) -> list[Waviness]:
-    """Waves of both faces of a scene."""
+    """Waves (Waviness) of both faces of a scene, the stator's first."""
     return [*scene.stator.waviness, *scene.rotor.waviness]
 
 
 def waviness_errors(scene) -> list[tuple[str, str, str]]:
-    """What wavy faces cannot have: (key, found, expected)."""
+    """What the wavy faces of a scene cannot have: (key, found, expected)."""
     bad = []
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         for n, wave in enumerate(ring.waviness):

@@ -1,9 +1,9 @@
 """What tolerance a run needs, and how wrong it is.
 
-A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial
-with a loose tolerance: if that errs little enough the run goes on from there, else it starts again as much sharper as
-that told. Any other run has the cautious tolerance of solvers/methods.py, and a stretch of it is done again thirty
-times sharper; what the two differ by grows over the periods that the scene remembers.
+A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial with
+a loose tolerance: if that errs little enough the run goes on from there, else it starts again with a tolerance sharper
+in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and a stretch of it is done again
+thirty times sharper; what the two differ by grows over the periods that the scene remembers.
 **Valid** estimates, not bounds.
 """
 
@@ -43,8 +43,8 @@ OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau":
 
 @dataclass(frozen=True)
 class TrialRun:
-    """A tolerance and why; the steps of the first stretch to go on from (times, unknowns; none if it was done in vain)
-    and what they cost."""
+    """A tolerance and a sentence why; the steps of the first stretch to go on from (`times` (m,) (s), `unknowns` (m,
+    size); none if it was done in vain) and what they cost."""
 
     tolerance: float
     said: str
@@ -65,8 +65,8 @@ class TrialRun:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Estimated errors relative to the scales of `accuracy`: of the solver, of the film against the next rung (None
-    where there is no higher one, or it cannot be estimated), both together, and a sentence."""
+    """Estimated errors relative to the scales of `accuracy`: of the solver, of the film against the next higher film
+    model (each None where it cannot be estimated, or there is no higher one), both together, and a sentence."""
 
     asked: float
     solver: float | None
@@ -81,11 +81,12 @@ class Certificate:
 
 
 def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
-    """What follows the errors of a run by this method; None where its steps do not tell them: contact, friction,
-    changing conditions, a massless ring, methods of long steps, a whirl that grows until it is not linear."""
+    """What follows the errors of a run by this method; None where its steps cannot show them: contact, friction,
+    changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear.
+    """
     model, unknowns = run.model, run.model.unknowns
-    told = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
-    if not told or method not in ("adams", "bdf"):
+    follows = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
+    if not follows or method not in ("adams", "bdf"):
         return None
     asked = model.accuracy
     errors = GlobalErrorEstimate(run.segment(0), ERROR_SHARE * asked, tolerance_for(method, asked, run.memory))
@@ -97,8 +98,8 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
 
 def choose_tolerance(run: RunState, method: str) -> TrialRun | None:
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
-    the cautious one.  None where the start does not tell of the run: where errors cannot be followed, an unstable
-    scene, errors that add up over the whole run."""
+    the cautious one.  None where the start does not represent the run: where errors cannot be followed, an unstable
+    scene, errors that add up over the whole run; and where the method fails on trial."""
     model = run.model
     if run.memory * model.shortest_period > 0.5 * run.duration:
         return None
@@ -126,17 +127,18 @@ def choose_tolerance(run: RunState, method: str) -> TrialRun | None:
     remembered = min(run.memory, run.duration / model.shortest_period)
     error = TRIAL_SAFETY * errors.worst * max(1.0, remembered * model.shortest_period / length)
     most = max(error / (SHARE * asked), audit.residual() / (ENERGY * asked))
-    said = f"tolerance {{:.1e}} by a trial over {TRIAL_PERIODS:.0f} fastest periods"
+    reason = f"tolerance {{:.1e}} by a trial over {TRIAL_PERIODS:.0f} fastest periods"
     if most <= 1.0:
-        return TrialRun(tolerance, said.format(tolerance), t, ys, counts)
+        return TrialRun(tolerance, reason.format(tolerance), t, ys, counts)
     # Errors are proportional to tolerances, as far as they are at all.
     tolerance = max(cautious, tolerance / most)
-    return TrialRun(tolerance, said.format(tolerance), t[:0], ys[:0], counts)
+    return TrialRun(tolerance, reason.format(tolerance), t[:0], ys[:0], counts)
 
 
 def solver_error(run: RunState, method: str) -> float | None:
     """Estimated error of displacements over a run with the cautious tolerance, relative to their scales, from a stretch
-    of it done twice.  None if the stretch does not end well."""
+    of it done twice.  None if the stretch does not end well.
+    **Valid** as the module; of the matrix exponential the interpolation error, which the tolerance bounds."""
     model, memory = run.model, run.memory
     tolerance = tolerance_for(method, model.accuracy, memory)
     if method == "expm":
@@ -158,15 +160,15 @@ def solver_error(run: RunState, method: str) -> float | None:
     count = min(len(part) for part in parts)
     difference = np.abs(parts[0][:count] - parts[1][:count]) / model.scales[: model.unknowns.n]
     remembered = min(memory, run.duration / model.shortest_period)
-    shown = STRETCH_SAFETY * float(difference.max()) * max(1.0, remembered * model.shortest_period / stretch)
-    return max(shown, ERROR_FLOOR * tolerance)
+    estimate = STRETCH_SAFETY * float(difference.max()) * max(1.0, remembered * model.shortest_period / stretch)
+    return max(estimate, ERROR_FLOOR * tolerance)
 
 
 def certify(
     run: RunState, method: str, errors: GlobalErrorEstimate | None = None, by_model: float | None = None
 ) -> Certificate:
-    """Certificate of a finished run by this method, with the errors of its steps (`errors`) and of its
-    film (`by_model`) as far as they have been followed."""
+    """Certificate of a finished run by this method, with the errors of its steps (`errors`) and of its film
+    (`by_model`, relative) as far as they have been followed."""
     by_solver = errors.worst if errors else solver_error(run, method)
     if by_model is None and run.model.interface.name == "linear":
         by_model = model_error(run)
@@ -179,12 +181,12 @@ def certify(
         parts.append(f"the {run.model.interface.name} film is the highest rung")
     known = [error for error in (by_solver, by_model) if error is not None]
     asked = run.model.accuracy
-    said = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
+    sentence = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
     if known and sum(known) > asked:
         cure = (
             "a higher film rung"
             if by_model and by_model > 0.5 * sum(known)
             else 'run.solver = "dop853" or a shorter run'
         )
-        said += f"; NOT met: try {cure}"
-    return Certificate(asked, by_solver, by_model, said)
+        sentence += f"; NOT met: try {cure}"
+    return Certificate(asked, by_solver, by_model, sentence)

@@ -1,7 +1,9 @@
-"""How far a linear film's scene is from the next film rung, without running that one.
+"""How far the motion of a scene with a linear film is from that with the next higher film model, without running that
+one.
 
-On the states the linear film visits, the next rung's film pushes differently; that difference, as a force on the
-linearised rings, gives the difference of the motions (the defect of the lower rung, answered linearly).
+On the states the linear film visits, the higher film pushes differently; that difference, as a force on the linearised
+rings, gives the difference of the motions (the defect of the lower film, answered linearly).
+**Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the error from the defect; here of a model, derived here.
 """
 
 import math
@@ -20,18 +22,18 @@ FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 
 
 def model_error(run, higher: str = "radial", enough: float = math.inf) -> float | None:
-    """The larger of `model_errors`, or None."""
+    """The larger of `model_errors` (relative), or None."""
     found = model_errors(run, higher, enough)
     return None if found is None else float(found.max())
 
 
 def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
-    """Estimated difference of a linear film's scene from that with the film rung `higher` over the run.
+    """Estimated difference of a linear film's scene from that with the film model `higher` over the run.
 
-    **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
     `run` a RunState with a linear film and its start; looking further ends once an error exceeds `enough`.
-    Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None
-    where it cannot be estimated.
+    **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
+    Returns (2,): of the film at the outer radius in clearances, and of the leakage relative to its largest; None where
+    it cannot be estimated.
     """
     model, unknowns = run.model, run.model.unknowns
     if unknowns.has_residual_form or not unknowns.constant or not unknowns.linear:
@@ -46,17 +48,19 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
         return None
     film = film_module(higher)
     block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)
-    seen = FilmComparison(segment, linear, film, block)
+    comparison = FilmComparison(segment, linear, film, block)
     # The steady state first: it is cheap, and on it what is left of the start no longer acts.
-    worst = _steady_error(run.period(), linear, seen, answers)
+    worst = _steady_error(run.period(), linear, comparison, answers)
     if worst.max() > enough:
         return worst
     step = model.shortest_period / FOLLOWED
     longest = min(run.duration, -6.0 / slowest if slowest < 0 else math.inf)
-    return _followed(run, linear, seen, answers, matrix, step, min(int(longest / step) + 1, MOST), worst, enough)
+    return _transient_error(
+        run, linear, comparison, answers, matrix, step, min(int(longest / step) + 1, MOST), worst, enough
+    )
 
 
-def _followed(run, linear, seen, answers, matrix, step, count, worst, enough) -> np.ndarray:
+def _transient_error(run, linear, comparison, answers, matrix, step, count, worst, enough) -> np.ndarray:
     """The worst of `worst` and the errors at `count` steps from the start on."""
     n = len(linear.mass)
     # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
@@ -67,25 +71,25 @@ def _followed(run, linear, seen, answers, matrix, step, count, worst, enough) ->
     places, kept = unknowns.rate_places, unknowns.among_three()
     free = np.zeros(2 * n)
     free[kept], free[n + np.array(kept)] = run.y0[: unknowns.n], run.y0[places]
-    free -= _forced(answers, np.zeros(1), n)[0]
+    free -= _steady_states(answers, np.zeros(1), n)[0]
     error, before = np.zeros(2 * n), np.zeros(n)
     for first in range(0, count + 1, AT_ONCE):
         times = step * np.arange(first, min(first + AT_ONCE, count + 1))
-        unforced = _march(whole, free, np.zeros((len(times), 2 * n)))
+        unforced = _propagate(whole, free, np.zeros((len(times), 2 * n)))
         free = unforced[-1]
-        defects = seen.defects(times, _forced(answers, times, n) + unforced[:-1])
+        defects = comparison.defects(times, _steady_states(answers, times, n) + unforced[:-1])
         # Nothing pushes before the first step.
         earlier = np.vstack([before if first else -defects[0], defects[:-1]])
-        errors = _march(whole, error, (earlier + defects) @ pushed.T)[1:]
+        errors = _propagate(whole, error, (earlier + defects) @ pushed.T)[1:]
         error, before = errors[-1], defects[-1]
-        worst = np.maximum(worst, seen.errors(errors))
+        worst = np.maximum(worst, comparison.errors(errors))
         if worst.max() > enough:
             break
     return worst
 
 
 @njit(cache=True)
-def _march(matrix, start, pushes):
+def _propagate(matrix, start, pushes):
     """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
     count, n = pushes.shape
     states = np.empty((count + 1, n))
@@ -99,7 +103,7 @@ def _march(matrix, start, pushes):
     return states
 
 
-def _forced(answers, times, n) -> np.ndarray:
+def _steady_states(answers, times, n) -> np.ndarray:
     """Linear steady displacements and rates (m, 2 n) at segment times."""
     states = np.zeros((len(times), 2 * n))
     for harmonic, answer in answers:
@@ -109,23 +113,24 @@ def _forced(answers, times, n) -> np.ndarray:
     return states
 
 
-def _steady_error(period, linear, seen, answers) -> np.ndarray:
+def _steady_error(period, linear, comparison, answers) -> np.ndarray:
     """Errors over a forcing `period` (s), by harmonics; 0 if the forcing has no common period."""
     if not period:
         return np.zeros(2)
     n, times = len(linear.mass), np.arange(STEADY) * period / STEADY
-    spectrum = np.fft.rfft(seen.defects(times, _forced(answers, times, n)), axis=0)
+    spectrum = np.fft.rfft(comparison.defects(times, _steady_states(answers, times, n)), axis=0)
     w = 2 * math.pi / period * np.arange(len(spectrum))[:, None, None]
     motion = np.linalg.solve(linear.stiffness + 1j * w * linear.damping - w**2 * linear.mass, spectrum[:, :, None])
     # The highest harmonic of so many points has no sine part.
     motion[-1] = 0.0
     both = np.concatenate([motion, 1j * w * motion], axis=1)[:, :, 0]
-    return seen.errors(np.fft.irfft(both, STEADY, axis=0))
+    return comparison.errors(np.fft.irfft(both, STEADY, axis=0))
 
 
 @dataclass
 class FilmComparison:
-    """What the higher film makes of the states of the lower one."""
+    """What the higher film (`film`, block `block`) makes of the states of the lower one; `gaps` (m, GAP_STATE_SIZE) the
+    states last seen, `leakage` (m^3/s) the largest so far."""
 
     segment: object
     linear: object
@@ -135,7 +140,8 @@ class FilmComparison:
     leakage: float = 0.0
 
     def defects(self, times, states) -> np.ndarray:
-        """Forces and moments (m, n) by which the higher film pushes more than the lower one; `states` (m, 2 n)."""
+        """Forces (N) and moments (N m), shape (m, n), by which the higher film pushes more than the lower one, at
+        segment `times` (m,) (s) and `states` (m, 2 n), displacements and rates."""
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each, states_along
 
@@ -155,8 +161,8 @@ class FilmComparison:
         return np.concatenate([linear.rings[k].sign * more for k in linear.floating], axis=1)
 
     def errors(self, moved) -> np.ndarray:
-        """Largest change of what is looked at, by displacements and rates `moved` (m, 2 n) at the states last seen:
-        film at the outer radius in clearances, leakage relative to its largest."""
+        """Largest change (2,) by displacements and rates `moved` (m, 2 n) at the states last seen: of the film at the
+        outer radius in clearances, of the leakage relative to its largest."""
         # Kernels of fixed signature are made ready by their import.
         from ..dynamics.kernels import Value, at_each
 

@@ -5,19 +5,17 @@ from dataclasses import replace
 
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..films import film_names
-from ..scene.waviness import waves_of
 from .film_error import model_error
 
 
 def select_film(
     scene, duration: float, accuracy: float, start: Callable[[RunState], None]
 ) -> tuple[RunState, float | None]:
-    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
-    that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
+    """A run (of `duration`, s) of the scene with the lowest film model that keeps the accuracy, and the estimated error
+    of a linear film that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
 
-    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is
-    below half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
+    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is below
+    half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
     """
     film = scene.film
 
@@ -26,17 +24,17 @@ def select_film(
         start(run)
         return run
 
-    if film.model != "auto" or not {"linear", "radial"} <= set(film_names(film, waves_of(scene))):
-        run = started(Model(scene, accuracy))
-        if film.model == "auto":
-            name = run.model.interface.name
-            run.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
-        return run, None
-    radial = started(Model(replace(scene, film=replace(film, model="radial")), accuracy))
-    why = _why_not_linear(scene, radial)
+    highest = started(Model(scene, accuracy))
+    name = highest.model.interface.name
+    if film.model != "auto":
+        return highest, None
+    if name != "radial":
+        highest.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
+        return highest, None
+    why = _why_not_linear(scene, highest)
     if why is None:
         simpler = replace(scene, film=replace(film, model="linear", coefficients="radial"))
-        linear = started(Model(simpler, accuracy, observed=radial.model.observed))
+        linear = started(Model(simpler, accuracy, observed=highest.model.observed))
         error = model_error(linear, enough=0.5 * accuracy)
         if error is not None and error < 0.5 * accuracy:
             linear.reasons.append(
@@ -48,8 +46,8 @@ def select_film(
             if error is None
             else f"the linear film errs by {error:.1e} or more"
         )
-    radial.reasons.append(f"film auto: the radial film; {why}")
-    return radial, None
+    highest.reasons.append(f"film auto: the radial film; {why}")
+    return highest, None
 
 
 def _why_not_linear(scene, radial: RunState) -> str | None:

@@ -13,7 +13,7 @@ STIFF = 60.0
 
 
 def choose_method(run) -> tuple[str, str]:
-    """The method for a run (RunState), and a sentence."""
+    """The method for a run (RunState), by its name in METHODS, and a sentence why."""
     model = run.model
     if model.unknowns.massless:
         return "ida", "a massless ring has no rates: IDA, on the residual form"

@@ -1,4 +1,4 @@
-"""One pass: a scenario becomes a problem, the problem a trajectory, the trajectory an archive."""
+"""One pass: a scenario becomes a run, the run a trajectory, the trajectory an archive."""
 
 import json
 import math
@@ -34,8 +34,8 @@ from .summary import summarise
 
 @dataclass(frozen=True)
 class Result:
-    """What a run leaves: status, a sentence, the summary as a dict (as `run --json` prints it), and where the archive
-    is."""
+    """What a run leaves: `status` (a value of Status), a sentence, the summary as a dict (as `run --json` prints it,
+    SI), and the path of the archive."""
 
     status: str
     message: str
@@ -44,7 +44,8 @@ class Result:
 
 
 def sampling(scenario) -> tuple[float, float, int]:
-    """Duration (s), sample interval (s) and number of intervals of a scenario's run."""
+    """Duration (s), sample interval (s) and number of intervals of a scenario's run.  Raises SceneError if the shaft
+    never turns so far."""
     run, speed = scenario.run, scenario.scene.shaft.speed
     if run.duration is not None:
         duration = run.duration
@@ -129,7 +130,8 @@ def _reasons(why: str, trial: TrialRun | None) -> str:
 
 
 def certificate(run, method, outcome, errors, by_model) -> dict:
-    """How wrong the run is estimated to be (simulation/certificate.py), as part of the summary."""
+    """How wrong the run is estimated to be (simulation/certificate.py), as part of the summary: `asked`, `estimated`,
+    `solver`, `model` (relative errors, None where not estimated) and `said`, a sentence."""
     if outcome.status != Status.OK:
         return {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None,
                 "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
@@ -151,8 +153,8 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
 
 
 def prepare_run(scenario):
-    """A scenario made ready: run (RunState with its start and windows), method, why, sample interval (s), count, and a
-    linear film's estimated error.
+    """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
+    number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""
     duration, interval, count = sampling(scenario)
     accuracy = scenario.run.accuracy

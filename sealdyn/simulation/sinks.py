@@ -21,13 +21,15 @@ MOST_INSTANTS = KEPT + 1
 
 @dataclass
 class Tally:
-    """Running means and maxima of the sampled series; kept in the archive to go on from."""
+    """Running sums and maxima {series: SI value} of the sampled series, and the number of `rows`; kept in the archive
+    to go on from."""
 
     rows: int = 0
     sums: dict = None
     largest: dict = None
 
     def add(self, columns):
+        """Take in rows: `columns` {series: (m,)}."""
         names = [name for name in TALLIED if name in columns]
         self.sums = self.sums or dict.fromkeys(names, 0.0)
         self.largest = self.largest or dict.fromkeys(names, -math.inf)
@@ -37,11 +39,13 @@ class Tally:
             self.largest[name] = max(self.largest[name], float(columns[name].max()))
 
     def mean(self, name: str) -> float:
+        """Mean (SI) of a series so far; NaN without one."""
         return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
 
 
 class ArchiveSink:
-    """Takes what the solver has integrated: signals into the archive, restart data beside them."""
+    """Takes what the solver has integrated: signals into the archive (`writer`), restart data beside them.  Samples
+    every `dt` (s), `count` intervals in all; `progress(t, end)` (s) and `stop() -> bool` as in `simulate`, or None."""
 
     def __init__(self, run, writer, dt, count, tally, progress, stop):
         self.run, self.writer, self.dt, self.count = run, writer, dt, count
@@ -52,7 +56,8 @@ class ArchiveSink:
         self.logged, self.pending = 0, []
 
     def due(self, segment) -> np.ndarray:
-        """Times of the samples in a segment, counted from the nearest sample so that they stay exact."""
+        """Segment times (m,) (s) of the samples in a segment, counted from the nearest sample so that they
+        stay exact."""
         first = max(0, math.ceil(segment.time / self.dt - 1e-9))
         # The offset of the first sample is taken in exact arithmetic.
         offset = float(Fraction(self.dt) * first - segment.interval.start)
@@ -64,6 +69,8 @@ class ArchiveSink:
         return np.clip(taus[keep & (first + np.arange(len(taus)) <= self.count)], 0.0, end)
 
     def take(self, segment, taus, q, q_rate, x=None):
+        """Signals at segment times (m,) (s) from displacements and rates (m, n) and the film's unknowns, kept until the
+        next flush."""
         columns = signals(segment, taus, q, q_rate, x)
         self.tally.add(columns)
         if fields_of(segment.model):
@@ -80,15 +87,19 @@ class ArchiveSink:
             self.waiting_fields = _joined(self.waiting_fields, {FIELD_TIME: times[kept], **found})
 
     def event(self, segment, tau, event):
+        """Keep a change of the equations (an archive's event without its time) at segment time `tau` (s)."""
         self.log([{**event, "time": segment.time + tau}])
 
     def log(self, events):
-        """Keep events until the next flush; beyond the most that an archive keeps they are only counted."""
+        """Keep events until the next flush; beyond the most that an archive keeps they are dropped (ContactSummary
+        counts them)."""
         kept = events[: max(MOST_EVENTS - self.logged, 0)]
         self.logged += len(kept)
         self.pending += kept
 
     def state(self, segment, tau, y):
+        """Flush what has been taken, with the state at segment time `tau` (s), `y` (size,); raises KeyboardInterrupt
+        when `stop` asks for it."""
         self.flush(segment.index, tau, y)
         if self.progress:
             self.progress(segment.time + tau, self.run.duration)
@@ -96,7 +107,8 @@ class ArchiveSink:
             raise KeyboardInterrupt
 
     def flush(self, index, tau, y):
-        """Rows, what happened, and the state to go on from: all three belong together."""
+        """Write rows, what happened, and the state to go on from (segment index, `tau` (s), `y` (size,)): all three
+        belong together."""
         if self.waiting is None:
             return
         run = self.run
@@ -117,6 +129,7 @@ class ArchiveSink:
         self.waiting = self.waiting_fields = None
 
     def write_events(self):
+        """Hand the events kept so far to the archive."""
         if self.pending:
             self.writer.events(self.pending)
         self.pending = []
@@ -133,10 +146,13 @@ class TallySink(ArchiveSink):
         super().__init__(run, None, dt, count, Tally(), None, None)
 
     def take(self, segment, taus, q, q_rate, x=None):
+        """Take signals into the tally, as `ArchiveSink.take`."""
         self.tally.add(signals(segment, taus, q, q_rate, x))
 
     def log(self, events):
+        """Events are not kept."""
         pass
 
     def flush(self, index, tau, y):
+        """There is nothing to write."""
         pass

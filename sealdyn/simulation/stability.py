@@ -1,12 +1,14 @@
 """Linear stability of a run, as its summary has it: with all degrees of freedom, at an interval's start."""
 
+import math
+
 from ..dynamics import modes
 from ..scene.rings import ROTOR
 
 
 def stability(model, interval, linear, speeds: bool) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate (1/s), shaft speed (rad/s) and all modes of the
-    scene `linear`, linearised at the interval's start; if `speeds` also `critical_and_resonance_speeds`."""
+    scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed` and `resonance_speeds`."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     tilt = [mode for mode in found if mode.kind == "tilt"]
@@ -14,27 +16,45 @@ def stability(model, interval, linear, speeds: bool) -> dict:
     if tilt and speed:
         sign = -1.0 if tilt[0].direction == "backward" else 1.0
         whirl = sign * tilt[0].value.imag / speed
+    searched = {}
+    if speeds:
+        searched = {
+            "critical_speed": critical_speed(model, interval),
+            "resonance_speeds": resonance_speeds(model, interval),
+        }
     return {
         "verdict": modes.verdict(found),
         "whirl_ratio": whirl,
-        **(critical_and_resonance_speeds(model, interval, tilt) if speeds else {}),
+        **searched,
         "growth_rate": found[0].value.real if found else None,
         "speed": speed,
         "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
     }
 
 
-def critical_and_resonance_speeds(model, interval, tilt) -> dict:
-    """`critical_speed` (rad/s, None if there is none) and `resonance_speeds` (rad/s), from a thousandth to a thousand
-    times (resonance: a hundredth to a hundred times) the fastest of the `tilt` modes."""
-    if not tilt:
-        return {"critical_speed": None, "resonance_speeds": []}
+def critical_speed(model, interval=None) -> float | None:
+    """Lowest shaft speed (rad/s) at which a tilt mode of a model loses or regains its damping, the rest as at an
+    interval's start (default: the run's); None if there is none.
 
-    def at_speed(w):
-        return model.linear_scene(interval, speed=w)
+    **Valid** from a thousandth to a thousand times the `natural_frequency`."""
+    natural = natural_frequency(model, interval)
+    if not natural:
+        return None
+    return modes.critical_speed(lambda w: model.linear_scene(interval, speed=w), 1e-3 * natural, 1e3 * natural)
 
-    pace = max(abs(mode.value) for mode in tilt)
-    return {
-        "critical_speed": modes.critical_speed(at_speed, 1e-3 * pace, 1e3 * pace),
-        "resonance_speeds": modes.resonance_speeds(at_speed, 1e-2 * pace, 1e2 * pace),
-    }
+
+def resonance_speeds(model, interval=None) -> list[float]:
+    """Shaft speeds (rad/s) at which a forward tilt mode of a model turns with the shaft, likewise.
+
+    **Valid** from a hundredth to a hundred times the `natural_frequency`."""
+    natural = natural_frequency(model, interval)
+    if not natural:
+        return []
+    return modes.resonance_speeds(lambda w: model.linear_scene(interval, speed=w), 1e-2 * natural, 1e2 * natural)
+
+
+def natural_frequency(model, interval=None) -> float:
+    """Geometric mean (rad/s) of the tilt modes' eigenvalues, 0 if there are none: of an overdamped pair, however far
+    apart, the root of stiffness over inertia."""
+    sizes = [abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt" and mode.value]
+    return math.exp(sum(map(math.log, sizes)) / len(sizes)) if sizes else 0.0

@@ -10,7 +10,6 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import TOUCH
-from ..scenario.reader import unused_keys
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
@@ -20,19 +19,20 @@ ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
 def model_chosen(scenario, run, method: str, why: str) -> dict:
-    """What the scene chose: film rung, unknowns, solver, the reasons, and keys it does not use."""
+    """What the scene chose: `film`, names of the `unknowns`, `solver`, `reasons` (sentences), and `unused` keys it does
+    not use."""
     return {
         "film": run.model.interface.name,
         "unknowns": run.model.unknowns.names,
         "solver": method,
         "reasons": [*run.reasons, f"solver: {why}", run.model.interface.message],
-        "unused": unused_keys(scenario),
+        "unused": scenario.unused(),
     }
 
 
 def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
-    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite.  `speeds`: with critical and
-    resonance speeds, which cost more than a short run."""
+    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite.  `outcome` of `solve`, `tally`
+    of its sink; `speeds`: with critical and resonance speeds, which cost more than a short run."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     steady, sentence = _steady(run, outcome, period)

@@ -13,9 +13,9 @@ OVERLAP = 4
 
 @dataclass(frozen=True)
 class Block:
-    """Accepted steps of a segment: times `t` (m,), unknowns `ys` (m, size), derivatives `yps` (m, size; zero where
-    every ring has mass).  New are the intervals between the steps `begin` and `end`, up to `until` (s) if the run
-    ends before the last of them does; the other steps are neighbours."""
+    """Accepted steps of a segment: times `t` (m,) (s, of the segment), unknowns `ys` (m, size), derivatives `yps` (m,
+    size; zero where the segment has a right-hand side).  New are the intervals between the steps `begin` and `end`, up
+    to `until` (s) if the run ends before the last of them does; the other steps are neighbours."""
 
     segment: object
     t: np.ndarray
@@ -27,7 +27,7 @@ class Block:
 
     @cached_property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
-        """Displacements and rates (m, n) at the steps."""
+        """Displacements and rates, each (m, n), at the steps."""
         return self.segment.motion(self.ys, self.yps)
 
     @cached_property
@@ -47,7 +47,7 @@ class Block:
         return self.end if self.until is None else self.end - 1
 
     def cut(self, until: float) -> "Block":
-        """The block of a run that ends at `until` (s)."""
+        """The block of a run that ends at `until` (s, of the segment)."""
         found = replace(self, end=int(np.searchsorted(self.t, until)), until=until)
         # What has been worked out stays.
         for name in ("motion", "slopes", "accelerations"):
@@ -56,7 +56,7 @@ class Block:
         return found
 
     def at(self, times) -> tuple[np.ndarray, np.ndarray]:
-        """Displacements and rates (k, n) at `times` (k,) inside the new steps.
+        """Displacements and rates, each (k, n), at `times` (k,) (s, of the segment) inside the new steps.
 
         Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
         magnify their error by one over the step.
@@ -74,7 +74,7 @@ class Block:
         return out, rate
 
     def film_at(self, times) -> tuple:
-        """The film's unknowns (k, n) at `times` (k,), in a tuple; an empty one where it has none."""
+        """The film's unknowns (k, n) at `times` (k,) (s), in a tuple; an empty one where it has none."""
         film = self.segment.film
         if film.start == film.stop:
             return ()

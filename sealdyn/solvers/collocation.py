@@ -1,4 +1,4 @@
-"""The judge: implicit collocation of high order with its own step control, a method that is never judged.
+"""Reference solution: implicit collocation of high order with its own step control; no run integrates with it.
 
 **Source** Hairer & Wanner (1996), Solving ODEs II, IV.5 and IV.8: collocation at Gauss nodes has order 2 s, at the
 right-hand Radau nodes 2 s - 1 and damps what is infinitely stiff.
@@ -48,10 +48,12 @@ def rule(stages: int, radau: bool):
 
 
 def collocation(segment, tau, y, method, tolerance, counts):
-    """Steps of a segment, with the contract of contract.py; `method` "gauss" or "radau_nodes".
+    """Steps of a segment from `tau` (s) and the unknowns `y` (size,), with the contract of contract.py; `method`
+    "gauss" or "radau_nodes".
 
     `tolerance` bounds the embedded error estimate, which is of far lower order than the method: the error itself is
     orders smaller.  A massless ring is integrated through its consistent derivatives.
+    **Raises** SolverFailure where the step vanishes, and for an undamped massless ring.
     """
     radau = method != "gauss"
     c, a, b, error, ends = rule(RADAU if radau else GAUSS, radau)

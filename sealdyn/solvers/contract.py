@@ -2,14 +2,17 @@
 
 A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over one segment: it yields blocks `(times
 (m,), unknowns (m, size), derivatives or None)` of accepted steps, in the segment's time, the first after the start
-`tau`, `y`, the last at the segment's end.  A segment offers `n` displacements (first in the unknowns), `n_mechanical`,
-`size`, `length`, `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start`, `scales`, `longest_step`,
-`shortest_period`, `has_residual_form` (there is no `rhs`), `lacks_inertia` (n,), `algebraic`, and `may_change`: whether
-its equations may, at any step.
+`tau` (s), `y` (size,), the last at the segment's end; a SolverFailure says that it gives up.  A segment offers `n`
+displacements (first in the unknowns) and the `rate_places` (n,) of their rates, `n_mechanical`, `size`, the slices
+`film` and `works`, `length` (s), `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start`, `scales` (size,),
+`reference_rate` (rad/s), `longest_step()` and `shortest_period` (s), `has_residual_form` (there is no `rhs`),
+`lacks_inertia` (n,), `algebraic` (places), and `may_change`: whether its equations may, at any step.  A linear scene of
+constant conditions also has its `exact_motion()`.
 
 An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
-returns None, a Stop, a Retry or a Transition (which `make` turns into a Change); `state()` and `restore(state)` for a
-run that is continued.
+returns None, a Stop or a Retry; `state()` and `restore(state)` for a run that is continued.  What finds changes of the
+equations sees the steps first: its `accept(block, advance)` returns None or a Transition, which its `make` turns into a
+Change.
 """
 
 from dataclasses import dataclass
@@ -66,7 +69,8 @@ class Transition:
 
 @dataclass(frozen=True)
 class Change:
-    """The equations have changed: unknowns `y` after it, the new `modes` of the segment, and the `event` to log."""
+    """The equations have changed: unknowns `y` (size,) after it, the new `modes` of the segment, and the `event` to log
+    (keys of an archive's event: kind, value, text)."""
 
     y: np.ndarray
     modes: dict
@@ -75,7 +79,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Retry:
-    """The steps shown last are too inexact: again from the last good one, with this `tolerance`."""
+    """The steps of this block are too inexact: again from the last good one, with this `tolerance`."""
 
     tolerance: float
 
@@ -86,7 +90,8 @@ class SolverFailure(RuntimeError):
 
 @dataclass
 class Counts:
-    """Own counts; a solver's own omit finite-difference Jacobians."""
+    """Counts of a run: evaluations of the right-hand side (those for Jacobians among them), accepted steps, Jacobians,
+    and starts of a solver."""
 
     rhs: int = 0
     steps: int = 0
@@ -95,17 +100,17 @@ class Counts:
 
 
 def tolerance_for(method: str, accuracy: float, memory: float) -> float:
-    """Solver tolerance that keeps the asked accuracy with this method.
+    """Solver tolerance, relative to the scales, that keeps the asked `accuracy` with this method (a key of SAFETY).
 
-    `memory` is for how many of its fastest periods the scene remembers an error: one or so when it is well damped,
-    the whole run when it is not.  Never below TIGHTEST, where rounding takes over.
+    `memory` is for how many of its fastest periods the scene remembers an error: one or so when it is well damped, the
+    whole run when it is not.  Never below TIGHTEST, where rounding takes over.
     """
     damped, per_period = SAFETY[method]
     return max(accuracy / max(damped, per_period * memory), TIGHTEST)
 
 
 def attainable(method: str, memory: float) -> float:
-    """Best accuracy this method can keep on a scene of that memory."""
+    """Best accuracy, relative to the scales, that this method can keep on a scene of that memory (fastest periods)."""
     damped, per_period = SAFETY[method]
     return TIGHTEST * max(damped, per_period * memory)
 
@@ -119,7 +124,7 @@ def absolute_tolerances(segment, tolerance) -> np.ndarray:
 
 
 def failure_message(method, message, tau) -> str:
-    """Why and where a method gave up, and what to try."""
+    """Sentence why and where (`tau`, s) a method gave up, and what to try."""
     return (
         f"{method} gave up {tau:.6g} s into this segment: {message}  "
         "Try a looser run.accuracy, another run.solver, or look whether the film is closing there."

@@ -6,8 +6,8 @@ from ..numerics.hermite import integrals
 
 
 class EnergyAudit:
-    """An observer of the energy balance: largest |dE - sum of works| over the sum of integrals of |power|, at every
-    step.
+    """An observer of the energy balance: largest |dE - sum of works| (J) over the sum of integrals of |power| (J), at
+    every step.
 
     Works are those among the unknowns; or better (`from_powers`), where steps are short, the integrals of the powers at
     the steps: of the errors that a multistep method makes in works, nothing forgets.
@@ -15,12 +15,12 @@ class EnergyAudit:
 
     def __init__(self, from_powers: bool = False):
         self.from_powers, self.segment = from_powers, None
-        self.worst, self.moved, self.done = 0.0, 0.0, 0.0
+        self.worst, self.exchanged, self.work = 0.0, 0.0, 0.0
         self.energy0 = self.works0 = self.last = None
 
     def begin(self, segment, tau, y):
-        """A segment begins; the first fixes the zero of energy and works.  At a step of an imposed motion the
-        spring energy jumps (its end is moved in no time): that work is booked here."""
+        """A segment begins at `tau` (s), `y` (size,); the first fixes the zero of energy and works.  At a step of an
+        imposed motion the spring energy jumps (its end is moved in no time): that work is booked here."""
         self.segment = segment
         energy = float(segment.energies(np.array([tau]), y[None, :])[0])
         if self.energy0 is None:
@@ -40,23 +40,23 @@ class EnergyAudit:
             works = ys[begin + 1 : end + 1, works_at].sum(axis=1) - self.works0
         else:
             total = np.ascontiguousarray(block.slopes[:, works_at].sum(axis=1)[:, None])
-            works = self.done + np.cumsum(integrals(t, total, begin, end)[:, 0])
-            self.done = float(works[-1])
+            works = self.work + np.cumsum(integrals(t, total, begin, end)[:, 0])
+            self.work = float(works[-1])
         defects = np.abs(energies - self.energy0 - works)
         self.worst = max(self.worst, float(defects.max()))
-        self.last, self.moved = float(energies[-1]), float(ys[end, -1])
+        self.last, self.exchanged = float(energies[-1]), float(ys[end, -1])
 
     def state(self) -> dict:
-        """What a continued run needs."""
-        return {"worst": self.worst, "moved": self.moved, "energy0": self.energy0, "works0": self.works0,
-                "last": self.last, "done": self.done}  # fmt: skip
+        """What a continued run needs: worst defect, energy exchanged, energies and works (J)."""
+        return {"worst": self.worst, "moved": self.exchanged, "energy0": self.energy0, "works0": self.works0,
+                "last": self.last, "done": self.work}  # fmt: skip
 
     def restore(self, state: dict):
         """Go on from `state`."""
-        self.worst, self.moved, self.last = state["worst"], state["moved"], state["last"]
+        self.worst, self.exchanged, self.last = state["worst"], state["moved"], state["last"]
         self.energy0, self.works0 = state["energy0"], state["works0"]
-        self.done = state.get("done", 0.0)
+        self.work = state.get("done", 0.0)
 
     def residual(self) -> float:
-        """The one number; 0 when nothing is exchanged."""
-        return self.worst / self.moved if self.moved > 0 else 0.0
+        """The largest defect over the energy exchanged, dimensionless; 0 when nothing is exchanged."""
+        return self.worst / self.exchanged if self.exchanged > 0 else 0.0

@@ -1,6 +1,6 @@
-"""Methods that are judged and never chosen: what rotordynamics codes and scientific libraries integrate with.
+"""Methods for comparison, which no run chooses: what rotordynamics codes and scientific libraries integrate with.
 
-Generators with the contract of solvers/methods.py.  The fixed-step ones take the tolerance as the square of a step
+Generators with the contract of solvers/contract.py.  The fixed-step ones take the tolerance as the square of a step
 over the fastest period of interest: 1e-4 is a hundred steps a period, and their second-order error follows the
 tolerance.
 """

@@ -1,5 +1,5 @@
-"""How far a run is from the exact motion, from its own accepted steps: what each step leaves over of the equations of
-motion, answered linearly (simulation/film_error.py does the same for what a film leaves over).
+"""Defect-based global error estimate (Zadunaisky): what each accepted step leaves over of the equations of motion,
+answered linearly (simulation/film_error.py does the same for what a film leaves over).
 
 **Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the defect of an interpolant gives the global error.
 **Valid** multistep methods, whose steps are short beside the motion (a tenth of a radian leaves 1e-9); errors small
@@ -21,7 +21,8 @@ SHARPER = 10.0
 class GlobalErrorEstimate:
     """An observer of the error of the displacements so far, carried along a run of constant conditions; every ring has
     mass.  `worst` is the largest of any displacement at any step, relative to its scale; beyond `allowed` a run had
-    better use a sharper tolerance than its own `tolerance`, down to `least`."""
+    better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the eigenvectors nearly
+    coincide, and nothing is estimated."""
 
     def __init__(self, segment, allowed: float = math.inf, least: float = 0.0):
         self.segment, self.motion, self.allowed, self.least = segment, segment.exact_motion(), allowed, least
@@ -32,6 +33,7 @@ class GlobalErrorEstimate:
             self.shapes = self.motion.vectors[: segment.n] / segment.scales[: segment.n, None]
 
     def begin(self, segment, tau, y):
+        """Nothing to do: errors go on over a segment's start."""
         pass
 
     def accept(self, block):
@@ -40,12 +42,12 @@ class GlobalErrorEstimate:
             return None
         before, t, ys, begin, end = self.state(), block.t, block.ys, block.begin, block.end
         n, places = self.segment.n, self.segment.rate_places
-        left = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
-        left[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
-        left[:, places] -= integrals(t, block.accelerations, begin, end)
-        found = np.empty((end - begin, len(self.modal)), dtype=complex)
-        _answer(self.motion.values, np.diff(t[begin : end + 1]), left @ self.motion.inverse.T, self.modal, found)
-        self.worst = max(self.worst, float(np.max(np.abs((found @ self.shapes.T).real))))
+        defects = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
+        defects[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
+        defects[:, places] -= integrals(t, block.accelerations, begin, end)
+        errors = np.empty((end - begin, len(self.modal)), dtype=complex)
+        _answer(self.motion.values, np.diff(t[begin : end + 1]), defects @ self.motion.inverse.T, self.modal, errors)
+        self.worst = max(self.worst, float(np.max(np.abs((errors @ self.shapes.T).real))))
         if self.worst > self.allowed and self.tolerance > self.least:
             self.restore(before)
             self.tolerance = max(self.tolerance / SHARPER, self.least)
@@ -53,7 +55,7 @@ class GlobalErrorEstimate:
         return None
 
     def state(self) -> dict:
-        """What a continued run needs."""
+        """What a continued run needs: `worst`, and the modal errors (modes,) as real and imaginary parts."""
         return {"worst": self.worst, "real": self.modal.real.tolist(), "imag": self.modal.imag.tolist()}
 
     def restore(self, state: dict):

@@ -22,8 +22,8 @@ CRUMB = 1e-14
 
 @dataclass
 class Outcome:
-    """How a run ended: status, cause, a sentence, counts, wall time (s), the last segment's index, time in it and
-    unknowns there."""
+    """How a run ended: status, cause, a sentence, counts, wall time (s), the last segment's index, time in it (s) and
+    unknowns (size,) there, the tolerance it ended with, and the residual of the energy audit."""
 
     status: Status
     cause: Cause
@@ -42,11 +42,13 @@ def solve(
 ) -> Outcome:
     """Integrate a run segment by segment, chunk by chunk, into a sink.
 
-    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with;
-    `errors` a GlobalErrorEstimate that is shown every step, or None; `resume` = (segment, tau, y) continues.  Another
-    method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own `tolerance`.
-    The sink offers `due(segment) -> segment times of output`, `take(segment, times, q, q_rate)`,
-    `state(segment, tau, y)`, `event(segment, tau, event)`, and may raise KeyboardInterrupt from `take` to stop.
+    `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with; `errors`
+    a GlobalErrorEstimate that is shown every step, or None; `resume` = (segment index, tau (s), y (size,)) continues.
+    Another method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own
+    `tolerance`.
+    The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
+    and rates (m, n), after them the film's unknowns (m, n) if it has any, `state(segment, tau, y)`,
+    `event(segment, tau, event)`, and may raise KeyboardInterrupt from `take` or `state` to stop.
     Returns an Outcome; a failed run is a result.
     """
     begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()

@@ -12,7 +12,8 @@ CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5
 
 
 def expm(segment, tau, y, method, tolerance, counts):
-    """Exact steps of a linear scene, as long as what moves in it allows; the works by Gauss quadrature on them."""
+    """Exact steps of a linear scene, with the contract of contract.py, as long as what moves in it allows; the works by
+    Gauss quadrature on them.  **Valid** linear film, constant conditions, rings with mass."""
     motion, n, fresh = segment.exact_motion(), segment.n_mechanical, True
     points, weights = np.polynomial.legendre.leggauss(POINTS)
     while tau < segment.length:
@@ -58,13 +59,13 @@ def _exact_step(exponents, sizes, tolerance) -> tuple[float, int]:
     return min(step, longest(np.maximum(sizes, after(CHANGING * step)))), CHANGING
 
 
-def _widths(left, step, count, fresh) -> np.ndarray:
-    """Widths of the next `count` steps, or of all that are `left` (s), the last few of them and fresh ones half as
+def _widths(remaining, step, count, fresh) -> np.ndarray:
+    """Widths of the next `count` steps, or of all that are `remaining` (s), the last few of them and fresh ones half as
     long."""
     if fresh:
-        return np.full(count, min(0.5 * step, left / (2 * count)))
-    if left > (count + AT_ENDS) * step:
+        return np.full(count, min(0.5 * step, remaining / (2 * count)))
+    if remaining > (count + AT_ENDS) * step:
         return np.full(count, step)
-    whole = int(np.ceil(max(left / step - 0.5 * AT_ENDS, 0.0)))
+    whole = int(np.ceil(max(remaining / step - 0.5 * AT_ENDS, 0.0)))
     widths = np.concatenate([np.ones(whole), np.full(AT_ENDS, 0.5)])
-    return widths * left / widths.sum()
+    return widths * remaining / widths.sum()

@@ -10,7 +10,7 @@ class Recorder:
         self.interval, self.parts = interval, []
 
     def due(self, segment):
-        """Segment times of output."""
+        """Segment times (m,) (s) of output: whole multiples of the interval since the start of the run."""
         if self.interval is None:
             return np.empty(0)
         first, length = max(0, int(np.ceil(segment.time / self.interval - 1e-9))), segment.length
@@ -19,15 +19,15 @@ class Recorder:
         return np.clip(taus[inside], 0, length)
 
     def take(self, segment, taus, q, q_rate, x=None):
-        """Displacements and rates (m, n) at segment times (m,)."""
+        """Keep displacements and rates (m, n) at segment times (m,) (s); the film's unknowns `x` are not kept."""
         self.parts.append((segment.time + taus, q, q_rate))
 
     def state(self, segment, tau, y):
-        """What has been reached."""
+        """The state reached: not kept."""
 
     def event(self, segment, tau, event):
-        """What has happened."""
+        """A change of the equations: not kept."""
 
     def arrays(self):
-        """Times (m,), displacements (m, n), rates (m, n)."""
+        """Times (m,) (s, of the run), displacements (m, n), rates (m, n)."""
         return tuple(np.concatenate([part[i] for part in self.parts]) for i in range(3))

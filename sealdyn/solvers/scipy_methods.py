@@ -6,7 +6,11 @@ from .contract import SolverFailure, absolute_tolerances, failure_message
 
 
 def dop853_or_radau(segment, tau, y, method, tolerance, counts):
-    """Steps of SciPy's DOP853 or Radau."""
+    """Steps of SciPy's DOP853 or Radau, with the contract of contract.py.
+
+    **Source** Hairer, Norsett & Wanner (1993), Solving ODEs I (DOP853); Hairer & Wanner (1996), Solving ODEs II, IV.8
+    (Radau IIA).
+    """
     from scipy.integrate import DOP853, Radau
 
     kind = DOP853 if method == "dop853" else Radau
@@ -14,7 +18,8 @@ def dop853_or_radau(segment, tau, y, method, tolerance, counts):
 
 
 def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
-    """Steps of one of SciPy's solvers (the class `kind`); an `implicit` one is given the segment's Jacobian."""
+    """Steps of one of SciPy's solvers (the class `kind`), other arguments as contract.py; an `implicit` one is given
+    the segment's Jacobian.  **Raises** SolverFailure."""
     inner = segment.rhs
 
     def counted(t, y):

@@ -95,7 +95,9 @@ def _counting(counts):
 
 
 def cvode(segment, tau, y, method, tolerance, counts, **options):
-    """Steps of CVODE, Adams if so called, else BDF; `options` of its own, such as `max_order`."""
+    """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py; `options` of its own, such as
+    `max_order`.
+    **Raises** SolverFailure."""
     from sksundae.cvode import CVODE
 
     rhs, jacobian = segment.rhs, segment.jacobian
@@ -124,7 +126,8 @@ def cvode(segment, tau, y, method, tolerance, counts, **options):
 
 
 def ida(segment, tau, y, method, tolerance, counts):
-    """Steps of IDA, on the residual form."""
+    """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
+    **Raises** SolverFailure."""
     from sksundae.ida import IDA
 
     inner = segment.residual

@@ -5,10 +5,13 @@ What every study module offers (the contract):
 `Settings`  frozen dataclass: the keys of `[study.NAME]` with their defaults and units (types of units.py);
             flags `--key value` on the command line override.
 `run(scenario, settings, tools) -> dict`
-            the answer, JSON-ready, with the keys of `study --json` and `verdict`, a list of sentences.
+            the answer, JSON-ready, with the keys of `study --json` and `verdict`, a list of at most three sentences,
+            the answer to the question first.
             `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
             cores, remembers finished points across interruptions, and returns a list of rows: the function's dict,
-            or `{"failed": reason}`.  `tools.say(fraction)` reports progress of anything else.
+            or `{"failed": reason}`: the verdict then also says how many failed and why the first did.
+            `tools.say(fraction)` reports progress of anything else.
+`tables(answer)`  pairs of rows and columns printed below the verdict (report.text.study_lines), if there are any.
 `WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without
             them, and its verdict says so.
 `WITH_WAVES`    True if the study reckons with wavy faces, or does not ask how thin the film is; else it refuses them.

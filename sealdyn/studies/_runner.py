@@ -4,7 +4,7 @@ import importlib
 import json
 import pkgutil
 import platform
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 
@@ -22,6 +22,12 @@ def study_names() -> list[str]:
     return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(studies.__path__) if m.name[0] != "_")
 
 
+def study_tables(name: str, answer: dict) -> list:
+    """The tables printed below the verdict of study `name`: pairs of rows and columns (report.text.study_lines)."""
+    tables = getattr(study_module(name.replace("-", "_")), "tables", None)
+    return tables(answer) if tables else []
+
+
 def study_module(name: str):
     """The study `name` (underscored): its file, or `study.py` in its folder."""
     found = importlib.import_module(f"{studies.__name__}.{name}")
@@ -30,16 +36,21 @@ def study_module(name: str):
 
 @dataclass
 class StudyContext:
-    """What a study is handed: points on all cores, and progress."""
+    """What a study is handed: points on all cores, and progress; `failures` are the reasons of points that failed."""
 
     journal: Checkpoint
     workers: int | None
     progress: object
+    failures: list[str] = field(default_factory=list)
 
     def map(self, function, points: list, what: str = "points") -> list[dict]:
-        return evaluate(function, points, self.journal, self.workers, lambda n, m: self.say(n / max(m, 1)), what)
+        """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
+        rows = evaluate(function, points, self.journal, self.workers, lambda n, m: self.say(n / max(m, 1)), what)
+        self.failures += [row["failed"] for row in rows if "failed" in row]
+        return rows
 
     def say(self, fraction: float):
+        """Report progress, a share of the whole."""
         if self.progress:
             self.progress(fraction, 1.0)
 
@@ -61,11 +72,15 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain], sort_keys=True)
     journal = Checkpoint(out.with_suffix(".partial.jsonl"), identity)
     studied, left_out = (scenario, []) if getattr(module, "WITH_CONTACT", False) else without_contact(scenario)
-    answer = module.run(studied, settings, StudyContext(journal, workers, progress))
+    tools = StudyContext(journal, workers, progress)
+    answer = module.run(studied, settings, tools)
+    verdict, failures = list(answer["verdict"]), tools.failures
+    # Unless the study has told it itself.
+    if failures and failures[0] not in " ".join(verdict):
+        verdict.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
     if left_out:
-        said = f"a study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out"
-        answer = {**answer, "verdict": [*answer.get("verdict", []), said]}
-    answer = {"status": Status.OK, "message": " ".join(answer.get("verdict", [])), "study": name, **answer}
+        verdict.append(f"A study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out.")
+    answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, **answer, "verdict": verdict}
     libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
         "python": platform.python_version()
     }

@@ -50,8 +50,6 @@ class Settings:
     nothing, its turning part); `tilt_direction` from xi; sweeps over `speed_to`, `clearance_from` to `clearance_to`,
     and the tilt, `points` each."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     tilt: Angle | None = None
     tilt_direction: Angle = 0.0
     speed_to: Speed | None = None
@@ -73,12 +71,10 @@ def run(scenario, settings, tools) -> dict:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
     model, speed = Model(scene, 1e-10), scene.shaft.speed
-    stiffness, damping = matrices(model, State())
     answer = {
         "order": list(ORDER),
         "film": model.interface.name,
-        "stiffness": stiffness.tolist(),
-        "damping": damping.tolist(),
+        **_listed(matrices(model, State())),
         "stiffness_units": STIFFNESS_UNITS,
         "damping_units": DAMPING_UNITS,
         "at": _at(model, State(), speed),
@@ -163,15 +159,9 @@ def _tilted(model, settings, speed) -> dict:
         tilt, whirl, said = steady_tilt(model)
     try:
         state = State(opened(model, tilt, whirl), tilt, whirl)
-        stiffness, damping = matrices(model, state)
+        return {**_listed(matrices(model, state)), "at": _at(model, state, speed), "said": said}
     except ValueError as reason:
         return {"stiffness": None, "damping": None, "at": None, "said": f"{said}: {reason}"}
-    return {
-        "stiffness": stiffness.tolist(),
-        "damping": damping.tolist(),
-        "at": _at(model, state, speed),
-        "said": said,
-    }
 
 
 def _at(model, state: State, speed) -> dict:
@@ -190,7 +180,7 @@ def _at(model, state: State, speed) -> dict:
 # --- sweeps --------------------------------------------------------------------------------------------
 
 
-def _row(found) -> dict:
+def _listed(found) -> dict:
     stiffness, damping = found
     return {"stiffness": stiffness.tolist(), "damping": damping.tolist()}
 
@@ -205,17 +195,20 @@ def _columns(name, values, rows) -> dict:
     }
 
 
-def _against_speed(model, settings, speed) -> dict:
+def _speeds(settings, speed) -> np.ndarray:
     top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
-    speeds = np.linspace(0.0, top, max(2, settings.points))
-    return _columns("speed", speeds, [_row(matrices(model, State(), w)) for w in speeds])
+    return np.linspace(0.0, top, max(2, settings.points))
+
+
+def _against_speed(model, settings, speed) -> dict:
+    speeds = _speeds(settings, speed)
+    return _columns("speed", speeds, [_listed(matrices(model, State(), w)) for w in speeds])
 
 
 def against_frequency(model, settings, speed) -> dict:
     """Of a film that stores: what a motion of another frequency (rad/s) meets."""
-    top = settings.speed_to if settings.speed_to is not None else 3 * abs(speed) or 3000.0
-    frequencies = np.linspace(0.0, top, max(2, settings.points))
-    return _columns("frequency", frequencies, [_row(matrices(model, State(), omega=w)) for w in frequencies])
+    frequencies = _speeds(settings, speed)
+    return _columns("frequency", frequencies, [_listed(matrices(model, State(), omega=w)) for w in frequencies])
 
 
 def _against_clearance(scene, model, settings) -> dict:
@@ -224,7 +217,7 @@ def _against_clearance(scene, model, settings) -> dict:
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(_row(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1e-10), State())))
+            rows.append(_listed(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1e-10), State())))
         except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)
@@ -237,7 +230,7 @@ def _against_tilt(model, settings) -> dict:
     for tilt in tilts:
         try:
             dz = opened(model, complex(tilt), 0.0)
-            rows.append(_row(matrices(model, State(dz, complex(tilt), 0.0))))
+            rows.append(_listed(matrices(model, State(dz, complex(tilt), 0.0))))
             opening.append(dz)
         except ValueError as error:
             rows.append({"failed": str(error)})
@@ -246,25 +239,20 @@ def _against_tilt(model, settings) -> dict:
 
 
 def _verdict(answer) -> list[str]:
-    k, d, at = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"]
+    k, d, at, tilted = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"], answer["tilted"]
+    pace = d[1, 1] * at["speed"]
+    ratio = f", {k[1, 2] / pace:.4g} of the shaft speed times the damping (half, for a wedge film)" if pace else ""
     said = [
         f"Aligned at {at['clearance'] * 1e6:.4g} um, {at['speed']:.5g} rad/s ({answer['film']} film): axial "
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
-        f"Cross stiffness {k[1, 2]:.5g} N m/rad: {_ratio(k[1, 2], d[1, 1], at)}",
+        f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]
-    tilted = answer["tilted"]
     if tilted["stiffness"] is None:
         return [*said, f"Tilted: {tilted['said']}."]
     t, where = np.array(tilted["stiffness"]), tilted["at"]
     size, opening = math.hypot(where["tilt_x"], where["tilt_y"]) * 1e6, where["axial_opening"] * 1e6
-    said.append(
+    return [
+        *said,
         f"Tilted by {size:.4g} urad ({tilted['said']}) the seal opens by {opening:.3g} um; tilt stiffness "
-        f"{t[1, 1]:.5g} and {t[2, 2]:.5g} N m/rad, axial to tilt {np.abs(t[0, 1:]).max():.3g} N/rad."
-    )
-    return said
-
-
-def _ratio(cross, damping, at) -> str:
-    if not damping or not at["speed"]:
-        return "no damping or no speed to compare with."
-    return f"{cross / damping / at['speed']:.4g} of the shaft speed times the damping (half, for a wedge film)."
+        f"{t[1, 1]:.5g} and {t[2, 2]:.5g} N m/rad, axial to tilt {np.abs(t[0, 1:]).max():.3g} N/rad.",
+    ]

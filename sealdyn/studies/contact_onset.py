@@ -10,7 +10,7 @@ from ..analysis.shooting import NoOrbit, Shooter
 from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..scenario.settings import with_values
+from ..scenario.settings import si_unit, with_values
 from ..scene import variants
 from ..status import Status
 
@@ -22,8 +22,6 @@ class Settings:
     """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
     `margin`: touch is h_min = margin x clearance; `over` and `values`: the onset as a curve over another key;
     `floor`: also with the pressure floored at the lower boundary pressure, along the curve too (slower)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     key: str | None = None
     margin: float = 1e-3
@@ -51,7 +49,7 @@ def run(scenario, settings, tools) -> dict:
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
     if "failed" in answer:
         answer["status"] = Status.FAILED
-    return {**answer, "verdict": _verdict(answer)}
+    return {**answer, "verdict": _verdict(answer, si_unit(scenario.scene, key))}
 
 
 def brief(row: dict) -> dict:
@@ -86,12 +84,7 @@ def onset(scenario, point: dict) -> dict:
         "start": [float(x) for x in follower.start],
         "axial_opening": follower.path[-1]["axial"] / clearance,
         "multiplier": float(np.max(np.abs(np.linalg.eigvals(monodromy)))),
-        "path": {
-            "forcing": [p["forcing"] for p in follower.path],
-            "h_min": [p["h_min"] for p in follower.path],
-            "tilt": [p["tilt"] for p in follower.path],
-            "axial": [p["axial"] for p in follower.path],
-        },
+        "path": {name: [p[name] for p in follower.path] for name in ("forcing", "h_min", "tilt", "axial")},
     }
     if point["floor"]:
         film = scenario.scene.film
@@ -149,17 +142,9 @@ class Follower:
         self.monodromy, self.start = orbit.monodromy, orbit.start
         self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
         low, model = orbit.extremes["h_min"], shooter.model
-        axial = self._mean_axial(model, orbit)
-        self.path.append(
-            {
-                "forcing": value,
-                "h_min": low["value"],
-                "radius": low["radius"],
-                "tilt": orbit.extremes["relative_misalignment"]["max"],
-                "clearance": model.clearance,
-                "axial": axial,
-            }
-        )
+        tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
+        self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
+                          "clearance": model.clearance, "axial": axial})  # fmt: skip
         return low["value"] / model.clearance - self.margin
 
     def _guess(self, value, shooter):
@@ -182,12 +167,8 @@ class Follower:
     @staticmethod
     def _mean_axial(model, orbit):
         """Axial opening of the gap (m) at the start of the orbit: how far the seal has lifted."""
-        places = [
-            (i, 1.0 if name == "stator_z" else -1.0)
-            for i, name in enumerate(model.unknowns.names)
-            if name.endswith("_z")
-        ]
-        return float(sum(sign * orbit.start[i] for i, sign in places))
+        signs = {"stator_z": 1.0, "rotor_z": -1.0}
+        return float(sum(signs.get(name, 0.0) * x for name, x in zip(model.unknowns.names, orbit.start, strict=False)))
 
     def follow(self, linear: float, tolerance: float) -> float:
         """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
@@ -225,36 +206,29 @@ class Follower:
         raise NoOrbit("the floored onset did not settle")
 
 
-def _verdict(answer) -> list[str]:
+def tables(answer) -> list:
+    """The onset over another key."""
+    columns = ((answer["over"], "value"), ("linear, SI", "formula"), ("nonlinear, SI", "nonlinear"),
+               ("with a floor, SI", "floored.nonlinear"))  # fmt: skip
+    return [(answer["curve"], columns)]
+
+
+def _verdict(answer, unit) -> list[str]:
     if "failed" in answer:
-        return [answer["failed"], *_curve_sentences(answer)]
+        return [answer["failed"]]
     lines = [
-        f"{answer['key']}: linear theory touches at {answer['formula']:.6g}, the nonlinear steady state at "
-        f"{answer['nonlinear']:.6g} (SI), {100 * (answer['ratio'] - 1):+.1f} %, at r = {answer['radius'] * 1e3:.4g} mm",
-        f"the seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset, "
-        "which postpones the touch",
+        f"The faces first touch at {answer['key']} = {answer['nonlinear']:.6g} {unit}, at r = "
+        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {answer['formula']:.6g}: "
+        f"{100 * (answer['ratio'] - 1):+.1f} %.",
+        f"The seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset.",
     ]
     if answer["multiplier"] > 1:
-        lines.append("the orbit at the onset is unstable: the seal leaves it before it touches")
+        lines[1] += "  The orbit there is unstable: the seal leaves it before it touches."
     floored = answer["floored"]
-    if floored and "failed" in floored:
-        lines.append(f"with a cavitation floor: {floored['failed']}")
-    elif floored:
+    if floored and "nonlinear" in floored:
         change = 100 * (floored["nonlinear"] / answer["nonlinear"] - 1)
         lines.append(
-            f"with the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
-            f"{floored['nonlinear']:.6g}, {change:+.2f} %"
+            f"With the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
+            f"{floored['nonlinear']:.6g} {unit}, {change:+.2f} %."
         )
-    return [*lines, *_curve_sentences(answer)]
-
-
-def _curve_sentences(answer) -> list[str]:
-    """How many points of the curve were found, and why the first one was not."""
-    curve, lines = answer["curve"], []
-    below = [row["floored"] for row in curve if "floored" in row]
-    for name, rows in (("curve", curve), ("floored curve", below)):
-        failed = [row["failed"] for row in rows if "failed" in row]
-        if rows:
-            why = f"; first failure: {failed[0]}" if failed else ""
-            lines.append(f"{name} over {answer['over']}: {len(rows) - len(failed)} of {len(rows)} points{why}")
     return lines

@@ -21,9 +21,9 @@ from ..analysis.whirl import (
     growth_rate,
     tipping_disturbance,
 )
-from ..dynamics import modes
 from ..dynamics.equilibrium import initially
 from ..scene.rings import ROTOR, STATOR
+from ..simulation.stability import critical_speed
 
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
@@ -55,7 +55,7 @@ def run(scenario, settings, tools) -> dict:
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
     pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
-    eigenvalue = modes.critical_speed(lambda w: model.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
+    eigenvalue = critical_speed(model)
     formula, why = by_formula(model)
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}

@@ -7,15 +7,14 @@ import numpy as np
 
 from ..dynamics.equilibrium import (
     ClosingForce,
-    closed_below,
     equilibria,
+    extent,
     film_stiffness,
     initially,
-    rise,
     settle,
     support_stiffness,
 )
-from ..films import film_module
+from ..films import film_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length
@@ -29,8 +28,6 @@ class Settings:
     """Clearances from `clearance_from` to `clearance_to` (default: a range that shows every equilibrium), `points`
     of the curve of opening force."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     clearance_from: Length | None = None
     clearance_to: Length | None = None
     points: int = 241
@@ -39,7 +36,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_module(scene.film.model, scene.film).opening_law(scene.film)
+    film, opening = scene.film, film_of(scene).opening_law(scene.film)
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
@@ -49,7 +46,7 @@ def run(scenario, settings, tools) -> dict:
     clearance = np.geomspace(low, high, max(3, settings.points))
     force = np.array([opening(c, inner, outer) for c in clearance])
     # Steps smaller than the distance to closed faces.
-    steps = 1e-4 * (clearance - closed_below(film))
+    steps = 1e-4 * (clearance - extent(film)[1])
     stiffness = np.array(
         [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
     )
@@ -86,8 +83,8 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
 
 def _range(film, roots, settings) -> tuple[float, float]:
     """Clearances to look at, (m): a decade around what was found, open faces only."""
-    least, drop = closed_below(film), rise(film)
-    found = [root.clearance for root in roots] or [film.clearance or max(drop, 1e-6)]
+    rise, least = extent(film)
+    found = [root.clearance for root in roots] or [film.clearance or max(rise, 1e-6)]
     least *= 1 + 1e-6
     low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10
     high = settings.clearance_to if settings.clearance_to is not None else max(found) * 10
@@ -98,23 +95,26 @@ def _range(film, roots, settings) -> tuple[float, float]:
     return float(low), float(high)
 
 
+def tables(answer) -> list:
+    """Every clearance of balance."""
+    columns = (("clearance, um", "clearance", 1e6), ("film stiffness, N/m", "stiffness"), ("stable", "stable"))
+    return [(answer["roots"], columns)]
+
+
 def _verdict(answer) -> list[str]:
-    low, high = answer["range"]
-    roots, stable = answer["roots"], [r for r in answer["roots"] if r["stable"]]
+    (low, high), roots, support = answer["range"], answer["roots"], answer["support_stiffness"]
+    stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
     said = [
+        f"Film and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} um; "
+        f"stable: {', '.join(stable) or 'none'}.",
         f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
         f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
-        f"{len(roots)} equilibrium clearance(s) from {low * 1e6:.4g} to {high * 1e6:.4g} um, {len(stable)} stable.",
     ]
-    for root in roots:
-        kind = "stable" if root["stable"] else "unstable"
-        words = f"{root['clearance'] * 1e6:.6g} um: {kind}, film stiffness {root['stiffness']:.5g} N/m"
-        if not root["stable"] and root["stiffness"] + answer["support_stiffness"] > 0:
-            words += f" (the support's {answer['support_stiffness']:.3g} N/m would hold it)"
-        said.append(words + ".")
-    if len(stable) > 1:
-        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
     if not roots:
         curve = answer["curve"]["opening_force"]
         said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
+    elif len(stable) > 1:
+        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
+    elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
+        said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
     return said

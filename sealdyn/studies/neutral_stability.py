@@ -26,6 +26,8 @@ DEFAULT = "adams"
 # What the critical-speed study does at the edges of its bracket, and how far below it the method must stay.
 EDGE, STUDY_TURNS, STUDY_ACCURACY, MARGIN = 2e-5, 200, 1e-7, 100.0
 MOST_CALLS = 600_000
+# Accuracy of the numbers that are told.
+TOLD = 1e-6
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
 units = {"resolved/rate": "1/s", "resolved/uncertainty": "1/s", "resolved/numerical_damping": "1/s"}
 
@@ -36,8 +38,6 @@ LINEAR = {"film.model": "linear"}
 class Settings:
     """`turns` of the neutral whirl and of the precession for every method; `accuracies` asked of each; `long`: turns
     that the default method precesses (0: not at all)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     turns: int = 60
     accuracies: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
@@ -55,20 +55,17 @@ def run(scenario, settings, tools) -> dict:
         why = str(error)
     if speed and free_model(linear, speed).unknowns.has_residual_form:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
+    every = [{"turns": settings.turns, "method": m, "accuracy": a} for m in METHODS for a in settings.accuracies]
     damping, resolved = [], None
     if speed:
-        points = [{"speed": speed, "turns": settings.turns, "method": m, "accuracy": a}
-                  for m in METHODS for a in settings.accuracies]  # fmt: skip
+        points = [{**point, "speed": speed} for point in every]
         damping = joined(points, tools.map(partial(damped, scenario.scene), points, "damping"))
         (resolved,) = tools.map(partial(resolution, scenario.scene), [{"speed": speed}], "resolution")
     drift, drift_why = [], ""
     try:
         free_ring(scenario.scene)
-        points = [{"turns": settings.turns, "method": m, "accuracy": a}
-                  for m in METHODS for a in settings.accuracies]  # fmt: skip
-        if settings.long:
-            points.append({"turns": settings.long, "method": DEFAULT, "accuracy": 1e-6})
-        drift = joined(points, tools.map(partial(drifted, scenario.scene), points, "drift"))
+        every += [{"turns": settings.long, "method": DEFAULT, "accuracy": TOLD}] if settings.long else []
+        drift = joined(every, tools.map(partial(drifted, scenario.scene), every, "drift"))
         if all("failed" in row for row in drift):
             drift, drift_why = [], drift[0]["failed"]
     except SceneError as error:
@@ -186,40 +183,36 @@ def drifted(scene, point: dict) -> dict:
 # --- in words ---------------------------------------------------------------------------------------------
 
 
+def tables(answer) -> list:
+    """What is each method's own at accuracy 1e-6, and the long precession."""
+    drift = [row for row in answer["drift"] if row["turns"] != answer["turns"] or row["accuracy"] == TOLD]
+    method, cost = ("method", "method"), ("right-hand sides per turn", "cost")
+    precession = (("turns", "turns"), ("energy drift per turn", "energy"), ("of angular momentum", "momentum"))
+    return [(_told(answer), (method, ("growth per turn", "growth"), cost)), (drift, (method, *precession, cost))]
+
+
+def _told(answer) -> list[dict]:
+    return [row for row in answer["damping"] if row.get("growth") is not None and row["accuracy"] == TOLD]
+
+
 def sentences(answer) -> list[str]:
     """The verdict."""
-    lines = []
+    lines, found, rows = [], answer["resolved"], _told(answer)
     if not answer["critical_speed"]:
-        lines.append(f"no numerical damping measured: {answer['reason']}")
+        lines.append(f"No numerical damping measured: {answer['reason']}.")
     else:
-        lines += [damping_sentence(answer), resolved_sentence(answer["resolved"])]
+        least, most = (f(rows, key=lambda row: abs(row["growth"]), default=None) for f in (min, max))
+        said = "no method kept to the bound on its cost"
+        if rows:
+            said = f"{least['growth']:+.1e} ({least['method']}) to {most['growth']:+.1e} ({most['method']})"
+        lines.append(f"Growth per turn that is the method's own at the threshold, {answer['critical_speed']:.5g} "
+                     f"rad/s, accuracy {TOLD:.0e}: {said}.")  # fmt: skip
+    if found and "failed" not in found:
+        verb = "stays" if found["ratio"] >= MARGIN else "does not stay"
+        lines.append(
+            f"The default method {verb} {MARGIN:.0f} times below what the critical-speed study resolves: "
+            f"{found['numerical_damping']:.1e} against {found['rate']:.2g} 1/s ({found['ratio']:.2g} times)."
+        )
     if answer["drift_reason"]:
-        return [*lines, f"no free precession: {answer['drift_reason']}"]
-    rows = [row for row in answer["drift"] if row.get("energy") is not None]
-    for row in rows:
-        if row["turns"] != answer["turns"]:
-            lines.append(
-                f"free precession by {row['method']} over {row['turns']} turns at accuracy {row['accuracy']:.0e}: "
-                f"energy drifts by {row['energy']:+.1e}, angular momentum by {row['momentum']:+.1e} a turn"
-            )
-    at = [row for row in rows if row["accuracy"] == 1e-6 and row["turns"] == answer["turns"]]
-    told = ", ".join(f"{row['method']} {row['energy']:+.1e}" for row in at)
-    return [*lines, f"energy drift a turn at accuracy 1e-6: {told}"] if told else lines
-
-
-def damping_sentence(answer) -> str:
-    rows = [row for row in answer["damping"] if row.get("growth") is not None and row["accuracy"] == 1e-6]
-    told = ", ".join(f"{r['method']} {r['growth']:+.1e} ({r['cost']:.0f} right-hand sides)" for r in rows)
-    speed = answer["critical_speed"]
-    return f"at the threshold, {speed:.5g} rad/s, growth per turn that is the method's own at accuracy 1e-6: {told}"
-
-
-def resolved_sentence(found) -> str:
-    if "failed" in found:
-        return f"what the critical-speed study resolves could not be measured: {found['failed']}"
-    verb = "stays" if found["ratio"] >= MARGIN else "does not stay"
-    return (
-        f"the default method's numerical damping {verb} {MARGIN:.0f} times below what the critical-speed study "
-        f"resolves: {found['numerical_damping']:.1e} against {found['rate']:.2g} 1/s at the edge of its bracket, "
-        f"{found['ratio']:.2g} times (accuracy {found['accuracy']:.1e}, {found['turns']} turns)"
-    )
+        lines.append(f"No free precession: {answer['drift_reason']}.")
+    return lines

@@ -11,8 +11,10 @@ from ..dynamics import modes
 from ..dynamics.equilibrium import initially
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.signals import signals
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
+from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
@@ -28,8 +30,6 @@ class Settings:
     period in the figure; `approach`: speeds, as parts of the critical speed, at which the cost is compared with a
     transient (empty: no comparison); `longest` transient tried, in periods."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     turns: int = 1
     samples: int = 256
     approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
@@ -42,32 +42,32 @@ def run(scenario, settings, tools) -> dict:
         shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
     except NoOrbit as reason:
         return _time_domain(scenario, str(reason))
+    linear = shooter.model.linear_scene()
+    critical, verdict = critical_speed(shooter.model), modes.verdict(linear.modes())
     try:
         orbit = shooter.find()
     except NoOrbit as reason:
-        return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None,
-                "verdict": [str(reason)]}  # fmt: skip
+        threshold = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
+        said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
+        return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None, "h_min": None,
+                "relative_misalignment": None, "critical_speed": critical, "near_threshold": [], "orbit": None,
+                "verdict": list(said)}  # fmt: skip
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)
-    linear = shooter.model.linear_scene()
     answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
     most, least, _ = modes.steady_extremes(linear, answers, shooter.period)
-    critical = modes.critical_speed(lambda w: shooter.model.linear_scene(speed=w), 10.0, 1e6)
-    rows = (
-        _near_threshold(scenario, settings, critical, tools)
-        if critical and not shooter.model.unknowns.has_residual_form
-        else []
-    )
-    extremes = orbit.extremes
+    rows = []
+    if critical and not shooter.model.unknowns.has_residual_form:
+        rows = _near_threshold(scenario, settings, critical, tools)
     answer = {
         "period": orbit.period,
         "multipliers": [[float(m.real), float(m.imag)] for m in orbit.multipliers],
         "stable": orbit.stable,
         "residual": orbit.residual,
         "periods_used": orbit.periods_used,
-        "h_min": extremes["h_min"],
-        "relative_misalignment": extremes["relative_misalignment"],
-        "linear": {"relative_max": most, "relative_min": least, "verdict": modes.verdict(linear.modes())},
+        "h_min": orbit.extremes["h_min"],
+        "relative_misalignment": orbit.extremes["relative_misalignment"],
+        "linear": {"relative_max": most, "relative_min": least, "verdict": verdict},
         "unknowns": shooter.model.unknowns.names,
         "start": {name: float(x) for name, x in zip(shooter.model.unknowns.names, orbit.start, strict=False)},
         "orbit": _waves(shooter, waves),
@@ -79,34 +79,29 @@ def run(scenario, settings, tools) -> dict:
 
 def _waves(shooter, waves) -> dict:
     """Relative tilt and h_min over one period, from the run's own signals."""
-    from ..dynamics.signals import signals
-
     columns = signals(shooter.model.segment(), waves["times"], waves["displacements"], waves["rates"])
     names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min", "shaft_angle")
     return {name: [float(x) for x in columns[name]] for name in names}
 
 
+def tables(answer) -> list:
+    """Cost of shooting and of waiting near the critical speed."""
+    columns = (("of critical speed", "part"), ("speed, rad/s", "speed"), ("periods by shooting", "shooting"),
+               ("by waiting (-: not within longest)", "transient"))  # fmt: skip
+    return [(answer["near_threshold"], columns)]
+
+
 def _verdict(answer) -> list[str]:
     size = max(math.hypot(*m) for m in answer["multipliers"])
-    tilt, low = answer["relative_misalignment"], answer["h_min"]
-    lines = [
-        f"the periodic steady state (period {answer['period']:.6g} s) is "
-        f"{'stable' if answer['stable'] else 'UNSTABLE'}: "
-        f"largest Floquet multiplier {size:.4g}",
-        f"relative misalignment {tilt['min'] * 1e6:.5g} to {tilt['max'] * 1e6:.5g} urad (linear: "
-        f"{answer['linear']['relative_min'] * 1e6:.5g} to {answer['linear']['relative_max'] * 1e6:.5g})",
-        f"h_min {low['value'] * 1e6:.5g} um, {low['of_clearance'] * 100:.4g} % of the clearance, at r = "
-        f"{low['radius'] * 1e3:.4g} mm",
-        f"found with {answer['periods_used']} periods of integration",
+    tilt, low, linear = answer["relative_misalignment"], answer["h_min"], answer["linear"]
+    kind = "stable" if answer["stable"] else "UNSTABLE"
+    return [
+        f"The periodic steady state (period {answer['period']:.6g} s) is {kind}, largest Floquet multiplier "
+        f"{size:.4g}; h_min {low['value'] * 1e6:.5g} um, {low['of_clearance'] * 100:.4g} % of the clearance.",
+        f"Relative misalignment {tilt['min'] * 1e6:.5g} to {tilt['max'] * 1e6:.5g} urad (linear: "
+        f"{linear['relative_min'] * 1e6:.5g} to {linear['relative_max'] * 1e6:.5g}); found with "
+        f"{answer['periods_used']} periods of integration.",
     ]
-    done = [row for row in answer["near_threshold"] if "failed" not in row]
-    if done:
-        last = done[-1]
-        waited = f"{last['transient']}" if last["transient"] else "more than was tried"
-        lines.append(
-            f"at {last['part']:g} of the critical speed: {last['shooting']} periods by shooting, {waited} by waiting"
-        )
-    return lines
 
 
 def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
@@ -169,8 +164,8 @@ def _time_domain(scenario, reason: str) -> dict:
         "near_threshold": [],
         "orbit": None,
         "verdict": [
-            f"{reason}: fell back to the time domain, {turns} turns, extremes of the second half",
-            f"h_min {record[0] * 1e6:.5g} um, relative misalignment {record[6] * 1e6:.5g} to "
-            f"{record[4] * 1e6:.5g} urad",
+            f"In time over {turns} turns, the second half: h_min {record[0] * 1e6:.5g} um, relative misalignment "
+            f"{record[6] * 1e6:.5g} to {record[4] * 1e6:.5g} urad.",
+            f"No period to shoot for: {reason}.",
         ],
     }

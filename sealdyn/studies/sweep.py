@@ -39,8 +39,6 @@ class Settings:
     """`vary`: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes
     that of its neighbours, none means SI; several make a grid.  `outputs`: dotted keys of the run's summary."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     vary: list[str] | str = ()
     outputs: list[str] | str = OUTPUTS
 
@@ -62,7 +60,7 @@ def run(scenario, settings, tools) -> dict:
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
     answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
-    return {**answer, "rows": rows, "verdict": sentences(keys, outputs, rows)}
+    return {**answer, "rows": rows, "verdict": sentences(keys, rows)}
 
 
 def one_run(scenario, point: dict) -> dict:
@@ -115,22 +113,23 @@ def unit_of(output: str) -> str:
     return UNITS.get(output) or UNITS.get(output.partition(".")[0]) or ""
 
 
-def sentences(keys, outputs, rows) -> list[str]:
-    """The verdict: how many ended how, and the range of each output."""
-    bad = [row for row in rows if "failed" in row]
-    said = [f"{len(rows)} points over {' and '.join(keys)}: "
-            + ", ".join(f"{n} {what}" for what, n in counted([r.get("status", "not possible") for r in rows]))
-            + "."]  # fmt: skip
-    if bad:
-        said.append(f"First failure: {bad[0]['failed']}")
-    for output in outputs:
-        values = [row[output] for row in rows if row.get(output) is not None]
-        if values and all(isinstance(v, int | float) for v in values):
-            said.append(f"{output}: {min(values):.5g} to {max(values):.5g} {unit_of(output)}".rstrip() + ".")
-        elif values:
-            said.append(f"{output}: " + ", ".join(f"{n} {what}" for what, n in counted(values)) + ".")
-    return said
+def sentences(keys, rows) -> list[str]:
+    """The verdict: how many points ended how."""
+    ends = counted([row.get("status", "not possible") for row in rows])
+    return [f"{len(rows)} points over {' and '.join(keys)}: {ends}."]
 
 
-def counted(words) -> list[tuple[str, int]]:
-    return [(word, words.count(word)) for word in dict.fromkeys(words)]
+def tables(answer) -> list:
+    """The range of each output, or how often it has which word."""
+    ranges = []
+    for output in answer["outputs"]:
+        values = [row[output] for row in answer["rows"] if row.get(output) is not None]
+        numbers = bool(values) and all(isinstance(v, int | float) for v in values)
+        ends = {"least": min(values), "largest": max(values)} if numbers else {"least": counted(values) or "none"}
+        ranges.append({"output": output, **ends, "unit": unit_of(output)})
+    return [(ranges, tuple((name, name) for name in ("output", "least", "largest", "unit")))]
+
+
+def counted(words) -> str:
+    """How often each word is there: "20 ok, 1 collapsed"."""
+    return ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(words))

@@ -18,7 +18,6 @@ from scipy.optimize import brentq
 
 from .. import closed_form as cf
 from ..analysis.arrangements import SEALS, Arrangement, seals_of
-from ..dynamics import modes
 from ..dynamics.extrema import MOST
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
@@ -27,6 +26,7 @@ from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import Scene
 from ..scene.variants import arrangement, frozen_at_start
 from ..simulation.method_selection import choose_method
+from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
@@ -286,7 +286,7 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
     if road == "time_domain" or (road == "formula" and not by_formula):
         return None
     if road == "linear_algebra":
-        return modes.critical_speed(seal.linear, 1.0, 1e6, 240)
+        return critical_speed(seal.model)
     numbers = seal.tilt_numbers(1.0)
     numbers.pop("speed")
     try:

@@ -24,7 +24,7 @@ def answers(law, points, coning, dz, tilt, r_i=R_I):
     f = geometry.face_parameters(Film(r_i, R_O, 5e-4, 6e5, 1e5, clearance=C0, coning=coning), C0)
     s = np.zeros(geometry.GAP_STATE_SIZE)
     s[geometry.DZ], s[geometry.GX] = dz, tilt
-    contact.contact_load_and_friction(contact.parameters(law, f, points), f, s)
+    contact.contact_load_and_friction(contact.lay_asperities(law, f, points), f, s)
     return np.array([s[geometry.CONTACT_FORCE], s[geometry.CONTACT_X] / R_O, s[geometry.CONTACT_ENERGY] / C])
 
 

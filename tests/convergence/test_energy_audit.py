@@ -80,7 +80,7 @@ def test_gyroscopic_moment_does_no_work():
 
 
 def test_works_against_an_integral_of_the_trajectory():
-    """Each work once more, by Simpson's rule over sampled states, from the formulas of the sheet."""
+    """Each work once more, by Simpson's rule over sampled states, from its formula written out here."""
     found = run(fmsr("linear"), turns=2, accuracy=1e-9, per_turn=4096)
     y = found.outcome.y
     damper = 0.0

@@ -10,13 +10,41 @@ from scipy.optimize import fsolve
 
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.closed_form import released_ring as rr
-from sealdyn.scene.rings import Support
-from sealdyn.scene.scene import SceneError
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Closing, Scene, SceneError
+from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.studies.sealing_number import quasi_static
 from sealdyn.studies.sealing_number import released as free
-from sealdyn.studies.sealing_number.released import film_on, ready_scene, released, ring_of, started, with_force_ratio
+from sealdyn.studies.sealing_number.released import film_on, released, ring_of, started, with_force_ratio
 
 RING = quasi_static.Ring(viscosity=2e-3, shaft_speed=300.0)
+
+
+def ready_scene(ring: quasi_static.Ring, misalignment=2.5e-3, mass=0.5, inertia_ratio=0.5,
+                support: Support | None = None, roughness=5e-8) -> Scene:  # fmt: skip
+    """The released ring as a scene of its own (SI): misaligned seat, ring of a given transverse over polar inertia,
+    free to tilt if no `support` is given, asperities to land on; friction of F_s/F_d = 2."""
+    inertia = 0.5 * mass * ring.mean_radius**2
+    rotor = Rotor(
+        mass=mass,
+        transverse_inertia=inertia,
+        polar_inertia=inertia / inertia_ratio,
+        support=support or Support(axial_stiffness=0.0, tilt_stiffness=0.0),
+        secondary_seal=SecondarySeal(radius=ring.mean_radius, line_friction=0.0),
+    )
+    bare = Scene(
+        shaft=Shaft(speed=ring.shaft_speed),
+        film=replace(ring.film(), clearance=None),
+        rotor=rotor,
+        stator=Stator(misalignment=misalignment),
+        closing=Closing(balance_ratio=1.0, spring_force=ring.spring_force),
+        contact=Contact(roughness=roughness, compressive_strength=3e8),
+    )
+    return with_force_ratio(bare, 2.0)
+
+
 SCENE = ready_scene(RING)
 
 

@@ -50,7 +50,7 @@ ROUGH = Contact(roughness=0.1e-6, compressive_strength=300e6, stator_wear_coeffi
 
 
 def test_a_rubbing_run_of_the_program(tmp_path):
-    """The energy balances, h_min is the sheet's formula, and faces touch at a radius of the profile."""
+    """The energy balances, h_min is the formula of a profiled face, and faces touch at a radius of the profile."""
     (tmp_path / "worn.toml").write_text(SCENARIO)
     result = simulate(read_scenario(tmp_path / "worn.toml"), tmp_path / "worn.h5")
     assert result.status == "ok" and result.summary["model"]["film"] == "profiled"

@@ -1,5 +1,7 @@
 """Just below and above the critical speed: growth or decay in time, at the rate the eigenvalues say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from oracles import tilt_roots
@@ -9,6 +11,7 @@ from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_criti
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import critical_speed, verdict
 from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.simulation import stability
 
 FILM = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)
 K_S, D_S = SUPPORT.tilt()
@@ -65,3 +68,15 @@ def test_critical_speed_by_eigenvalues(kind):
     found = critical_speed(lambda w: model.linear_scene(speed=w), 500.0, 2e4)
     # Growth within 1e-9 of the eigenvalue counts as none: so much the threshold may be off, over its slope.
     assert found == pytest.approx(CRITICAL[kind], rel=1e-8)
+
+
+@pytest.mark.parametrize("lighter", [1e-8, 1e-6, 1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("speed", [1.0, 1000.0, 1e5])
+def test_critical_speed_is_found_however_overdamped_the_ring(lighter, speed):
+    """A ring 1e8 times lighter decays at rates from 1.4e3 to 5e11 1/s: a thousandth of the fastest lies beyond the
+    threshold, 6e7 rad/s."""
+    seal = NUMBERS | {name: lighter * NUMBERS[name] for name in ("transverse_inertia", "polar_inertia")}
+    made = scene("fms", speed)
+    light = replace(made.stator, transverse_inertia=seal["transverse_inertia"], polar_inertia=seal["polar_inertia"])
+    found = stability.critical_speed(Model(replace(made, stator=light)))
+    assert found == pytest.approx(fms_critical_speed(**seal), rel=1e-6)

@@ -65,6 +65,7 @@ def test_two_floating_rings_have_no_formula(tmp_path):
     assert answer["time_domain"]["value"] == pytest.approx(answer["eigenvalue"], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_stator_tips_below_its_threshold(tmp_path):
     """Subcritical: what tips it is found by bisection in time, and the whirl it lingers at is the family's."""
     answer = study("fms_reference", tmp_path, speeds=1, turns=20)
@@ -80,6 +81,7 @@ def test_stator_tips_below_its_threshold(tmp_path):
     assert [r["fate"] for r in found["directions"] if r["start"] == "large"] == ["decays", "contact", "contact"]
 
 
+@pytest.mark.slow
 def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
     """Supercritical: small and large whirls end in the same bounded one, the family's, until it touches."""
     answer = study("fmr_reference", tmp_path, THREE, speeds=1, turns=20)

@@ -86,6 +86,13 @@ def test_a_seal_without_contact_table_is_refused(tmp_path):
     assert refused.value.key == "contact"
 
 
+@pytest.mark.parametrize("flags, key", [({"key": "rotor.runuot"}, "key"), ({"values": "1 um:2 um:3"}, "values")])
+def test_a_key_or_a_unit_that_cannot_be_is_refused(flags, key, tmp_path):
+    with pytest.raises(ScenarioError) as refused:
+        run_study("rub", read("rub"), tmp_path / "x.h5", flags=flags, workers=1)
+    assert refused.value.key == f"study.rub.{key}" and "\n" not in str(refused.value)
+
+
 def test_impulse_share_and_film_do_not_depend_on_sampling():
     """Impulse integrated with the motion against samples of the force; located contacts against the sampled film."""
     scene = continuation.frozen_at_end(read("rub_chaotic").scene)

@@ -123,6 +123,7 @@ def test_answer_states_limit_margin_and_confirms_in_time():
         assert point["time_domain"] == pytest.approx(point["growth_rate"], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_twin_sided_confirmation_of_a_nonlinear_film_and_two_rings():
     found = answer(FMSR, x="shaft.speed=4500:5700:7", y="inertia_ratio=0.5:0.6:2", confirm=2)
     assert [p["agrees"] for p in found["confirmed"]] == [True, True]

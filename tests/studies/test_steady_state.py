@@ -86,3 +86,15 @@ def test_incommensurate_forcing_falls_back_on_time(tmp_path):
     tilt = answer["relative_misalignment"]
     assert 3.35e-6 < tilt["max"] < 5.4e-6 and 0 <= tilt["min"] < tilt["max"]
     assert 0.97 < answer["h_min"]["of_clearance"] < 0.999
+
+
+def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
+    """Runout beyond touch: no orbit without contact, though the aligned seal is stable at this speed."""
+    values = ["rotor.runout=6 mrad", "run.start=steady"]
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", values)
+    answer = run_study("steady-state", scenario, tmp_path / "s.h5", workers=1)
+    assert answer["status"] == "failed" and answer["period"] == pytest.approx(2 * np.pi / 1000)
+    nothing = ("multipliers", "stable", "h_min", "relative_misalignment", "orbit")
+    assert [answer[name] for name in nothing] == [None] * 5 and answer["near_threshold"] == []
+    assert answer["critical_speed"] > 1000 and len(answer["verdict"]) <= 3
+    assert text_trouble(drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png"))[1] == []

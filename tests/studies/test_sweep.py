@@ -87,6 +87,8 @@ def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):
     good, bad = answer["rows"]
     assert good["h_min.value"] > 0 and "failed" not in good
     assert bad["film.coning"] == -9 and "[film] coning" in bad["failed"]
+    # The verdict says so too, once.
+    assert answer["message"].count(bad["failed"]) == 1
 
 
 def test_an_unknown_key_or_output_is_named(tmp_path):

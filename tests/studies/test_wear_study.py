@@ -394,6 +394,7 @@ def steps_of(journal):
     return [json.loads(line)["key"] for line in journal.read_text().splitlines()[1:]]
 
 
+@pytest.mark.slow
 def test_a_killed_study_goes_on_where_it_was(run_in, tmp_path, calls):
     """kill -9 in the middle: no finished step is taken again, and the answer is the same to the last digit."""
     out = tmp_path / "run_in.h5"

@@ -191,6 +191,14 @@ def test_a_chart_takes_unit_and_factor_from_the_archive(tmp_path, display, large
         assert max(ax.lines[0].get_ydata()) == pytest.approx(largest, rel=0.02)
 
 
+def test_values_that_differ_by_rounding_are_a_flat_line(tmp_path):
+    columns = whirling(samples=400)
+    flow = 1.2e-5 * (1 + 1e-9 * np.sin(np.arange(400)))
+    archive = write(tmp_path / "seal.h5", {**columns, "leakage_inner": flow, "leakage_outer": flow})
+    low, high = panel(drawn(overview, archive, tmp_path / "chart.png"), "Leakage").get_ylim()
+    assert low < 0.99 * 43200 and high > 1.01 * 43200
+
+
 def test_turns_count_through_wraps_blocks_and_changing_speed(tmp_path, monkeypatch):
     monkeypatch.setattr(record, "BLOCK", 100)
     for ramp in (0.0, 5e4):
@@ -330,5 +338,5 @@ def test_study_charts_are_legible(tmp_path, modules, name, overrides, settings):
     else:
         heights = [ax.get_position().y0 for ax in figure.axes[:5]]
         # Amplitudes above, the phases of the first two below them.
-        assert heights[0] == heights[2] == heights[4] > heights[1] == heights[3]
-        assert figure.axes[1].get_ylabel().endswith(", deg")
+        assert heights[0] == heights[1] == heights[2] > heights[3] == heights[4]
+        assert figure.axes[3].get_ylabel().endswith(", deg")

@@ -1,4 +1,4 @@
-"""Asperity contact against the sheet's law written out here and summed over a dense grid of the face."""
+"""Asperity contact against Christensen's law, written out here and summed over a dense grid of the face."""
 
 import mpmath
 import numpy as np
@@ -34,7 +34,7 @@ def face(coning=CONING, tilt_radius="local", shape="cylindrical", r_i=R_I):
 def rub(law, f, dz, g_x, g_y, spin=SPEED):
     s = np.full(geometry.GAP_STATE_SIZE, np.nan)
     s[: geometry.GY + 1], s[geometry.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
-    contact.contact_load_and_friction(contact.parameters(law, f), f, s)
+    contact.contact_load_and_friction(contact.lay_asperities(law, f), f, s)
     return {name: s[slot] for name, slot in SLOTS.items()}
 
 

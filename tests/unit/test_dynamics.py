@@ -1,4 +1,4 @@
-"""Equations of motion against the complex form of rings.md, written out here, at random states of all scenes."""
+"""Equations of motion against their complex form (Green 1989), written out here, at random states of all scenes."""
 
 from dataclasses import replace
 
@@ -50,7 +50,7 @@ def random_state(segment, seed):
 
 
 class Oracle:
-    """The sheet's equation in complex tilt: carriers, film wrench and accelerations at one instant."""
+    """Green's (1989) equation in complex tilt: carriers, film wrench and accelerations at one instant."""
 
     def __init__(self, scene, t, states):
         self.scene, self.t, self.states = scene, t, states

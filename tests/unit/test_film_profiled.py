@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scenes import CLEARANCE, R_I, R_O, SPEED, film
+from scenes import CLEARANCE, R_I, R_O, SPEED, film, fms
 from scipy.integrate import solve_ivp
 
 from sealdyn.faces import geometry
-from sealdyn.films import film_module, film_names
+from sealdyn.films import film_names, film_of
 from sealdyn.films.profiled import film as profiled
 from sealdyn.films.radial import film as radial
 from sealdyn.scene.film import Profile
@@ -205,5 +205,5 @@ def test_finite_and_smooth_below_the_floor(shape):
 def test_films_for_faces():
     """Of faces with a profile one film is left; "auto" takes it."""
     worn = film("auto", profile=Profile(*BENT["middle"]))
-    assert film_names(worn) == ["profiled"] and film_module("auto", worn) is profiled
-    assert "profiled" not in film_names(film()) and film_module("auto") is radial
+    assert film_names(worn) == ["profiled"] and film_of(fms(film=worn)) is profiled
+    assert "profiled" not in film_names(film()) and film_of(fms("auto")) is radial

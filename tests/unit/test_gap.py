@@ -18,7 +18,7 @@ def gap(dz=0.0, g_x=0.0, g_y=0.0):
 
 
 def thickness(r, theta, coning, dz, g_x, g_y, mean=False):
-    """Film between two rigid cones, from the sheet's formula."""
+    """Film between two rigid cones, from the formula of faces/geometry.py."""
     arm = 0.5 * (R_I + R_O) if mean else r
     return CLEARANCE + dz + coning * (r - R_I) + arm * (g_x * np.sin(theta) - g_y * np.cos(theta))
 

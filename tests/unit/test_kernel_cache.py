@@ -31,7 +31,11 @@ print(wide(1.0), sum(wide.stats.cache_misses.values()), len(kept_kernels()), pla
 WARM = (20.0, 0, 4, False)
 
 
-@pytest.fixture(params=["beside the sources", "where NUMBA_CACHE_DIR says", "in the user's folder", "nowhere"])
+PLACES = ["beside the sources", "where NUMBA_CACHE_DIR says"]
+PLACES += [pytest.param(place, marks=pytest.mark.slow) for place in ("in the user's folder", "nowhere")]
+
+
+@pytest.fixture(params=PLACES)
 def package(request, tmp_path):
     """A function that calls the kernel in a new process: result, kernels compiled, files kept, whether cleared."""
     root, user = tmp_path / "plain", tmp_path / "user"

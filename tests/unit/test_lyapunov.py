@@ -76,6 +76,7 @@ def test_damped_ring_has_its_least_damped_eigenvalue():
     assert two.spectrum.sum() == pytest.approx(np.trace(a) * time, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_lorenz_flow():
     """0.9056 per unit of time (Sprott 2003), and the sum of the three is the divergence -41/3."""
     one = two_trajectories(lorenz, [1.0, 2.0, 20.0], [10.0, 10.0, 10.0], 800, settle=40)

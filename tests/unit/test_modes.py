@@ -1,4 +1,4 @@
-"""Eigenvalues, whirl direction, verdict and critical speed against the complex equations of rings.md, solved here."""
+"""Eigenvalues, whirl direction, verdict, critical speed against the complex equations (Green 1989), solved here."""
 
 import math
 from dataclasses import replace

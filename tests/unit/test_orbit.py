@@ -15,7 +15,8 @@ from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring", "housing_vibration"]
+PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring"]
+PERIODIC += [pytest.param("housing_vibration", marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("scene", [fmr("linear"), fmr("linear", c=3.0), fms("linear"), fmsr("linear")])

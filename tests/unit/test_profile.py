@@ -51,13 +51,13 @@ def state(dz, g_x, g_y, spin=SPEED):
 
 def rub(f, at, law=LAW, points=None):
     s = state(*at)
-    contact.contact_load_and_friction(contact.parameters(law, f, points), f, s)
+    contact.contact_load_and_friction(contact.lay_asperities(law, f, points), f, s)
     return {name: s[slot] for name, slot in SLOTS.items()}
 
 
 def wear_integrals(f, at):
     out = np.full(int(f[geometry.PROFILE]), np.nan)
-    contact.wear_rates(contact.parameters(LAW, f), f, state(*at), out)
+    contact.wear_rates(contact.lay_asperities(LAW, f), f, state(*at), out)
     return out
 
 

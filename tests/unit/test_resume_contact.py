@@ -1,11 +1,14 @@
 """A run with contact and stick-slip, stopped and continued, is the run that was never stopped."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sealdyn.archive import column, read_info
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.stick_slip import StickSlip
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
 
@@ -30,3 +33,12 @@ def test_continued_as_if_never_stopped(tmp_path, stop_at):
     for name in ("h_min", "axial_gap_change"):
         ours, theirs = (column(result.archive, name) for result in (again, whole))
         assert np.max(np.abs(ours - theirs)) < 10 * scenario.run.accuracy * scale
+
+
+def test_a_ring_that_has_just_slipped_is_remembered_as_such():
+    """It may be captured again only once it has been fast: the archive's state says so."""
+    model = Model(read_scenario(RUB, SEAL).scene)
+    before, after = StickSlip(model), StickSlip(model)
+    before.leaving[0] = True
+    after.restore(json.loads(json.dumps(before.state())))
+    assert after.leaving == before.leaving and after.stuck == before.stuck

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario, unused_keys
+from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scenario.schema import json_schema
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -46,7 +46,7 @@ def test_reference_in_si():
     assert scenario.text == FMR and scenario.name == "seal"
     assert scenario.question.startswith("Does a flexibly mounted rotor")
     assert "rotor.support.radius" in scenario.given and "film.floor" not in scenario.given
-    assert unused_keys(scenario) == []
+    assert scenario.unused() == []
 
 
 def test_defaults_of_the_run():
@@ -60,7 +60,7 @@ def test_defaults_of_the_run():
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda p: p.stem)
 def test_shipped_scenarios_use_every_key_and_tell_their_question(path):
     scenario = read_scenario(path)
-    assert unused_keys(scenario) == []
+    assert scenario.unused() == []
     assert "?" in scenario.question and "Expected:" in scenario.question
     assert json.loads(json.dumps(scenario.resolved(), allow_nan=False))["shaft"]
 
@@ -240,10 +240,10 @@ def test_total_indicator_reading_is_across_the_face():
 def test_unused_keys():
     more = ["stator.mass=1", "rotor.runout=1e-6", 'film.coefficients="green"', "initial.stator.z=0"]
     expected = ["film.coefficients", "initial.stator.z", "rotor.runout", "stator.mass"]
-    assert unused_keys(parse(FMR, *more)) == expected
-    assert unused_keys(parse(FMS, "rotor.misalignment=1e-6")) == ["rotor.misalignment"]
+    assert parse(FMR, *more).unused() == expected
+    assert parse(FMS, "rotor.misalignment=1e-6").unused() == ["rotor.misalignment"]
     linear = parse(FMS, "film.model=linear", "film.coefficients=green", "film.geometry=planar")
-    assert unused_keys(linear) == ["film.geometry"]
+    assert linear.unused() == ["film.geometry"]
 
 
 def test_resolved_has_defaults_and_tables():

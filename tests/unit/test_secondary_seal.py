@@ -1,13 +1,19 @@
 """Friction of a secondary seal: the closed wrench against the circle integral, and the limit surface."""
 
 import math
+import re
+import typing
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scenes import fms, ring
 
+from sealdyn.analysis.poincare_map import PeriodMap
 from sealdyn.dynamics.secondary_seal import excess, sliding
+from sealdyn.scene.rings import Stator
+from sealdyn.scene.scene import SceneError
 from sealdyn.scene.secondary_seal import SecondarySeal, secondary_seal_errors
 
 LINE, RADIUS = 37.0, 0.045
@@ -87,3 +93,12 @@ def test_breakaway_of_force_and_moment():
 def test_faults_name_the_key(table, key):
     assert [fault[0] for fault in secondary_seal_errors(SecondarySeal(**table))] == [key]
     assert not secondary_seal_errors(SecondarySeal(radius=1.0, line_friction=1.0))
+
+
+def test_a_map_that_refuses_a_sticking_ring_names_a_law_that_there_is():
+    seal = SecondarySeal(radius=RADIUS, line_friction=LINE)
+    period_map = PeriodMap(fms(stator=Stator(**ring(secondary_seal=seal))))
+    with pytest.raises(SceneError) as refused:
+        period_map.step(np.zeros(period_map.size))
+    law = re.search('"(.*?)"', refused.value.expected)[1]
+    assert law in typing.get_args(typing.get_type_hints(SecondarySeal)["law"])

@@ -7,7 +7,7 @@ import pytest
 
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import axis, study_settings
+from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
 from sealdyn.studies import contact_onset, steady_state, sweep
 from sealdyn.studies.failures import study as failures
 from sealdyn.studies.rub import study as rub
@@ -74,3 +74,31 @@ def test_units_of_another_kind_are_not_converted(words):
     assert axis(f"film.outer_pressure={words}", "s", "w")["given"] == entries
     with pytest.raises(ScenarioError, match="units of one kind"):
         axis(f"film.outer_pressure={words.replace(', ', ':')}:3", "s", "w")
+
+
+@pytest.mark.parametrize(
+    "words, unit, found",
+    [
+        ("20 urad:40 urad:3", "rad", (2e-5, 3e-5, 4e-5)),
+        ("1 mrad", "rad", (1e-3,)),
+        ("1e-5, 2e-5", "rad", (1e-5, 2e-5)),
+        ("1 bar/s:100 bar/s:3:log", "Pa/s", (1e5, 1e6, 1e7)),
+    ],
+)
+def test_values_come_in_si(words, unit, found):
+    assert values_in_si(SCENARIO, words, unit, "study.rub.values") == pytest.approx(found, rel=1e-12)
+
+
+@pytest.mark.parametrize("words", ["10 um:20 um:3", "1 bar", "3 foo", "much", "1 foo:2 foo:3", "1 rad, 2 m"])
+def test_values_of_another_kind_are_refused(words):
+    with pytest.raises(ScenarioError) as refused:
+        values_in_si(SCENARIO, words, "rad", "study.rub.values")
+    assert refused.value.key == "study.rub.values" and words in refused.value.found
+
+
+def test_units_of_keys():
+    units = {"rotor.runout": "rad", "film.outer_pressure": "Pa", "stator.support.axial_stiffness": "N/m"}
+    assert {key: si_unit(SCENARIO.scene, key) for key in units} == units
+    for key in ("rotor.runuot", "rotar.runout", "runout", "film.model.x"):
+        with pytest.raises((AttributeError, KeyError)):
+            si_unit(SCENARIO.scene, key)

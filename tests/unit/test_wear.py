@@ -209,6 +209,7 @@ def test_no_step_changes_the_shape_by_more_than_allowed():
     assert changes.max() > 0.004 * ROUGH
 
 
+@pytest.mark.slow
 def test_allowed_also_holds_where_wear_hastens_wear():
     """Rates that grow with the depth: what a step will wear cannot be read off its start."""
     radius = radii()

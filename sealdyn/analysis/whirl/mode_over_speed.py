@@ -46,20 +46,20 @@ class ModeOverSpeed:
         return CubicSpline(self.speeds, self.factor)
 
     def growth(self, speed):
-        """Growth rate (1/s) at a speed."""
+        """Growth rate (1/s) at a speed (rad/s)."""
         return self._growth(speed)
 
     def frequency(self, speed):
-        """Whirl frequency (rad/s) at a speed, positive forward."""
+        """Whirl frequency (rad/s) at a speed (rad/s), positive forward."""
         return np.interp(speed, self.speeds, self.values.imag)
 
     def between(self, low, high):
-        """Integral of the growth rate over the speed (rad/s^2) from low to high: over the ramp rate it is the
-        logarithm of the growth."""
+        """Integral of the growth rate over the speed (rad/s^2) from low to high (rad/s): over the ramp rate (rad/s^2)
+        it is the logarithm of the growth."""
         return self._integral(high) - self._integral(low)
 
     def gained(self, low, high):
-        """Logarithm of the factor that depends on the speeds alone."""
+        """Logarithm of the factor that depends on the speeds alone, from low to high (rad/s)."""
         return self._factor(high) - self._factor(low)
 
 

@@ -46,7 +46,8 @@ def free_model(scene, speed: float, accuracy: float = 1e-8) -> Model:
 
 
 class RotatingWave:
-    """Circular whirls of one free model, its unknowns and scales at hand."""
+    """Circular whirls of one free model: its segment, `n` displacements and their `scales` (n,), the places of tilts
+    and axial displacements among them and their signs in the gap."""
 
     def __init__(self, model: Model):
         self.model, self.segment, self.n = model, model.segment(), model.unknowns.n
@@ -60,14 +61,15 @@ class RotatingWave:
         self.pace = model.reference_rate
 
     def turned(self, q) -> np.ndarray:
-        """Displacements turned by a quarter in the tilt planes, zero along the axis."""
+        """Displacements (n,) turned by a quarter in the tilt planes, zero along the axis."""
         out = np.zeros_like(q)
         for i in self.tilts:
             out[i], out[i + 1] = -q[i + 1], q[i]
         return out
 
     def state(self, q, frequency) -> np.ndarray:
-        """Unknowns of a circular whirl: rates are the tilts turned by a quarter, times the frequency (rad/s)."""
+        """Unknowns (size,) of a circular whirl of displacements `q` (n,): rates are the tilts turned by a quarter,
+        times the frequency (rad/s)."""
         return self.model.vector(q, frequency * self.turned(q))
 
     def relative(self, q):
@@ -75,11 +77,11 @@ class RotatingWave:
         return sum(s * (q[i] + 1j * q[i + 1]) for s, i in zip(self.signs, self.tilts, strict=True))
 
     def opening(self, q) -> float:
-        """How much wider the axial gap is than at rest (m)."""
+        """How much wider the axial gap is (m) than the clearance, of displacements (n,)."""
         return float(sum(s * q[i] for s, i in zip(self.axial_signs, self.axial, strict=True)))
 
     def least_film(self, q) -> float:
-        """Smallest film thickness over the face (m)."""
+        """Smallest film thickness over the face (m) of displacements (n,)."""
         return float(smallest_gap(self.model.face, self.opening(q), abs(self.relative(q)))[0])
 
     def _accelerations(self, y, speed):
@@ -93,12 +95,13 @@ class RotatingWave:
         q, frequency, speed = x[: self.n] * self.scales, x[-2] * self.pace, x[-1] * self.pace
         yp = self._accelerations(self.state(q, frequency), speed)
         wanted = frequency**2 * self.turned(self.turned(q))
-        left = (yp[self.places] - wanted) / (self.scales * self.pace**2)
-        fault = (self.relative(q) - amplitude) / self.scales[self.tilts[0]]
-        return np.concatenate([left, [fault.real, fault.imag]])
+        rest = (yp[self.places] - wanted) / (self.scales * self.pace**2)
+        condition = (self.relative(q) - amplitude) / self.scales[self.tilts[0]]
+        return np.concatenate([rest, [condition.real, condition.imag]])
 
     def solve(self, amplitude: float, guess) -> Whirl | None:
-        """The whirl of a relative amplitude (rad) near `guess` = (q, frequency, speed); None if there is none."""
+        """The whirl of a relative amplitude (rad) near `guess` = (q (n,), frequency (rad/s), speed (rad/s)); None if
+        there is none."""
         q, frequency, speed = guess
         x = np.concatenate([q / self.scales, [frequency / self.pace, speed / self.pace]])
         found = root(self._unbalance, x, args=(amplitude,), tol=1e-13)
@@ -130,15 +133,15 @@ class RotatingWave:
         return float(np.max(np.delete(values, np.argmin(np.abs(values))).real))
 
     def onset(self, speed: float):
-        """Guess at zero amplitude: shape (relative tilt 1) and frequency of the least damped tilt mode at the
-        threshold `speed` (rad/s)."""
+        """Guess (q, frequency, speed) at zero amplitude: shape (n,) (relative tilt 1) and frequency (rad/s) of the
+        least damped tilt mode at the threshold `speed` (rad/s)."""
         frequency, shape = least_damped(self.model, speed)
         return np.array(shape), frequency, speed
 
 
 def least_damped(model: Model, speed: float):
     """Whirl frequency (rad/s, positive forward) and shape of the least damped tilt mode at a speed (rad/s): the
-    displacements (n,) of a circular whirl whose relative tilt is 1 along xi."""
+    displacements (n,) of a circular whirl whose relative tilt is 1 along the x axis."""
     linear = model.linear_scene(speed=speed)
     values, shapes = linear.eigen()
     tilting = [k for k in range(len(values)) if np.linalg.norm(shapes[0::3, k]) < 0.02 * np.linalg.norm(shapes[:, k])]
@@ -161,19 +164,19 @@ def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
 
     The last one has its film at the floor, unless the family ends before (a fold in the amplitude).
     """
-    whirling = RotatingWave(model)
-    shape, frequency, speed = whirling.onset(threshold)
+    wave = RotatingWave(model)
+    shape, frequency, speed = wave.onset(threshold)
     floor = model.face[4]
     touching = contact_tilt_aligned(model)
     found, amplitude, step = [], 0.0, touching / steps
     while len(found) < 6 * steps and step > 1e-4 * touching:
         guess = _ahead(found, amplitude + step) if found else (shape * step, frequency, speed)
-        whirl = whirling.solve(amplitude + step, guess)
+        whirl = wave.solve(amplitude + step, guess)
         if whirl is None:
             step /= 2
             continue
         if whirl.h_min < floor:
-            return [*found, _at_contact(whirling, found, whirl, floor)]
+            return [*found, _at_contact(wave, found, whirl, floor)]
         found.append(whirl)
         amplitude += step
     return found
@@ -196,13 +199,13 @@ def _ahead(found, amplitude):
     return tuple(getattr(last, n) + t * (getattr(last, n) - getattr(found[-2], n)) for n in ("q", "frequency", "speed"))
 
 
-def _at_contact(whirling, found, beyond, floor):
+def _at_contact(wave, found, beyond, floor):
     """The whirl between the last one found and one beyond contact whose film is at the floor."""
     last = found[-1]
     kept = {}
 
     def excess(amplitude):
-        kept[amplitude] = whirling.solve(amplitude, (last.q * amplitude / last.amplitude, last.frequency, last.speed))
+        kept[amplitude] = wave.solve(amplitude, (last.q * amplitude / last.amplitude, last.frequency, last.speed))
         return kept[amplitude].h_min - floor
 
     low = last.amplitude

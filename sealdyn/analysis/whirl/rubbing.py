@@ -14,21 +14,23 @@ SMALL, STEADY = 0.02, 1e-3
 
 
 def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> dict:
-    """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", or
-    "unsettled" after `most` turns.
+    """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", "failed",
+    or "unsettled" after `most` turns.
 
-    `amplitude` (least and largest relative tilt, rad), `whirl_ratio`, `contact_share` of the time, `contact_force` over
-    the closing force, `contact_power` and `friction_power` (W) over the last turns; `first_contact` and `turns`.
+    Returns `speed`, `fate` (`message` if the run ended early), `from` (rad) it starts, `first_contact` and `turns`
+    (turns of the shaft), `amplitudes` (largest relative tilt of each turn, rad), and over the last turns `amplitude`
+    (least and largest relative tilt, rad), `whirl_ratio`, `contact_share` of the time, `contact_force` over the closing
+    force, `contact_power` and `friction_power` (W), `h_min` (m).
     """
     model = free_model(scene, speed)
-    unit, whirling = contact_tilt_aligned(model), RotatingWave(model)
+    unit, wave = contact_tilt_aligned(model), RotatingWave(model)
     frequency, shape = least_damped(model, speed)
-    stroboscope = PeriodMap(unforced(scene, speed), accuracy)
-    x = whirling.state(SMALL * unit * shape, frequency)[: stroboscope.size]
+    period_map = PeriodMap(unforced(scene, speed), accuracy)
+    x = wave.state(SMALL * unit * shape, frequency)[: period_map.size]
     row = {"speed": float(speed), "fate": "unsettled", "first_contact": None, "from": SMALL * unit}
     done, before, sizes = 0, None, []
     while done < most:
-        turns = stroboscope.run(x, PIECE)
+        turns = period_map.run(x, PIECE)
         x, size = turns.last, np.abs(turns.tilt)
         if len(size):
             sizes += np.max(size, axis=1).tolist()
@@ -55,10 +57,10 @@ def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> di
     # A chaotic or modulated rub never repeats: it has settled if it neither left nor died.
     if row["fate"] == "unsettled" and turns.touching.any():
         row["fate"] = "rub"
-    return row | {"turns": done, "amplitudes": sizes} | _late(turns, stroboscope, speed)
+    return row | {"turns": done, "amplitudes": sizes} | _late(turns, period_map, speed)
 
 
-def _late(turns, stroboscope, speed) -> dict:
+def _late(turns, period_map, speed) -> dict:
     """Averages over the late half of the last piece."""
     half = slice(len(turns.section) // 2, None)
     tilt = turns.tilt[half].ravel()
@@ -68,9 +70,9 @@ def _late(turns, stroboscope, speed) -> dict:
     per_sample = np.polyfit(np.arange(len(angle)), angle, 1)[0] * turns.tilt.shape[1] / (2 * math.pi)
     return {
         "amplitude": [float(np.abs(tilt).min()), float(np.abs(tilt).max())],
-        "whirl_ratio": float(per_sample / stroboscope.turns_per_period * np.sign(speed)),
+        "whirl_ratio": float(per_sample / period_map.turns_per_period * np.sign(speed)),
         "contact_share": float(turns.touching[half].mean()),
-        "contact_force": float(turns.contact_force[half].mean() / stroboscope.model.closing_force()),
+        "contact_force": float(turns.contact_force[half].mean() / period_map.model.closing_force()),
         "contact_power": float(turns.contact_power[half].mean()),
         "friction_power": float(turns.friction_power[half].mean()),
         "h_min": float(turns.lowest[half].min()),

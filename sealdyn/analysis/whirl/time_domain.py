@@ -17,37 +17,41 @@ TIGHTER = 1 / 30
 
 
 class Until(Recorder):
-    """Records displacements, and ends the run once the relative tilt falls below `least` (rad)."""
+    """Records displacements every `interval` (s), and ends the run once the relative tilt falls below `least` (rad)."""
 
-    def __init__(self, whirling, interval, least=0.0):
+    def __init__(self, wave, interval, least=0.0):
         super().__init__(interval)
-        self.whirling, self.least = whirling, least
+        self.wave, self.least = wave, least
 
     def state(self, segment, tau, y):
-        if abs(self.whirling.relative(y[: self.whirling.n])) < self.least:
+        """Raises KeyboardInterrupt, which ends the run, where the tilt of the unknowns `y` (size,) is below
+        the least."""
+        if abs(self.wave.relative(y[: self.wave.n])) < self.least:
             raise KeyboardInterrupt
 
 
 def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=math.inf):
-    """Relative tilt in time from a start `(q, frequency)`, or the least damped mode at relative tilt `start` (rad);
-    ends when it falls below `least` (rad), kept at least every `interval` (s).
-    Returns (outcome, times (m,), relative tilt (m,) complex, run)."""
+    """Relative tilt in time over `turns` of the shaft at a speed (rad/s), from a start `(q (n,), frequency (rad/s))`,
+    or the least damped mode at relative tilt `start` (rad); ends when it falls below `least` (rad), kept at least every
+    `interval` (s).
+    Returns (outcome, times (m,) (s), relative tilt (m,) (rad, complex), run)."""
     turn = 2 * math.pi / abs(speed)
     run = RunState(free_model(scene, speed, accuracy), turns * turn)
     model = run.model
-    whirling = RotatingWave(model)
+    wave = RotatingWave(model)
     if isinstance(start, float):
         frequency, shape = least_damped(model, speed)
         start = (start * shape, frequency)
-    run.y0 = whirling.state(*start)
-    sink = Until(whirling, min(turn / PER_TURN, interval), least)
+    run.y0 = wave.state(*start)
+    sink = Until(wave, min(turn / PER_TURN, interval), least)
     outcome = solve(run, method, accuracy, sink)
     t, q, _ = sink.arrays()
-    return outcome, t, whirling.relative(q.T), run
+    return outcome, t, wave.relative(q.T), run
 
 
 def fitted(t, tilt) -> tuple[float, float]:
-    """Growth rate (1/s) of |tilt| over the last three quarters, and how far its two halves differ from it."""
+    """Growth rate (1/s) of |tilt| (m,) over the last three quarters of the times `t` (m,) (s), and how far its two
+    halves differ from it."""
     late = t > 0.25 * t[-1]
     t, size = t[late], np.log(np.abs(tilt[late]))
     half = len(t) // 2
@@ -57,12 +61,12 @@ def fitted(t, tilt) -> tuple[float, float]:
 
 
 def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
-    """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until method and fit cannot
-    decide its sign.
+    """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until its uncertainty is a tenth of
+    it or the method can do no better.
 
-    `numerical_damping` bounds the method's own share: the change on tightening by thirty, or what the asked accuracy
-    lets pass, whichever is more; `uncertainty` adds the fit's
-    spread; `decided` whether the rate is three times that; `eigenvalue` the linear rate, for comparison only.
+    `rate`; `numerical_damping` (1/s) bounds the method's own share: the change on tightening by thirty, or what the
+    asked accuracy lets pass, whichever is more; `uncertainty` (1/s) adds the fit's spread; `decided` whether the rate
+    is three times that; `eigenvalue` (1/s) the linear rate, for comparison only; `accuracy` reached.
     """
     model = free_model(scene, speed)
     values = [m.value.real for m in model.linear_scene().modes() if m.kind == "tilt"]
@@ -101,9 +105,10 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
 
 def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns: int = 4000) -> dict:
     """Smallest circular whirl in the shape of the least damped mode (gap not opened) that grows to contact, by
-    bisection between decay and contact; and the whirl both last runs linger at before they part.
+    bisection between decay and contact; and the whirl both last runs linger at before they part.  `speed` in rad/s.
 
     `disturbance`, `whirl`: relative tilts (rad); `frequency` of that whirl (rad/s); `apart` its uncertainty (rad).
+    Where none or any tips it both are None, and `said` tells which.
     """
     unit = contact_tilt_aligned(free_model(scene, speed))
     low, high, runs = 0.0, 0.985 * unit, {}
@@ -134,9 +139,10 @@ def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns:
 
 
 def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000) -> dict:
-    """What becomes of a whirl at a speed: "decays", "bounded" (with its amplitude `whirl`, rad) or "contact".
+    """What becomes of a whirl at a speed (rad/s): `fate` "decays", "bounded" (with its amplitude `whirl` and `drift`,
+    rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` of the shaft run.
 
-    `start` "small" (a tenth of contact) or "large" (displacements `shape`, turning at `frequency`).
+    `start` "small" (a tenth of contact) or "large" (displacements `shape` (n,), turning at `frequency`, rad/s).
     """
     model = free_model(scene, speed)
     unit = contact_tilt_aligned(model)

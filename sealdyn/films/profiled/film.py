@@ -1,6 +1,6 @@
 """Radial film between faces of any profile: Reynolds' equation solved exactly over the radius at every angle.
 
-**Source** the moment integrals of the radial film (radial.py),
+**Source** the moment integrals of the radial film (films/radial/film.py),
 
     r h^3 p' = 12 mu (Phi + c),   Phi = integral of f r dr,   f = dh/dt + wm dh/dtheta
 

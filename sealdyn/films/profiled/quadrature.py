@@ -1,8 +1,8 @@
 """Points over the radius of faces with a profile: the gap is linear in r between its radii, piece by piece.
 
-Gauss points in r where a piece's film ratio is small, as it is for many pieces: all that depends on the radius alone
-is then known before the circle is walked.  Where that would take too many, points in the rational stand-in for ln h
-of the radial film (radial.py).  Each piece has the shortest rule that serves it at the thinnest and at the thickest
+Gauss points in r where a piece's film ratio is small, as it is for many pieces: all that depends on the radius alone is
+then known before the circle is walked.  Where that would take too many, points in the rational stand-in for ln h of the
+radial film (films/radial/film.py).  Each piece has the shortest rule that serves it at the thinnest and at the thickest
 angle.
 """
 
@@ -44,8 +44,8 @@ CHEAPER = 4
 # ln of the film ratios at which points in r are tried.
 TRIED = np.linspace(0.0, 3.5, 351)
 
-# Rows of the nodes: distance from r_i, arm of the tilt, film of the aligned faces, film at this angle (m).
-D, ARM, ALIGNED, HERE = range(4)
+# Rows of the nodes: distance from r_i, arm of the tilt, film of the aligned faces (m).
+D, ARM, ALIGNED = range(3)
 # Rows of the pieces (between a node and the next): index of the rule, whether its points are in r, its first point.
 RULE, IN_R, FIRST = range(3)
 # Rows of the points: radius, integrals of 1 and of the arm (r dr; planar: dr), arm and film of the aligned faces,
@@ -56,8 +56,8 @@ TABLE = 8
 
 @lru_cache(maxsize=64)
 def plain_ratios(radius_ratio: float, error: float) -> tuple[float, ...]:
-    """Largest film ratio (or its inverse) that each rule serves with points in r at this error, 0 if none; found by
-    trying.  `radius_ratio` of the widest piece."""
+    """Largest film ratio (or its inverse) that each rule (rules,) serves with points in r at this relative error, 0 if
+    none; found by trying.  `radius_ratio` inner over outer radius of the widest piece."""
     q = np.exp(np.concatenate([TRIED, -TRIED]))[:, None]
 
     def moments(n):
@@ -77,9 +77,9 @@ def plain_ratios(radius_ratio: float, error: float) -> tuple[float, ...]:
 
 @njit(cache=True)
 def nodes_of(f, dz):
-    """The radii of the profile: rows named above, (4, radii)."""
+    """The radii of the profile: rows named above (m), (3, radii); `dz` change of the axial gap (m)."""
     r_i, count, mean = f[INNER_RADIUS], int(f[PROFILE]), f[TILT_AT_MEAN] != 0.0
-    nodes = np.empty((4, count))
+    nodes = np.empty((3, count))
     for n in range(count):
         r = f[PROFILE_RADII + n]
         nodes[D, n], nodes[ARM, n] = r - r_i, 0.5 * (r_i + f[OUTER_RADIUS]) if mean else r
@@ -90,7 +90,7 @@ def nodes_of(f, dz):
 @njit(cache=True)
 def pieces_of(f, nodes, tilt):
     """The pieces: rows named above, (3, pieces); the number of points and of angles, and whether any film is below the
-    floor."""
+    floor.  `nodes` (3, radii), `tilt` (rad)."""
     floor, room, low, total = f[FLOOR], 1e9, False, 0
     pieces = np.zeros((3, nodes.shape[1] - 1), np.int64)
     last_thin = last_thick = 0.0
@@ -115,7 +115,7 @@ def pieces_of(f, nodes, tilt):
 
 @njit(cache=True)
 def rule_at(f, rule):
-    """Points and weights on [-1, 1] of a rule."""
+    """Points and weights, each (points,), on [-1, 1] of a rule (index); `f` the film's block."""
     slot = RULES + RULE_SIZE * rule
     points, weights = int(f[slot]), slot + 2 + RADIAL_POINTS[-1]
     return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
@@ -123,7 +123,8 @@ def rule_at(f, rule):
 
 @njit(cache=True, error_model="numpy")
 def phi(d, r_i, r_m, mean, planar):
-    """Integrals of 1 and of the tilt's arm from r_i to r_i + d, over r dr (planar: dr)."""
+    """Integrals of 1 and of the tilt's arm from r_i to r_i + d (m), over r dr (m^2, m^3; planar: over dr, m, m^2);
+    `mean`: the arm is r_m everywhere."""
     if planar:
         phi_0, phi_1 = d, d * (r_i + 0.5 * d)
     else:
@@ -133,7 +134,8 @@ def phi(d, r_i, r_m, mean, planar):
 
 @njit(cache=True, error_model="numpy")
 def lay_in_r(f, nodes, pieces, table):
-    """Fill what does not depend on the angle, for the pieces with points in r; the others get a film of 1."""
+    """Fill the rows of `table` (TABLE, points) that do not depend on the angle, for the pieces with points in r; the
+    others get a film of 1."""
     r_i, r_m, mean, planar = f[INNER_RADIUS], 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]), f[TILT_AT_MEAN], f[PLANAR]
     table[POINT_ALIGNED], table[POINT_ARM], table[UNIT] = 1.0, 0.0, 1.0
     for n in range(pieces.shape[1]):
@@ -179,7 +181,8 @@ def _films(table, tilt_cos):
 
 @njit(cache=True, error_model="numpy")
 def at_angle(f, nodes, pieces, table, tilt_cos, low):
-    """Film and weight over its cube at every point, at one angle; `low`: some films are below the floor."""
+    """Film (m) and weight over its cube at every point of `table` (TABLE, points), at one angle: `tilt_cos` (rad) the
+    tilt times cos(beta); `low`: some films are below the floor."""
     _films(table, tilt_cos)
     r_i, r_m, mean, planar = f[INNER_RADIUS], 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]), f[TILT_AT_MEAN], f[PLANAR]
     for n in range(pieces.shape[1]):
@@ -199,7 +202,8 @@ def at_angle(f, nodes, pieces, table, tilt_cos, low):
 
 @njit(cache=True, error_model="numpy")
 def sums(table, z_rate, even):
-    """Over a radius, of weight over h^3: times 1, Phi's even and Phi's odd part; the three with r^2; with r^3."""
+    """Nine integrals over a radius, of weight over h^3: times 1, Phi's even and Phi's odd part; the three with r^2;
+    with r^3.  `z_rate` (m/s) and `even` (rad/s) make Phi's even part."""
     a0 = ae = a1 = b0 = be = b1 = c0 = ce = c1 = 0.0
     for k in range(table.shape[1]):
         a, r, phi_1 = table[A, k], table[R, k], table[PHI_1, k]
@@ -220,7 +224,7 @@ def sums(table, z_rate, even):
 
 @njit(cache=True, error_model="numpy")
 def drag(table, planar):
-    """Integral of r^3 / h over a radius."""
+    """Integral of r^3 / h (m^3) over a radius."""
     total = 0.0
     for k in range(table.shape[1]):
         r, h = table[R, k], table[H, k]

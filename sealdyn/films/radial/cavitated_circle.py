@@ -280,13 +280,14 @@ def _refine(panels, count, turn, f, s, x_k, w_k):
 
 @njit(cache=True)
 def cavitated_circle(f, s):
-    """Force and moments with the pressure floored at the cavitation pressure after solving (half-Sommerfeld), into
-    the gap state; returns whether anything is dry, and the torque (N m) of the pressure on the film's slope.
+    """Force (N) and moments (N m) with the pressure floored at the cavitation pressure after solving (half-Sommerfeld,
+    or Guembel, condition), into the gap state; returns whether anything is dry, and the torque (N m) of the pressure on
+    the film's slope.
     If nothing is dry nothing is done: the film is the full one.
 
     **Source** Ludwig & Allen, NASA TN D-8102 (1976), who drop the sub-ambient half of the film.
-    **Valid** as an estimate only: it does not conserve mass.  The quadrature's error is estimated panel by panel
-    and the worst panel halved until the error is what was asked for, up to MOST_PANELS.
+    **Valid** as an estimate only: it does not conserve mass.  The quadrature's error is estimated panel by panel and
+    the worst panel halved until the error is what was asked for, up to MOST_PANELS.
     """
     tilt, c_a, s_a, turn, rule = _edges(f, s)
     points = int(f[rule])

@@ -57,8 +57,8 @@ def _turns(q0, q, turn, width):
 
 @njit(cache=True)
 def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav):
-    """What of a line is dry (bits), and three numbers that change sign where that changes: at the inner edge, at
-    the outer, and the least pressure above the floor."""
+    """What of a line is dry (bits), and three numbers that change sign where that changes: at the inner edge, at the
+    outer, and the least pressure above the floor (Pa).  Arguments as `cavitated_line`."""
     width, per = r_o - r_i, 12.0 * mu
     q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
     p_0, _, _, e_0, _, _ = line_sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
@@ -134,9 +134,10 @@ def _crossing(q0, q, line, a, b, p_a, p_b, wet_from, x_k, w_k):
 
 @njit(cache=True)
 def cavitated_line(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav):
-    """Load `int max(p - p_cav, 0) r dr` (N/rad), moment `int max(p - p_cav, 0) r^2 dr` (N m/rad) and the share
-    of the face width that is wet, for one angle.  Thickness linear from h_i to h_o (m), thickening rate
-    `z_rate + tilt_rate r` (m/s).  The load is split at the cavity's edges, so no quadrature meets a kink."""
+    """Load `int max(p - p_cav, 0) r dr` (N/rad), moment `int max(p - p_cav, 0) r^2 dr` (N m/rad) and the share of the
+    face width that is wet, for one angle.  Thickness linear from h_i to h_o (m), thickening rate `z_rate + tilt_rate r`
+    (m/s; `mean`: at the mean radius); `x_k`, `w_k` (points,) a Gauss rule on [-1, 1]; `mu` (Pa s), pressures in Pa.
+    The load is split at the cavity's edges, so no quadrature meets a kink."""
     width, per = r_o - r_i, 12.0 * mu
     q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
     p_0, p_2, p_3, e_0, e_2, e_3 = line_sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)

@@ -2,45 +2,39 @@
 
 import numpy as np
 
-from .page import absent, header, look, save, sheet
+from .page import absent, look, once, run_page, save
 from .palette import CONTACT, GREY, MARK, RING, TILT
 from .record import BLOCK, Run
 
 DIRECTIONS = 72
 
 
+@look()
 def draw(archive_path, out_path, turns: float = 8.0):
     """The orbit of the last `turns` turns of the shaft, inside the reach of the whole run."""
     run = Run(archive_path)
-    rings = [ring for ring in ("stator", "rotor") if run.has(f"{ring}_tilt_x", f"{ring}_tilt_y")]
-    with look():
-        figure = sheet(11.5, 6.4)
-        header(figure, run)
-        left, right = figure.add_axes((0.07, 0.09, 0.4, 0.70)), figure.add_axes((0.57, 0.09, 0.4, 0.70))
-        panel(left, run, turns=turns)
-        tilts = [(f"{ring}_tilt", RING[ring], ring) for ring in rings]
-        panel(right, run, tilts, "Tilt of each ring", turns, contact=False)
-        return save(figure, out_path)
+    figure, ax = run_page(run, 11.5, 6.4, [["relative", "rings"]])
+    panel(ax["relative"], run, turns=turns)
+    rings = [(f"{ring}_tilt", colour, ring) for ring, colour in RING.items()]
+    panel(ax["rings"], run, rings, "Tilt of each ring", turns, contact=False)
+    return save(figure, out_path)
 
 
 def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", turns=8.0, contact=True):
     """Draws orbits of the complex tilts `(series prefix, colour, label)`; default the relative one."""
-    tilts = [("relative_tilt", TILT, None)] if tilts is None else tilts
-    tilts = [tilt for tilt in tilts if run.has(f"{tilt[0]}_x", f"{tilt[0]}_y")]
+    tilts = [tilt for tilt in tilts or [("relative_tilt", TILT, None)] if run.has(f"{tilt[0]}_x", f"{tilt[0]}_y")]
     if not tilts:
-        absent(ax, title)
-        return
+        return absent(ax, title)
     hulls = [hull(run, prefix) for prefix, _, _ in tilts]
     whole = max(np.hypot(*outer).max() for outer in hulls)
     if not whole > 0:
-        absent(ax, title, "faces aligned throughout")
-        return
+        return absent(ax, title, "faces aligned throughout")
     unit, per = run.shown(f"{tilts[0][0]}_x")
     first = run.last(turns)
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
-            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=_once(ax, f"whole run: to {whole:.3g} {unit}"))
+            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=once(ax, f"whole run: to {whole:.3g} {unit}"))
         x, y = (per * run.values(f"{prefix}_{axis}", first) for axis in "xy")
         ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
         mark_turns(ax, run, first, x, y)
@@ -54,11 +48,6 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     ax.set(xlim=(-limit, limit), ylim=(-limit, limit * 1.3), aspect="equal", title=title)
     ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
     ax.legend(loc="upper left", ncols=2, borderaxespad=0.1, handlelength=1.4, columnspacing=1.0)
-
-
-def _once(ax, label: str) -> str:
-    """`label` the first time, then nothing, so that a legend names it once."""
-    return "_" if label in ax.get_legend_handles_labels()[1] else label
 
 
 def window(run: Run, first: int) -> str:
@@ -91,7 +80,7 @@ def mark_turns(ax, run: Run, first: int, x, y) -> None:
     phase = run.turns[first:] + run.values("shaft_angle", 0, 1)[0] / (2 * np.pi)
     whole = np.arange(np.ceil(phase[0]), np.floor(phase[-1]) + 1)[-200:]
     x, y = np.interp(whole, phase, x), np.interp(whole, phase, y)
-    ax.plot(x, y, "o", ms=3.2, color=MARK, label=_once(ax, "once per turn"))
+    ax.plot(x, y, "o", ms=3.2, color=MARK, label=once(ax, "once per turn"))
 
 
 def contact_circle(ax, radius: float, reach: float) -> float:

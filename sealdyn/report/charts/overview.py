@@ -4,44 +4,52 @@ import numpy as np
 
 from ...status import Status
 from . import orbit, spectrum
-from .page import absent, header, look, save, sheet
+from .page import PAPER, absent, level, look, run_page, save
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run
 
-PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
-LEFT, MIDDLE, RIGHT = (0.055, 0.25), (0.375, 0.265), (0.715, 0.265)
-ROWS = ((0.64, 0.235), (0.37, 0.205), (0.085, 0.19))
+LEFT = [["orbit"], ["orbit"], ["orbit"], ["numbers"], ["numbers"]]
+RIGHT = [["film", "film, end"], ["tilt", "tilt, end"], ["flow", "spectrum"]]
 # Height of a name beside a line, as a share of the panel.
 NAME_HEIGHT = 0.08
+# Name of a row, and what stands in it: key of the summary, factor, words, digits.
+NUMBERS = (
+    ("smallest film", ("h_min.value", 1e6, "{} µm", 4), ("h_min.of_clearance", 100, "{} % of clearance", 3)),
+    ("tilt max / min / mean", *((f"relative_misalignment.{k}", 1e6, "{}", 3) for k in ("max", "min", "mean"))),
+    ("steady max / min", *((f"relative_misalignment.steady_{k}", 1e6, "{}", 4) for k in ("max", "min"))),
+    ("closed form max / min", *((f"closed_form.relative_{k}", 1e6, "{}", 4) for k in ("max", "min"))),
+    ("mean leakage", ("leakage.mean_ml_per_h", 1, "{} ml/h", 4)),
+    ("mean friction", ("friction.power", 1, "{} W", 3), ("friction.torque", 1, "{} N m", 3)),
+    ("film stiffness", ("film.axial_stiffness", 1e-6, "{} N/µm", 3), ("film.tilt_stiffness", 1, "{} N m/rad", 3)),
+    ("closing force", ("closing.force", 1, "{} N", 4), ("closing.balance_ratio", 1, "balance ratio {}", 3)),
+    ("critical speed", ("stability.critical_speed", 1, "{} rad/s", 4)),
+    ("margin to contact", ("contact_margin", 1, "{} × this forcing", 3)),
+    ("touches", ("contact.touches", 1, "{}", 4), ("contact.depth", 1e6, "{} µm deep", 3)),
+    ("wear rate", ("contact.wear_rate", 3.6e9, "{} µm/h", 3)),
+    ("energy residual", ("energy_residual", 1, "{}", 2)),
+)  # fmt: skip
 
 
+@look()
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
     run = Run(archive_path)
-    with look():
-        figure = sheet(13.5, 9.0)
-        header(figure, run)
-
-        def axes(column, row, share=None):
-            return figure.add_axes((column[0], ROWS[row][0], column[1], ROWS[row][1]), sharex=share)
-
-        orbit.panel(figure.add_axes((LEFT[0], 0.444, LEFT[1], 0.431)), run)
-        key_numbers(figure.add_axes((LEFT[0] - 0.02, 0.03, LEFT[1] + 0.015, 0.32)), run)
-        whole, last = axes(MIDDLE, 0), axes(RIGHT, 0)
-        for ax, first in ((whole, 0), (last, run.last(turns))):
-            film_panel(ax, run, first)
-        for ax, first in ((axes(MIDDLE, 1, whole), 0), (axes(RIGHT, 1, last), run.last(turns))):
-            tilt_panel(ax, run, first)
-        low = axes(MIDDLE, 2, whole)
-        if run.touches:
-            contact_panel(low, run)
-        else:
-            leakage_panel(low, run)
-        for ax in figure.axes[-2:]:
-            # Panels above share their x axis with the lowest of the column.
-            ax.set_xlabel(run.progress_label)
-        spectrum.panel(axes(RIGHT, 2), run)
-        return save(figure, out_path)
+    figure, ax = run_page(run, 13.5, 9.0, [[LEFT, RIGHT]], width_ratios=(1, 2.1))
+    ax["orbit"].set_anchor("N")
+    orbit.panel(ax["orbit"], run)
+    key_numbers(ax["numbers"], run)
+    for column, first in (("", 0), (", end", run.last(turns))):
+        film, tilt = ax["film" + column], ax["tilt" + column]
+        tilt.sharex(film)
+        film_panel(film, run, first)
+        tilt_panel(tilt, run, first)
+    ax["flow"].sharex(ax["film"])
+    (contact_panel if run.touches else leakage_panel)(ax["flow"], run)
+    # Panels above share their x axis with the lowest of the column.
+    for name in ("flow", "tilt, end"):
+        ax[name].set_xlabel(run.progress_label)
+    spectrum.panel(ax["spectrum"], run)
+    return save(figure, out_path)
 
 
 def film_panel(ax, run: Run, first: int) -> None:
@@ -49,12 +57,11 @@ def film_panel(ax, run: Run, first: int) -> None:
     title = "Smallest film thickness" + (f", {orbit.window(run, first)}" if first else "")
     if _lacking(ax, run, title, "h_min"):
         return
-    unit, per = run.shown("h_min")
-    x, h = run.envelope("h_min", first)
-    ax.plot(x, per * h, color=FILM)
+    per, (x, h, unit) = run.shown("h_min")[1], run.drawn("h_min", first)
+    ax.plot(x, h, color=FILM)
     ax.set(title=title, ylabel=f"h_min, {unit}")
     _span(ax, run, first)
-    low, top = per * np.nanmin(h), per * np.nanmax(h)
+    low, top = np.nanmin(h), np.nanmax(h)
     if first:
         margin = max(0.3 * (top - low), 2e-3 * top)
         ax.set_ylim(low - margin, top + margin)
@@ -64,18 +71,14 @@ def film_panel(ax, run: Run, first: int) -> None:
         # Two lines close together: the lower one's name goes below it.
         apart = per * ((run.clearance or np.inf) - run.touch_at)
         close = abs(apart) < NAME_HEIGHT * top
-        words = "asperities meet" if run.touch_at else "contact"
-        _name(ax, per * run.touch_at, words, CONTACT, below=close and apart > 0)
     if run.clearance:
-        ax.axhline(per * run.clearance, color=GREY, ls="--", lw=0.9)
-        if not first:
-            _name(ax, per * run.clearance, "clearance", GREY, below=close and apart <= 0)
-    ax.axhline(per * run.touch_at, color=CONTACT, lw=1.2)
+        level(ax, per * run.clearance, "" if first else "clearance", below=not first and close and apart <= 0)
+    words = "" if first else "asperities meet" if run.touch_at else "contact"
+    level(ax, per * run.touch_at, words, CONTACT, below=not first and close and apart > 0, ls="-", lw=1.2)
     if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
-        ax.plot(x[-1], per * h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
-        near_top = per * h[-1] > 0.75 * top
-        ax.annotate(run.status, (x[-1], per * h[-1]), xytext=(-8, -12 if near_top else 9), color=colour,
+        ax.plot(x[-1], h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
+        ax.annotate(run.status, (x[-1], h[-1]), xytext=(-8, -12 if h[-1] > 0.75 * top else 9), color=colour,
                     textcoords="offset points", ha="right", weight="bold", bbox=PAPER)  # fmt: skip
 
 
@@ -84,19 +87,16 @@ def tilt_panel(ax, run: Run, first: int) -> None:
     title = "Relative misalignment" + (f", {orbit.window(run, first)}" if first else "")
     if _lacking(ax, run, title, "relative_misalignment"):
         return
-    unit, per = run.shown("relative_misalignment")
-    x, tilt = run.envelope("relative_misalignment", first)
-    top = per * np.nanmax(tilt)
+    per, (x, tilt, unit) = run.shown("relative_misalignment")[1], run.drawn("relative_misalignment", first)
+    top = np.nanmax(tilt)
     if not top > 0:
-        absent(ax, title, "faces aligned")
-        return
-    ax.plot(x, per * tilt, color=TILT)
+        return absent(ax, title, "faces aligned")
+    ax.plot(x, tilt, color=TILT)
     theory = run.summary.get("closed_form") or {}
     lines = [per * theory[k] for k in ("relative_max", "relative_min") if isinstance(theory.get(k), int | float)]
     if lines and 0 < max(lines) < 3 * top:
-        for line in lines:
-            ax.axhline(line, color=THEORY, ls="--", lw=1.1, zorder=3)
-        ax.plot([], [], color=THEORY, ls="--", lw=1.1, label="closed form, max and min")
+        for line, label in zip(lines, ("closed form, max and min", "_"), strict=False):
+            ax.axhline(line, color=THEORY, ls="--", lw=1.1, zorder=3, label=label)
         ax.legend(loc="upper right", borderaxespad=0.0)
         top = max(top, *lines)
     ax.set(title=title, ylabel=f"tilt, {unit}", ylim=(0, 1.3 * top))
@@ -111,9 +111,9 @@ def leakage_panel(ax, run: Run) -> None:
         return
     # The outer one wide and pale beneath, so that both are seen where they agree.
     for side in reversed(sides):
-        (unit, per), (x, flow) = run.shown(f"leakage_{side}"), run.envelope(f"leakage_{side}")
+        x, flow, unit = run.drawn(f"leakage_{side}")
         colour, width = (LEAK, 0.8) if side == "inner" else (YELLOW, 2.0)
-        ax.plot(x, per * flow, label=f"at the {side} radius", color=colour, lw=width)
+        ax.plot(x, flow, label=f"at the {side} radius", color=colour, lw=width)
     ax.set(title=title, ylabel=unit)
     ax.margins(y=0.25)
     ax.legend(loc="upper right", ncols=2, borderaxespad=0.0)
@@ -122,12 +122,12 @@ def leakage_panel(ax, run: Run) -> None:
 
 def contact_panel(ax, run: Run) -> None:
     """Load that the touching asperities carry, beside the closing force it is a share of."""
-    (unit, per), (x, force) = run.shown("contact_force"), run.envelope("contact_force")
-    ax.fill_between(x, per * force, color=CONTACT, alpha=0.25, lw=0)
-    ax.plot(x, per * force, color=CONTACT, lw=0.9)
+    x, force, unit = run.drawn("contact_force")
+    ax.fill_between(x, force, color=CONTACT, alpha=0.25, lw=0)
+    ax.plot(x, force, color=CONTACT, lw=0.9)
     share = (run.summary.get("contact") or {}).get("share_of_closing")
     words = f", {100 * share:.3g} % of the closing force on average" if isinstance(share, float) else ""
-    ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * per * np.nanmax(force)))
+    ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * np.nanmax(force)))
     _span(ax, run, 0)
 
 
@@ -148,49 +148,26 @@ def key_numbers(ax, run: Run) -> None:
     for line, (name, value) in enumerate(rows):
         y = 0.95 - step * line
         ax.text(0.0, y, name, va="center", transform=ax.transAxes, color=GREY, fontsize=8)
-        ax.text(0.42, y, value, va="center", transform=ax.transAxes, fontsize=8)
+        ax.text(0.44, y, value, va="center", transform=ax.transAxes, fontsize=8)
         ax.plot((0, 1), (y - step / 2, y - step / 2), color=PALE, lw=0.5, transform=ax.transAxes)
 
 
 def _numbers(summary: dict):
-    """(name, value in words) of what the summary holds."""
+    """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name."""
+    for name, *parts in NUMBERS:
+        words = [_said(summary, *part) for part in parts]
+        # Faces of no wear coefficient say nothing of wear.
+        if any(words) and words != ["0 µm/h"]:
+            yield name, " / ".join(w or "–" for w in words) + " µrad" if "/" in name else ", ".join(filter(None, words))
 
-    def get(path):
-        value = summary
-        for key in path.split("."):
-            value = value.get(key) if isinstance(value, dict) else None
-        return value if isinstance(value, int | float) and np.isfinite(value) else None
 
-    def said(path, factor, unit, digits=4):
-        value = get(path)
-        return None if value is None else f"{written(factor * value, digits)} {unit}".strip()
-
-    def joined(*parts):
-        return ", ".join(part for part in parts if part)
-
-    share = said("h_min.of_clearance", 100, "% of clearance", 3)
-    yield from _kept("smallest film", joined(said("h_min.value", 1e6, "µm"), share))
-    tilt = [said(f"relative_misalignment.{k}", 1e6, "", 3) for k in ("max", "min", "mean")]
-    if any(tilt):
-        yield "tilt max / min / mean", " / ".join(part or "–" for part in tilt) + " µrad"
-    steady = [said(f"relative_misalignment.steady_{k}", 1e6, "", 4) for k in ("max", "min")]
-    if any(steady):
-        yield "steady max / min", " / ".join(part or "–" for part in steady) + " µrad"
-    theory = [said(f"closed_form.relative_{k}", 1e6, "", 4) for k in ("max", "min")]
-    if any(theory):
-        yield "closed form max / min", " / ".join(part or "–" for part in theory) + " µrad"
-    yield from _kept("mean leakage", said("leakage.mean_ml_per_h", 1, "ml/h"))
-    yield from _kept("mean friction", joined(said("friction.power", 1, "W", 3), said("friction.torque", 1, "N m", 3)))
-    stiff = joined(said("film.axial_stiffness", 1e-6, "N/µm", 3), said("film.tilt_stiffness", 1, "N m/rad", 3))
-    yield from _kept("film stiffness", stiff)
-    balance = get("closing.balance_ratio")
-    ratio = None if balance is None else f"balance ratio {balance:.3g}"
-    yield from _kept("closing force", joined(said("closing.force", 1, "N"), ratio))
-    yield from _kept("critical speed", said("stability.critical_speed", 1, "rad/s"))
-    yield from _kept("margin to contact", said("contact_margin", 1, "× this forcing", 3))
-    yield from _kept("touches", joined(said("contact.touches", 1, ""), said("contact.depth", 1e6, "µm deep", 3)))
-    yield from _kept("wear rate", said("contact.wear_rate", 3.6e9, "µm/h", 3) if get("contact.wear_rate") else None)
-    yield from _kept("energy residual", said("energy_residual", 1, "", 2))
+def _said(summary: dict, key: str, factor: float, words: str, digits: int) -> str | None:
+    """A number of the summary in words; None if it is not there, or no number."""
+    value = summary
+    for part in key.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    known = isinstance(value, int | float) and np.isfinite(value)
+    return words.format(written(factor * value, digits)) if known else None
 
 
 def written(value: float, digits: int) -> str:
@@ -198,17 +175,6 @@ def written(value: float, digits: int) -> str:
     if 1e4 <= abs(value) < 1e7:
         return f"{float(f'{value:.{digits}g}'):,.0f}".replace(",", " ")
     return f"{value:.{digits}g}"
-
-
-def _kept(name: str, value):
-    return [(name, value)] if value else []
-
-
-def _name(ax, y: float, words: str, colour: str, below: bool = False) -> None:
-    """Names a horizontal line above its right end, or below it."""
-    where = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "ha": "right"}
-    where |= {"va": "top", "xytext": (-2, -2)} if below else {"va": "bottom", "xytext": (-2, 2)}
-    ax.annotate(words, (1, y), color=colour, fontsize=8, bbox=PAPER, **where)
 
 
 def _span(ax, run: Run, first: int) -> None:

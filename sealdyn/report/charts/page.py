@@ -1,35 +1,57 @@
-"""The sheet a chart is drawn on: figure, axes in the house's look, and a PNG at the end."""
+"""The page of a chart: heading, panels in the house's look, what panels have in common, and a PNG at the end."""
 
 import os
 from pathlib import Path
+from textwrap import shorten, wrap
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 from PIL import Image
 
+from ...status import Status
 from .palette import BLACK, GREY, PALE, STATUS
 
 LOOK = {
-    "font.size": 8.5,
-    "axes.titlesize": 9.5,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "grid.color": PALE,
-    "grid.linewidth": 0.5,
-    "lines.linewidth": 1.0,
-    "legend.frameon": False,
-    "legend.fontsize": 8,
-    "path.simplify": True,
-    "agg.path.chunksize": 20000,
-}
+    "font.size": 8.5, "lines.linewidth": 1.0, "legend.frameon": False, "legend.fontsize": 8,
+    "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.titlelocation": "left",
+    "axes.spines.top": False, "axes.spines.right": False, "axes.axisbelow": True, "axes.formatter.useoffset": False,
+    "axes.grid": True, "grid.color": PALE, "grid.linewidth": 0.5,
+    "path.simplify": True, "agg.path.chunksize": 20000,
+}  # fmt: skip
 DPI = 150
+# Of the value: a series that changes by less differs by rounding only.
+ROUNDING = 1e-6
+PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
+
+
+def look():
+    """The house's look, as a context or a decorator: axes must be made inside it."""
+    return rc_context(LOOK)
+
+
+# --- the page --------------------------------------------------------------------------------------------
+
+
+def run_page(run, width: float, height: float, mosaic, **layout):
+    """Figure (inches) and axes by name for a run: `mosaic` and `layout` as of matplotlib's subplot_mosaic."""
+    figure = sheet(width, height)
+    return figure, panels(figure, header(figure, run), mosaic, **layout)
+
+
+def study_page(study, width: float, height: float, mosaic, title: str = "", below: str = "", bold: str = "", **layout):
+    """Figure (inches) and axes by name for a study: `mosaic` and `layout` as of matplotlib's subplot_mosaic.  The title
+    is by default the scenario's question; below it stand `below`, by default name and question, and in bold letters, of
+    a failed study in its colour, `bold`."""
+    figure, question = sheet(width, height), study["question"]
+    title = title or question.partition("?")[0] + "?"
+    status = study["answer"].get("status", Status.OK)
+    colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
+    below = below or shortened(f"{study['name']}: {question}", int(14 * width))
+    top = heading(figure, title, below, bold, colour)
+    return figure, panels(figure, top, mosaic, **layout)
 
 
 def sheet(width: float, height: float):
@@ -39,9 +61,57 @@ def sheet(width: float, height: float):
     return figure
 
 
-def look():
-    """The house's look, as a context: axes must be made inside it."""
-    return rc_context(LOOK)
+def panels(figure, top: float, mosaic, space: float = 0.04, **layout) -> dict:
+    """Axes by name below `top` (share of the height), placed so that no label is cut; `space` between them, as a share
+    of their size."""
+    width, height = figure.get_size_inches()
+    rect = (0.25 / width, 0.1 / height, 1 - 0.45 / width, top - 0.1 / height)
+    figure.set_layout_engine("constrained", rect=rect, wspace=space, hspace=space, w_pad=0.06, h_pad=0.06)
+    return figure.subplot_mosaic(mosaic, **layout)
+
+
+def header(figure, run) -> float:
+    """The scene's question, then name, model and verdict, then what happened; returns where they end, as `heading`."""
+    ended = f"{run.status}: {run.message}" if run.message else run.status
+    return heading(figure, run.question, run.description, ended, STATUS.get(run.status, BLACK))
+
+
+def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK) -> float:
+    """The title of a page, up to three lines below it and up to two bold ones in `colour`, cut to its width.  Returns
+    where they end, as a share of the height."""
+    width, height = figure.get_size_inches()
+    figure.text(0.4 / width, 1 - 0.26 / height, shortened(title, int(9.5 * width)), fontsize=13, weight="bold",
+                va="center")  # fmt: skip
+    lines = [(words, {}) for words in wrap(below, int(14 * width), max_lines=3, placeholder=" …")]
+    style = {"color": colour, "weight": "bold"}
+    lines += [(words, style) for words in wrap(bold, int(12 * width), max_lines=2, placeholder=" …")]
+    for k, (words, style) in enumerate(lines):
+        figure.text(0.4 / width, 1 - (0.52 + 0.2 * k) / height, words, fontsize=9, va="center", **style)
+    return 1 - (0.48 + 0.2 * len(lines)) / height
+
+
+def shortened(words: str, length: int) -> str:
+    """`words` in one line of at most `length` characters."""
+    return shorten(words, length, placeholder=" …")
+
+
+def save(figure, path) -> Path:
+    """Writes the PNG beside `path` first, so that a figure is never seen half drawn."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".new")
+    for ax in figure.axes:
+        flatten(ax)
+    figure.canvas.draw()
+    # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
+    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+    few = pixels.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(fresh, format="PNG", dpi=(DPI, DPI))
+    os.replace(fresh, path)
+    return path
+
+
+# --- what panels have in common --------------------------------------------------------------------------
 
 
 def absent(ax, title: str, why: str = "not in this scene") -> None:
@@ -53,41 +123,73 @@ def absent(ax, title: str, why: str = "not in this scene") -> None:
     ax.yaxis.set_visible(False)
     for spine in ax.spines.values():
         spine.set_color(PALE)
-    ax.text(0.5, 0.5, why, transform=ax.transAxes, ha="center", va="center", color=GREY, style="italic")
+    ax.text(0.5, 0.5, "\n".join(wrap(why, 62)), transform=ax.transAxes, ha="center", va="center", color=GREY,
+            style="italic")  # fmt: skip
 
 
-def header(figure, run) -> None:
-    """The scene's question, then name, model and verdict, then what happened."""
-    ended = f"{run.status}: {run.message}" if run.message else run.status
-    heading(figure, run.question, run.description, ended, STATUS.get(run.status, BLACK))
+def flatten(ax) -> None:
+    """Values that differ by rounding only are a flat line beside a plain number: the y axis does not enlarge them."""
+    low, high = ax.dataLim.intervaly
+    size = max(abs(low), abs(high))
+    if ax.get_autoscaley_on() and size > 0 and 0 <= high - low <= ROUNDING * size:
+        middle = 0.5 * (low + high)
+        ax.set_ylim(middle - 0.1 * abs(middle), middle + 0.1 * abs(middle))
 
 
-def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK) -> None:
-    """The title of a sheet, a line below it, and a bold one in `colour`; each cut to the width of the sheet."""
-    left, top, step = 0.035, 1 - 0.26 / figure.get_figheight(), 0.2 / figure.get_figheight()
-    width = figure.get_figwidth()
-    figure.text(left, top, shortened(title, int(9.5 * width)), fontsize=13, weight="bold", va="center")
-    below, bold = shortened(below, int(13 * width)), shortened(bold, int(12.5 * width))
-    figure.text(left, top - 1.3 * step, below, fontsize=9, va="center")
-    if bold:
-        figure.text(left, top - 2.4 * step, bold, fontsize=9, va="center", color=colour, weight="bold")
+def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", below: bool = False, **line) -> None:
+    """A horizontal line with its name above its end on one side, or below it."""
+    ax.axhline(at, color=colour, **{"lw": 0.9, "ls": "--", **line})
+    right, offset = side == "right", -2 if below else 2
+    ax.annotate(words, (right, at), xycoords=("axes fraction", "data"), xytext=(-2 if right else 2, offset),
+                textcoords="offset points", color=colour, fontsize=8, ha=side, va="top" if below else "bottom",
+                bbox=PAPER)  # fmt: skip
 
 
-def shortened(words: str, length: int) -> str:
-    """`words` in one line of at most `length` characters."""
-    words = " ".join(words.split())
-    return words if len(words) <= length else words[: length - 1].rsplit(" ", 1)[0] + " …"
+def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", **line) -> None:
+    """A vertical line with its name beside it at a `height` (share of the panel)."""
+    ax.axvline(at, color=colour, **{"lw": 1.0, **line})
+    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha)
 
 
-def save(figure, path) -> Path:
-    """Writes the PNG beside `path` first, so that a figure is never seen half drawn."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(path.name + ".new")
-    figure.canvas.draw()
-    # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
-    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
-    few = pixels.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    few.save(fresh, format="PNG", dpi=(DPI, DPI))
-    os.replace(fresh, path)
-    return path
+def legend(ax, loc: str, **look) -> None:
+    """The legend, if there is something to name; `loc` "above" is on the right above the panel, beside its title."""
+    if loc == "above":
+        loc, look = "lower right", {"bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.1, **look}
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(loc=loc, **look)
+
+
+def once(ax, label: str) -> str:
+    """`label` the first time, then nothing, so that a legend names it once."""
+    return "_" if label in ax.get_legend_handles_labels()[1] else label
+
+
+def stacked(*panels) -> None:
+    """Panels above one another share the x axis; the lowest has its numbers.  To be said before anything is drawn."""
+    for ax in panels[:-1]:
+        ax.sharex(panels[-1])
+        ax.tick_params(labelbottom=False, which="both")
+
+
+def right_axis(ax, label: str, colour: str):
+    """A second y axis on the right, its name in the colour of what is drawn against it."""
+    other = ax.twinx()
+    other.grid(False)
+    other.spines["right"].set_visible(True)
+    other.set_ylabel(label, color=colour)
+    other.tick_params(axis="y", colors=colour)
+    return other
+
+
+def logarithmic(ax, axis: str) -> None:
+    """A logarithmic "x" or "y" axis with plain numbers at 1, 2 and 5 of every decade."""
+    ax.set(**{f"{axis}scale": "log"})
+    axis = getattr(ax, f"{axis}axis")
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.set_major_formatter(lambda value, _: number(value))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def number(value: float, form: str = "g") -> str:
+    """A number with the minus of print."""
+    return f"{value:{form}}".replace("-", "−")

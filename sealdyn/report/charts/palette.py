@@ -22,10 +22,19 @@ THICKNESS, PRESSURE = "cividis", "viridis"
 # One meaning, one colour, in every chart.
 FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK
 RING = {"stator": PURPLE, "rotor": BLUE}
-STATUS = {
-    Status.OK: GREEN,
-    Status.COLLAPSED: VERMILLION,
-    Status.FAILED: VERMILLION,
-    Status.INTERRUPTED: ORANGE,
-    Status.RUNNING: BLUE,
-}
+STATUS = {Status.OK: GREEN, Status.COLLAPSED: VERMILLION, Status.FAILED: VERMILLION, Status.INTERRUPTED: ORANGE,
+          Status.RUNNING: BLUE}  # fmt: skip
+
+# Colours of lines that have no meaning of their own, in order.
+CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+
+# Colour, line and marker of every method: the house's own in full lines, SciPy's dashed, fixed steps dotted.
+LOOKS = {
+    "adams": (BLUE, "-", "o"), "bdf": (GREEN, "-", "s"), "bdf2": (GREEN, "--", "D"), "ida": (PURPLE, "-", "^"),
+    "expm": (BLACK, "-", "*"), "dop853": (VERMILLION, "-", "v"), "rk45": (VERMILLION, "--", "<"),
+    "lsoda": (SKY, "-", "p"), "radau": (ORANGE, "-", "h"), "newmark": (GREY, "--", "P"),
+    "generalised_alpha": (GREY, ":", "X"), "midpoint": (BLACK, ":", "d"),
+}  # fmt: skip
+SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
+         "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
+         "midpoint": "midpoint", "expm": "expm"}  # fmt: skip

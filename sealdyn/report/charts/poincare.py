@@ -2,33 +2,28 @@
 
 import numpy as np
 
-from .page import absent, header, look, save, sheet
-from .palette import FILM, TILT
+from .page import ROUNDING, absent, look, run_page, save
+from .palette import FILM, THICKNESS, TILT
 from .record import Run
+from .spectrum import cubic
 
 MOST = 4000  # crossings drawn, the last ones
 
 
+@look()
 def draw(archive_path, out_path):
     """Once-per-turn points in the plane of the relative tilt, and of h_min against turns."""
     run = Run(archive_path)
-    with look():
-        figure = sheet(11.5, 6.0)
-        header(figure, run)
-        left, right = figure.add_axes((0.07, 0.10, 0.38, 0.68)), figure.add_axes((0.55, 0.10, 0.40, 0.68))
-        if run.has("relative_tilt_x", "relative_tilt_y", "h_min", "shaft_angle") and run.turning:
-            turns, values = section(run, ("relative_tilt_x", "relative_tilt_y", "h_min"))
-        else:
-            turns, values = np.empty(0), np.empty((3, 0))
+    figure, ax = run_page(run, 11.5, 6.0, [["tilt", "film"]], space=0.06)
+    names = ("relative_tilt_x", "relative_tilt_y", "h_min")
+    turns, values = section(run, names) if run.has(*names, "shaft_angle") and run.turning else ((), None)
+    for panel, title, draws in (("tilt", "relative tilt", _plane), ("film", "smallest film thickness", _film)):
         if len(turns) < 2:
-            absent(left, "Once per turn: relative tilt", "fewer than two passages of shaft angle zero")
-            absent(right, "Once per turn: smallest film thickness", "fewer than two passages of shaft angle zero")
+            absent(ax[panel], f"Once per turn: {title}", "fewer than two passages of shaft angle zero")
         else:
-            unit, per = run.shown("relative_tilt_x")
-            _plane(left, turns, per * values[0], per * values[1], unit)
-            unit, per = run.shown("h_min")
-            _film(right, turns, per * values[2], unit)
-        return save(figure, out_path)
+            ax[panel].set_title(f"Once per turn: {title}")
+            draws(ax[panel], run, turns, values)
+    return save(figure, out_path)
 
 
 def section(run: Run, names):
@@ -41,37 +36,30 @@ def section(run: Run, names):
     if len(phase) < 4:
         return np.empty(0), np.empty((len(names), 0))
     whole = np.arange(np.ceil(phase[0] - 1e-9), np.floor(phase[-1] + 1e-9) + 1)[-MOST:]
-    at = np.clip(np.searchsorted(phase, whole), 2, len(phase) - 2)
-    found = np.zeros((len(names), len(whole)))
-    for i in range(-2, 2):
-        weight = np.ones(len(whole))
-        for j in range(-2, 2):
-            if j != i:
-                weight *= (whole - phase[at + j]) / (phase[at + i] - phase[at + j])
-        found += weight * np.array([column[at + i] for column in columns])
-    return whole, found
+    return whole, np.array([cubic(whole, phase, column) for column in columns])
 
 
-def _plane(ax, turns, x, y, unit):
-    points = ax.scatter(x, y, c=turns, cmap="cividis", s=12, lw=0)
-    ax.plot(x[-1], y[-1], "o", mfc="none", mec=TILT, ms=10, label="last turn")
-    reach = max(np.ptp(x), np.ptp(y), 1e-9 * max(np.abs(x).max(), np.abs(y).max(), 1e-12))
-    if reach < 1e-6 * max(np.abs(x).max(), np.abs(y).max()):
-        # One point to plotting accuracy: a period of one turn; show it where it lies.
-        reach = 0.2 * max(np.abs(x).max(), np.abs(y).max())
-    for centre, setter in ((0.5 * (x.min() + x.max()), ax.set_xlim), (0.5 * (y.min() + y.max()), ax.set_ylim)):
-        setter(centre - 0.6 * reach, centre + 0.6 * reach)
-    ax.set_aspect("equal")
-    ax.set_title(f"Once per turn: relative tilt, {len(turns)} turns")
-    ax.set_xlabel(f"tilt about x, {unit}")
-    ax.set_ylabel(f"tilt about y, {unit}")
+def frame(ax, x, y, least: float = 0.0) -> None:
+    """Limits around a section, the same scale in both directions, at `least` so far apart; one point to plotting
+    accuracy is shown where it lies."""
+    size, reach = max(np.abs(x).max(), np.abs(y).max(), 1e-12), max(np.ptp(x), np.ptp(y), least)
+    half = 0.6 * (reach if reach > ROUNDING * size else 0.2 * size)
+    (x, y) = (0.5 * (values.min() + values.max()) for values in (x, y))
+    ax.set(xlim=(x - half, x + half), ylim=(y - half, y + half), aspect="equal")
+
+
+def _plane(ax, run, turns, values):
+    unit, per = run.shown("relative_tilt_x")
+    x, y = per * values[:2]
+    points = ax.scatter(x, y, c=turns, cmap=THICKNESS, s=12, lw=0)
+    ax.plot(x[-1], y[-1], "o", mfc="none", mec=TILT, ms=10, label=f"last of {len(turns)} turns")
+    frame(ax, x, y)
+    ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
     ax.legend(loc="upper right")
-    bar = ax.figure.colorbar(points, ax=ax, fraction=0.04, pad=0.02)
-    bar.set_label("turn")
+    ax.figure.colorbar(points, ax=ax, fraction=0.04, pad=0.02, label="turn")
 
 
-def _film(ax, turns, h_min, unit):
-    ax.plot(turns, h_min, ".", color=FILM, ms=4)
-    ax.set_title("Once per turn: smallest film thickness")
-    ax.set_xlabel("turns of the shaft")
-    ax.set_ylabel(f"h_min, {unit}")
+def _film(ax, run, turns, values):
+    unit, per = run.shown("h_min")
+    ax.plot(turns, per * values[2], ".", color=FILM, ms=4)
+    ax.set(xlabel="turns of the shaft", ylabel=f"h_min, {unit}")

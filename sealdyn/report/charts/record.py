@@ -1,6 +1,8 @@
-"""A run as charts want it: turns instead of time, series thinned without losing an extreme, words for titles."""
+"""A run as charts want it: turns instead of time, series thinned without losing an extreme, words for titles; and
+which points of a study have an answer."""
 
 from functools import cached_property
+from itertools import takewhile
 
 import numpy as np
 
@@ -8,6 +10,11 @@ from ...archive import column, read_info
 
 BLOCK = 1 << 16
 POINTS = 20_000
+
+
+def done(rows) -> list[dict]:
+    """The rows of a study's points that did not fail."""
+    return [row for row in rows if "failed" not in row]
 
 
 class Run:
@@ -90,6 +97,11 @@ class Run:
             kept_y.append(values[at])
         return np.concatenate(kept_x), np.concatenate(kept_y)
 
+    def drawn(self, name: str, first: int = 0) -> tuple[np.ndarray, np.ndarray, str]:
+        """Progress, values and unit of a series as people read it, from row `first`, as `envelope`."""
+        (unit, per), (x, values) = self.shown(name), self.envelope(name, first)
+        return x, per * values, unit
+
     # -- the scene in numbers and words ------------------------------------------------------------
 
     def film(self, name: str) -> float | None:
@@ -153,12 +165,8 @@ class Run:
     @property
     def question(self) -> str:
         """The scenario's opening question, or the opening comment, or the archive's name."""
-        comment = []
-        for line in self.info.get("scenario", "").splitlines():
-            if not line.startswith("#"):
-                break
-            comment.append(line.lstrip("# ").strip())
-        words = " ".join(comment).strip()
+        comment = takewhile(lambda line: line.startswith("#"), self.info.get("scenario", "").splitlines())
+        words = " ".join(line.lstrip("# ").strip() for line in comment).strip()
         if "?" in words:
             return words[: words.index("?") + 1]
         return words.split(". ")[0] or self.info.get("title", "")
@@ -167,18 +175,15 @@ class Run:
     def description(self) -> str:
         """Name, model and stability verdict, as far as the summary has them."""
         model, stability = self.summary.get("model") or {}, self.summary.get("stability") or {}
-        parts = [self.info.get("title", "")]
-        if model.get("film"):
-            parts.append(f"{model['film']} film")
-        unknowns = model.get("unknowns")
-        if unknowns:
-            names = unknowns if isinstance(unknowns, list) else None
-            count = len(names) if names else unknowns
-            parts.append(f"{count} unknown{'s' * (count != 1)}" if isinstance(count, int) else str(count))
-        if model.get("solver"):
-            parts.append(f"solver {model['solver']}")
-        if stability.get("verdict"):
-            whirl = stability.get("whirl_ratio")
-            words = f", whirl ratio {whirl:.3g}" if isinstance(whirl, int | float) else ""
-            parts.append(f"linear stability: {stability['verdict']}{words}")
-        return "   ·   ".join(part for part in parts if part)
+        whirl, unknowns = stability.get("whirl_ratio"), model.get("unknowns")
+        verdict = stability.get("verdict") and f"linear stability: {stability['verdict']}"
+        if verdict and isinstance(whirl, int | float):
+            verdict += f", whirl ratio {whirl:.3g}"
+        parts = (
+            self.info.get("title"),
+            model.get("film") and f"{model['film']} film",
+            unknowns and f"{len(unknowns)} unknown{'s' * (len(unknowns) != 1)}",
+            model.get("solver") and f"solver {model['solver']}",
+            verdict,
+        )
+        return "   ·   ".join(filter(None, parts))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .page import absent, header, look, save, sheet
+from .page import absent, look, number, run_page, save
 from .palette import CONTACT, FILM, LEAK, TILT
 from .record import Run
 
@@ -16,39 +16,33 @@ HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 FOLDED = 1e-4
 
 
+@look()
 def draw(archive_path, out_path, turns: float | None = None):
     """Spectra of the relative tilt (forward and backward), the axial gap and h_min over the last `turns`
     turns; default the last half of the run."""
     run = Run(archive_path)
-    with look():
-        figure = sheet(11.5, 7.2)
-        header(figure, run)
-        top = figure.add_axes((0.075, 0.48, 0.895, 0.325))
-        panel(top, run, turns)
-        for left, name, title in ((0.075, "axial_gap_change", "Axial motion"), (0.555, "h_min", "h_min")):
-            ax = figure.add_axes((left, 0.075, 0.415, 0.255))
-            real_panel(ax, run, name, title, turns, said=False)
-        return save(figure, out_path)
+    figure, ax = run_page(run, 11.5, 7.2, [["tilt", "tilt"], ["axial", "film"]], height_ratios=(5, 4))
+    panel(ax["tilt"], run, turns)
+    real_panel(ax["axial"], run, "axial_gap_change", "Axial motion", turns, said=False)
+    real_panel(ax["film"], run, "h_min", "h_min", turns, said=False)
+    return save(figure, out_path)
 
 
 def panel(ax, run: Run, turns: float | None = None) -> None:
     """Relative tilt, two-sided: positive orders whirl with the shaft, negative ones against it.  An
     aligned scene shows its axial motion instead."""
     first = run.last(turns or np.inf, MOST_ROWS)
-    tilts = [f"relative_tilt_{axis}" for axis in "xy"]
-    if not run.has(*tilts) or not any(run.values(tilt, first).any() for tilt in tilts):
-        real_panel(ax, run, "axial_gap_change", "Axial motion in orders of shaft speed", turns)
-        return
-    x, y = (lambda first, axis=axis: run.values(f"relative_tilt_{axis}", first) for axis in "xy")
+    x, y = "relative_tilt_x", "relative_tilt_y"
+    if not run.has(x, y) or not any(run.values(tilt, first).any() for tilt in (x, y)):
+        return real_panel(ax, run, "axial_gap_change", "Axial motion in orders of shaft speed", turns)
     title = "Relative tilt in orders of shaft speed"
-    show(ax, run, lambda first: x(first) + 1j * y(first), title, run.shown(tilts[0]), TILT, turns)
+    show(ax, run, lambda first: run.values(x, first) + 1j * run.values(y, first), title, run.shown(x), TILT, turns)
 
 
 def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, said=True) -> None:
     """A real series about its mean, one-sided; `said`: state window and resolution below."""
     if not run.has(name):
-        absent(ax, title)
-        return
+        return absent(ax, title)
     colour = FILM if name == "h_min" else LEAK
     show(ax, run, lambda first: run.values(name, first), title, run.shown(name), colour, turns, said)
 
@@ -57,15 +51,13 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), `shown` is the unit for people
     and how many of it make one SI unit."""
     if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
-        absent(ax, title, "fewer than two turns: no spectrum")
-        return
+        return absent(ax, title, "fewer than two turns: no spectrum")
     first = run.last(turns or run.turns[-1] / 2, MOST_ROWS)
     if run.rows - first < 16:
         first = 0
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
     if not amplitude.max() > NOTHING:
-        absent(ax, title, "does not move")
-        return
+        return absent(ax, title, "does not move")
     unit, per = shown
     amplitude *= per
     largest = amplitude.max()
@@ -79,14 +71,9 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * 12))
     for at in named:
-        ax.annotate(
-            f"{orders[at]:.3g}×\n{amplitude[at]:.3g}".replace("-", "−"),
-            (orders[at], amplitude[at]),
-            xytext=(0, 3),
-            textcoords="offset points",
-            ha="center",
-            fontsize=7.5,
-        )
+        words = f"{number(orders[at], '.3g')}×\n{number(amplitude[at], '.3g')}"
+        ax.annotate(words, (orders[at], amplitude[at]), xytext=(0, 3), textcoords="offset points", ha="center",
+                    fontsize=7.5)  # fmt: skip
     share = at_the_edge(orders, amplitude, resolution)
     if share > FOLDED:
         words = f"{100 * share:.2g} % of the power in the top tenth of the band:\nmay be folded, raise samples_per_turn"

@@ -3,59 +3,58 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import heading, look, save, sheet
-from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from .page import look, number, once, save, study_page
+from .palette import BLACK, CYCLE, GREY, VERMILLION
 
-COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
-DASHES = {"forward": "-", "backward": (0, (5, 2)), "axial": (0, (1, 1.2)), "none": (0, (1, 4))}
+# Dashes of a direction of whirl, and its name.
+DASHES = {"forward": ("-", "forward"), "backward": ((0, (5, 2)), "backward"), "axial": ((0, (1, 1.2)), "axial"),
+          "none": ((0, (1, 4)), "does not oscillate")}  # fmt: skip
 RPM = 60 / (2 * np.pi)
 # Beyond this a curve runs along the top: the mode hardly oscillates.
 MOST_DECREMENT = 1000.0
 
 
+@look()
 def draw(archive_path, out_path):
     """Frequencies on the left, decrements on the right, from a study's archive."""
     study = read_study(archive_path)
-    answer = study["answer"]
-    with look():
-        figure = sheet(11.5, 6.6)
-        heading(figure, "At which frequencies does the seal whirl?", f"{study['name']}: {study['question']}")
-        left, right = figure.add_axes((0.07, 0.185, 0.49, 0.63)), figure.add_axes((0.655, 0.185, 0.325, 0.63))
-        factor = RPM if answer["unit"] == "rpm" else 1.0
-        speed = factor * np.array(answer["speed"])
-        _frequencies(left, answer, speed, factor)
-        _decrements(right, answer, speed, factor)
-        for ax in (left, right):
-            ax.set(xlim=(speed[0], speed[-1]), xlabel=f"shaft speed, {answer['unit']}")
-            ax.locator_params(axis="x", nbins=6)
-        handles = _handles(answer)
-        columns = len(handles) if len(handles) <= 7 else -(-len(handles) // 2)
-        figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.06, 0.005), ncols=columns)
-        return save(figure, out_path)
+    answer, title = study["answer"], "At which frequencies does the seal whirl?"
+    figure, ax = study_page(study, 11.5, 6.6, [["frequency", "decrement"]], title, width_ratios=(3, 2))
+    factor = RPM if answer["unit"] == "rpm" else 1.0
+    speed = factor * np.array(answer["speed"])
+    _frequencies(ax["frequency"], answer, speed, factor)
+    _decrements(ax["decrement"], answer, speed, factor)
+    for panel in ax.values():
+        panel.set(xlim=(speed[0], speed[-1]), xlabel=f"shaft speed, {answer['unit']}")
+        panel.locator_params(axis="x", nbins=6)
+    entries = len(ax["frequency"].get_legend_handles_labels()[0])
+    if entries:
+        columns = entries if entries <= 7 else -(-entries // 2)
+        figure.legend(loc="outside lower left", ncols=columns, borderaxespad=1.5)
+    return save(figure, out_path)
 
 
 def _frequencies(ax, answer, speed, factor):
     modes = answer["modes"]
-    highest = factor * max((max(m["frequency"]) for m in modes), default=1.0)
-    top = min(1.08 * highest, 1.25 * speed[-1])
     curves = [factor * np.array(m["frequency"]) for m in modes]
-    for number, (mode, values) in enumerate(zip(modes, curves, strict=True)):
-        _by_direction(ax, speed, values, mode["directions"], number)
-    ax.set(xlim=(speed[0], speed[-1]), ylim=(0, top), ylabel=f"whirl frequency, {_per(answer)}",
-           title="Whirl frequency")  # fmt: skip
-    for order in answer["lines"]:
-        ax.plot(speed, order * speed, color=GREY, lw=0.9)
+    top = min(1.08 * max((values.max() for values in curves), default=1.0), 1.25 * speed[-1])
+    for k, (mode, values) in enumerate(zip(modes, curves, strict=True)):
+        ax.plot([], [], color=CYCLE[k % len(CYCLE)], lw=1.8, label=f"mode {k + 1}, {mode['kind']}")
+        _by_direction(ax, speed, values, mode["directions"], k)
+    seen = {direction for mode in modes for direction in mode["directions"]}
+    for dashes, label in (DASHES[name] for name in DASHES if name in seen):
+        ax.plot([], [], color=GREY, lw=1.8, ls=dashes, label=label)
+    unit = "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
+    ax.set(ylim=(0, top), ylabel=f"whirl frequency, {unit}", title="Whirl frequency")
     named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
     for order in answer["lines"]:
+        ax.plot(speed, order * speed, color=GREY, lw=0.9)
         _name_line(ax, order, speed, top, curves, named, [k for k in answer["lines"] if k != order])
     for c in answer["crossings"]:
-        ax.plot(factor * c["speed"], factor * c["frequency"], "o", mfc="white", mec=BLACK, ms=6, zorder=4)
+        ax.plot(factor * c["speed"], factor * c["frequency"], "o", mfc="white", mec=BLACK, ms=6, zorder=4,
+                label=once(ax, "meets an order line"))  # fmt: skip
     if speed[0] < factor * answer["own_speed"] < speed[-1]:
         ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":")
-
-
-def _per(answer) -> str:
-    return "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
 
 
 def _name_line(ax, order, speed, top, curves, points, others):
@@ -77,42 +76,39 @@ def _name_line(ax, order, speed, top, curves, points, others):
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})  # fmt: skip
 
 
-def _by_direction(ax, speed, values, directions, number):
+def _by_direction(ax, speed, values, directions, mode):
     """One mode, its dashes telling the direction of whirl; segments share their ends."""
-    colour, start = COLOURS[number % len(COLOURS)], 0
+    colour, start = CYCLE[mode % len(CYCLE)], 0
     for k in range(1, len(directions) + 1):
         if k == len(directions) or directions[k] != directions[start]:
             part = slice(start, min(k + 1, len(directions)))
             # Dashes over lines, so that two modes of one frequency are both seen.
             above = 2.0 if directions[start] == "forward" else 2.5
-            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]], lw=1.8, zorder=above)
+            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]][0], lw=1.8, zorder=above)
             start = k
 
 
 def _decrements(ax, answer, speed, factor):
-    shown = []
-    for number, mode in enumerate(answer["modes"]):
-        values = np.array([np.nan if d is None else d for d in mode["log_decrement"]], dtype=float)
-        shown.append(values)
-        _by_direction(ax, speed, np.minimum(values, MOST_DECREMENT), mode["directions"], number)
+    shown = [np.array(mode["log_decrement"], dtype=float) for mode in answer["modes"]]
+    for k, (mode, values) in enumerate(zip(answer["modes"], shown, strict=True)):
+        _by_direction(ax, speed, np.minimum(values, MOST_DECREMENT), mode["directions"], k)
     every = np.concatenate([*shown, [0.0]])
     lowest, highest = np.nanmin(every), min(max(np.nanmax(every), 1.0), MOST_DECREMENT)
     # Linear near zero, where stability is decided; logarithmic above, where a mode dies within a cycle.
     ax.set_yscale("asinh", linear_width=1.0)
-    ax.set_yticks(
-        [t for t in (-10, -3, -1, 0, 1, 3, 10, 30, 100, 300, 1000) if lowest - 1 <= t <= highest], minor=False
-    )
-    ax.yaxis.set_major_formatter(lambda v, _: f"{v:g}".replace("-", "−"))
+    ax.set_yticks([t for t in (-10, -3, -1, 0, 1, 3, 10, 30, 100, 300, 1000) if lowest - 1 <= t <= highest])
+    ax.yaxis.set_major_formatter(lambda value, _: number(value))
     ax.minorticks_off()
     ax.axhline(0.0, color=BLACK, lw=1.0)
     bottom = max(1.3 * lowest, -MOST_DECREMENT) if lowest < 0 else -0.15
-    if any(p["what"] == "damping" for p in answer["thresholds"]):
+    thresholds = [factor * point["speed"] for point in answer["thresholds"] if point["what"] == "damping"]
+    if thresholds:
         # Room for the threshold's number below zero.
         bottom = min(bottom, -np.sinh(0.09 * np.arcsinh(highest)))
     ax.axhspan(bottom, 0.0, color=VERMILLION, alpha=0.08, lw=0)
     ax.set(ylim=(bottom, 1.05 * highest), ylabel="logarithmic decrement", title="Damping")
-    for point in (p for p in answer["thresholds"] if p["what"] == "damping"):
-        _name_threshold(ax, factor * point["speed"], speed, shown)
+    for at in thresholds:
+        _name_threshold(ax, at, speed, shown)
     if bottom < -0.3:
         ax.text(speed[0] + 0.02 * (speed[-1] - speed[0]), 0.5 * bottom, "unstable", color=VERMILLION, va="center")
 
@@ -126,20 +122,3 @@ def _name_threshold(ax, at, speed, curves):
     ax.annotate(f"{at:.5g}", (at, 0.0), xytext=(-6 if left else 6, -6 if below else 6), textcoords="offset points",
                 ha="right" if left else "left", va="top" if below else "bottom", fontsize=8.5,
                 color=VERMILLION)  # fmt: skip
-
-
-def _handles(answer):
-    from matplotlib.lines import Line2D
-
-    handles = []
-    for number, mode in enumerate(answer["modes"]):
-        colour = COLOURS[number % len(COLOURS)]
-        handles.append(Line2D([], [], color=colour, lw=1.8, label=f"mode {number + 1}, {mode['kind']}"))
-    seen = {d for mode in answer["modes"] for d in mode["directions"]}
-    words = {"forward": "forward", "backward": "backward", "axial": "axial", "none": "does not oscillate"}
-    for name, label in words.items():
-        if name in seen:
-            handles.append(Line2D([], [], color=GREY, lw=1.8, ls=DASHES[name], label=label))
-    if answer["crossings"]:
-        handles.append(Line2D([], [], ls="", marker="o", mfc="white", mec=BLACK, label="meets an order line"))
-    return handles

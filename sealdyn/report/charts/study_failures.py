@@ -1,10 +1,10 @@
 """The failure gallery on one page: each failing method's error beside the survivor's, on its own decades."""
 
 import math
-import textwrap
+from textwrap import wrap
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import heading, look, save, sheet, shortened
 from .palette import BLACK, BLUE, GREY, PALE, VERMILLION
 
 # Decades drawn; what is smaller, or nothing at all, ends at the left edge.
@@ -12,59 +12,53 @@ LEAST, MOST = -17, 11
 NAMES, NUMBERS = 0.235, 0.715
 
 
+@look()
 def draw(path, out):
     """One line of bars per exhibit, its name and unit to the left, what the program does by default to the right."""
-    info = read_study(path)
-    rows = info["answer"]["rows"]
-    shown = [row for row in rows if "absent" not in row]
-    waiting = [row for row in rows if "absent" in row]
-    with look():
-        height = 1.4 + 0.42 * len(shown) + 0.12 * len(waiting)
-        figure = sheet(14.5, height)
-        figure.text(0.02, 1 - 0.3 / height, "Where methods fail, by how much, and what survives", fontsize=13,
-                    weight="bold", va="center")  # fmt: skip
-        bottom = (0.6 + 0.12 * len(waiting)) / height
-        ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
-        for at, row in enumerate(shown):
-            _line(ax, row, -at)
-        _frame(figure, ax, len(shown), height)
-        if waiting:
-            words = "not there yet:  " + ";  ".join(f"{r['item']} {r['title']}, {r['absent']}" for r in waiting)
-            for k, line in enumerate(textwrap.wrap(words.replace(" (not there yet)", ""), 190)):
-                figure.text(0.02, (0.1 + 0.1 * len(waiting) - 0.17 * k) / height, line, fontsize=7.5, color=GREY)
-        return save(figure, out)
+    rows = read_study(path)["answer"]["rows"]
+    shown, waiting = ([row for row in rows if ("absent" in row) == absent] for absent in (False, True))
+    height = 1.4 + 0.42 * len(shown) + 0.12 * len(waiting)
+    figure = sheet(14.5, height)
+    heading(figure, "Where methods fail, by how much, and what survives", "")
+    bottom = (0.6 + 0.12 * len(waiting)) / height
+    ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
+    for at, row in enumerate(shown):
+        _line(ax, row, -at)
+    _frame(figure, ax, len(shown), height)
+    if waiting:
+        words = "not there yet:  " + ";  ".join(f"{r['item']} {r['title']}, {r['absent']}" for r in waiting)
+        words = "\n".join(wrap(words.replace(" (not there yet)", ""), 190))
+        figure.text(0.02, 0.05 / height, words, fontsize=7.5, color=GREY)
+    return save(figure, out)
 
 
 def _frame(figure, ax, count, height):
-    ax.set(xlim=(LEAST, MOST), ylim=(-count + 0.4, 0.6), yticks=[])
-    ticks = list(range(-16, 11, 4))
+    ticks = range(-16, 11, 4)
+    ax.set(xlim=(LEAST, MOST), ylim=(-count + 0.4, 0.6), yticks=[], xlabel="error or cost, in the unit named")
     ax.set_xticks(ticks, [f"$10^{{{t}}}$" if t else "1" for t in ticks])
     ax.grid(axis="y", visible=False)
     ax.spines["left"].set_visible(False)
-    ax.set_xlabel("error or cost, in the unit named")
-    top = 1 - 0.62 / height
-    left, right = NAMES + 0.003, NUMBERS + 0.012
-    figure.text(left, top, "the method that fails", color=VERMILLION, fontsize=9, weight="bold")
-    figure.text(left + 0.13, top, "the survivor", color=BLUE, fontsize=9, weight="bold")
-    figure.text(left + 0.21, top, "(a cross: no answer at all)", color=GREY, fontsize=8)
-    figure.text(right, top, "by default the program …", fontsize=9, weight="bold")
+    for at, words, colour in (
+        (NAMES + 0.003, "the method that fails", VERMILLION),
+        (NAMES + 0.133, "the survivor", BLUE),
+        (NAMES + 0.213, "(a cross: no answer at all)", GREY),
+        (NUMBERS + 0.012, "by default the program …", BLACK),
+    ):
+        weight = "normal" if colour == GREY else "bold"
+        figure.text(at, 1 - 0.62 / height, words, color=colour, fontsize=9, weight=weight)
 
 
 def _line(ax, row, y):
     ax.axhline(y - 0.5, color=PALE, lw=0.5)
-    ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", transform=ax.get_yaxis_transform(), ha="right",
-            va="center", fontsize=9, weight="bold")  # fmt: skip
-    ax.text(-0.012, y - 0.2, shortened(row.get("unit", ""), 62), transform=ax.get_yaxis_transform(), ha="right",
-            va="center", fontsize=7.5, color=GREY)  # fmt: skip
+    beside = {"transform": ax.get_yaxis_transform(), "va": "center"}
+    ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", ha="right", fontsize=9, weight="bold", **beside)
+    ax.text(-0.012, y - 0.2, shortened(row.get("unit", ""), 62), ha="right", fontsize=7.5, color=GREY, **beside)
     if "failed" in row:
         ax.text(LEAST, y, f" the exhibit failed: {row['failed']}", color=VERMILLION, va="center")
         return
     _bar(ax, y + 0.2, row["failing_error"], row["failing"], VERMILLION)
     _bar(ax, y - 0.2, row["survivor_error"], row["survivor"], BLUE)
-    words = textwrap.wrap(row["default"], 62)
-    for k, line in enumerate(words[:2]):
-        ax.text(1.023, y + 0.17 * (len(words[:2]) > 1) - 0.34 * k, line, transform=ax.get_yaxis_transform(),
-                fontsize=7.5, va="center", color=BLACK)  # fmt: skip
+    ax.text(1.023, y, "\n".join(wrap(row["default"], 62)[:2]), fontsize=7.5, linespacing=1.4, **beside)
 
 
 def _bar(ax, y, error, words, colour):

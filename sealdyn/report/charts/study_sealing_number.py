@@ -4,8 +4,9 @@ and where a released ring hangs up, rides or straightens."""
 import numpy as np
 
 from ...archive import read_study
-from .page import look, save, sheet, shortened
+from .page import legend, level, look, save, study_page
 from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILLION
+from .record import done
 
 # One fate, one colour and one mark, in all panels.
 FATES = {"film": (GREEN, "o", "rides on a film"), "straightened": (VERMILLION, "v", "straightened, on its asperities"),
@@ -15,66 +16,42 @@ OWN = "own"
 TICKS = (1.2, 1.6, 2, 3, 5, 10, 20, 50)
 
 
+@look()
 def draw(archive_path, out_path):
     """The figure of a study's archive."""
     study = read_study(archive_path)
     answer = study["answer"]
-    rows = [row for row in answer["released"] if "failed" not in row]
-    for row in rows:
-        row["fate"] = row["status"] if row["status"] in FATES else "failed"
-    with look():
-        figure = sheet(13.0, 8.2)
-        figure.text(
-            0.035,
-            0.965,
-            shortened(study["question"].partition("?")[0] + "?", 115),
-            fontsize=13,
-            weight="bold",
-            va="center",
-        )
-        figure.text(0.035, 0.932, shortened(f"{study['name']}: {_story(answer)}", 175), fontsize=9, va="center")
-        main = figure.add_axes((0.06, 0.075, 0.51, 0.79))
-        ratio = figure.add_axes((0.645, 0.55, 0.335, 0.315), sharex=main)
-        fates = figure.add_axes((0.645, 0.075, 0.335, 0.36), sharex=main)
-        _numbers(main, answer, rows)
-        _ratios(ratio, rows)
-        _map(fates, answer, rows)
-        ratios = [row["force_ratio"] for row in answer["balance"]]
-        main.set_xscale("log")
-        main.set_xlim(min(ratios) / 1.06, max(ratios) * 1.1)
-        for ax in (main, ratio, fates):
-            ax.set_xticks(TICKS, [f"{t:g}" for t in TICKS])
-            ax.set_xticks([], minor=True)
-            ax.set_xlim(min(ratios) / 1.06, max(ratios) * 1.1)
-            ax.set_xlabel("spring force over friction of half the secondary seal, q = F_s/F_d")
-        return save(figure, out_path)
-
-
-def _story(answer) -> str:
-    words = next((v for v in answer["verdict"] if v.startswith("released on its own support")), "")
-    return words.rpartition("; foreseen")[0] or words
+    rows = [{**row, "fate": row["status"] if row["status"] in FATES else "failed"} for row in done(answer["released"])]
+    story = f"{study['name']}: {answer['verdict'][0]}"
+    mosaic = [["numbers", "ratios"], ["numbers", "map"]]
+    figure, ax = study_page(study, 13.0, 8.2, mosaic, below=story, width_ratios=(3, 2), height_ratios=(6, 7))
+    _numbers(ax["numbers"], answer, rows)
+    _ratios(ax["ratios"], rows)
+    _map(ax["map"], answer, rows)
+    ratios = [row["force_ratio"] for row in answer["balance"]]
+    for panel in ax.values():
+        panel.set(xscale="log", xlabel="spring force over friction of half the secondary seal, q = F_s/F_d")
+        panel.set_xticks(TICKS, [f"{t:g}" for t in TICKS])
+        panel.set_xticks([], minor=True)
+        panel.set_xlim(min(ratios) / 1.06, max(ratios) * 1.1)
+    return save(figure, out_path)
 
 
 def _numbers(ax, answer, rows):
     """Sealing number: what is claimed and what happens."""
     line = answer["line"]
-    ax.plot(
-        line["force_ratio"], line["sealing_number"], color=BLACK, lw=1.6, label="closed form, Ludwig & Allen", zorder=3
-    )
-    held = [(r["force_ratio"], r["static"]["sealing_number"]) for r in answer["balance"] if r.get("static")]
-    if held:
-        ax.plot(
-            *zip(*held, strict=True), color=ORANGE, lw=3.2, ls=(0, (2, 2)), label="same balance, actual film", zorder=2
-        )
-    part, words = answer["foreseen"], "released on its own support, foreseen"
-    if part["force_ratio"]:
-        ax.plot(part["force_ratio"], part["sealing_number"], color=GREEN, lw=1.3, ls="--", label=words, zorder=2)
-    quasi = [r for r in answer["balance"] if r.get("quasi_static", {}).get("status") == "settled"]
-    x, y = [r["force_ratio"] for r in quasi], [r["quasi_static"]["sealing_number"] for r in quasi]
-    style = dict(ms=9, mfc="none", mec=BLUE, mew=1.3, ls="", zorder=4)
-    ax.plot(x, y, "D", label="same balance in time, settled", **style)
-    x, y = ([p[name] for p in answer["published"]] for name in ("force_ratio", "sealing_number"))
-    ax.plot(x, y, "*", ms=15, mfc="none", mec=BLACK, ls="", label="published rows", zorder=6)
+    held = [{**r, **r["static"]} for r in answer["balance"] if r.get("static")]
+    settled = [{**r, **r["quasi_static"]} for r in answer["balance"]
+               if r.get("quasi_static", {}).get("status") == "settled"]  # fmt: skip
+    for rows_of, mark, label, style in (
+        (line, "-", "closed form, Ludwig & Allen", {"color": BLACK, "lw": 1.6, "zorder": 3}),
+        (_columns(held), ":", "same balance, actual film", {"color": ORANGE, "lw": 3.2, "zorder": 2}),
+        (answer["foreseen"], "--", "released on its own support, foreseen", {"color": GREEN, "lw": 1.3, "zorder": 2}),
+        (_columns(settled), "D", "same balance in time, settled", {"ms": 9, "mec": BLUE, "mew": 1.3, "zorder": 4}),
+        (_columns(answer["published"]), "*", "published rows", {"ms": 15, "mec": BLACK, "zorder": 6}),
+    ):
+        if rows_of["force_ratio"]:
+            ax.plot(rows_of["force_ratio"], rows_of["sealing_number"], mark, mfc="none", label=label, **style)
     ax.set_yscale("log")
     flat = [r["sealing_number"][0] for r in rows if r["fate"] != "hang-up"] + line["sealing_number"][-1:]
     top, low = 40 * max(flat), 0.2 * min(flat)
@@ -82,10 +59,13 @@ def _numbers(ax, answer, rows):
     _hung(ax, [r for r in rows if r["fate"] == "hang-up"], top)
     ax.set_ylim(low, top)
     _zones(ax, answer)
-    ax.set(
-        ylabel="sealing number  h0² F_s / (µ U ΔR³)", title="Mean film, as the sealing number (bars: least and largest)"
-    )
-    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.44), fontsize=8)
+    ax.set(ylabel="sealing number  h0² F_s / (µ U ΔR³)",
+           title="Mean film, as the sealing number (bars: least and largest)")  # fmt: skip
+    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.44))
+
+
+def _columns(rows) -> dict:
+    return {name: [row[name] for row in rows] for name in ("force_ratio", "sealing_number")}
 
 
 def _hung(ax, rows, top):
@@ -105,7 +85,7 @@ def _zones(ax, answer):
     ax.axvspan(least, attracting, color=SKY, alpha=0.3, lw=0)
     words = f"closed form: hang-up, no balance below {least:.3f} (grey),\none that repels below {attracting:.3f} (blue)"
     ax.annotate(words, (attracting, 0.80), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0),
-                textcoords="offset points")  # fmt: skip
+                textcoords="offset points", annotation_clip=True)  # fmt: skip
 
 
 def _released(ax, rows):
@@ -124,26 +104,17 @@ def _released(ax, rows):
 
 def _ratios(ax, rows):
     """Film of the released ring over that of the closed form."""
-    names = {
-        "mean_film": ("mean film h0", BLUE),
-        "least_film": ("least film", ORANGE),
-        "sealing_number": ("sealing number", GREEN),
-    }
-    for name, (words, colour) in names.items():
+    for name, words, colour in (("mean_film", "mean film h0", BLUE), ("least_film", "least film", ORANGE),
+                                ("sealing_number", "sealing number", GREEN)):  # fmt: skip
         for own, mark in ((True, "o-"), (False, "o:")):
             mine = [r for r in rows if r["ratio"] and (r["support"] == OWN) == own and r["start"] == "closed form"]
             if mine:
                 ax.plot([r["force_ratio"] for r in mine], [r["ratio"][name] for r in mine], mark, color=colour, ms=4,
                         mfc=colour if own else "white", label=words if own else None)  # fmt: skip
-    ax.axhline(1.0, color=BLACK, lw=0.8, zorder=1)
-    words = "hollow: with a tilt spring that carries R F_s h1/h0"
-    ax.annotate(words, (0.98, 1.0), xycoords=("axes fraction", "data"), xytext=(0, 5), textcoords="offset points",
-                fontsize=8, ha="right")  # fmt: skip
-    ax.set_yscale("log")
+    level(ax, 1.0, "hollow: with a tilt spring that carries R F_s h1/h0", BLACK, ls="-", lw=0.8, zorder=1)
+    ax.set(yscale="log", ylabel="released / closed form", title="How far the closed form carries")
     ax.set_ylim(top=12)
-    ax.set(ylabel="released / closed form", title="How far the closed form carries")
-    if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="lower left", title="on its own support", alignment="left", title_fontsize=8)
+    legend(ax, "lower left", title="on its own support", alignment="left", title_fontsize=8)
 
 
 def _map(ax, answer, rows):
@@ -158,20 +129,14 @@ def _map(ax, answer, rows):
     for row in rows:
         if row["start"] == "closed form":
             colour, mark, _ = FATES[row["fate"]]
-            style = dict(color=colour, ms=6, mec="white", mew=0.6, zorder=4, clip_on=False)
-            ax.plot(row["force_ratio"], row["guide"], mark, **style)
-    for x, y, turned, words, colour in (
-        (1.22, 0.62, 90, "hangs up", PURPLE),
-        (5.5, 0.4, 0, "straightens", VERMILLION),
-        (13.0, 0.86, 0, "film", GREEN),
-    ):
-        style = dict(weight="bold", fontsize=9, ha="center", va="center", clip_on=True)
-        ax.text(x, y, words, color=colour, rotation=turned, **style)
-    ax.annotate("closed form", (7.0, np.interp(7.0, need["force_ratio"], need["guide"])), xytext=(0, -14),
-                textcoords="offset points", fontsize=8, ha="center", color=BLACK)  # fmt: skip
-    ax.set(
-        ylim=(-0.02, 1.08),
-        ylabel="tilt moment of the support / R F_s",
-        title="What a released ring does: foreseen, and run (marks)",
-    )
+            ax.plot(row["force_ratio"], row["guide"], mark, color=colour, ms=6, mec="white", mew=0.6, zorder=4,
+                    clip_on=False)  # fmt: skip
+    named = ((1.22, 0.62, 90, "hangs up", PURPLE), (5.5, 0.4, 0, "straightens", VERMILLION),
+             (13.0, 0.86, 0, "film", GREEN),
+             (7.0, np.interp(7.0, need["force_ratio"], need["guide"]) - 0.05, 0, "closed form", BLACK))  # fmt: skip
+    for x, y, turned, words, colour in named:
+        ax.text(x, y, words, color=colour, rotation=turned, weight="bold", fontsize=9, ha="center", va="center",
+                clip_on=True)  # fmt: skip
+    ax.set(ylim=(-0.02, 1.08), ylabel="tilt moment of the support / R F_s",
+           title="What a released ring does: foreseen, and run (marks)")  # fmt: skip
     ax.grid(color=PALE)

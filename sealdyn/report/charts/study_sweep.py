@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from ...archive import read_study
-from .page import absent, look, save, sheet, shortened
+from .page import absent, look, save, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PURPLE, SKY, THICKNESS, YELLOW
 
 # SI unit of an output -> what it is shown in, and the factor.
@@ -15,32 +15,28 @@ WORDS = (GREEN, CONTACT, ORANGE, BLUE, PURPLE, SKY, YELLOW, GREY)
 MOST = 8
 
 
+@look()
 def draw(path, out):
     """One panel per output, at most eight."""
-    info = read_study(path)
-    answer = info["answer"]
-    outputs = answer["outputs"][:MOST]
+    study = read_study(path)
+    answer = study["answer"]
+    outputs = list(dict.fromkeys(answer["outputs"]))[:MOST]
     across = min(len(outputs), 4 if len(outputs) > 4 else 2)
     down = math.ceil(len(outputs) / across)
-    panel = lines if len(answer["keys"]) == 1 else maps
-    with look():
-        width, height = max(3.6 * across, 7.2), 1.1 + 2.7 * down
-        figure = sheet(width, height)
-        title = f"{info['name'].replace('_', ' ')} over {' and '.join(answer['keys'])}"
-        figure.text(0.03, 1 - 0.3 / height, shortened(title, int(11 * width)), fontsize=13, weight="bold", va="center")
-        said = " ".join(answer["verdict"][:2])
-        figure.text(0.03, 1 - 0.58 / height, shortened(said, int(14 * width)), fontsize=9, va="center")
-        grid = figure.add_gridspec(
-            down, across, left=0.75 / width, right=1 - 0.35 / width, bottom=0.55 / height, top=1 - 1.1 / height,
-            wspace=0.45, hspace=0.55,
-        )  # fmt: skip
-        for k, output in enumerate(outputs):
-            ax = figure.add_subplot(grid[k // across, k % across])
-            if len(answer["keys"]) > 2:
-                absent(ax, output, "more than two keys: see the table in the archive")
-            else:
-                panel(ax, answer, output)
-        return save(figure, out)
+    mosaic = np.array(outputs + ["."] * (across * down - len(outputs))).reshape(down, across).tolist()
+    title = f"{study['name'].replace('_', ' ')} over {' and '.join(answer['keys'])}"
+    said = " ".join(answer["verdict"][:2])
+    figure, panels = study_page(study, max(3.6 * across, 7.2), 1.1 + 2.7 * down, mosaic, title, said)
+    for output, ax in panels.items():
+        values, unit, words = column(answer, output)
+        if len(answer["keys"]) > 2:
+            absent(ax, output, "more than two keys: see the table in the archive")
+        elif not np.isfinite(values).any():
+            absent(ax, output, "no value at any point")
+        else:
+            ax.set_title(output)
+            (lines if len(answer["keys"]) == 1 else maps)(ax, answer, values, unit, words)
+    return save(figure, out)
 
 
 def axis_label(axis: dict) -> str:
@@ -49,15 +45,14 @@ def axis_label(axis: dict) -> str:
 
 
 def column(answer, output):
-    """Values (n,) as shown, their label, and the words they stand for if they are words."""
+    """Values (n,) as shown, their unit, and the words they stand for if they are words."""
     raw = [row.get(output) for row in answer["rows"]]
-    if any(isinstance(v, str) for v in raw):
-        words = list(dict.fromkeys(v for v in raw if v is not None))
-        return np.array([np.nan if v is None else words.index(v) for v in raw]), output, words
+    if any(isinstance(value, str) for value in raw):
+        words = list(dict.fromkeys(value for value in raw if value is not None))
+        return np.array([np.nan if value is None else words.index(value) for value in raw]), "", words
     unit = answer["output_units"].get(output, "")
-    shown, factor = SHOWN.get(unit, (unit, 1.0))
-    values = np.array([np.nan if v is None else factor * float(v) for v in raw])
-    return values, f"{output}{f', {shown}' if shown else ''}", None
+    unit, factor = SHOWN.get(unit, (unit, 1.0))
+    return factor * np.array(raw, dtype=float), unit, None
 
 
 def positions(axis: dict) -> np.ndarray:
@@ -65,16 +60,10 @@ def positions(axis: dict) -> np.ndarray:
     return np.arange(len(axis["values"])) if axis["unit"] is None else np.array(axis["values"], dtype=float)
 
 
-def lines(ax, answer, output):
+def lines(ax, answer, values, unit, words):
     """One output over one key; crosses at the foot where a run was not possible or gave no value."""
     axis = answer["axes"][0]
-    x, (values, label, words) = positions(axis), column(answer, output)
-    good = np.isfinite(values)
-    # The name of the panel says the output; the axis its unit.
-    ax.set_title(label.partition(",")[0])
-    if not good.any():
-        absent(ax, ax.get_title(loc="left"), "no value at any point")
-        return
+    x, good = positions(axis), np.isfinite(values)
     if words:
         for k in range(len(words)):
             ax.plot(x[values == k], values[values == k], "s", ms=5, color=WORDS[k % len(WORDS)])
@@ -82,7 +71,7 @@ def lines(ax, answer, output):
         ax.set_ylim(-0.7, len(words) - 0.3)
     else:
         ax.plot(x, values, "-o", ms=3.5, color=BLUE)
-        ax.set_ylabel(label.partition(", ")[2])
+        ax.set_ylabel(unit)
     if not good.all():
         ax.plot(x[~good], np.full((~good).sum(), 0.03), "x", ms=6, color=CONTACT, transform=ax.get_xaxis_transform(),
                 label="no value")  # fmt: skip
@@ -91,14 +80,9 @@ def lines(ax, answer, output):
     ax.set_xlabel(axis_label(axis))
 
 
-def maps(ax, answer, output):
+def maps(ax, answer, values, unit, words):
     """One output over two keys; white where a run was not possible or gave no value."""
     first, second = answer["axes"]
-    values, label, words = column(answer, output)
-    ax.set_title(label.partition(",")[0])
-    if not np.isfinite(values).any():
-        absent(ax, ax.get_title(loc="left"), "no value at any point")
-        return
     cells = np.ma.masked_invalid(values.reshape(len(first["values"]), len(second["values"])).T)
     x, y = positions(first), positions(second)
     ax.grid(False)
@@ -111,8 +95,7 @@ def maps(ax, answer, output):
         bar.ax.set_yticklabels(words, rotation=90, va="center")
     else:
         drawn = ax.pcolormesh(edges(x), edges(y), cells, cmap=THICKNESS)
-        bar = ax.figure.colorbar(drawn, ax=ax)
-        bar.set_label(label.partition(", ")[2])
+        ax.figure.colorbar(drawn, ax=ax, label=unit)
     _ticks(ax.set_xticks, first, x)
     _ticks(ax.set_yticks, second, y)
     ax.set(xlabel=axis_label(first), ylabel=axis_label(second))

@@ -1,17 +1,17 @@
 """Bode plot of the FMR and the FMS seal over speed, three independent methods on one chart: transmissibilities above,
-phases below
-them, and the table at the foot."""
+phases below them, and the table at the foot."""
 
 from textwrap import wrap
 
 import numpy as np
-from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
-from .page import heading, look, save, sheet
+from .page import logarithmic, look, number, save, stacked, study_page
 from .palette import BLACK, GREY, PALE, RING
+from .record import done
 
-COLOUR = {"fmr": RING["rotor"], "fms": RING["stator"]}
+COLOUR, MARK = {"fmr": RING["rotor"], "fms": RING["stator"]}, {"fmr": "o", "fms": "s"}
 TITLES = {
     "static": "Static: fixed in space",
     "dynamic": "Dynamic: turns with the shaft",
@@ -27,34 +27,32 @@ WORDS = {
 }
 
 
+@look()
 def draw(archive_path, out_path):
     """Amplitudes and phases over speed and a table, from a study's archive."""
     study = read_study(archive_path)
-    answer = study["answer"]
-    with look():
-        figure = sheet(11.5, 9.6)
-        heading(figure, "How much misalignment reaches the film?", f"{study['name']}: {study['question']}")
-        for i, quantity in enumerate(TITLES):
-            left = 0.06 + 0.324 * i
-            above = figure.add_axes((left, 0.585, 0.262, 0.32))
-            _amplitudes(above, answer, quantity)
-            if quantity == "total":
-                _legend(figure, answer, left)
-                above.set_xlabel(f"shaft speed, {answer['unit']}")
-            else:
-                _phases(figure.add_axes((left, 0.32, 0.262, 0.2), sharex=above), answer, f"{quantity}_phase")
-                above.tick_params(labelbottom=False)
-        figure.axes[0].set_ylabel("relative misalignment per unit forcing")
-        figure.axes[1].set_ylabel("phase behind the forcing, deg")
-        figure.align_ylabels(figure.axes[:2])
-        _table(figure, answer)
-        return save(figure, out_path)
+    answer, title = study["answer"], "How much misalignment reaches the film?"
+    mosaic = [list(TITLES), ["static phase", "dynamic phase", "legend"]] + ([3 * ["table"]] if answer["table"] else [])
+    heights = (9, 6, 6)[: len(mosaic)]
+    figure, ax = study_page(study, 11.5, 9.6 if answer["table"] else 7.2, mosaic, title, height_ratios=heights)
+    for quantity in ("static", "dynamic"):
+        stacked(ax[quantity], ax[f"{quantity} phase"])
+        _phases(ax[f"{quantity} phase"], answer, f"{quantity}_phase")
+    for quantity in TITLES:
+        _amplitudes(ax[quantity], answer, quantity)
+    for name in ("static phase", "dynamic phase", "total"):
+        ax[name].set_xlabel(f"shaft speed, {answer['unit']}")
+    ax["static"].set_ylabel("relative misalignment per unit forcing")
+    ax["static phase"].set_ylabel("phase behind the forcing, deg")
+    _legend(ax["legend"], answer)
+    if answer["table"]:
+        _table(ax["table"], answer["table"])
+    return save(figure, out_path)
 
 
 def _roads(ax, answer, quantity: str):
     """One column of both arrangements by three independent methods over speed."""
-    unit = answer["unit"]
-    factor = RPM if unit == "rpm" else 1.0
+    factor = RPM if answer["unit"] == "rpm" else 1.0
     speed = factor * np.array(answer["speed"])
     for seal, colour in COLOUR.items():
         stable = np.array(answer[seal]["stable"])
@@ -62,12 +60,9 @@ def _roads(ax, answer, quantity: str):
         ax.plot(speed, np.where(stable, line, np.nan), color=colour, lw=2.2, alpha=0.75)
         ax.plot(speed, np.where(stable, np.nan, line), color=colour, lw=1.0, alpha=0.5, ls=":")
         ax.plot(speed, np.where(stable, dashes, np.nan), color=BLACK, lw=0.8, ls=(0, (4, 5)))
-        rows = [r for r in answer["time_domain"] if r["seal"] == seal and "failed" not in r]
-        at = [factor * r["speed"] for r in rows]
-        bars = [r["error"][quantity] for r in rows]
-        mark = "o" if seal == "fmr" else "s"
-        ax.errorbar(at, [r[quantity] for r in rows], bars, fmt=mark, ms=4.5, mfc="white", mec=colour, ecolor=colour,
-                    capsize=3, lw=1.0, clip_on=False)  # fmt: skip
+        for row in (row for row in done(answer["time_domain"]) if row["seal"] == seal):
+            ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt=MARK[seal], ms=4.5, lw=1.0,
+                        mfc="white", mec=colour, ecolor=colour, capsize=3, clip_on=False)  # fmt: skip
     ax.set(xlim=(speed[0], speed[-1]))
     ax.locator_params(axis="x", nbins=5)
     return np.concatenate([answer[s][quantity] for s in COLOUR])
@@ -81,15 +76,14 @@ def _amplitudes(ax, answer, quantity: str):
     room = 0.12 + 0.1 * max(1, sum(c["quantity"] == quantity for c in answer["crossings"]))
     if highest > 8 * lowest:
         # Far apart: the crossing is seen on a logarithmic axis only.
-        ax.set_yscale("log")
+        logarithmic(ax, "y")
         ax.set_ylim(0.7 * lowest, highest * (highest / lowest) ** room)
-        ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if highest < 300 * lowest else (1,)))
-        ax.yaxis.set_minor_formatter(NullFormatter())
-        ax.yaxis.set_major_formatter(lambda v, _: f"{v:g}")
+        if highest > 300 * lowest:
+            ax.yaxis.set_major_locator(LogLocator())
     else:
         ax.set_ylim(0, (1 + room) * highest)
     ax.set_title(TITLES[quantity])
-    _crossings(ax, answer, quantity, RPM if answer["unit"] == "rpm" else 1.0, answer["unit"])
+    _crossings(ax, answer, quantity)
 
 
 def _phases(ax, answer, name: str):
@@ -99,61 +93,43 @@ def _phases(ax, answer, name: str):
     ax.axhline(0.0, color=BLACK, lw=0.6)
     ax.set_ylim(min(both.min(), 0) - 0.1 * spread, max(both.max(), 0) + 0.1 * spread)
     ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 1.5, 2, 3, 4.5, 6, 9, 10]))
-    ax.yaxis.set_major_formatter(lambda v, _: f"{v:g}".replace("-", "−"))
-    ax.set_xlabel(f"shaft speed, {answer['unit']}")
+    ax.yaxis.set_major_formatter(lambda value, _: number(value))
 
 
-def _crossings(ax, answer, quantity, factor, unit):
-    found = [c for c in answer["crossings"] if c["quantity"] == quantity]
-    if not found:
-        better = answer["better"][quantity]
-        words = f"{better.upper()} better at every speed" if better else "both the same"
-        ax.text(0.03, 0.96, words, transform=ax.transAxes, va="top", fontsize=8,
-                color=GREY)  # fmt: skip
-    for n, crossing in enumerate(found[:4]):
-        at = factor * crossing["speed"]
+def _crossings(ax, answer, quantity):
+    found = [c for c in answer["crossings"] if c["quantity"] == quantity][:4]
+    better = answer["better"][quantity]
+    lines = [] if found else [f"{better.upper()} better at every speed" if better else "both the same"]
+    for crossing in found:
+        at = crossing["speed"] * (RPM if answer["unit"] == "rpm" else 1.0)
         ax.axvline(at, color=GREY, lw=0.8, ls=":")
-        words = f"{crossing['better_above'].upper()} better above {at:.6g} {unit}"
-        ax.text(
-            0.03,
-            0.96 - 0.065 * n,
-            words,
-            transform=ax.transAxes,
-            va="top",
-            fontsize=8,
-            color=GREY,
-            backgroundcolor="white",
-        )
+        lines.append(f"{crossing['better_above'].upper()} better above {at:.6g} {answer['unit']}")
+    ax.text(0.03, 0.96, "\n".join(lines), transform=ax.transAxes, va="top", fontsize=8, color=GREY, linespacing=1.5,
+            backgroundcolor="white")  # fmt: skip
 
 
-def _legend(figure, answer, left):
-    from matplotlib.lines import Line2D
-
+def _legend(ax, answer):
+    """What the lines are, how far the time domain is from them, and what a phase is."""
+    ax.axis("off")
     road = "formula" if answer["formula_holds"] else "linear algebra"
-    errors = [r["error"] for r in answer["time_domain"] if "failed" not in r]
-    apart = max((e[q] for e in errors for q in TITLES), default=None)
-    handles = [
-        Line2D([], [], color=COLOUR["fmr"], lw=2.2, alpha=0.75, label=f"FMR, {road}"),
-        Line2D([], [], color=COLOUR["fms"], lw=2.2, alpha=0.75, label=f"FMS, {road}"),
-        Line2D([], [], color=BLACK, lw=0.8, ls=(0, (4, 5)), label="linear algebra"),
-    ]
-    if apart is not None:
-        turned = max(e[q] for e in errors for q in ("static_phase", "dynamic_phase"))
+    for seal, colour in COLOUR.items():
+        ax.plot([], [], color=colour, lw=2.2, alpha=0.75, label=f"{seal.upper()}, {road}")
+    ax.plot([], [], color=BLACK, lw=0.8, ls=(0, (4, 5)), label="linear algebra")
+    errors = [row["error"] for row in done(answer["time_domain"])]
+    if errors:
+        apart = max(error[name] for error in errors for name in TITLES)
+        turned = max(error[name] for error in errors for name in ("static_phase", "dynamic_phase"))
         label = f"time domain (error bars up to\n{apart:.0e} and {turned:.0e} deg)"
-        handles.append(Line2D([], [], color=GREY, ls="", marker="o", mfc="white", label=label))
-    if not all(all(answer[s]["stable"]) for s in COLOUR):
-        handles.append(Line2D([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped"))
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(left - 0.01, 0.522), fontsize=8.5)
+        ax.plot([], [], "o", color=GREY, mfc="white", label=label)
+    if not all(all(answer[seal]["stable"]) for seal in COLOUR):
+        ax.plot([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped")
+    ax.legend(loc="upper left", borderaxespad=0.0, fontsize=8.5)
     words = "\n".join(wrap(answer["phase"], 48))
-    figure.text(left, 0.345, words, fontsize=8.5, color=GREY, va="center", linespacing=1.4)
+    ax.text(0.0, 0.0, words, fontsize=8.5, color=GREY, va="bottom", linespacing=1.4, transform=ax.transAxes)
 
 
-def _table(figure, answer):
+def _table(ax, rows):
     """FMR against FMS, as Green's Table 1."""
-    rows = answer["table"]
-    if not rows:
-        return
-    ax = figure.add_axes((0.06, 0.02, 0.914, 0.225))
     ax.axis("off")
     roads = ("formula", "linear_algebra", "time_domain")
     heads = ("At the scenario's speed (Green's Table 1)", "FMR", "", "", "FMS", "", "")
@@ -161,7 +137,7 @@ def _table(figure, answer):
     columns = (0.0, 0.32, 0.435, 0.55, 0.68, 0.795, 0.91)
     lines = [heads, below]
     for row in rows:
-        cells = [_cell(row, row[road][seal], road) for seal in ("fmr", "fms") for road in roads]
+        cells = [_cell(row, row[road][seal], road) for seal in COLOUR for road in roads]
         lines.append((WORDS[row["quantity"]], *cells))
     for i, cells in enumerate(lines):
         y = 1 - i / (len(lines) - 0.5)

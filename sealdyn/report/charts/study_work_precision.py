@@ -1,6 +1,7 @@
 """Work and precision: error against wall time and right-hand sides by method, and by model rung on the same axes."""
 
 import math
+from textwrap import wrap
 
 import numpy as np
 from matplotlib.patheffects import withStroke
@@ -8,44 +9,38 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...archive import read_study
 from ...status import Status
-from .page import absent, look, save, sheet, shortened
-from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILLION
+from .page import absent, look, save, shortened, study_page
+from .palette import BLUE, CONTACT, GREEN, GREY, LOOKS, ORANGE, PALE, PURPLE, SHORT, SKY, VERMILLION
 
-# Colour, line and marker of every method: the house's own in full lines, SciPy's dashed, fixed steps dotted.
-LOOKS = {
-    "adams": (BLUE, "-", "o"), "bdf": (GREEN, "-", "s"), "bdf2": (GREEN, "--", "D"), "ida": (PURPLE, "-", "^"),
-    "expm": (BLACK, "-", "*"), "dop853": (VERMILLION, "-", "v"), "rk45": (VERMILLION, "--", "<"),
-    "lsoda": (SKY, "-", "p"), "radau": (ORANGE, "-", "h"), "newmark": (GREY, "--", "P"),
-    "generalised_alpha": (GREY, ":", "X"), "midpoint": (BLACK, ":", "d"),
-}  # fmt: skip
-SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
-         "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
-         "midpoint": "midpoint", "expm": "expm"}  # fmt: skip
 TITLES = {"end": "error at the end", "over_time": "largest error over time", "steady": "error of the steady state"}
+# Marks and colours of the rungs.
 MODELS = ("o", "s", "^", "v", "D", "P", "X")
+RUNGS = (ORANGE, VERMILLION, SKY, BLUE, GREEN, PURPLE)
 
 
+@look()
 def draw(path, out):
     """Three panels of error against time, one against right-hand sides, models beside solvers, and what is said."""
-    info = read_study(path)
-    answer = info["answer"]
-    with look():
-        figure = sheet(15.5, 9.6)
-        title = f"How much solver, how much model: {info['name'].replace('_', ' ')}"
-        figure.text(0.03, 0.972, title, fontsize=14, weight="bold", va="center")
-        figure.text(0.03, 0.947, shortened(info["question"], 170), fontsize=9, va="center")
-        grid = figure.add_gridspec(2, 3, left=0.055, right=0.985, bottom=0.125, top=0.895, wspace=0.2, hspace=0.32)
-        for k, where in enumerate(TITLES):
-            precision(figure.add_subplot(grid[0, k]), answer, where, "wall")
-        precision(figure.add_subplot(grid[1, 0]), answer, answer["where"], "rhs")
-        models(figure.add_subplot(grid[1, 1]), answer)
-        said(figure.add_subplot(grid[1, 2]), answer)
-        figure.text(0.03, 0.012, caption(info), fontsize=7.5, color=BLACK, va="bottom", linespacing=1.35)
-        return save(figure, out)
+    study = read_study(path)
+    answer, title = study["answer"], f"How much solver, how much model: {study['name'].replace('_', ' ')}"
+    mosaic = [list(TITLES), ["rhs", "models", "said"]]
+    figure, ax = study_page(study, 15.5, 9.6, mosaic, title, study["question"])
+    figure.supxlabel(caption(study), x=0.03, ha="left", fontsize=7.5, linespacing=1.35)
+    costs = {**{where: (where, "wall") for where in TITLES}, "rhs": (answer["where"], "rhs")}
+    ends = {name: precision(ax[name], answer, *cost) for name, cost in costs.items()}
+    models(ax["models"], answer)
+    said(ax["said"], answer)
+    # Names find their places in panels that have theirs.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for name, lines in ends.items():
+        label_ends(ax[name], lines)
+    return save(figure, out)
 
 
 def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str | None = None):
-    """Error to the right, cost upwards; crosses are runs that did not end well."""
+    """Error to the right, cost upwards; crosses are runs that did not end well.  Returns (x, y, words, colour) of the
+    end of every line; without `labels` the panel is one of many."""
     band = (answer["judge_error"] or {}).get(where)
     ends, drawn = [], False
     for name, row in answer["methods"].items():
@@ -63,27 +58,26 @@ def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str
     crossed = any(status != Status.OK for row in answer["methods"].values() for status in row["status"])
     if not drawn and (where == "steady" or not crossed):
         absent(ax, title or TITLES[where], "no steady state here" if where == "steady" else "nothing to compare")
-        return
+        return []
     ax.set(xscale="log", yscale="log")
     limits(ax, answer, where, cost)
     _crosses(ax, answer, where, cost)
     if band and band > ax.get_xlim()[1]:
         ax.axvspan(ax.get_xlim()[1], band, color=PALE, lw=0, zorder=0)
-    ax.set_title(title or f"{TITLES[where]}, against {'wall time' if cost == 'wall' else 'right-hand sides'}")
-    ax.set_xlabel("error, of the clearance (leakage, impulse: relative)" if labels else "error")
-    ax.set_ylabel("wall time, ms" if cost == "wall" else "right-hand sides")
+    ax.set(title=title or f"{TITLES[where]}, against {'wall time' if cost == 'wall' else 'right-hand sides'}",
+           xlabel="error, of the clearance (leakage, impulse: relative)" if labels else "error",
+           ylabel="wall time, ms" if cost == "wall" else "right-hand sides")  # fmt: skip
     if band:
         note = f"judge's own error {band:.0e}"
         ax.text(0.985, 0.012, note, transform=ax.transAxes, fontsize=7, color=GREY, ha="right", va="bottom")
-    if labels:
-        label_ends(ax, ends)
-    elif not drawn:
+    if not (labels or drawn):
         ax.text(0.5, 0.5, "no method ended", transform=ax.transAxes, ha="center", color=GREY, style="italic")
+    return ends
 
 
 def _errors(row, where):
     """Errors, above what a float can show."""
-    values = np.array([np.nan if e is None else e for e in row["error"][where]], dtype=float)
+    values = np.array(row["error"][where], dtype=float)
     return np.where(values == 0, 1e-16, values)
 
 
@@ -94,13 +88,18 @@ def limits(ax, answer, where, cost):
     low, high = (found.min(), found.max()) if len(found) else (1e-12, 1.0)
     band = (answer["judge_error"] or {}).get(where) or 1e-15
     low = max(min(low, 1e-9), 0.3 * min(band, low) if band < 1e-8 else low, 1e-16)
-    ax.set_xlim(10 ** math.ceil(math.log10(max(high, 1e-3)) + 0.15), low / 40)
+    _error_axis(ax, high, low / 40)
     spent = [c for row in answer["methods"].values() for c in row[cost] if c > 0]
     factor = 1e3 if cost == "wall" else 1.0
     ax.set_ylim(factor * min(spent, default=1e-3) * 0.5, factor * max(spent, default=1.0) * 2.5)
+    ax.yaxis.set_minor_formatter(NullFormatter())
+
+
+def _error_axis(ax, high, least):
+    """Errors from above the largest one, or 1e-3, down to the `least`, to the right."""
+    ax.set_xlim(10 ** math.ceil(math.log10(max(high, 1e-3)) + 0.15), least)
     ax.xaxis.set_major_locator(LogLocator(base=10, numticks=9))
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def _crosses(ax, answer, where, cost):
@@ -119,19 +118,14 @@ def _crosses(ax, answer, where, cost):
 
 def label_ends(ax, ends):
     """Names at the right ends of the lines, pushed apart so that none covers another."""
-    ax.figure.canvas.draw()
     to_pixels, back = ax.transData.transform, ax.transData.inverted().transform
     height, bottom, top = 17.0, *ax.get_window_extent().intervaly
     placed = sorted(((*to_pixels((x, y)), words, colour) for x, y, words, colour in ends), key=lambda e: e[1])
     levels = [min(max(e[1], bottom + 14), top) for e in placed]
     for k in range(1, len(levels)):
         levels[k] = max(levels[k], levels[k - 1] + height)
-    over = (levels[-1] - top + 4) if levels else 0
-    for k in range(len(levels) - 1, -1, -1):
-        if over <= 0:
-            break
-        ceiling = top - 4 if k == len(levels) - 1 else levels[k + 1] - height
-        levels[k] = min(levels[k], ceiling)
+    for k in reversed(range(len(levels))):
+        levels[k] = min(levels[k], levels[k + 1] - height if k + 1 < len(levels) else top - 4)
     right = ax.get_window_extent().x1
     for (x, y, words, colour), level in zip(placed, levels, strict=True):
         here = min(x + 7, right - 48)
@@ -148,8 +142,7 @@ def models(ax, answer):
     rows = [row for row in answer["models"] if row["error"][where] is not None]
     title = f"models: {TITLES[where]}, against wall time"
     if not rows:
-        absent(ax, title, "no rung to compare")
-        return
+        return absent(ax, title, "no rung to compare")
     edge = sorted(
         (e, 1e3 * w)
         for row in answer["methods"].values()
@@ -162,40 +155,30 @@ def models(ax, answer):
         ax.plot([e for e, _ in edge], best, "-", color=GREY, lw=1.2, drawstyle="steps-post")
     walls = [1e3 * row["wall"] for row in rows] + list(best)
     errors = [max(row["error"][where], 1e-12) for row in rows] + [e for e, _ in edge]
+    _error_axis(ax, max(errors), max(min(errors), 1e-13) / 5)
     ax.set_ylim(min(walls) * 0.25, max(walls) * 60)
-    ax.set_xlim(10 ** math.ceil(math.log10(max(max(errors), 1e-3)) + 0.1), max(min(errors), 1e-13) / 5)
     if edge:
         ax.annotate("fastest solver\nof this scene", (edge[0][0], best[0]), fontsize=7, color=GREY, ha="right",
                     xytext=(-4, 9), textcoords="offset points")  # fmt: skip
-    colours = (ORANGE, VERMILLION, SKY, BLUE, GREEN, PURPLE)
     for k, row in enumerate(rows):
-        at, spent = max(row["error"][where], 1e-12), 1e3 * row["wall"]
-        colour = colours[k % len(colours)]
-        ax.plot(at, spent, MODELS[k % len(MODELS)], ms=9, color=colour, mec="white", zorder=4)
-        # A key above the points, one line each: rungs may lie on one another.
-        level = 0.965 - 0.052 * k
-        ax.plot(0.028, level, MODELS[k % len(MODELS)], ms=7, color=colour, mec="white", transform=ax.transAxes)
         words = f"{row['label']}: {row['error'][where]:.1e}, {1e3 * row['wall']:.2g} ms"
-        ax.text(0.05, level, words, transform=ax.transAxes, fontsize=7.5, va="center")
-    for k, row in enumerate([row for row in answer["models"] if row["failed"]], len(rows)):
-        words = shortened(f"✕ {row['label']}: {row['failed']}", 76)
-        ax.text(0.02, 0.965 - 0.052 * k, words, transform=ax.transAxes, fontsize=7.5, va="center", color=CONTACT)
-    ax.xaxis.set_major_locator(LogLocator(base=10, numticks=9))
-    ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set_title(title)
-    ax.set_xlabel("error of the motion against the highest rung, of the clearance")
-    ax.set_ylabel("wall time, ms")
+        mark, colour = MODELS[k % len(MODELS)], RUNGS[k % len(RUNGS)]
+        at = max(row["error"][where], 1e-12), 1e3 * row["wall"]
+        ax.plot(*at, mark, ms=9, color=colour, mec="white", zorder=4, label=words)
+    for row in (row for row in answer["models"] if row["failed"]):
+        ax.plot([], [], "x", color=CONTACT, label=shortened(f"{row['label']}: {row['failed']}", 76))
+    ax.legend(loc="upper left", fontsize=7.5, markerscale=0.8, borderaxespad=0.2, handlelength=1.0)
+    ax.set(title=title, xlabel="error of the motion against the highest rung, of the clearance",
+           ylabel="wall time, ms")  # fmt: skip
 
 
 def said(ax, answer):
     """The verdict in words, and what the crosses are."""
-    import textwrap
-
     ax.axis("off")
     ax.set_title("what it amounts to")
     lines = []
     for sentence in answer["verdict"]:
-        lines += textwrap.wrap(sentence, 74, initial_indent="• ", subsequent_indent="   ")
+        lines += wrap(sentence, 74, initial_indent="• ", subsequent_indent="   ")
     reasons = {}
     for name, row in answer["methods"].items():
         for status, reason in zip(row["status"], row["reason"], strict=True):

@@ -20,8 +20,6 @@ units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row
 class Settings:
     """`items`: numbers of the exhibits to show (default all twelve)."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     items: tuple[int, ...] | int = ()
 
 
@@ -70,27 +68,24 @@ def chosen_for(scenario) -> dict:
     }
 
 
+def tables(answer) -> list:
+    """Each method that fails beside the one that survives."""
+    columns = (("", "item"), ("place", "title"), ("fails", "failing"), ("error", "failing_error"),
+               ("survives", "survivor"), ("error", "survivor_error"), ("unit", "unit"))  # fmt: skip
+    return [([row for row in answer["rows"] if "absent" not in row], columns)]
+
+
 def sentences(answer) -> list[str]:
-    """The verdict: one line per row, then the scenario."""
-    lines = []
-    for row in answer["rows"]:
-        start = f"{row['item']} {row['title']}: "
-        if "failed" in row:
-            lines.append(start + f"the exhibit itself failed ({row['failed']})")
-        elif "absent" in row:
-            lines.append(start + row["absent"])
-        else:
-            lines.append(
-                f"{start}{row['failing']}, {said(row['failing_error'])}; {row['survivor']}, "
-                f"{said(row['survivor_error'])} ({row['unit']}).  By default the program {row['default']}."
-            )
+    """The verdict: the places, and what the program does with the scenario."""
+    shown = {row["title"] for row in answer["rows"] if "absent" not in row and "failed" not in row}
+    absent = [row["title"] for row in answer["rows"] if "absent" in row]
+    lines = [f"In each of {len(shown)} places a method fails beside one that survives."]
     own = answer["scenario"]
     if "refused" in own:
-        return [*lines, f"this scenario is refused: {own['refused']}"]
-    warned = f"; warned: {'; '.join(own['warnings'])}" if own["warnings"] else ""
-    return [*lines, f"for this scenario it takes {own['method']} ({own['why']}) on the {own['film']} film{warned}"]
-
-
-def said(error) -> str:
-    """A number as a person reads it; no answer is no number."""
-    return "no answer" if error is None else f"{error:.2g}"
+        lines.append(f"This scenario is refused: {own['refused']}.")
+    else:
+        warned = f"; warned: {'; '.join(own['warnings'])}" if own["warnings"] else ""
+        lines.append(
+            f"For this scenario the program takes {own['method']} ({own['why']}) on the {own['film']} film{warned}."
+        )
+    return [*lines, f"Not there yet: {', '.join(absent)}."] if absent else lines

@@ -1,19 +1,17 @@
 """What a run-up is asked to do: checked settings, from where to where, how fast, and what linear theory says of it."""
 
 import math
-from typing import get_args, get_type_hints
 
 import numpy as np
 
 from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
-from ...dynamics import modes
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
-from ...scenario.settings import axis, with_values
+from ...scenario.settings import si_unit, values_in_si, with_values
 from ...scene import variants
 from ...scene.variants import part
-from ...unit_names import dimension_and_factor
+from ...simulation.stability import critical_speed, resonance_speeds
 from .speed_ramp import Steady, followed_mode, touch_tilt
 
 SPEED = "shaft.speed"
@@ -34,7 +32,7 @@ def wrong(scenario, setting: str, found: str, expected: str) -> ScenarioError:
 
 
 def checked(scenario, settings):
-    """Raises ScenarioError for a key that cannot change in time, and settings out of their range."""
+    """Raises ScenarioError for a key that cannot change in time."""
     key = settings.key
     try:
         now = part(scenario.scene, key)
@@ -49,24 +47,6 @@ def checked(scenario, settings):
         with_values(scenario, {key: PiecewiseLinear((0.0, 1.0), (value, value)), "run.duration": 1.0})
     except ScenarioError as error:
         raise wrong(scenario, "key", repr(key), f"a quantity that may change in time ({error})") from None
-    for name, least in (("window", 2), ("samples_per_turn", 8)):
-        given = getattr(settings, name)
-        if given is not None and given < least:
-            raise wrong(scenario, name, str(given), f"at least {least}")
-    for name in ("hold", "disturbance"):
-        given = getattr(settings, name)
-        if given is not None and given < 0:
-            raise wrong(scenario, name, f"{given:g}", "nothing negative")
-
-
-def unit_of(scenario, key: str) -> str:
-    """SI unit of the quantity at a dotted key."""
-    owner, _, name = key.rpartition(".")
-    kind = get_type_hints(type(part(scenario.scene, owner)), include_extras=True)[name]
-    for told in [kind, *get_args(kind)]:
-        for meta in getattr(told, "__metadata__", ()):
-            return getattr(meta, "quantity", meta).unit
-    return "SI"
 
 
 def rate_unit(unit: str) -> str:
@@ -106,20 +86,8 @@ def rates_of(scenario, settings) -> list[float | None] | None:
         raise wrong(scenario, "rates", '"step" of the shaft speed', expected)
     if steps and jumps(scenario.scene, settings.key):
         raise wrong(scenario, "rates", f'"step" of {settings.key}', "rates: a rigid ring cannot jump in the film")
-    found = []
-    if numbers:
-        told = axis(f"{settings.key}={numbers}", scenario.name, "study.runup.rates")
-        if told["unit"] is None:
-            raise wrong(scenario, "rates", repr(words), expected)
-        factor, own = 1.0, rate_unit(unit_of(scenario, settings.key))
-        if told["unit"]:
-            try:
-                dimension, factor = dimension_and_factor(told["unit"])
-            except ValueError:
-                dimension = None
-            if dimension != dimension_and_factor(own)[0]:
-                raise wrong(scenario, "rates", f'"{words}"', f"{expected}, in {own} or its like")
-        found = sorted(float(f"{float(factor) * v:.12g}") for v in told["values"])
+    own = rate_unit(si_unit(scenario.scene, settings.key))
+    found = sorted(values_in_si(scenario, numbers, own, "study.runup.rates")) if numbers else []
     if any(not rate > 0 for rate in found):
         raise wrong(scenario, "rates", repr(words), expected + "; `begin` and `end` give the direction")
     return [*found, *([None] if steps else [])]
@@ -130,14 +98,8 @@ def planned(scenario, settings) -> dict:
     steady = Steady(scenario.scene)
     own = _own_speed(scenario.scene)
     free = free_model(frozen_at_end(scenario.scene), own)
-    pace = max((abs(mode.value) for mode in free.linear_scene().modes()), default=own)
-
-    def at_speed(w):
-        return free.linear_scene(speed=w)
-
-    tilting = steady.tilting and any(mode.kind == "tilt" for mode in free.linear_scene().modes())
-    resonances = modes.resonance_speeds(at_speed, 1e-2 * pace, 30 * pace) if tilting else []
-    threshold = modes.critical_speed(at_speed, 1e-3 * pace, 1e3 * pace) if tilting else None
+    resonances = resonance_speeds(free) if steady.tilting else []
+    threshold = critical_speed(free) if steady.tilting else None
     begin, end, chosen = _range(scenario, settings, own, resonances, threshold, free)
     crossing = max(threshold, begin) if threshold is not None and threshold < end else None
     crossing = crossing if not free.unknowns.has_residual_form else None

@@ -8,16 +8,19 @@ how fast one must pass to stay below touch.  Anything else: film, misalignment a
 import math
 from dataclasses import dataclass
 from functools import partial
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 
 from ...numerics.piecewise_linear import PiecewiseLinear
+from ...scenario.settings import si_unit
 from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
 from .load_ramp import load_trip, memory, overshoot, quasi_static
-from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, unit_of, value_of, wrong
-from .sentences import load_sentences, sentences
+from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
+from .sentences import WAYS, load_sentences, sentences
 from .speed_ramp import passage, short_pass
 
 WITH_CONTACT = True
@@ -41,18 +44,16 @@ class Settings:
     the whirl met at the threshold (default a thousandth of clearance/outer radius); `touch`: look for the rate that
     just touches.  `order` followed (default 1), `window` in turns, `samples_per_turn`."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     key: str = SPEED
     begin: float | str | None = None
     end: float | str | None = None
     rates: float | str | None = None
-    hold: Time | None = None
-    disturbance: Angle | None = None
+    hold: Annotated[Time, Field(ge=0)] | None = None
+    disturbance: Annotated[Angle, Field(ge=0)] | None = None
     touch: bool = True
     order: float | None = None
-    window: int | None = None
-    samples_per_turn: int | None = None
+    window: Annotated[int, Field(ge=2)] | None = None
+    samples_per_turn: Annotated[int, Field(ge=8)] | None = None
 
 
 def run(scenario, settings, tools) -> dict:
@@ -155,7 +156,7 @@ def load_ramps(scenario, settings, tools) -> dict:
         end = max(now.value, key=lambda v: abs(v - begin))
     if end is None or end == begin:
         raise wrong(scenario, "end", "nothing" if end is None else f"{end:g}, as begin", f"another value of {key}")
-    unit = unit_of(scenario, key)
+    unit = si_unit(scenario.scene, key)
     slowest, decay, wait = memory(scenario, key, begin, end)
     rates = rates_of(scenario, settings)
     if rates is None:
@@ -171,17 +172,39 @@ def load_ramps(scenario, settings, tools) -> dict:
     rows = [{"rate": rate, **row} for rate, row in zip(rates, rows, strict=True)]
     for row in rows:
         row["overshoot"] = overshoot(row, slow) if "failed" not in row else None
-    answer = {
-        "key": key,
-        "begin": begin,
-        "end": end,
-        "unit": unit,
-        "rate_unit": rate_unit(unit),
-        "decay": decay,
-        "slowest": slowest,
-        "quasi_static": slow,
-        "rows": rows,
-    }
+    answer = {"key": key, "begin": begin, "end": end, "unit": unit, "rate_unit": rate_unit(unit), "decay": decay,
+              "slowest": slowest, "quasi_static": slow, "rows": rows}  # fmt: skip
     if not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": load_sentences(answer)}
+
+
+# --- in numbers --------------------------------------------------------------------------------------------
+
+
+def tables(answer) -> list:
+    """Every ramp with what it met; of the speed also peaks and growth beside linear theory's, of anything else how far
+    it went beyond the quasi-static answer."""
+    ends = (("thinnest film, um", "h_min", 1e6), ("largest misalignment, urad", "relative_misalignment", 1e6),
+            ("touch", "touched"), ("ended", "status"))  # fmt: skip
+    if answer["key"] == SPEED:
+        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rad/s", "peak.up"),
+                   ("down", "peak.down"), ("peak read to", "read"), ("from linear, %", "departure", 100),
+                   ("ln of growth", "growth.measured"), ("linear", "growth.with_factor"))  # fmt: skip
+        where = (("closest at, rad/s", "h_min_speed"), ("going", "h_min_way"))
+        return [([_plain(row) for row in answer["rows"]], (*columns, *where, *ends))]
+    columns = ((f"rate, {answer['rate_unit']}", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
+               ("misalignment, %", "overshoot.relative_misalignment", 100),
+               ("leakage from, ml/h", "leakage_least", 3.6e9), ("to", "leakage", 3.6e9))  # fmt: skip
+    rows = [{**row, "rate": "a step" if row["rate"] is None else row["rate"]} for row in answer["rows"]]
+    return [(rows, (*columns, *ends))]
+
+
+def _plain(row) -> dict:
+    """A ramp of the speed with its peaks' speeds and its largest departure from linear theory."""
+    if "failed" in row:
+        return row
+    far = [row[way]["departure"] for way in WAYS if row[way]["departure"] is not None]
+    peaks = {way: row[way]["peak"][0] for way in WAYS if row[way]["peak"]}
+    read = row["speed_in_window"] / 4 if peaks else None
+    return {**row, "peak": peaks, "read": read, "departure": max(far, default=None)}

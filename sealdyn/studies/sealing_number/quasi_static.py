@@ -14,7 +14,6 @@ from scipy.optimize import root
 
 from ...closed_form import ludwig_allen as closed
 from ...faces.geometry import (
-    CAVITATED,
     DZ,
     DZ_RATE,
     FORCE,
@@ -94,11 +93,6 @@ class Wedge:
         s[DZ], s[GX], s[DZ_RATE], s[GX_RATE] = films[0] - self.clearance, films[1] / radius, rates[0], rates[1] / radius
         radial.wrench(self.f, s)
         return float(s[FORCE]), float(s[MOMENT_Y]), float(s[MOMENT_X])
-
-    @property
-    def cavitated(self) -> float:
-        """Share of the face at the cavitation pressure, last time."""
-        return float(self.s[CAVITATED])
 
 
 def static_residuals(force_ratio: float, films, ring: Ring | None = None, wedge: Wedge | None = None) -> np.ndarray:

@@ -17,11 +17,8 @@ from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
-from ...scene.contact import Contact
-from ...scene.excitation import Shaft
-from ...scene.rings import Rotor, Stator, Support
-from ...scene.scene import Closing, Initial, RingStart, Scene, SceneError
-from ...scene.secondary_seal import SecondarySeal
+from ...scene.rings import Support
+from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...simulation.method_selection import choose_method
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
@@ -88,30 +85,6 @@ def _film_under(load, q, support, seat, ring):
 
 
 # --- scenes -----------------------------------------------------------------------------------------------
-
-
-def ready_scene(ring: quasi_static.Ring | None = None, misalignment=2.5e-3, mass=0.5, inertia_ratio=0.5,
-                support: Support | None = None, roughness=5e-8) -> Scene:  # fmt: skip
-    """The released ring as a scene of its own (SI): misaligned seat, ring of a given transverse over polar inertia,
-    free to tilt if no `support` is given, asperities to land on; friction of F_s/F_d = 2."""
-    ring = ring or quasi_static.Ring()
-    inertia = 0.5 * mass * ring.mean_radius**2
-    rotor = Rotor(
-        mass=mass,
-        transverse_inertia=inertia,
-        polar_inertia=inertia / inertia_ratio,
-        support=support or Support(axial_stiffness=0.0, tilt_stiffness=0.0),
-        secondary_seal=SecondarySeal(radius=ring.mean_radius, line_friction=0.0),
-    )
-    bare = Scene(
-        shaft=Shaft(speed=ring.shaft_speed),
-        film=replace(ring.film(), clearance=None),
-        rotor=rotor,
-        stator=Stator(misalignment=misalignment),
-        closing=Closing(balance_ratio=1.0, spring_force=ring.spring_force),
-        contact=Contact(roughness=roughness, compressive_strength=3e8),
-    )
-    return with_force_ratio(bare, 2.0)
 
 
 def ring_of(scene) -> quasi_static.Ring:

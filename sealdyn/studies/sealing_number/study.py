@@ -31,8 +31,6 @@ class Settings:
     """`force_ratios` F_s/F_d; the released ring runs over `turns` from each of `starts` (on the closed form's film;
     open: square to its shaft, at rest), with each of `inertia` times its mass and inertias; the `last` turns count."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
     force_ratios: Annotated[tuple[Positive, ...], Field(min_length=1)] | Positive = RATIOS
     starts: tuple[Start, ...] | Start = ("closed form", "open")
     inertia: tuple[Positive, ...] | Positive = (1.0,)
@@ -184,93 +182,52 @@ def _heavier(rotor, factor):
 # --- in words ---------------------------------------------------------------------------------------------
 
 
+def tables(answer) -> list:
+    """The balance on the actual film, and what becomes of the released ring."""
+    q = ("F_s/F_d", "force_ratio")
+    balance = (q, ("h0 of the closed form, um", "closed_form.mean_film", 1e6),
+               ("static, um", "static.mean_film", 1e6), ("quasi-static, um", "quasi_static.mean_film", 1e6),
+               ("quasi-static", "quasi_static.status"))  # fmt: skip
+    released = (q, ("tilt spring", "support"), ("start", "start"), ("ring", "status"), ("h0, um", "film", 1e6),
+                ("h1/h0", "share"), ("foreseen h0, um", "foreseen.mean_film", 1e6),
+                ("on asperities, % of spring", "contact_share", 100))  # fmt: skip
+    return [(answer["balance"], balance),
+            ([{**row, "film": row.get("mean_film", [None])[0]} for row in answer["released"]], released)]  # fmt: skip
+
+
 def sentences(answer) -> list[str]:
-    """The verdict."""
-    return [*_balanced(answer), *_own(answer), *_needed(answer), *_opened(answer), *_foreseen(answer)]
+    """The verdict: the released ring on its own support, the balance that the closed form states, and the released
+    ring on a support that carries what the closed form leaves out."""
+    own, kept = _rows(answer, OWN), [row for row in _rows(answer, NEEDED) if row["status"] == "film"]
+    low, high = released_ring.film_range(answer["guide"])
+    lines = [f"What friction makes of the ring on its own support (tilt spring {answer['guide']:.2g} R F_s), F_s/F_d: "
+             f"{_fates(own)}; foreseen a film from {low:.4g} to {high:.4g}."]  # fmt: skip
+    if static := [row for row in answer["balance"] if row.get("static")]:
+        off = max(abs(row["static"]["mean_film"] / row["closed_form"]["mean_film"] - 1) for row in static)
+        least, attracting = answer["least_force_ratio"], answer["least_attracting_force_ratio"]
+        lines.append(f"Ludwig & Allen's balance on the actual film has the closed form's h0 within {100 * off:.2g} %; "
+                     f"none below {least:.4f}, one that repels below {attracting:.4f}.")  # fmt: skip
+    if kept:
+        off = max(abs(row["ratio"]["mean_film"] - 1) for row in kept)
+        lines.append(f"With a tilt spring that carries R F_s h1/h0 the released ring keeps that h0 within "
+                     f"{100 * off:.2g} % for F_s/F_d {_listed([row['force_ratio'] for row in kept])}.")  # fmt: skip
+    return lines
 
 
-def _balanced(answer) -> list[str]:
-    rows = [row for row in answer["balance"] if row.get("static")]
-    if not rows:
-        return ["no force ratio with a balance of spring and friction was asked for"]
-    off = max(abs(row["static"]["mean_film"] / row["closed_form"]["mean_film"] - 1) for row in rows)
-    lines = [f"Ludwig & Allen's balance on the actual film: h0 of the closed form within {100 * off:.2g} %"]
-    settled = [
-        row["force_ratio"] for row in answer["balance"] if row.get("quasi_static", {}).get("status") == "settled"
-    ]
-    hung = [row["force_ratio"] for row in answer["balance"] if row.get("quasi_static", {}).get("status") == "hang-up"]
-    words = []
-    if settled:
-        words.append(f"settles there from {100 * (ABOVE - 1):.2g} % above for F_s/F_d from {settled[0]:g}")
-    if hung:
-        words.append(f"hangs up for {_listed(hung)} (no balance below {answer['least_force_ratio']:.4f}, one that "
-                     f"repels below {answer['least_attracting_force_ratio']:.4f})")  # fmt: skip
-    return [*lines, "quasi-static, the other moment carried by a constraint: " + "; ".join(words)] if words else lines
-
-
-def _rows(answer, support, start="closed form"):
-    return [r for r in answer["released"] if r["support"] == support and r["start"] == start and "failed" not in r]
+def _rows(answer, support):
+    rows = [row for row in answer["released"] if row["support"] == support and "failed" not in row]
+    return [row for row in rows if row["start"] == rows[0]["start"]]
 
 
 def _fates(rows) -> str:
-    """ "hang-up at 1.2; film at 1.3, 1.45; ..." """
+    """ "hang-up at 1.2; film at 1.3 to 1.65; ..." """
     words = []
     for row in rows:
         if not words or words[-1][0] != row["status"]:
             words.append((row["status"], []))
-        if row["force_ratio"] not in words[-1][1]:
-            words[-1][1].append(row["force_ratio"])
-    return "; ".join(f"{status} at {_listed(ratios)}" for status, ratios in words)
+        words[-1][1].append(row["force_ratio"])
+    return "; ".join(f"{status} at {_listed(ratios)}" for status, ratios in words) or "no run ended"
 
 
 def _listed(ratios) -> str:
-    return f"{ratios[0]:g}" if len(ratios) == 1 else f"{ratios[0]:g} to {ratios[-1]:g}"
-
-
-def _own(answer) -> list[str]:
-    rows, (low, high) = _rows(answer, OWN), released_ring.film_range(answer["guide"])
-    held = f"{answer['guide']:.2g} R F_s"
-    lines = [
-        f"released on its own support (tilt spring {held}), F_s/F_d: {_fates(rows)}; foreseen a film from {low:.4g} to "
-        f"{high:.4g}"
-    ]
-    down = [row for row in rows if row["status"] == "straightened"]
-    if down:
-        most, least = (f([r["contact_share"] for r in down]) for f in (max, min))
-        lines.append(f"where it straightens, asperities carry {100 * least:.3g} to {100 * most:.3g} % of the spring "
-                     f"(about 1 - {answer['least_force_ratio']:.3f} F_d/F_s) and set its height")  # fmt: skip
-    return lines
-
-
-def _needed(answer) -> list[str]:
-    rows = _rows(answer, NEEDED)
-    kept = [row for row in rows if row["status"] == "film"]
-    if not kept:
-        return []
-    off = max(abs(row["ratio"]["mean_film"] - 1) for row in kept)
-    spring = min(row["tilt_stiffness"] for row in kept), max(row["tilt_stiffness"] for row in kept)
-    return [
-        f"with a tilt spring that carries R F_s h1/h0 ({spring[0]:.3g} to {spring[1]:.3g} N m/rad) the released ring "
-        f"keeps the closed form's h0 within {100 * off:.2g} % for F_s/F_d {_listed([r['force_ratio'] for r in kept])}"
-    ]
-
-
-def _opened(answer) -> list[str]:
-    hung = [r["force_ratio"] for r in _rows(answer, OWN, "open") if r["status"] == "hang-up"]
-    if not hung:
-        return []
-    return [f"left open and square to its shaft it never closes for F_s/F_d {_listed(hung)}: hang-up, since the spring "
-            "alone does not overcome the axial friction 2 F_d below 2"]  # fmt: skip
-
-
-def _foreseen(answer) -> list[str]:
-    rows = [r for r in answer["released"] if r.get("status") == "film" and r.get("foreseen")]
-    failed = [r for r in answer["released"] if "failed" in r or r.get("status") == Status.FAILED]
-    lines = []
-    if rows:
-        off = max(abs(r["mean_film"][0] / r["foreseen"]["mean_film"] - 1) for r in rows)
-        lines.append(f"the released ring's steady films are foreseen within {100 * off:.2g} % of h0 ({len(rows)} runs)")
-    if failed:
-        why = failed[0].get("failed") or failed[0]["message"]
-        lines.append(f"{len(failed)} of {len(answer['released'])} released runs failed; first: {why}")
-    return lines
+    return f"{ratios[0]:g}" if ratios[0] == ratios[-1] else f"{ratios[0]:g} to {ratios[-1]:g}"

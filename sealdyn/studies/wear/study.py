@@ -6,9 +6,10 @@ go to the journal at once: a study that was interrupted goes on from the last on
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from ...scenario.errors import ScenarioError
 from ...status import Status
@@ -41,22 +42,19 @@ class Settings:
     of a profile that has run in; `run_in`: then "stop", "extrapolate" to the duration at a constant rate, or "go on".
     """
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
-    duration: Time = 100 * 3600.0
-    nodes: int = 17
-    accuracy: float = 1e-2
-    step: float = 1.0
-    turns: int = 1
-    patience: int = 40
-    even: float = 1e-2
+    duration: Annotated[Time, Field(gt=0)] = 100 * 3600.0
+    nodes: Annotated[int, Field(ge=2, le=MOST)] = 17
+    accuracy: Annotated[float, Field(gt=0, le=1)] = 1e-2
+    step: Annotated[float, Field(gt=0)] = 1.0
+    turns: Annotated[int, Field(ge=1, le=10_000)] = 1
+    patience: Annotated[int, Field(ge=2, le=10_000)] = 40
+    even: Annotated[float, Field(gt=0)] = 1e-2
     run_in: Literal["stop", "extrapolate", "go on"] = "stop"
 
 
 def run(scenario, settings, tools) -> dict:
     """The history of both faces, and why it ends."""
     wears = _coefficients(scenario)
-    _sensible(scenario, settings)
     radius = _radii(scenario.scene.film, settings.nodes)
     hats, rough = HatBasis(radius), scenario.scene.contact.roughness
     # What the averages may be wrong by: a tenth of what a step may, on the depth of about a roughness.
@@ -86,18 +84,6 @@ def _coefficients(scenario) -> dict[str, float]:
     if scene.film.cavitation_pressure is not None:
         raise ScenarioError(scenario.name, "film.cavitation_pressure", "a value", "nothing: worn faces have no floor")
     return wears
-
-
-def _sensible(scenario, settings):
-    """Raises ScenarioError for settings that cannot be."""
-    for name, low, high in (("nodes", 2, MOST), ("turns", 1, 10_000), ("patience", 2, 10_000)):
-        if not low <= getattr(settings, name) <= high:
-            found, expected = getattr(settings, name), f"{low} to {high}"
-            raise ScenarioError(scenario.name, f"study.wear.{name}", str(found), expected)
-    for name, high in (("duration", np.inf), ("accuracy", 1.0), ("step", np.inf), ("even", np.inf)):
-        if not 0.0 < getattr(settings, name) <= high:
-            found, expected = getattr(settings, name), "a value > 0" + (f", at most {high:g}" if high < np.inf else "")
-            raise ScenarioError(scenario.name, f"study.wear.{name}", f"{found:g}", expected)
 
 
 def _radii(film, nodes: int) -> np.ndarray:
@@ -234,66 +220,52 @@ def _extrapolated(answer, row, hats, wears, duration) -> dict:
 # --- in words ---------------------------------------------------------------------------------------------
 
 
+def tables(answer) -> list:
+    """The history."""
+    names = ("time", "leakage", "friction_power", "contact_share", "coning", "h_min")
+    values = zip(*(answer["history"].get(name, []) for name in names), strict=True)
+    columns = (("time, h", "time", 1 / 3600), ("leakage, ml/h", "leakage", 3.6e9), ("friction, W", "friction_power"),
+               ("contact, % of closing force", "contact_share", 100), ("coning of the gap, urad", "coning", 1e6),
+               ("smallest film, um", "h_min", 1e6))  # fmt: skip
+    return [([dict(zip(names, row, strict=True)) for row in values], columns)]
+
+
 def sentences(answer, settings) -> list[str]:
-    """The verdict."""
-    lines, history = [answer["end"]["said"]], answer["history"]
-    if not history["time"]:
+    """The verdict: why the history ends, how deep the faces are worn, and what limits the answer."""
+    said, time, later = answer["end"]["said"], answer["history"]["time"], answer["extrapolated"]
+    lines = [f"{said[0].upper()}{said[1:]}."]
+    if not time:
         return lines
-    hours = _hours(history["time"][-1])
-    for face in ("stator", "rotor"):
-        depth = np.array(answer["profile"][face][-1])
-        if depth.max() > 0.0:
-            volume = 1e9 * history[f"{face}_volume"][-1]
-            lines.append(
-                f"the {face} is worn by {_length(depth.min())} to {_length(depth.max())} in {hours} ({volume:.4g} mm3)"
-            )
-    told = (("leakage", "leakage", 3.6e9, "ml/h"), ("friction_power", "friction", 1.0, "W"),
-            ("contact_share", "contact share of the closing force", 100.0, "%"),
-            ("coning", "coning of the gap", 1e6, "urad"), ("h_min", "smallest film", 1e6, "um"))  # fmt: skip
-    lines.append("from start to end: " + ", ".join(
-        f"{words} {factor * history[name][0]:.4g} to {factor * history[name][-1]:.4g} {unit}"
-        for name, words, factor, unit in told))  # fmt: skip
-    lines.append(_made(answer, settings))
-    if answer["extrapolated"]:
-        most = {face: max(answer["extrapolated"][face]) for face in ("stator", "rotor")}
-        lines.append(
-            f"extrapolated at the last rates, not computed: {_length(most['stator'])} of stator and "
-            f"{_length(most['rotor'])} of rotor at {_hours(answer['extrapolated']['time'])}"
-        )
+    depths = {face: answer["profile"][face][-1] for face in ("stator", "rotor")}
+    worn = [f"{face} {_length(min(d))} to {_length(max(d))}" for face, d in depths.items() if max(d) > 0.0]
+    told = f"Worn off in {_hours(time[-1])}: {', '.join(worn)}" if worn else "Nothing is worn off"
+    if later:
+        told += (f"; extrapolated at the last rates, not computed, to {_hours(later['time'])}: stator "
+                 f"{_length(max(later['stator']))}, rotor {_length(max(later['rotor']))}")  # fmt: skip
+    limits = _limits(answer, settings)
+    return [*lines, f"{told}.", *([f"Mind: {'; '.join(limits)}."] if limits else [])]
+
+
+def _limits(answer, settings) -> list[str]:
+    """What the answer does not hold for."""
+    profiles, limits = answer["steps"] + 1, []
     if answer["not_settled"]:
-        lines.append(
-            f"at {answer['not_settled']} of {answer['steps'] + 1} profiles the averages had not settled within "
-            f"{settings.patience} x {settings.turns} periods: means over the later half are used"
-        )
+        limits.append(f"averages of {answer['not_settled']} of {profiles} profiles had not settled in "
+                      f"{settings.patience} x {settings.turns} periods")  # fmt: skip
     if answer["coarse"] and len(answer["radius"]) > FEW:
-        spacing = 1e3 * float(np.max(np.diff(answer["radius"])))
-        lines.append(
-            f"at {answer['coarse']} of {answer['steps'] + 1} profiles fewer than {FEW} radii, {spacing:.3g} mm apart, "
-            "touch: raise study.wear.nodes for a finer profile"
+        limits.append(
+            f"fewer than {FEW} radii touch at {answer['coarse']} of {profiles} profiles: raise study.wear.nodes"
         )
-    if answer["tilt_over_roughness"] > UNEVEN and max(history["contact_force"]) > 0.0:
-        lines.append(f"the faces tilt by up to {answer['tilt_over_roughness']:.2g} roughnesses and touch unevenly: "
-                     "wear is spread over the circle, a face on which the patch stands wears deeper")  # fmt: skip
+    if answer["tilt_over_roughness"] > UNEVEN and max(answer["history"]["contact_force"]) > 0.0:
+        limits.append(f"the faces tilt by up to {answer['tilt_over_roughness']:.2g} roughnesses: a face on which the "
+                      "contact patch stands wears deeper")  # fmt: skip
     if answer["unstable"]:
-        lines.append("the aligned seal is unstable at this speed: its wear holds for the motion seen here only")
-    return lines
-
-
-def _made(answer, settings) -> str:
-    """How it was found, and how well volumes agree."""
-    how = (
-        "aligned faces without forcing: each average is a balance of forces"
-        if answer["still"]
-        else f"each average over {settings.turns} forcing period(s) of {1e3 * answer['period']:.3g} ms"
-    )
-    balance = f"; worn volume equals the integral of its rate within {answer['volume']['residual']:.1e}"
-    return f"{answer['steps']} steps; {how}" + (balance if answer["volume"]["profiles"] else "")
+        limits.append("the aligned seal is unstable at this speed: its wear holds for the motion seen here only")
+    return limits
 
 
 def _hours(seconds) -> str:
-    if seconds >= 360.0 or seconds == 0.0:
-        return f"{seconds / 3600:.4g} h"
-    return f"{seconds:.3g} s"
+    return f"{seconds / 3600:.4g} h" if seconds >= 360.0 or seconds == 0.0 else f"{seconds:.3g} s"
 
 
 def _length(metres) -> str:

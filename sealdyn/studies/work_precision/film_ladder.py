@@ -19,6 +19,7 @@ from .errors import errors, observe, worst
 JUDGE, TIGHT = 1e-11, 1e-11
 # Points over a period at which the harmonic balance is looked at.
 POINTS = 4096
+WORDS = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}
 
 
 def rungs(scenario) -> list[tuple[str, dict]]:
@@ -43,22 +44,15 @@ def compare(scenario, samples: int, longest: float, repeats: int, exact=None) ->
     """Rows `{label, error{where}, wall, rhs, failed}` of every rung, cheapest model first, each run with the method
     and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run."""
     ladder = rungs(scenario)
-    own = scenario.scene.film.model
-    if (
-        exact is not None
-        and exact.status == Status.OK
-        and own not in ("linear", "auto")
-        and ladder[-1][1]["film.model"] == own
-    ):
-        highest, top = exact, ladder[-1]
-    else:
+    highest, top = exact, ladder[-1]
+    # The scenario's own film may be the highest, and then its exact run is there already.
+    own = top[1]["film.model"] == scenario.scene.film.model != "linear"
+    if not own or exact is None or exact.status != Status.OK:
         highest, top = _highest(scenario, ladder, samples, longest)
     if highest is None:
         return []
-    lowest = ladder[0]
-    out = [_balanced(scenario, lowest, highest, repeats)]
-    if top != lowest:
-        out.append(_balanced(scenario, top, highest, repeats))
+    ends = ladder[:1] if top == ladder[0] else [ladder[0], top]
+    out = [_balanced(scenario, rung, highest, repeats) for rung in ends]
     out += [_run(scenario, rung, highest, samples, longest, repeats) for rung in ladder]
     return [row for row in out if row]
 
@@ -140,12 +134,8 @@ def _balanced(scenario, rung, highest, repeats) -> dict | None:
     ]
     whose = "Green's" if "green" in overrides.values() else label.partition(" film")[0] + " film's"
     whose = "given" if "as given" in label else whose
-    return {
-        "label": f"harmonic balance, {whose} coefficients",
-        "error": {"end": None, "over_time": None, "steady": float(max(off))},
-        "wall": wall,
-        "failed": None,
-    }
+    error = {"end": None, "over_time": None, "steady": float(max(off))}
+    return {"label": f"harmonic balance, {whose} coefficients", "error": error, "wall": wall, "failed": None}
 
 
 def harmonic_balance(run) -> dict:
@@ -164,47 +154,22 @@ def harmonic_balance(run) -> dict:
     tilt = np.hypot(motion[1], motion[2])
     shift = run.model.axial_shift(segment.interval) + motion[0]
     thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(run.model.scene.film, run.model.clearance))
-    return {
-        "h_min": float(thinnest),
-        "relative_misalignment": [float(tilt.min()), float(tilt.max())],
-    }
+    return {"h_min": float(thinnest), "relative_misalignment": [float(tilt.min()), float(tilt.max())]}
 
 
-def verdict(answer: dict, least_time) -> list[str]:
-    """How much model and how much solver: sentences."""
-    where = "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
-    rows = [row for row in answer["models"] if row["error"][where] is not None]
-    if not rows:
-        return ["no rung of the ladder ended: nothing to say about models"]
-    words = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}[where]
-    lines, before = [], None
-    for error in (1e-2, 1e-4):
-        enough = [row for row in rows if row["error"][where] <= error]
-        if not enough:
-            best = min(rows, key=lambda row: row["error"][where])
-            lines.append(f"no rung below {error:.0e} {words}; the best, {best['label']}: {_said(best, where)}")
-            continue
-        wall, name = least_time(error)
-        solver = "" if wall is None else f"{name} at that error, {wall * 1e3:.3g} ms"
-        if enough[0] is before:
-            lines[-1] += f"; for {error:.0e} the same" + (f", {solver}" if solver else "")
-            continue
-        line = f"this scene needs, for {error:.0e} {words}: {enough[0]['label']} ({_said(enough[0], where)})"
-        in_time = next((row for row in enough if "balance" not in row["label"]), None)
-        if in_time is not None and solver:
-            line += f"; in time {in_time['label']}, {solver}" if in_time is not enough[0] else f"; {solver}"
-        lines.append(line)
-        before = enough[0]
-    linear = [row for row in rows if row["label"].startswith("linear") and row["error"][where] > 0]
-    if linear and len(rows) > len(linear):
-        best = min(linear, key=lambda row: row["error"][where])
-        wrong = best["error"][where]
-        of_use = f"with it, errors below {wrong / 10:.0e} are wasted" if wrong < 0.1 else "no use here"
-        lines.append(f"{best['label']} is wrong by {wrong:.1e} whatever the solver: {of_use}")
-    return lines
+def looked_at(answer: dict) -> str:
+    """Where errors of models are told: in the steady state if there is one, else where the study looks."""
+    return "steady" if any(row["error"]["steady"] is not None for row in answer["models"]) else answer["where"]
 
 
-def _said(row, where):
-    leakage = (row.get("leakage_error") or {}).get(where)
-    more = "" if not leakage else f", its leakage {leakage:.1e}"
-    return f"error of the motion {row['error'][where]:.1e}{more}; {row['wall'] * 1e3:.3g} ms"
+def sentence(answer: dict) -> str:
+    """The lowest model that is good enough for 1e-2 and for 1e-4, and how wrong the linear film is."""
+    where = looked_at(answer)
+    errors_of = {row["label"]: row["error"][where] for row in answer["models"] if row["error"][where] is not None}
+    if not errors_of:
+        return "No rung of the ladder ended: nothing to say about models."
+    needs = [f"for {most:.0e} {next((label for label, error in errors_of.items() if error <= most), 'none of them')}"
+             for most in (1e-2, 1e-4)]  # fmt: skip
+    linear = [error for label, error in errors_of.items() if label.startswith("linear") and error > 0]
+    wrong = f"; the linear film is wrong by {min(linear):.1e} whatever the solver" if linear else ""
+    return f"Film model needed {WORDS[where]}: {', '.join(needs)}{wrong}."

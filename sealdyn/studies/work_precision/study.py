@@ -37,8 +37,7 @@ TIGHT, JUDGE = 1e-11, 1e-11
 ASKED = (1e-3, 1e-6, 1e-9)
 # A wall time below this is measured again.
 BRIEF = 0.3
-# Clocks on a busy machine do not tell less than this apart.
-LIKE = 1.15
+# Wall over processor time of a busy machine.
 BUSY = 1.1
 
 
@@ -48,8 +47,6 @@ class Settings:
     `longest` seconds of a run, `slowest` times the fastest run of that error: beyond, a cross; `samples` intervals at
     which errors are taken; `methods` to judge (empty: all); `judging` seconds the reference may take; `where` the
     verdict looks: "end", "over_time" or "steady"; `models`: also compare the film models."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     tolerances: int = 10
     loosest: float = 1e-2
@@ -177,14 +174,9 @@ def judge(scenario, exact, judges: dict, point: dict) -> dict:
         for row in rows:
             row["errors"] = {where: {} for where in WHERE}
     names = sorted({name for row in rows for found in row["errors"].values() for name in found})
+    columns = ("tolerance", "wall", "processor", "rhs", "status", "reason", "expected")
     return {
-        "tolerance": [row["tolerance"] for row in rows],
-        "wall": [row["wall"] for row in rows],
-        "processor": [row["processor"] for row in rows],
-        "rhs": [row["rhs"] for row in rows],
-        "status": [row["status"] for row in rows],
-        "reason": [row["reason"] for row in rows],
-        "expected": [row["expected"] for row in rows],
+        **{name: [row[name] for row in rows] for name in columns},
         "error": {where: [max(row["errors"][where].values(), default=None) for row in rows] for where in WHERE},
         "observables": {
             where: {name: [row["errors"][where].get(name) for row in rows] for name in names} for where in WHERE
@@ -221,55 +213,38 @@ def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
     return min(point["limit"], point["slowest"] * least), expected
 
 
+def tables(answer) -> list:
+    """Who is fastest at which error, which runs did not end well, and the film models."""
+    fastest = [{**row, "failed": row.get("why")} for row in answer["fastest"]]
+    methods = [
+        {"method": name, "runs": len(row["status"]), "ended": row["status"].count(Status.OK),
+         "failed": next(filter(None, row["reason"]), None)}
+        for name, row in answer["methods"].items()
+    ]  # fmt: skip
+    ends, where = (("method", "method"), ("runs", "runs"), ("ended", "ended")), film_ladder.looked_at(answer)
+    ranks = (("error", "error"), ("fastest", "method"), ("ms", "wall", 1e3), ("next", "next"),
+             ("times as long", "factor_next"), ("DOP853, times as long", "factor_dop853"))  # fmt: skip
+    models = (("film model", "label"), ("error of the motion", f"error.{where}"),
+              ("of the leakage", f"leakage_error.{where}"), ("ms", "wall", 1e3))  # fmt: skip
+    return [(fastest, ranks), (methods, ends), (answer["models"], models)]
+
+
 def verdict(answer: dict, settings) -> list[str]:
-    """Who is fastest, what failed, how much model and how much solver."""
-    words = {"end": "at the end", "over_time": "at any time", "steady": "in the steady state"}[settings.where]
-    lines = []
-    for row in answer["fastest"]:
-        if row["method"] is None:
-            lines.append(f"error {row['error']:.0e} {words}: no verdict, {row['why']}")
-            continue
-        line = f"error {row['error']:.0e} {words}: {NAMES[row['method']]} is fastest, {row['wall'] * 1e3:.3g} ms"
-        if row["next"]:
-            close = row["factor_next"] < LIKE
-            line += ", " + ("hardly" if close else f"{row['factor_next']:.2g} times")
-            line += f" faster than {NAMES[row['next']]}"
-        if row["factor_dop853"] and "dop853" not in (row["method"], row["next"]):
-            line += f", {row['factor_dop853']:.2g} times faster than SciPy DOP853"
-        if row["not_asked"]:
-            line += f" (not asked tightly enough: {', '.join(NAMES[name] for name in row['not_asked'])})"
-        lines.append(line)
-    lines.append(_crosses(answer["methods"]))
-    if answer["models"]:
-        lines += film_ladder.verdict(answer, lambda e: _least_time(answer["methods"], settings, e))
-    band = (answer["judge_error"] or {}).get(settings.where)
-    judges = answer["judges"]
+    """Who is fastest, how much film model the scene needs, and how far both can be trusted."""
+    told = [f"to {row['error']:.0e} " + (f"{NAMES[row['method']]} ({row['wall'] * 1e3:.3g} ms)" if row["method"] else
+                                        f"none ({row['why']})") for row in answer["fastest"]]  # fmt: skip
+    lines = [f"Fastest to an error {film_ladder.WORDS[settings.where]}: {', '.join(told)}."]
+    lines += [film_ladder.sentence(answer)] if answer["models"] else []
+    band, judges = (answer["judge_error"] or {}).get(settings.where), answer["judges"]
     if judges["exact"] is None:
-        lines.append(f"no judge ended, so there are no errors: {judges['reason']}")
+        trust = f"No judge ended, so there are no errors: {judges['reason']}"
     elif band is not None:
-        lines.append(f"judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}")
+        trust = f"Judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}"
     else:
-        lines.append(f"judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}")
+        trust = f"Judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}"
     strained = answer["machine"]["busy"]
-    if strained > BUSY:
-        lines.append(f"the machine was busy: wall times are {strained:.2g} times the processor's, factors no surer")
-    return [line for line in lines if line]
-
-
-def _least_time(methods, settings, error):
-    found = [(time_at(curve(row, settings.where), error), name) for name, row in methods.items()]
-    return min(((wall, NAMES[name]) for wall, name in found if wall is not None), default=(None, None))
-
-
-def _crosses(methods) -> str:
-    said = []
-    ends = {Status.COLLAPSED: "the film collapsed", Status.FAILED: "gave up", "stopped": "stopped for time",
-            "slow": "too slow"}  # fmt: skip
-    for status, word in ends.items():
-        names = [NAMES[name] for name, row in methods.items() if status in row["status"]]
-        if names:
-            said.append(f"{word}: {', '.join(names)}")
-    return f"crosses ({'; '.join(said)})" if said else ""
+    trust += f"; the machine was busy: wall times are {strained:.2g} times the processor's" if strained > BUSY else ""
+    return [*lines, f"{trust}."]
 
 
 def _turns(run) -> float:

@@ -6,8 +6,8 @@ import numpy as np
 
 from ....analysis.validation import reference_scene
 from ....analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, least_damped
-from ....dynamics import modes
 from ....dynamics.run_state import RunState
+from ....simulation.stability import critical_speed
 from ....solvers.contract import Counts
 from ....solvers.fixed_step import REFERENCE_METHODS
 from ._common import row
@@ -19,9 +19,7 @@ AMPLITUDE, TURNS, BARE = 0.1, 60, 1e-5
 
 def threshold(scene) -> float | None:
     """Speed (rad/s) where the eigenvalues of the unforced scene cross the axis; None if nowhere."""
-    at = free_model(scene, 1.0)
-    pace = max((abs(mode.value) for mode in at.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
-    return modes.critical_speed(lambda w: at.linear_scene(speed=w), 1e-3 * pace, 1e3 * pace)
+    return critical_speed(free_model(scene, 1.0))
 
 
 def neutral_run(scene, speed: float, turns: float, accuracy: float = 1e-8):
