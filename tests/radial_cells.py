@@ -46,6 +46,7 @@ from sealdyn.faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
+from sealdyn.films._fields import PRESSURE as PRESSURE_FIELD
 from sealdyn.films._unknowns import FilmUnknowns
 
 # Block after the faces: cells over the radius, angles, compressibility (1/Pa), scale of the pressure (Pa).
@@ -53,6 +54,7 @@ CELLS, ANGLES, COMPRESSIBILITY, PRESSURE = range(FACE_SIZE, FACE_SIZE + 4)
 
 RUNG = 99
 STATUS = {1: "no pressures: a line of cells is singular"}
+FIELDS = (PRESSURE_FIELD,)
 
 
 def accepts(film, waves=()) -> str:
@@ -224,6 +226,22 @@ def flow(f, s, x):
     s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * drag * d_theta + 0.5 * across
 
 
+def grid(f):
+    """Radii (m) of the cells' middles, and their angles (rad)."""
+    cells, angles = int(f[CELLS]), int(f[ANGLES])
+    width = (f[OUTER_RADIUS] - f[INNER_RADIUS]) / cells
+    return f[INNER_RADIUS] + width * (np.arange(cells) + 0.5), 2 * math.pi / angles * np.arange(angles)
+
+
+@njit(cache=True)
+def fields(f, s, x, out):
+    """The pressures (Pa) as they are, (1, cells, angles)."""
+    cells, angles = int(f[CELLS]), int(f[ANGLES])
+    for k in range(angles):
+        for j in range(cells):
+            out[0, j, k] = x[k * cells + j]
+
+
 def film_of(cells: int, angles: int, compressibility: float = 0.0, own_derivatives: bool = True) -> SimpleNamespace:
     """The film with so many cells over the radius and angles, `compressibility` in 1/Pa; a Model takes it as it takes
     a module.  `own_derivatives`: with kernels for its derivatives, else by differences."""
@@ -249,6 +267,7 @@ def film_of(cells: int, angles: int, compressibility: float = 0.0, own_derivativ
     found = SimpleNamespace(
         __name__="radial_cells", RUNG=RUNG, STATUS=STATUS, accepts=accepts, parameters=parameters,
         opening_law=opening_law, unknowns=unknowns, start=start, residual=residual, wrench=wrench, flow=flow,
+        FIELDS=FIELDS, grid=grid, fields=fields,
     )  # fmt: skip
     if own_derivatives:
         found.jacobian, found.wrench_jacobian = jacobian, wrench_jacobian

@@ -1,4 +1,4 @@
-"""One HDF5 file per run: scenario, provenance, named series with units, events, and the state to go on from.
+"""One HDF5 file per run: scenario, provenance, named series with units, fields, events, and the state to go on from.
 
 How a run survives being killed.  HDF5 cannot be interrupted while it rearranges its own bookkeeping, so
 it never does that in a file anybody reads: the skeleton is written once beside the run with room to spare
@@ -15,14 +15,15 @@ import zlib
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import NamedTuple
 
 import h5py
 import numpy as np
 
 from ..status import Status
+from .fields import FIELD_TIME, Fields, Series, create_fields, names_over, reserve, scale_of
 
-FORMAT = "sealdyn archive 1"
+# Archives of the first format have no fields.
+FORMAT, OLDER = "sealdyn archive 2", ("sealdyn archive 1",)
 STATUSES = (Status.OK, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
@@ -30,16 +31,6 @@ SLOT, LOG = 1 << 14, 1 << 14
 
 class ArchiveError(Exception):
     """A file that cannot be read as an archive, or cannot be continued; one line."""
-
-
-class Series(NamedTuple):
-    """What a stranger must know of a column; `display_unit`, when given, is what people read it in, `display_factor`
-    how many of it make one of `units`."""
-
-    units: str
-    long_name: str
-    display_unit: str = ""
-    display_factor: float = 1.0
 
 
 def partial_path(path) -> Path:
@@ -51,11 +42,12 @@ def partial_path(path) -> Path:
 class ArchiveWriter:
     """Writes one run, row by row, in bounded memory.
 
-    `series` maps a column's name to its `Series`; `time` (s) is added when missing.  `meta` becomes root
-    attributes.  `expected_rows` spares copying: room for so many rows is reserved at once.  Rows wait in
-    memory for at most `interval` seconds or `buffer_rows` rows.  With `resume`, goes on from
-    `<stem>.partial.h5`, or from a `path` that was interrupted: `rows`, `state` say from where; without
-    either it starts anew.  Raises `ArchiveError` when the series differ from those of the file resumed.
+    `series` maps a column's name to its `Series`; `time` (s) is added when missing.  `fields`: what is kept over
+    a grid at a few of the rows.  `meta` becomes root attributes.  `expected_rows` spares copying: room for so
+    many rows is reserved at once.  Rows wait in memory for at most `interval` seconds or `buffer_rows` rows.
+    With `resume`, goes on from `<stem>.partial.h5`, or from a `path` that was interrupted: `rows`, `state` say
+    from where; without either it starts anew.  Raises `ArchiveError` when the series or fields differ from those
+    of the file resumed.
     """
 
     def __init__(
@@ -66,14 +58,16 @@ class ArchiveWriter:
         resolved: dict,
         meta: dict,
         series: dict[str, Series],
+        fields: Fields | None = None,
         resume: bool = False,
         expected_rows: int = 0,
         interval: float = 0.3,
         buffer_rows: int = BLOCK,
     ):
         self.path, self.partial = Path(path), partial_path(path)
-        self.rows, self.state = 0, {}
+        self.rows, self.instants, self.state = 0, 0, {}
         self._series = {"time": Series("s", "time", "ms", 1e3), **series}
+        self._fields = fields
         self._attributes = {
             "title": self.path.stem,
             "program": "sealdyn",
@@ -91,20 +85,22 @@ class ArchiveWriter:
             self._take_over(source)
         self._reserve(source, max(SMALLEST_ROOM, min(expected_rows + 1, LARGEST_FIRST_ROOM)))
 
-    def append(self, columns: dict, state: dict | None = None) -> None:
+    def append(self, columns: dict, state: dict | None = None, fields: dict | None = None) -> None:
         """Adds rows: one array of equal length for every series.  `state` (numbers, strings, arrays) is
-        what a continued run starts from after these rows; the last one given is kept."""
+        what a continued run starts from after these rows; the last one given is kept.  `fields`: arrays (instants, ...)
+        at some of these rows' times, which stand in `field_time`."""
         if set(columns) != set(self._series):
             raise ValueError(f"columns differ from the series: {sorted(set(columns) ^ set(self._series))}")
         columns = {name: np.array(columns[name], "<f8", ndmin=1) for name in self._series}
         lengths = {len(values) for values in columns.values()}
         if len(lengths) != 1:
             raise ValueError(f"columns of unequal length: {sorted(lengths)}")
+        fields = self._fields.checked(fields, self._appended()[1]) if fields else {}
         # Rows know their place, so that a flush broken off by Ctrl-C can simply be done again.
-        self._waiting.append((self._appended(), columns, self.state if state is None else state))
-        self.state = self._waiting[-1][2]
+        self._waiting.append((self._appended(), columns, fields, self.state if state is None else state))
+        self.state = self._waiting[-1][-1]
         late = clock.monotonic() - self._written >= self._interval
-        if late or self._appended() - self.rows >= self._buffer_rows:
+        if late or self._appended()[0] - self.rows >= self._buffer_rows:
             self.flush()
 
     def events(self, events: list[dict]) -> None:
@@ -113,23 +109,27 @@ class ArchiveWriter:
 
     def flush(self) -> None:
         """Hands everything waiting to the operating system; after it, a kill loses nothing."""
-        rows, state, log = self._appended(), self.state, self._log
-        record = self._record(rows, state, log)
+        (rows, instants), state, log = self._appended(), self.state, self._log
+        record = self._record(rows, instants, state, log)
         full = rows > self._room or len(record) > self._slot or len(log) > self._log_room
         if full or not self._file:
             self._slot = max(self._slot, 2 * len(record))
             self._log_room = max(self._log_room, 2 * len(log))
             self._reserve(self.partial, rows)
-            record = self._record(rows, state, log)
+            record = self._record(rows, instants, state, log)
         if self._waiting:
-            first = self._waiting[0][0]
+            first = self._waiting[0][0][0]
             for name in self._series:
-                values = np.concatenate([columns[name] for _, columns, _ in self._waiting])
+                values = np.concatenate([columns[name] for _, columns, _, _ in self._waiting])
                 self._write(self._place[name] + 8 * first, values.tobytes())
+        for (_, first), _, fields, _ in self._waiting:
+            for name, values in fields.items():
+                self._write(self._place[name] + first * values[0].nbytes, values.tobytes())
         self._write(self._place["log"] + self._logged, log[self._logged :])
         # The record last: it is what makes the bytes above count.
         self._write(self._place["record"] + (self._sequence % 2) * self._slot, record)
-        self.rows, self._state, self._logged, self._sequence = rows, state, len(log), self._sequence + 1
+        self.rows, self.instants, self._state = rows, instants, state
+        self._logged, self._sequence = len(log), self._sequence + 1
         self._waiting, self._written = [], clock.monotonic()
 
     def finish(self, status: str, message: str, summary: dict) -> Path:
@@ -143,8 +143,9 @@ class ArchiveWriter:
         target = self.path
         if status == Status.INTERRUPTED and not self._may_replace():
             target = self.partial
-        self._attributes |= {"status": status, "message": message, "summary": summary, "rows": self.rows}
-        with self._rewritten(target, self.rows, self.partial, self._attributes) as file:
+        self._attributes |= {"status": status, "message": message, "summary": summary}
+        self._attributes |= {"rows": self.rows, "instants": self.instants}
+        with self._rewritten(target, self.rows, self.instants, self.partial, self._attributes) as file:
             file.create_group("restart").attrs["state"] = _to_json(self.state)
             _write_events(file, _read_log(self._log))
         if target != self.partial:
@@ -162,11 +163,12 @@ class ArchiveWriter:
             self._file.close()
         self._file = None
 
-    def _appended(self) -> int:
+    def _appended(self) -> tuple[int, int]:
+        """Rows, and instants of the fields, with those that wait."""
         if not self._waiting:
-            return self.rows
-        start, columns, _ = self._waiting[-1]
-        return start + len(columns["time"])
+            return self.rows, self.instants
+        (row, instant), columns, fields, _ = self._waiting[-1]
+        return row + len(columns["time"]), instant + len(fields.get(FIELD_TIME, ()))
 
     # -- continuing --------------------------------------------------------------------------------
 
@@ -183,18 +185,20 @@ class ArchiveWriter:
 
     def _take_over(self, source):
         with _opened(source) as (file, record):
-            names = {name for name, item in file.items() if isinstance(item, h5py.Dataset)}
-            if names != set(self._series):
+            if set(names_over(file, "time")) != set(self._series):
                 raise ArchiveError(f"{source}: cannot be continued, its series differ from this run's")
-            self.rows, self.state = record["rows"], record["state"]
+            # An older archive has none: they begin where it is continued.
+            if FIELD_TIME in file and not (self._fields and self._fields.are_those_of(file)):
+                raise ArchiveError(f"{source}: cannot be continued, its fields differ from this run's")
+            self.rows, self.instants, self.state = record["rows"], record["instants"], record["state"]
             self._attributes["created"] = file.attrs["created"]
         self._state = self.state
         self.events(record["events"])
 
     # -- the file ----------------------------------------------------------------------------------
 
-    def _record(self, rows: int, state: dict, log: bytes) -> bytes:
-        record = {"sequence": self._sequence, "rows": rows, "log": len(log), "state": state}
+    def _record(self, rows: int, instants: int, state: dict, log: bytes) -> bytes:
+        record = {"sequence": self._sequence, "rows": rows, "instants": instants, "log": len(log), "state": state}
         text = _to_json(record).encode()
         return b"%08x %s\n" % (zlib.crc32(text), text)
 
@@ -203,13 +207,15 @@ class ArchiveWriter:
         attributes = {**self._attributes, "status": str(Status.RUNNING), "message": ""}
         room = self._room if rows <= self._room else max(rows, 2 * self.rows)
         log = self._log
-        record = self._record(self.rows, self._state, log)
+        record = self._record(self.rows, self.instants, self._state, log)
         self._slot = max(self._slot, 2 * len(record))
         self._log_room = max(self._log_room, 2 * len(log))
-        with self._rewritten(self.partial, room, source, attributes) as file:
+        most = self._fields.most if self._fields else 0
+        with self._rewritten(self.partial, room, most, source, attributes) as file:
             restart = file.create_group("restart")
             restart.attrs["note"] = "rows beyond those of the newest whole record are room, not data"
-            places = {name: file[name] for name in self._series}
+            names = [*self._series, *(self._fields.over_time() if self._fields else ())]
+            places = {name: file[name] for name in names}
             places["record"] = restart.create_dataset("record", data=np.zeros((2, self._slot), "u1"))
             places["log"] = restart.create_dataset("log", data=np.zeros(self._log_room, "u1"))
             restart["log"][: len(log)] = np.frombuffer(log, "u1")
@@ -220,7 +226,7 @@ class ArchiveWriter:
         self._file = open(self.partial, "r+b", buffering=0)  # noqa: SIM115  kept for the whole run
 
     @contextmanager
-    def _rewritten(self, target: Path, room: int, source, attributes: dict):
+    def _rewritten(self, target: Path, room: int, instants: int, source, attributes: dict):
         """A complete new file that takes the place of `target` at once when the block ends."""
         fresh = target.with_name(target.name + ".new")
         with h5py.File(fresh, "w") as file:
@@ -228,14 +234,16 @@ class ArchiveWriter:
             for name, value in attributes.items():
                 file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
             for name, series in self._series.items():
-                column = file.create_dataset(name, (room,), "<f8", fillvalue=np.nan)
-                column.attrs.update(series._asdict())
-                column[:1] = np.nan  # HDF5 reserves the whole extent at the first write
+                reserve(file, name, series, (room,))
             _attach_scale(file, "time", self._series)
+            if self._fields:
+                create_fields(file, self._fields, instants)
             if source and self.rows:
                 with h5py.File(source, "r") as old:
                     for name in self._series:
                         _copy_rows(old[name], file[name], self.rows)
+                    for name in self._fields.over_time() if self.instants else ():
+                        file[name][: self.instants] = old[name][: self.instants]
             yield file
         self._close()
         os.replace(fresh, target)
@@ -296,10 +304,13 @@ def _from_json(text):
 def _opened(path):
     """The file at `path` (or the run that is still to become it) and its newest whole record."""
     with _open_file(Path(path)) as file:
-        if file.attrs.get("format") != FORMAT:
-            raise ArchiveError(f"{path}: an HDF5 file, but not a sealdyn archive")
+        made_as = str(file.attrs.get("format", ""))
+        if made_as not in (FORMAT, *OLDER):
+            newer = made_as.startswith(FORMAT[:-1])
+            found = f'a "{made_as}", this program reads up to "{FORMAT}"' if newer else "but not a sealdyn archive"
+            raise ArchiveError(f"{path}: an HDF5 file, {found}")
         try:
-            yield file, _read_record(file)
+            yield file, {"instants": 0} | _read_record(file)
         except (KeyError, OSError, ValueError) as error:
             raise ArchiveError(f"{path}: damaged ({error})") from error
 
@@ -307,7 +318,8 @@ def _opened(path):
 def _read_record(file) -> dict:
     if "record" not in file["restart"]:
         state = _from_json(file["restart"].attrs["state"])
-        return {"rows": int(file.attrs["rows"]), "state": state, "events": _read_events(file["events"])}
+        rows, instants = int(file.attrs["rows"]), int(file.attrs.get("instants", 0))
+        return {"rows": rows, "instants": instants, "state": state, "events": _read_events(file["events"])}
     record = _newest_record(file["restart/record"][()])
     return record | {"events": _read_log(file["restart/log"][: record["log"]].tobytes())}
 
@@ -351,8 +363,9 @@ def _read_events(group) -> list[dict]:
 
 
 def read_info(path) -> dict:
-    """Everything but the series: status, message, summary, scenario, resolved, rows, restart, events,
-    series (name -> `Series`) and the other root attributes.  Works while the run is written."""
+    """Everything but the series and fields: status, message, summary, scenario, resolved, rows, instants, restart,
+    events, series and fields (name -> `Series`), grid (dimension of the fields -> length) and the other root
+    attributes.  Works while the run is written."""
     with _opened(path) as (file, record):
         info = {name: value.item() if hasattr(value, "item") else value for name, value in file.attrs.items()}
         for name in file.attrs.keys() - {"scenario", "title", "message"}:
@@ -360,9 +373,15 @@ def read_info(path) -> dict:
             if isinstance(info[name], str) and info[name][:1] in ("{", "["):
                 info[name] = _from_json(info[name])
         info.setdefault("summary", {})
-        names = [name for name, item in file.items() if isinstance(item, h5py.Dataset)]
-        info["series"] = {name: _series(file[name].attrs) for name in names}
-        return info | {"rows": record["rows"], "restart": record["state"], "events": record["events"]}
+        info["series"] = {name: _series(file[name].attrs) for name in names_over(file, "time")}
+        names = [name for name in names_over(file, FIELD_TIME) if name != FIELD_TIME]
+        info["fields"] = {name: _series(file[name].attrs) for name in names}
+        info["grid"] = {d[0].name[1:]: d[0].size for name in names[:1] for d in file[name].dims}
+        if names:
+            # What lies beyond is room, not data.
+            info["grid"][FIELD_TIME] = record["instants"]
+        counts = {name: record[name] for name in ("rows", "instants")}
+        return info | counts | {"restart": record["state"], "events": record["events"]}
 
 
 def _series(attributes) -> Series:
@@ -379,17 +398,28 @@ def last_state(path) -> dict:
 def column(path, name: str, rows: slice = slice(None)) -> np.ndarray:
     """One series (rows,), float64, SI, or a slice of it, without loading the rest.  Raises `ArchiveError`."""
     with _opened(path) as (file, record):
-        if name not in file or not isinstance(file[name], h5py.Dataset):
+        if scale_of(file, name) != "time":
             raise ArchiveError(f"{path}: has no series {name!r}")
         return file[name][slice(*rows.indices(record["rows"]))]
 
 
+def field(path, name: str) -> np.ndarray:
+    """One field (instants, ...), the `field_time` of its instants (instants,) or a coordinate of its grid; SI."""
+    with _opened(path) as (file, record):
+        scale = scale_of(file, name)
+        if scale in (None, "time"):
+            raise ArchiveError(f"{path}: has no field {name!r}")
+        return file[name][: record["instants"]] if scale == FIELD_TIME else file[name][()]
+
+
 def open_archive(path):
-    """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units; `attrs` hold the
-    scenario text, status, message, and `resolved` and `summary` as JSON."""
+    """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units, fields over `field_time` and
+    their grid; `attrs` hold the scenario text, status, message, and `resolved` and `summary` as JSON."""
     import xarray
 
     with _opened(path) as (file, record):
         name = file.filename
     dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
-    return dataset.isel(time=slice(0, record["rows"])).assign_attrs(rows=record["rows"])
+    counts = {"time": record["rows"], FIELD_TIME: record["instants"]}
+    dataset = dataset.isel({name: slice(0, count) for name, count in counts.items() if name in dataset.dims})
+    return dataset.assign_attrs(rows=record["rows"])

@@ -36,8 +36,8 @@ from .intervals import constant_and_slope
 class Interface:
     """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
     the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
-    is that of the aligned faces at rest, film and asperities; `observed`: kernel and block from which leakage, friction
-    and film force are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
+    is that of the aligned faces at rest, film and asperities; `observed`: film and block from which leakage, friction,
+    film force and fields are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
 
     def __init__(self, scene, error: float, film=None):
         self.scene = scene
@@ -53,7 +53,7 @@ class Interface:
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
-        self.observed = self.film.flow, self.f
+        self.observed = self.film, self.f
 
     def _borrowed(self):
         """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""

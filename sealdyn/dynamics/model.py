@@ -21,7 +21,7 @@ class Model:
 
     `interface` film, faces and aligned equilibrium (interface.py), of which `f` is the film's block (n,), `face` its
     leading slots, `contact` the block of the asperities or None, `clearance` (m) and `closing` the closing force;
-    `observed` kernel and block from which leakage and friction are reported; `unknowns` (unknowns.py); `scales` (size,)
+    `observed` film and block from which leakage and friction are reported; `unknowns` (unknowns.py); `scales` (size,)
     of the unknowns, `reference_rate` (rad/s) between displacements and rates, `shortest_period` (s) of interest;
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a

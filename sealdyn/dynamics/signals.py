@@ -215,9 +215,8 @@ def _of_ring(ring, parts, first):
     ]
 
 
-def signals(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
-    """Named series (m,) at times of a segment; `q`, `q_rate` (m, n) displacements and rates, `x` (m, n) the film's.
-    SI; leakage counts from high to low pressure."""
+def samples(segment, taus, q, q_rate, x=None) -> Samples:
+    """States at times (m,) of a segment; `q`, `q_rate` (m, n) displacements and rates, `x` (m, n) the film's."""
     # Kernels of fixed signature are made ready by their import.
     from .kernels import Value, states_along
 
@@ -228,13 +227,19 @@ def signals(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
     massive = segment.rate_places >= 0
     ys[:, : segment.n], yps[:, : segment.n] = q, q_rate
     ys[:, segment.rate_places[massive]] = q_rate[:, massive]
-    (flow, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
+    (film, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
     blocks = contact, bool(model.unknowns.seals), segment.p, segment.w, segment.s
     if x is None:
-        states_along(Value(flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
+        states_along(Value(film.flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
     else:
         ys[:, segment.film] = x
         segment.states(taus, ys, yps, gap, scratch, low)
-    at = Samples(segment, taus, gap, scratch, low)
-    columns = {"time": segment.interval.time + taus} | {x.name: x.values(at) for x in signal_table(model)}
+    return Samples(segment, taus, gap, scratch, low)
+
+
+def signals(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
+    """Named series (m,) at times of a segment, given as to `samples`; SI, leakage counts from high to low pressure."""
+    at = samples(segment, taus, q, q_rate, x)
+    table = signal_table(segment.model)
+    columns = {"time": segment.interval.time + at.taus} | {signal.name: signal.values(at) for signal in table}
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}

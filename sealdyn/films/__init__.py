@@ -17,8 +17,15 @@ What every film module offers (the contract):
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
 
+What it may show over the faces, kept by archives at a few instants (a film that says nothing shows nothing):
+
+`FIELDS`          tuple of Field (films/_fields.py): names, units, long names.
+`grid(f)`         radii (m) and angles (rad, from the x axis) at which it gives them; they do not change during a run.
+`fields(f, s, out)`
+                  compiled kernel: their values at a gap state into `out` (fields, radii, angles).
+
 A film may have unknowns `x` (n,) of its own, such as pressures; its force is then no function of the gap state alone.
-Its kernels are `wrench(f, s, x)` and `flow(f, s, x)`, and it offers besides:
+Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, and it offers besides:
 
 `unknowns(f)`     FilmUnknowns (films/_unknowns.py): names, scales, which are differential, the residual's pattern.
 `start(f, s, x)`  compiled: x of the steady film at a gap state, its rates among it; returns 0, or a code of STATUS.

@@ -214,6 +214,9 @@ def archive_lines(path, info: dict) -> list[str]:
         rows.append(("stability", _stability(summary["stability"])))
     rows += [("event", f"{event['kind']} at t = {_n(event['time'])} s") for event in info.get("events", [])]
     rows.append(("series", ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items())))
+    if info["fields"]:
+        over = " x ".join(f"{count} {name}" for name, count in info["grid"].items())
+        rows.append(("fields", ", ".join(f"{n} [{s.units}]" for n, s in info["fields"].items()) + f": {over}"))
     return _table(path, info["status"], info.get("message"), rows)
 
 

@@ -13,11 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__, archive
-from ..archive import ArchiveWriter, Series, partial_path
+from ..archive import ArchiveWriter, Fields, Series, partial_path
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
+from ..dynamics.fields import field_grid, fields_of
 from ..dynamics.intervals import time_of_angle
-from ..dynamics.signals import PARTS, signal_table
+from ..dynamics.signals import DEGREES, MILLIMETRES, PARTS, signal_table
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
@@ -27,7 +28,7 @@ from ..solvers.integrate import solve
 from .certificate import TrialRun, certify, choose_tolerance, error_estimator
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
-from .sinks import ArchiveSink, Tally, TallySink
+from .sinks import MOST_INSTANTS, ArchiveSink, Tally, TallySink
 from .summary import summarise
 
 
@@ -90,6 +91,7 @@ def simulate(
         resolved=scenario.resolved(),
         meta=_meta(scenario, method),
         series=_series(run.model),
+        fields=_fields(run.model),
         resume=resume,
         expected_rows=count,
     )
@@ -231,6 +233,18 @@ def _resumed(run, writer, sink, audit):
 
 def _series(model) -> dict[str, Series]:
     return {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
+
+
+def _fields(model) -> Fields | None:
+    table = fields_of(model)
+    if not table:
+        return None
+    r, theta = field_grid(model)
+    grid = {
+        "r": (Series("m", "radius", *MILLIMETRES), r),
+        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
+    }
+    return Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
 
 def _meta(scenario, method) -> dict:

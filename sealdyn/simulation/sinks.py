@@ -6,10 +6,17 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..archive import FIELD_TIME
+from ..dynamics.fields import fields, fields_of
 from ..dynamics.signals import TALLIED, signals
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
+# Samples of which the film's fields are kept, both ends among them.  Less one this is a prime: they seldom fall on the
+# same shaft angle every time.
+KEPT = 32
+# And where a film that closes ends the run between two samples.
+MOST_INSTANTS = KEPT + 1
 
 
 @dataclass
@@ -44,7 +51,8 @@ class ArchiveSink:
         self.run, self.writer, self.dt, self.count = run, writer, dt, count
         self.tally, self.progress, self.stop = tally, progress, stop
         self.audit = self.errors = None
-        self.waiting = None
+        self.waiting = self.waiting_fields = None
+        self.kept = np.rint(np.linspace(0, count, KEPT))
         self.logged, self.pending = 0, []
 
     def due(self, segment) -> np.ndarray:
@@ -65,10 +73,18 @@ class ArchiveSink:
         next flush."""
         columns = signals(segment, taus, q, q_rate, x)
         self.tally.add(columns)
-        if self.waiting is None:
-            self.waiting = columns
-        else:
-            self.waiting = {k: np.concatenate([self.waiting[k], columns[k]]) for k in columns}
+        if fields_of(segment.model):
+            self.keep_fields(segment, columns["time"], (taus, q, q_rate, *(() if x is None else (x,))))
+        self.waiting = _joined(self.waiting, columns)
+
+    def keep_fields(self, segment, times, motion):
+        """Fields at the samples that keep them: those that are due, and one that is no sample, the end of a run."""
+        steps = times / self.dt
+        sample = np.rint(steps)
+        kept = np.isin(sample, self.kept) | (np.abs(steps - sample) > 1e-6)
+        if kept.any():
+            found = fields(segment, *(part[kept] for part in motion))
+            self.waiting_fields = _joined(self.waiting_fields, {FIELD_TIME: times[kept], **found})
 
     def event(self, segment, tau, event):
         """Keep a change of the equations (an archive's event without its time) at segment time `tau` (s)."""
@@ -109,14 +125,18 @@ class ArchiveSink:
             "modes": run.modes() | {"logged": self.logged},
             "names": run.model.unknowns.names,
         }
-        self.writer.append(self.waiting, state)
-        self.waiting = None
+        self.writer.append(self.waiting, state, self.waiting_fields)
+        self.waiting = self.waiting_fields = None
 
     def write_events(self):
         """Hand the events kept so far to the archive."""
         if self.pending:
             self.writer.events(self.pending)
         self.pending = []
+
+
+def _joined(waiting: dict | None, columns: dict) -> dict:
+    return columns if waiting is None else {k: np.concatenate([waiting[k], columns[k]]) for k in columns}
 
 
 class TallySink(ArchiveSink):

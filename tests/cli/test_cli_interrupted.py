@@ -9,13 +9,14 @@ import time
 import pytest
 from command import REFERENCE, finished, sealdyn, settings, started, until
 
-from sealdyn.archive import ArchiveError, column, partial_path, read_info
+from sealdyn.archive import ArchiveError, column, field, partial_path, read_info
 
 # Both rings' forcing, no sample beyond need: seconds of solving.
 LONG = settings({"run.turns": 2500, "run.samples_per_turn": 8})
 # Three times what was enough for being killed twenty times on the way: a faster machine is done before.
 LONGEST = settings({"run.turns": 36000, "run.samples_per_turn": 4})
 SCALES = {"rotor_z": 1e-5, "rotor_tilt_x": 1e-5 / 0.04, "rotor_tilt_y": 1e-5 / 0.04, "h_min": 1e-5, "time": 1.0}
+PRESSURE = 5e5
 
 
 def rows(path) -> int:
@@ -32,6 +33,8 @@ def agree(path, other, accuracy=1e-6):
     assert count == rows(other)
     for name, scale in SCALES.items():
         assert column(path, name) == pytest.approx(column(other, name), rel=0, abs=accuracy * scale), name
+    assert (field(path, "field_time") == field(other, "field_time")).all() and len(field(path, "field_time")) == 32
+    assert field(path, "pressure") == pytest.approx(field(other, "pressure"), rel=0, abs=100 * accuracy * PRESSURE)
 
 
 @pytest.fixture(scope="module")
@@ -123,6 +126,8 @@ def test_killed_at_twenty_random_instants(tmp_path):
             for name in SCALES:
                 values = column(partial_path(archive), name)
                 assert len(values) == shown["rows"] and (values == values).all()
+            at, pressures = (field(partial_path(archive), name) for name in ("field_time", "pressure"))
+            assert at[-1] <= values[-1] and (pressures == pressures).all()
     assert reached == sorted(reached) and len(set(reached)) > 10
     assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--continue", cwd=tmp_path)).code == 0
     whole = tmp_path / "whole.h5"

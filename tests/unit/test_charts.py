@@ -12,7 +12,7 @@ from drawn import crossed, drawn, panel, text_trouble
 from in_process import InProcess
 
 from sealdyn import read_scenario
-from sealdyn.archive import ArchiveWriter, Series, write_study
+from sealdyn.archive import ArchiveWriter, Fields, Series, write_study
 from sealdyn.report.charts import (
     film,
     orbit,
@@ -80,11 +80,21 @@ def series(name):
     return Series("SI", name, *(shown or (("ml/h", 3.6e9) if "leakage" in name else ())))
 
 
-def write(path, columns, status="ok", message="", summary=None, film=None, **resolved):
+def pressures(rows):
+    """Fields of `whirling` at these rows: a made-up pressure, which rises with the row."""
+    r, theta = np.linspace(FILM["inner_radius"], FILM["outer_radius"], 5), np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    grid = {"r": (Series("m", "radius"), r), "theta": (Series("rad", "angle"), theta)}
+    over = np.array(rows)[:, None, None] / 1000 + np.cos(theta) * r[:, None] / r[-1]
+    fields = Fields({"pressure": Series("Pa", "film pressure", "MPa", 1e-6)}, grid, len(rows))
+    return fields, {"field_time": whirling()["time"][list(rows)], "pressure": 1e5 * over}
+
+
+def write(path, columns, status="ok", message="", summary=None, film=None, rows=(), **resolved):
     given = {name: series(name) for name in columns if name != "time"}
     resolved = {"film": FILM if film is None else film, **resolved}
-    run = ArchiveWriter(path, scenario_text=SCENARIO, resolved=resolved, meta={}, series=given)
-    run.append(columns)
+    fields, kept = pressures(rows) if rows else (None, None)
+    run = ArchiveWriter(path, scenario_text=SCENARIO, resolved=resolved, meta={}, series=given, fields=fields)
+    run.append(columns, fields=kept)
     if status == "running":
         run.close()
         return path
@@ -107,6 +117,8 @@ def archives():
     return {
         "full": (full, {}),
         "near_contact": (whirling(tilt=1.7e-4), {}),
+        "pressed": (full, {"rows": (0, 1500, 3839)}),
+        "pressed_aligned": (flat, {"rows": (0, 1)}),
         "run_up": (whirling(ramp=8000.0), {"summary": {}}),
         "shaken": (full, {"housing": {"axial": [{"frequency": 1e5}]}}),
         "collapsed": (first(whirling(tilt=2.2e-4), 700), {"status": "collapsed", "message": 4 * long_message}),
@@ -126,7 +138,7 @@ ARCHIVES = archives()
 
 
 # The overview has a panel of every kind; alone the kinds are drawn of the archives that they draw in their own way.
-ALONE = {"full", "shaken", "collapsed", "one_row", "axial_only", "aligned", "bare"}
+ALONE = {"full", "shaken", "collapsed", "one_row", "axial_only", "aligned", "bare", "pressed"}
 CHARTS = [
     pytest.param(name, kind, marks=() if kind == "overview" or name in ALONE else pytest.mark.slow)
     for name in ARCHIVES
@@ -252,6 +264,23 @@ def test_the_map_is_thinnest_where_the_archive_says(tmp_path):
     # The clearance, where the scene left it to the balance of forces.
     found = Run(write(tmp_path / "b.h5", columns, film={**FILM, "clearance": None}))
     assert found.clearance == pytest.approx(1e-5)
+
+
+def test_the_pressure_is_that_of_the_thinnest_instant_kept(tmp_path):
+    columns, rows = whirling(), (100, 1500, 2000, 2016)
+    thinnest = min(rows, key=lambda row: columns["h_min"][row])
+    assert thinnest == 2000 and columns["h_min"].min() < columns["h_min"][thinnest]
+    figure = drawn(film, write(tmp_path / "seal.h5", columns, rows=rows), tmp_path / "chart.png", written=False)
+    ax = panel(figure, "Film pressure at turn")
+    _, kept = pressures(rows)
+    expected = 0.1 * (kept["pressure"][rows.index(thinnest)] / 1e5)
+    values = ax.collections[0].get_array().reshape(5, 25)
+    np.testing.assert_allclose(values[:, :-1], expected)
+    np.testing.assert_allclose(values[:, -1], expected[:, 0])
+    ((angle,), (radius,)) = ax.lines[0].get_data()
+    assert angle == columns["h_min_angle"][thinnest] and radius == 1e3 * FILM["inner_radius"]
+    assert f"{columns['time'][thinnest] * 1000 / (2 * np.pi):.4g}" in ax.get_title("center")
+    assert "film pressure, MPa" in [other.get_ylabel() for other in figure.axes]
 
 
 def test_the_reach_of_an_orbit_holds_every_row(tmp_path):

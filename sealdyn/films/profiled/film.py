@@ -41,12 +41,13 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
-from .. import _radial_quadrature
+from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES
 from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, nodes_of, phi, pieces_of, plain_ratios, sums
 
 RUNG = 2
 GENERALISES = "radial"
+FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
 
 
 def accepts(film, waves=()) -> str:

@@ -9,55 +9,13 @@ import math
 
 from numba import njit
 
+from .._radial_line import cubic, line_sums
+
 # A line's state: bits.
 INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8
 NOTHING_DRY = HAS_WET
 # A crossing enters force and moment by its square.
 CLOSE = 1e-9
-
-
-@njit(cache=True, error_model="numpy")
-def _sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
-    """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
-    the same three of 1/h^3."""
-    h_g = math.sqrt(h_a * h_b)
-    root = math.sqrt(h_g / h_a)
-    t, u_a, u_s = (root - 1.0) / (root + 1.0), 1.0 / root, 1.0 / (root + 1.0 / root)
-    per_h, span = 1.0 / h_g, b - a
-    scale = span * (1.0 - t * t) * u_s * per_h**3
-    reach = 0.5 * (1.0 - t) * u_s * span
-    p_0 = p_2 = p_3 = e_0 = e_2 = e_3 = 0.0
-    for k in range(len(x_k)):
-        tx = t * x_k[k]
-        both = 1.0 / ((1.0 - tx) * (1.0 + tx))
-        back = (1.0 + tx) * both
-        u, v = (1.0 + tx) * back, (1.0 - tx) * (1.0 - tx) * both
-        d = a + reach * (1.0 + x_k[k]) * back * (u + u_a)
-        r = r_i + d
-        weight = w_k[k] * scale * back * back * v**5
-        unit = weight if planar else weight / r
-        slope = unit * (q0 + d * (q[0] + d * (q[1] + d * q[2])))
-        p_0 += slope
-        p_2 += slope * r * r
-        p_3 += slope * r**3
-        e_0 += unit
-        e_2 += unit * r * r
-        e_3 += unit * r**3
-    return p_0, p_2, p_3, e_0, e_2, e_3
-
-
-@njit(cache=True)
-def cubic(z_rate, tilt_rate, r_i, r_o, mean, planar):
-    """Coefficients of d, d^2, d^3 in `Phi = int f r dr` (planar: `int f dr`), and the d where f changes sign
-    (-1: nowhere)."""
-    if mean:
-        rate = z_rate + tilt_rate * 0.5 * (r_i + r_o)
-        return ((rate, 0.0, 0.0) if planar else (rate * r_i, 0.5 * rate, 0.0)), -1.0
-    rate = z_rate + tilt_rate * r_i
-    turn = -rate / tilt_rate if tilt_rate != 0.0 else -1.0
-    if planar:
-        return (rate, 0.5 * tilt_rate, 0.0), turn
-    return (rate * r_i, 0.5 * (rate + tilt_rate * r_i), tilt_rate / 3.0), turn
 
 
 @njit(cache=True)
@@ -103,7 +61,7 @@ def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu
     outer, and the least pressure above the floor (Pa).  Arguments as `cavitated_line`."""
     width, per = r_o - r_i, 12.0 * mu
     q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
-    p_0, _, _, e_0, _, _ = _sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
+    p_0, _, _, e_0, _, _ = line_sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
     q0 = ((p_o - p_i) / per - p_0) / e_0
     q_o = q0 + width * (q[0] + width * (q[1] + width * q[2]))
     count, first, second = _turns(q0, q, turn, width)
@@ -118,7 +76,7 @@ def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu
         if not falls_before and high > 0.0:
             continue
         h = h_i + (h_o - h_i) * end / width
-        rise = _sums(q0, q, r_i, planar, 0.0, end, h_i, h, x_k, w_k)[0]
+        rise = line_sums(q0, q, r_i, planar, 0.0, end, h_i, h, x_k, w_k)[0]
         p = p_i + per * rise - p_cav
         low, high = min(low, p), max(high, p)
         if falls_before:
@@ -155,10 +113,10 @@ def _crossing(q0, q, line, a, b, p_a, p_b, wet_from, x_k, w_k):
     for _ in range(60):
         h = h_i + slope_h * d
         if wet_is_a:
-            s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, a, d, h_wet, h, x_k, w_k)
+            s_0, s_2, s_3, _, _, _ = line_sums(q0, q, r_i, planar, a, d, h_wet, h, x_k, w_k)
             p = p_a + per * s_0
         else:
-            s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, d, b, h, h_wet, x_k, w_k)
+            s_0, s_2, s_3, _, _, _ = line_sums(q0, q, r_i, planar, d, b, h, h_wet, x_k, w_k)
             p = p_b - per * s_0
         if (p > 0.0) == wet_is_a:
             low = d
@@ -182,7 +140,7 @@ def cavitated_line(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar
     The load is split at the cavity's edges, so no quadrature meets a kink."""
     width, per = r_o - r_i, 12.0 * mu
     q, turn = cubic(z_rate, tilt_rate, r_i, r_o, mean, planar)
-    p_0, p_2, p_3, e_0, e_2, e_3 = _sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
+    p_0, p_2, p_3, e_0, e_2, e_3 = line_sums(0.0, q, r_i, planar, 0.0, width, h_i, h_o, x_k, w_k)
     q0 = ((p_o - p_i) / per - p_0) / e_0
     count, first, second = _turns(q0, q, turn, width)
     p_i, p_o = p_i - p_cav, p_o - p_cav
@@ -197,7 +155,7 @@ def cavitated_line(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar
     for piece in range(count + 1):
         b = width if piece == count else (first if piece == 0 else second)
         h_b = h_i + (h_o - h_i) * b / width
-        s_0, s_2, s_3, _, _, _ = _sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k)
+        s_0, s_2, s_3, _, _, _ = line_sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k)
         p_b = p_o if piece == count else p_a + per * s_0
         s_2, s_3, start, stop, p_start, p_stop = per * s_2, per * s_3, a, b, p_a, p_b
         if p_a <= 0.0 and p_b <= 0.0:

@@ -51,7 +51,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
-from .. import _radial_quadrature
+from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import (
     COSINES,
     HAS_CAVITATION,
@@ -68,6 +68,7 @@ from .._radial_quadrature import (
 from .cavitated_circle import cavitated_circle
 
 RUNG = 2
+FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
 
 # Angles worked on side by side, and their rows: what their Gauss points need, and the integrals over 1/h^3 of 1, Phi's
 # even and its odd part; the three with r^2; with r^3; the integral of r^3/h.

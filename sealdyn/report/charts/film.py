@@ -1,14 +1,17 @@
-"""Film thickness around the circle: as it changes over the last turns, and at its thinnest moment."""
+"""Film thickness around the circle: as it changes over the last turns, and at its thinnest moment; film pressure."""
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Normalize
 
+from ...archive import FIELD_TIME, field
 from .page import absent, header, look, save, sheet
-from .palette import CONTACT, THICKNESS
+from .palette import CONTACT, PRESSURE, THICKNESS
 from .record import BLOCK, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
+# Inches: the sheet, and what the pressure adds to it.
+WIDTH, HEIGHT, FOR_PRESSURE = 12.0, 5.8, 4.7
 # Angles around the circle, at least, and per wave of the highest order.
 ANGLES, PER_WAVE = 180, 16
 NOTHING = 1e-12  # m: a film this even shows no thinnest place
@@ -16,23 +19,36 @@ NOTHING = 1e-12  # m: a film this even shows no thinnest place
 
 def draw(archive_path, out_path, turns: float = 6.0):
     """Map of film thickness over angle and turns, at the radius of its minimum, and over the face at the
-    thinnest sample of the whole run."""
+    thinnest sample of the whole run; where the archive keeps it, film pressure over the face."""
     run = Run(archive_path)
+    drawable = run.clearance is not None and run.has("h_min", "axial_gap_change")
+    pressed = drawable and run.info["grid"].get(FIELD_TIME, 0) > 0 and "pressure" in run.info["fields"]
     with look():
-        figure = sheet(12.0, 5.8)
+        figure = sheet(WIDTH + pressed * FOR_PRESSURE, HEIGHT)
         header(figure, run)
-        over_turns = figure.add_axes((0.06, 0.11, 0.47, 0.64))
-        face = figure.add_axes((0.675, 0.1, 0.23, 0.58), projection="polar")
-        if run.clearance is None or not run.has("h_min", "axial_gap_change"):
+        over_turns = _axes(figure, 0.72, 5.64, 0.64)
+        face = _axes(figure, 8.1, 2.76, 0.58, "polar")
+        if not drawable:
             absent(over_turns, "Film thickness around the circle")
             absent(face, "Thinnest moment")
             return save(figure, out_path)
-        bar = figure.add_axes((0.54, 0.11, 0.011, 0.64))
-        figure.colorbar(
-            map_over_turns(over_turns, run, turns), cax=bar, label=f"film thickness, {run.shown('h_min')[0]}"
-        )
-        face_at_minimum(figure, face, run)
+        label = f"film thickness, {run.shown('h_min')[0]}"
+        figure.colorbar(map_over_turns(over_turns, run, turns), cax=_axes(figure, 6.48, 0.13, 0.64), label=label)
+        image = face_at_minimum(face, run)
+        if image is not None:
+            figure.colorbar(image, cax=_axes(figure, 11.34, 0.13, 0.64), label=label)
+        if pressed:
+            image = pressure(_axes(figure, 12.5, 2.76, 0.58, "polar"), run)
+            label = f"film pressure, {run.info['fields']['pressure'].display_unit}"
+            figure.colorbar(image, cax=_axes(figure, 15.74, 0.13, 0.64), label=label)
         return save(figure, out_path)
+
+
+def _axes(figure, left: float, width: float, height: float, projection=None):
+    """Axes from `left` (inches), `width` wide (inches) and `height` high (share of the sheet)."""
+    whole = figure.get_figwidth()
+    low = 0.1 if projection else 0.11
+    return figure.add_axes((left / whole, low, width / whole, height), projection=projection)
 
 
 def thickness(run: Run, radius, angle, first: int, stop: int):
@@ -89,36 +105,65 @@ def map_over_turns(ax, run: Run, turns: float):
     return image
 
 
-def face_at_minimum(figure, ax, run: Run) -> None:
+def face_at_minimum(ax, run: Run):
     """The face at the sample with the smallest h_min of the whole run."""
     at = _thinnest_row(run)
     inner, outer = run.film("inner_radius"), run.film("outer_radius")
     if not (inner and outer):
         absent(ax, "Thinnest moment")
-        return
+        return None
     radius, angle = np.linspace(inner, outer, 12), around(run)
     unit, per = run.shown("h_min")
     over = np.broadcast_to(thickness(run, radius[:, None], angle, at, at + 1)[0], (len(radius), len(angle)))
     low = np.unravel_index(over.argmin(), over.shape)
-    tilted, over = np.ptp(over[low[0]]) > NOTHING, per * over
+    image = _over_face(ax, radius, angle, per * over, THICKNESS)
+    if np.ptp(over[low[0]]) > NOTHING:
+        _thinnest_place(ax, angle[low[1]], radius[low[0]])
+    ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * per:.4g} {unit} at {_when(run, at)}",
+                 pad=16, loc="center")  # fmt: skip
+    return image
+
+
+def pressure(ax, run: Run):
+    """The film pressure over the face at the instant with the smallest h_min among those whose fields are kept; the
+    mark: where the film is thinnest."""
+    rows = np.searchsorted(run.values("time"), field(run.path, FIELD_TIME))
+    # A run that goes on may have kept more since this figure was begun.
+    rows = rows[rows < run.rows]
+    h_min = [run.values("h_min", row, row + 1)[0] for row in rows]
+    kept, at = int(np.argmin(h_min)), int(rows[np.argmin(h_min)])
+    radius, angle = field(run.path, "r"), field(run.path, "theta")
+    over = run.info["fields"]["pressure"].display_factor * field(run.path, "pressure")[kept]
+    # The circle closes.
+    angle, over = np.append(angle, angle[0] + 2 * np.pi), np.hstack([over, over[:, :1]])
+    image = _over_face(ax, radius, angle, over, PRESSURE)
+    if run.has("h_min_angle", "h_min_radius", "relative_misalignment"):
+        tilt, place, there = (
+            run.values(name, at, at + 1)[0] for name in ("relative_misalignment", "h_min_angle", "h_min_radius")
+        )
+        if tilt * there > NOTHING:
+            _thinnest_place(ax, place, there)
+    ax.set_title(f"Film pressure at {_when(run, at)}", pad=16, loc="center")
+    return image
+
+
+def _over_face(ax, radius, angle, over, colours: str):
+    """Values (radii, angles) over the face."""
     image = ax.pcolormesh(
-        angle,
-        1e3 * radius,
-        over,
-        shading="gouraud",
-        cmap=colormaps[THICKNESS].resampled(STEPS),
-        norm=_scale(over),
+        angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=_scale(over)
     )
-    if tilted:
-        ax.plot(angle[low[1]], 1e3 * radius[low[0]], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
-    ax.set(ylim=(0, 1e3 * outer), yticks=[])
+    ax.set(ylim=(0, 1e3 * radius[-1]), yticks=[])
     ax.grid(False)
-    step = "turn" if run.turning else "ms"
-    ax.set_title(f"Thinnest sample: {run.values('h_min', at, at + 1)[0] * per:.4g} {unit} at {step} "
-                 f"{run.progress[at]:.4g}", pad=16, loc="center")  # fmt: skip
-    ax.text(0, 0, f"{1e3 * inner:.4g}–{1e3 * outer:.4g} mm", ha="center", va="center")
-    bar = figure.add_axes((0.945, 0.11, 0.011, 0.64))
-    figure.colorbar(image, cax=bar, label=f"film thickness, {unit}")
+    ax.text(0, 0, f"{1e3 * radius[0]:.4g}–{1e3 * radius[-1]:.4g} mm", ha="center", va="center")
+    return image
+
+
+def _thinnest_place(ax, angle, radius) -> None:
+    ax.plot(angle, 1e3 * radius, "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+
+
+def _when(run: Run, row: int) -> str:
+    return f"{'turn' if run.turning else 'ms'} {run.progress[row]:.4g}"
 
 
 def _scale(over) -> Normalize:

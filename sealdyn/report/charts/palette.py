@@ -1,7 +1,7 @@
 """Colours that colour-blind readers tell apart.
 
 **Source** Okabe and Ito (2008), Color Universal Design; the map for film thickness is cividis
-(Nunez, Anderton and Renslow, 2018).
+(Nunez, Anderton and Renslow, 2018), that for pressure viridis (van der Walt and Smith, 2015).
 """
 
 from ...status import Status
@@ -17,7 +17,7 @@ PURPLE = "#CC79A7"
 GREY = "#8A8A8A"
 PALE = "#D9D9D9"
 
-THICKNESS = "cividis"
+THICKNESS, PRESSURE = "cividis", "viridis"
 
 # One meaning, one colour, in every chart.
 FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK

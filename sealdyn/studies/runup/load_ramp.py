@@ -66,14 +66,14 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     harmonics = [replace(h) for h in segment.harmonics()]
     period = _period(harmonics)
     most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
-    flow, f = model.observed
+    source, f = model.observed
     s, film = np.zeros(GAP_STATE_SIZE), model.scene.film
     s[DZ] = shift
     pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
     for slot, q in ((VISCOSITY, film.viscosity), *pressures):
         s[slot] = constant_and_slope(q, interval)[0]
     s[SPIN_DIFFERENCE] = model.speed_at(interval)
-    flow(f, s)
+    source.flow(f, s)
     outside = model.closing.outer_is_high
     leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
     return float(most), float(min(edge_gaps(model.face, shift - closing, most))), float(leakage)

@@ -1,0 +1,91 @@
+"""Fields of a run in its archive: quantities over a grid at a few of its instants, and how any quantity is laid out."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+# The dimension of the instants at which fields are kept.
+FIELD_TIME = "field_time"
+
+
+class Series(NamedTuple):
+    """What a stranger must know of a column; `display_unit`, when given, is what people read it in, `display_factor`
+    how many of it make one of `units`."""
+
+    units: str
+    long_name: str
+    display_unit: str = ""
+    display_factor: float = 1.0
+
+
+class Fields(NamedTuple):
+    """Fields of one grid, kept at `most` instants at most: `series` maps a field's name to its `Series`, `grid` that of
+    a coordinate to its `Series` and values (m,), in the order of the fields' dimensions."""
+
+    series: dict[str, Series]
+    grid: dict[str, tuple[Series, np.ndarray]]
+    most: int
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of one field at one instant."""
+        return tuple(len(values) for _, values in self.grid.values())
+
+    def over_time(self) -> dict[str, Series]:
+        """All that grows with the instants: their times (s), and the fields."""
+        return {FIELD_TIME: Series("s", "time of the fields", "ms", 1e3), **self.series}
+
+    def checked(self, given: dict, kept: int) -> dict[str, np.ndarray]:
+        """Fields as they are written; raises ValueError if they are others, or too many after `kept` instants."""
+        arrays = {name: np.array(given[name], "<f8") for name in self.over_time()}
+        count = len(arrays[FIELD_TIME])
+        for name, values in arrays.items():
+            if values.shape != (count, *(() if name == FIELD_TIME else self.shape)):
+                raise ValueError(f"{name} has the shape {values.shape}, not that of {count} instants")
+        if kept + count > self.most:
+            raise ValueError(f"fields at {kept + count} instants, more than {self.most}")
+        return arrays if count else {}
+
+    def are_those_of(self, file) -> bool:
+        """Whether an archive holds the same fields on the same grid."""
+        return set(names_over(file, FIELD_TIME)) == set(self.over_time()) and all(
+            name in file and np.array_equal(file[name][()], values) for name, (_, values) in self.grid.items()
+        )
+
+
+def scale_of(file, name: str) -> str | None:
+    """Name of the dimension scale along a dataset's first dimension, its own if it is one; None: there is no dataset of
+    this name."""
+    item = file.get(name)
+    # Groups (events, what a run goes on from) have no dimensions.
+    if not hasattr(item, "dims"):
+        return None
+    return (item.name if item.is_scale else item.dims[0][0].name).removeprefix("/")
+
+
+def names_over(file, scale: str) -> list[str]:
+    """Names of the datasets whose first dimension is that of `scale`, the scale among them."""
+    return [name for name in file if scale_of(file, name) == scale]
+
+
+def reserve(file, name: str, series: Series, shape: tuple[int, ...]):
+    """A dataset with room for `shape`, NaN until written, which stays where it is in the file."""
+    item = file.create_dataset(name, shape, "<f8", fillvalue=np.nan)
+    item.attrs.update(series._asdict())
+    item[:1] = np.nan  # HDF5 reserves the whole extent at the first write
+    return item
+
+
+def create_fields(file, fields: Fields, instants: int) -> None:
+    """Room for so many instants of the fields, their grid beside them as dimension scales."""
+    for name, (series, values) in fields.grid.items():
+        file[name] = np.asarray(values, "<f8")
+        file[name].attrs.update(series._asdict())
+    for name, series in fields.over_time().items():
+        reserve(file, name, series, (instants, *(() if name == FIELD_TIME else fields.shape)))
+    scales = FIELD_TIME, *fields.grid
+    for name in scales:
+        file[name].make_scale(name)
+    for name in fields.series:
+        for dimension, scale in enumerate(scales):
+            file[name].dims[dimension].attach_scale(file[scale])

@@ -1,0 +1,108 @@
+"""The pressure of the films without pressure flow around the circle, over the face.
+
+**Source** Reynolds' equation along a radius, as in radial/film.py:
+
+    r h^3 p' = 12 mu (Phi + c),   Phi = integral of f r dr,   f = dh/dt + wm dh/dtheta
+
+(planar: no r), integrated from each radius of the grid to the next by the Gauss rule that serves the film ratio
+between them: how fine the grid is does not matter to the pressures on it.
+**Valid** where these films are; between faces without waves.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from ..faces.film_thickness import film_thickness
+from ..faces.geometry import (
+    DZ_RATE,
+    FLOOR,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_PRESSURE,
+    INNER_RADIUS,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    OUTER_RADIUS,
+    PLANAR,
+    PROFILE,
+    PROFILE_RADII,
+    TILT_AT_MEAN,
+    VISCOSITY,
+    regularised_thickness,
+)
+from ._fields import PRESSURE
+from ._radial_line import cubic, line_sums
+from ._radial_quadrature import CAVITATION, HAS_CAVITATION, RADIAL_POINTS, RULE_SIZE, RULES, points_for
+
+FIELDS = (PRESSURE,)
+# Steps over the radius, at least, and angles of the grid.
+STEPS, ANGLES = 16, 48
+
+
+@njit(cache=True)
+def _nodes(f):
+    """Radii (m) between which the film thickness is linear: both edges, or those of the profile."""
+    if f[PROFILE] == 0.0:
+        return np.array([f[INNER_RADIUS], f[OUTER_RADIUS]])
+    return f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
+
+
+@njit(cache=True)
+def _steps(nodes):
+    """Equal steps between each node and the next."""
+    return np.ceil(STEPS * (nodes[1:] - nodes[:-1]) / (nodes[-1] - nodes[0]) - 1e-9).astype(np.int64)
+
+
+@njit(cache=True)
+def grid(f):
+    """Radii (m) of the grid, edges and nodes of a profile among them, and its angles (rad)."""
+    nodes = _nodes(f)
+    steps = _steps(nodes)
+    r, at = np.empty(np.sum(steps) + 1), 0
+    for n in range(len(steps)):
+        for i in range(steps[n]):
+            r[at], at = nodes[n] + (nodes[n + 1] - nodes[n]) * i / steps[n], at + 1
+    r[at] = nodes[-1]
+    return r, 2.0 * math.pi / ANGLES * np.arange(ANGLES)
+
+
+@njit(cache=True)
+def _thicknesses(f, s, nodes, steps, theta, h):
+    """Film thickness `h` (radii,) at one angle, m; below the floor as the film's force sees it."""
+    at, here = 0, regularised_thickness(film_thickness(f, s, nodes[0], theta), f[FLOOR])
+    for n in range(len(steps)):
+        there = regularised_thickness(film_thickness(f, s, nodes[n + 1], theta), f[FLOOR])
+        for i in range(steps[n]):
+            h[at], at = here + (there - here) * i / steps[n], at + 1
+        here = there
+    h[at] = here
+
+
+@njit(cache=True)
+def fields(f, s, out):
+    """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
+    has one."""
+    nodes, (r, theta) = _nodes(f), grid(f)
+    steps, mean, planar = _steps(nodes), f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
+    per, p_i, p_o = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE]
+    # Integrals of Phi / (r h^3) and of 1 / (r h^3) from the inner radius.
+    h, driven, through = np.empty(len(r)), np.zeros(len(r)), np.zeros(len(r))
+    for j in range(len(theta)):
+        sin, cos = math.sin(theta[j]), math.cos(theta[j])
+        _thicknesses(f, s, nodes, steps, theta[j], h)
+        tilt_rate = s[GX_RATE] * sin - s[GY_RATE] * cos + s[MEAN_SPIN] * (s[GX] * cos + s[GY] * sin)
+        q, _ = cubic(s[DZ_RATE], tilt_rate, r[0], r[-1], mean, planar)
+        for k in range(1, len(r)):
+            rule = RULES + RULE_SIZE * points_for(f, h[k - 1], h[k])
+            first, points = rule + 2, int(f[rule])
+            x_k, w_k = f[first : first + points], f[first + RADIAL_POINTS[-1] : first + RADIAL_POINTS[-1] + points]
+            part = line_sums(0.0, q, r[0], planar, r[k - 1] - r[0], r[k] - r[0], h[k - 1], h[k], x_k, w_k)
+            driven[k], through[k] = driven[k - 1] + part[0], through[k - 1] + part[3]
+        c = ((p_o - p_i) / per - driven[-1]) / through[-1]
+        for k in range(len(r)):
+            p = p_i + per * (driven[k] + c * through[k])
+            out[0, k, j] = max(p, f[CAVITATION]) if f[HAS_CAVITATION] != 0.0 else p
