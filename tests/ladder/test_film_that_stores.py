@@ -100,6 +100,7 @@ def flat_faces_stiffness(p, compressibility, mu=0.5e-3):
     return 2 * mpmath.pi / (compressibility * h) * (primitive(R_O) - primitive(R_I))
 
 
+@pytest.mark.slow
 def test_axial_modes_of_flat_faces_are_roots_with_bessel_functions():
     """m p^2 + d p + k + H(p) = 0, at second order in the cells."""
     flat, compressibility = aligned(fms, film=film(coning=0.0)), 2.7e-6
