@@ -8,21 +8,24 @@ from scipy.sparse.linalg import splu
 
 from ..faces.geometry import FORCE
 
+# Central differences of eighth order: places in steps, and weights.
+OFFSETS = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
+WEIGHTS = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
+EACH = np.arange(6)
+
 
 def gap_slopes(values_at, s: np.ndarray, steps: tuple[float, float, float, float], count: int) -> np.ndarray:
     """Derivatives (count, 6) of `values_at(s)` (count,) by (dz, g_x, g_y) and their rates about a gap state: central
     differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates."""
-    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1 / 280])
-    offsets = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
     sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
-    moved = np.empty((len(offsets), 6, len(s)))
+    moved = np.empty((len(OFFSETS), 6, len(s)))
     moved[:] = s
-    moved[:, range(6), range(6)] += offsets[:, None] * sizes
-    values = np.empty((len(offsets) * 6, count))
+    moved[:, EACH, EACH] += OFFSETS[:, None] * sizes
+    values = np.empty((len(OFFSETS) * 6, count))
     for k, row in enumerate(moved.reshape(-1, len(s))):
         values[k] = values_at(row)
-    values = values.reshape(len(offsets), 6, count)
-    return (weights[:, None, None] * values / sizes[:, None]).sum(axis=0).T
+    values = values.reshape(len(OFFSETS), 6, count)
+    return (WEIGHTS[:, None, None] * values / sizes[:, None]).sum(axis=0).T
 
 
 def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):

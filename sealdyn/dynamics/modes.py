@@ -160,10 +160,13 @@ class LinearScene:
         is more, and if a mass is zero."""
         if self.film is not None:
             raise ValueError("a film that stores has more to its state than displacements and rates")
-        n, inverse = len(self.mass), np.linalg.inv(self.mass)
+        mass = np.diag(self.mass)
+        if not np.all(mass):
+            raise ValueError("a mass is zero")
+        n, inverse = len(mass), 1.0 / mass[:, None]
         matrix = np.zeros((2 * n, 2 * n))
         matrix[:n, n:] = np.eye(n)
-        matrix[n:, :n], matrix[n:, n:] = -inverse @ self.stiffness, -inverse @ self.damping
+        matrix[n:, :n], matrix[n:, n:] = -inverse * self.stiffness, -inverse * self.damping
         return matrix
 
     def response(self, harmonic: Harmonic) -> np.ndarray:
