@@ -4,12 +4,11 @@ import numpy as np
 
 from ...status import Status
 from . import orbit, spectrum
-from .page import PAPER, absent, level, look, run_page, save
+from .page import PAPER, absent, header, level, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run
 
-LEFT = [["orbit"], ["orbit"], ["orbit"], ["numbers"], ["numbers"]]
-RIGHT = [["film", "film, end"], ["tilt", "tilt, end"], ["flow", "spectrum"]]
+LEFT, RIGHT = (("orbit",), ("numbers",)), (("film", "film, end"), ("tilt", "tilt, end"), ("flow", "spectrum"))
 # Height of a name beside a line, as a share of the panel.
 NAME_HEIGHT = 0.08
 # Name of a row, and what stands in it: key of the summary, factor, words, digits.
@@ -34,7 +33,8 @@ NUMBERS = (
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
     run = Run(archive_path)
-    figure, ax = run_page(run, 13.5, 9.0, [[LEFT, RIGHT]], width_ratios=(1, 2.1))
+    figure = sheet(13.5, 9.0)
+    ax = _placed(figure, header(figure, run) - 0.025)
     ax["orbit"].set_anchor("N")
     orbit.panel(ax["orbit"], run)
     key_numbers(ax["numbers"], run)
@@ -50,6 +50,18 @@ def draw(archive_path, out_path, turns: float = 4.0):
         ax[name].set_xlabel(run.progress_label)
     spectrum.panel(ax["spectrum"], run)
     return save(figure, out_path)
+
+
+def _placed(figure, top: float) -> dict:
+    """Axes by name, by hand: every run draws this page, and a layout engine would take half of its time."""
+    left = figure.add_gridspec(2, 1, left=0.056, right=0.326, bottom=0.07, top=top, height_ratios=(5, 3), hspace=0.17)
+    right = figure.add_gridspec(3, 2, left=0.385, right=0.975, bottom=0.082, top=top, wspace=0.26, hspace=0.33)
+    return {
+        name: figure.add_subplot(grid[row, column])
+        for grid, names in ((left, LEFT), (right, RIGHT))
+        for row, across in enumerate(names)
+        for column, name in enumerate(across)
+    }
 
 
 def film_panel(ax, run: Run, first: int) -> None:
