@@ -9,7 +9,11 @@ from command import REFERENCE, SCENARIOS, finished, sealdyn, settings, short, st
 
 from sealdyn import open_archive
 
-SHIPPED = sorted(SCENARIOS.glob("*.toml"))
+LONG = ("hang_up", "runup_past_threshold")
+SHIPPED = [
+    pytest.param(path, marks=pytest.mark.slow) if path.stem in LONG else path
+    for path in sorted(SCENARIOS.glob("*.toml"))
+]
 CONTRACT = {
     "model": {"film", "unknowns", "solver", "reasons", "unused"},
     "h_min": {"value", "time", "theta", "radius", "of_clearance"},

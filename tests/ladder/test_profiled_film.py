@@ -81,6 +81,7 @@ def rubbing(accuracy):
     return run(fms(film=worn, contact=ROUGH, own=4e-4, runout=ramp), turns=8, accuracy=accuracy, start="steady")
 
 
+@pytest.mark.slow
 def test_rubbing_converges_and_its_energy_balances():
     rough, fine, finest = (rubbing(accuracy) for accuracy in (1e-5, 1e-7, 1e-8))
     assert fine["contact_force"].max() > 1.0

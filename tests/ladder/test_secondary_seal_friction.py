@@ -111,6 +111,7 @@ def test_a_shaken_housing_carries_its_ring_until_it_slips():
 # --- tilt about a fixed axis ---------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_hysteresis_loop_of_a_slowly_tilted_ring():
     """A slow moment about a fixed axis: the tilt holds until the moment has changed by twice the friction moment, then
     follows it at distance M_f / K; the loop's area is 4 M_f (M - M_f) / K."""

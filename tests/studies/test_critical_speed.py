@@ -59,6 +59,7 @@ def test_unconditionally_stable_rotor_has_no_critical_speed(tmp_path):
     assert all(rate < 0 for rate in answer["growth"]["time_domain"])
 
 
+@pytest.mark.slow
 def test_two_floating_rings_have_no_formula(tmp_path):
     answer = study("fmsr_both_flexible", tmp_path, beyond=False, turns=80)
     assert answer["formula"] is None and answer["formula_reason"]

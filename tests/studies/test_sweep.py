@@ -100,6 +100,7 @@ def test_an_unknown_key_or_output_is_named(tmp_path):
     assert "nearest h_min.value" in answer["rows"][0]["failed"]
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
     """Killed by SIGKILL half-way: what was finished is kept as it was, the rest is done, the numbers are the same."""
     command = [

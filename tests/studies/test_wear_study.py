@@ -268,6 +268,7 @@ def test_asked_to_go_on_it_wears_to_the_end_in_few_steps(run_in, tmp_path):
 # --- a scene that moves ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_misaligned_seal_wears_by_averages_over_turns(tmp_path):
     """The rubbing reference seal: its thin edge wears; the average is that of a long run of the same scene."""
     flags = {"duration": "0.2 h", "nodes": 5}

@@ -61,6 +61,7 @@ def test_another_integrator_stays_on_the_whirl(family, place):
     assert found == pytest.approx(whirl.q, abs=1e-7 * np.max(np.abs(whirl.q)))
 
 
+@pytest.mark.slow
 def test_departs_at_the_growth_rate_stated(family):
     """A nudge of a thousandth grows or dies as the linearisation in the turning frame says, not as at rest."""
     _, scene, _, _, whirls = family

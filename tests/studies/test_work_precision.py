@@ -145,6 +145,7 @@ def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
 
 # Measured: 2e-11 to 2.8e-6, by whether a sample falls between the captures that two methods find, which rounding
 # decides; 1.7e-2 where the speed just before a capture was interpolated with the fading friction's slope.
+@pytest.mark.slow
 def test_judges_agree_where_a_ring_sticks():
     """hang_up: stuck and slipping once a turn; leakage follows the axial speed up to each capture, where the ring
     drops what is left of it: so much two exact methods may differ by at one instant."""

@@ -111,6 +111,7 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     assert true / 3 < estimate + 1e-11 and estimate < accuracy
 
 
+@pytest.mark.slow
 def test_an_undamped_scene_adds_its_errors_up():
     scene = free_ring()
     short, long = (solver_error(prepared(scene, turns * TURN, 1e-3), "adams") for turns in (20, 2000))

@@ -31,8 +31,8 @@ print(wide(1.0), sum(wide.stats.cache_misses.values()), len(kept_kernels()), pla
 WARM = (20.0, 0, 4, False)
 
 
-PLACES = ["beside the sources", "where NUMBA_CACHE_DIR says"]
-PLACES += [pytest.param(place, marks=pytest.mark.slow) for place in ("in the user's folder", "nowhere")]
+PLACES = ["where NUMBA_CACHE_DIR says"]
+PLACES += [pytest.param(p, marks=pytest.mark.slow) for p in ("beside the sources", "in the user's folder", "nowhere")]
 
 
 @pytest.fixture(params=PLACES)

@@ -16,7 +16,7 @@ RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
 SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]
 
 
-@pytest.mark.parametrize("stop_at", [3, 9])
+@pytest.mark.parametrize("stop_at", [3, pytest.param(9, marks=pytest.mark.slow)])
 def test_continued_as_if_never_stopped(tmp_path, stop_at):
     scenario = read_scenario(RUB, SEAL)
     whole = simulate(scenario, tmp_path / "whole.h5")
