@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -285,3 +286,16 @@ def test_the_sentence_says_what_was_asked_and_what_was_found():
     assert found.said.startswith("asked 1e-02, estimated ") and "model" in found.said and "NOT met" not in found.said
     linear = started(on(SCENES["larger"], "linear", coefficients="radial"), 10 * TURN, 1e-6)
     assert "NOT met: try a higher film rung" in certify(linear, "adams").said
+
+
+SHARPER = "run.accuracy"
+
+
+@pytest.mark.parametrize(
+    ("method", "advice"), [("adams", '"dop853"'), ("bdf", '"radau"'), ("ida", SHARPER), ("radau", SHARPER)]
+)
+def test_what_to_try_fits_the_scene(method, advice):
+    """Where the solver errs too much: no explicit method for what BDF was chosen for, none at all in place of IDA."""
+    found = certify(choose(SCENES["fms"], 1e-4), method, SimpleNamespace(worst=1.0), 0.0).said
+    assert "NOT met: try " in found and advice in found.partition("try ")[2]
+    assert method == "adams" or "dop853" not in found
