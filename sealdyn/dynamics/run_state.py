@@ -56,13 +56,16 @@ class RunState:
         return self.duration / 4 if period == 0.0 else period
 
     def fastest_forcing(self) -> float:
-        """Highest angular frequency (rad/s) imposed at any interval's start or end; the shaft speed counts."""
+        """Highest angular frequency (rad/s) imposed at any interval's start or end; where anything is imposed the shaft
+        speed counts, where nothing is it is 0."""
         scene, fastest = self.model.scene, 0.0
         for interval in self.intervals:
-            for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval):
+            rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
+            for row in rows:
                 fastest = max(fastest, abs(row[7]), abs(row[7] + 2 * row[8] * interval.length))
-            speed, slope = constant_and_slope(scene.shaft.speed, interval)
-            fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
+            if len(rows):
+                speed, slope = constant_and_slope(scene.shaft.speed, interval)
+                fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
         return fastest
 
     # --- the start ----------------------------------------------------------------------------------

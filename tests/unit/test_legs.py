@@ -7,7 +7,7 @@ from itertools import pairwise
 import mpmath
 import numpy as np
 import pytest
-from scenes import fmr, ring
+from scenes import fmr, fms, ring, started
 from scipy.integrate import quad
 
 from sealdyn.dynamics.imposed_motion import (
@@ -199,3 +199,9 @@ def test_time_of_an_angle_at_constant_speed():
 def test_an_angle_that_is_never_turned(speed):
     with pytest.raises(ValueError, match="turn"):
         time_of_angle(speed, 51.0)
+
+
+def test_a_shaft_that_drives_nothing_is_no_forcing():
+    """An aligned seal has nothing that samples could alias; a misaligned one has the turning of the shaft."""
+    assert started(fms(speed=SPEED, own=0.0, runout=0.0), 0.01).fastest_forcing() == 0.0
+    assert started(fms(speed=SPEED, own=25e-6, runout=0.0), 0.01).fastest_forcing() == SPEED
