@@ -92,7 +92,8 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     if not follows or method not in ("adams", "bdf"):
         return None
     asked = model.accuracy
-    errors = GlobalErrorEstimate(run.segment(0), ERROR_SHARE * asked, tolerance_for(method, asked, run.memory))
+    segment, least = run.segment(0), tolerance_for(method, asked, run.memory)
+    errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least)
     if not errors.sound:
         return None
     growth = float(np.max(errors.motion.values.real))

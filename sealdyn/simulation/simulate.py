@@ -160,10 +160,11 @@ def prepare_run(scenario):
     accuracy = scenario.run.accuracy
     run, by_model = select_film(scenario.scene, duration, accuracy, lambda run: _start(run, scenario))
     run.check_loads()
-    method, why = choose_method(run)
-    if scenario.run.solver != "auto":
-        method, why = scenario.run.solver, "asked for"
-    check_method(run.model, method)
+    method, why = scenario.run.solver, "asked for"
+    if method != "auto":
+        check_method(run.model, method)
+    else:
+        method, why = choose_method(run)
     best = attainable(method, run.memory)
     if best > accuracy:
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
