@@ -35,7 +35,7 @@ def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -
     of its sink; `speeds`: with critical and resonance speeds, which cost more than a short run."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    steady, sentence = _steady(run, outcome, period)
+    steady, sentence = _steady(run, outcome, period, scenario.run.start == "steady")
     record = run.extrema.records[0]
     tilt = _linear_steady(segment, linear, period)
     summary = {
@@ -98,7 +98,7 @@ def _plain(value):
     return value
 
 
-def _steady(run, outcome, period):
+def _steady(run, outcome, period, begun_steady):
     """Steady extremes over the last forcing period, or None with a sentence."""
     none = {"steady_max": None, "steady_min": None}
     if outcome.status != Status.OK:
@@ -116,9 +116,10 @@ def _steady(run, outcome, period):
         abs(last[H] - before[H]) / model.clearance,
     )
     if change > model.accuracy:
+        try_it = "run longer" if begun_steady else 'run longer or use run.start = "steady"'
         return none, (
             f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
-            f'(accuracy {model.accuracy:.0e}); run longer or use run.start = "steady"'
+            f"(accuracy {model.accuracy:.0e}); {try_it}"
         )
     return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
 
