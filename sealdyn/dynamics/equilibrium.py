@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
 from .intervals import Interval, constant_and_slope
@@ -50,11 +50,6 @@ class ClosingForce:
         )
         spring = constant_and_slope(self.spring, interval)
         return tuple(self.at(inner[k], outer[k], spring[k]) for k in range(2))
-
-
-def initially(quantity) -> float:
-    """Value of a number or function of time at time zero."""
-    return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
 
 
 def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equilibrium], str]:

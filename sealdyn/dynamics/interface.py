@@ -26,10 +26,11 @@ from ..faces.geometry import (
 from ..faces.surfaces import lay_surfaces
 from ..films import film_module, film_name, film_of, has_unknowns
 from ..films._unknowns import FilmDerivatives
+from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients
 from ..scene.scene import SceneError
 from .condensation import LinearFilm, linearise
-from .equilibrium import initially, settle
+from .equilibrium import settle
 from .intervals import constant_and_slope
 
 

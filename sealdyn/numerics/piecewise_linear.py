@@ -29,3 +29,8 @@ class PiecewiseLinear:
     def breaks(self) -> tuple[float, ...]:
         """Times (s) of the kinks and steps, increasing."""
         return tuple(sorted(set(self.time)))
+
+
+def initially(quantity) -> float:
+    """Value at time zero of a number or a function of time, in its own unit."""
+    return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)

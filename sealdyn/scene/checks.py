@@ -3,7 +3,7 @@
 import cmath
 import math
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from . import contact, secondary_seal
 from . import film as film_table
 from .scene import SceneError
@@ -209,11 +209,6 @@ def _start(ring) -> tuple[float, complex]:
 
 def _given(initial) -> bool:
     return any(value is not None for ring in (initial.rotor, initial.stator) for value in vars(ring).values())
-
-
-def initially(value) -> float:
-    """Value at time zero of a number or a function of time."""
-    return value.at(0.0) if isinstance(value, PiecewiseLinear) else value
 
 
 def points(value) -> tuple[float, ...]:

@@ -1,4 +1,4 @@
-"""Stiffness and damping of the film, 3 x 3 on (dz, tilt about xi, tilt about eta): aligned, tilted, over speed and
+"""Stiffness and damping of the film, 3 x 3 on (dz, tilt about x, tilt about y): aligned, tilted, over speed and
 clearance."""
 
 import cmath
@@ -47,8 +47,8 @@ units = {
 @dataclass(frozen=True)
 class Settings:
     """`tilt`: relative misalignment of the tilted state (default: the mean of the linear steady state, or, if that is
-    nothing, its turning part); `tilt_direction` from xi; sweeps over `speed_to`, `clearance_from` to `clearance_to`,
-    and the tilt, `points` each."""
+    nothing, its turning part); `tilt_direction` from the x axis; sweeps over `speed_to`, `clearance_from` to
+    `clearance_to`, and the tilt, `points` each."""
 
     tilt: Angle | None = None
     tilt_direction: Angle = 0.0

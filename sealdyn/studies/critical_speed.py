@@ -1,7 +1,7 @@
 """Critical speed: the stability threshold of the aligned seal by three independent methods, and the whirl beyond it.
 
 Linear: published formula with the film's own coefficients, eigenvalues, growth of a small disturbance in time.
-Beyond: the family of circular whirls that leaves the threshold (whirl.py), and runs in time that must agree.
+Beyond: the family of circular whirls that leaves the threshold (analysis/whirl), and runs in time that must agree.
 """
 
 from dataclasses import asdict, dataclass
@@ -21,7 +21,7 @@ from ..analysis.whirl import (
     growth_rate,
     tipping_disturbance,
 )
-from ..dynamics.equilibrium import initially
+from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
 from ..simulation.stability import critical_speed
 

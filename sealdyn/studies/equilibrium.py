@@ -10,11 +10,11 @@ from ..dynamics.equilibrium import (
     equilibria,
     extent,
     film_stiffness,
-    initially,
     settle,
     support_stiffness,
 )
 from ..films import film_of
+from ..numerics.piecewise_linear import initially
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..analysis.shooting import NoOrbit, Shooter
 from ..dynamics import modes
-from ..dynamics.equilibrium import initially
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..numerics.piecewise_linear import initially
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
 from ..simulation.stability import critical_speed

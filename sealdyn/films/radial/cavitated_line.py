@@ -13,7 +13,6 @@ from .._radial_line import cubic, line_sums
 
 # A line's state: bits.
 INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8
-NOTHING_DRY = HAS_WET
 # A crossing enters force and moment by its square.
 CLOSE = 1e-9
 

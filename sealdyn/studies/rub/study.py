@@ -12,9 +12,9 @@ import numpy as np
 from ...analysis.continuation import frozen_at_end, sweep_branch
 from ...analysis.whirl import free_model
 from ...analysis.whirl.rubbing import settles
-from ...dynamics.equilibrium import initially
 from ...numerics import time_series
 from ...numerics.lyapunov import horizon
+from ...numerics.piecewise_linear import initially
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import si_unit, values_in_si
 from ...scene.variants import part

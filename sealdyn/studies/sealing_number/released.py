@@ -13,10 +13,10 @@ from scipy.optimize import brentq
 
 from ...closed_form import ludwig_allen as closed
 from ...closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
-from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
+from ...numerics.piecewise_linear import initially
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...simulation.method_selection import choose_method

@@ -10,8 +10,8 @@ from pydantic import Field
 
 from ...closed_form import ludwig_allen as closed
 from ...closed_form import released_ring
-from ...dynamics.equilibrium import initially
 from ...dynamics.model import Model
+from ...numerics.piecewise_linear import initially
 from ...status import Status
 from . import quasi_static
 from . import released as free

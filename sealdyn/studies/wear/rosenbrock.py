@@ -151,7 +151,7 @@ def advance(
     step.
 
     `averages(depth, motion)` is a short run over a profile, started from the motion another one left.  What it
-    returns must depend on these two alone: then a run taken up from any `Worn` goes on as if it had not stopped.
+    returns must depend on these two alone: then a run taken up from any WearState goes on as if it had not stopped.
     Raises NoAverage where even the shortest steps find none.
     """
     here = averages(worn.depth, worn.motion)

@@ -75,7 +75,7 @@ class _Stopwatch:
 
 
 def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, samples: int = 400) -> Observed:
-    """Integrate a run with a method's generator `steps` (contract of solvers/methods.py) and look at it.
+    """Integrate a run with a method's generator `steps` (contract of solvers/contract.py) and look at it.
 
     `limit` (s) of integration; `samples` intervals over the run.  The gap is watched and contacts, sticking and
     collapse are found as in any run, but the clock runs only inside the method.
