@@ -14,18 +14,24 @@ WEIGHTS = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 4 / 5, -1 / 5, 4 / 105, -1
 EACH = np.arange(6)
 
 
-def gap_slopes(values_at, s: np.ndarray, steps: tuple[float, float, float, float], count: int) -> np.ndarray:
-    """Derivatives (count, 6) of `values_at(s)` (count,) by (dz, g_x, g_y) and their rates about a gap state: central
-    differences of eighth order; `steps` are the steps in dz (m), tilt (rad) and their rates."""
-    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+def moved_gaps(s: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:
+    """Gap states (48, len(s)) moved from `s` in (dz, g_x, g_y) and their rates, for `gap_slopes`; `steps` are the steps
+    in dz (m), tilt (rad) and their rates."""
     moved = np.empty((len(OFFSETS), 6, len(s)))
     moved[:] = s
-    moved[:, EACH, EACH] += OFFSETS[:, None] * sizes
-    values = np.empty((len(OFFSETS) * 6, count))
-    for k, row in enumerate(moved.reshape(-1, len(s))):
-        values[k] = values_at(row)
-    values = values.reshape(len(OFFSETS), 6, count)
-    return (WEIGHTS[:, None, None] * values / sizes[:, None]).sum(axis=0).T
+    moved[:, EACH, EACH] += OFFSETS[:, None] * _sizes(steps)
+    return moved.reshape(-1, len(s))
+
+
+def gap_slopes(values: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:
+    """Derivatives (n, 6) of `values` (48, n) at `moved_gaps` by (dz, g_x, g_y) and their rates: central differences of
+    eighth order."""
+    values = values.reshape(len(OFFSETS), 6, -1)
+    return (WEIGHTS[:, None, None] * values / _sizes(steps)[:, None]).sum(axis=0).T
+
+
+def _sizes(steps):
+    return np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
 
 
 def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, float, float]):
@@ -35,12 +41,10 @@ def linearise(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float, f
     of the clearance).
     """
 
-    def force_at(moved):
-        wrench(f, moved)
-        return moved[FORCE : FORCE + 3]
-
-    jacobian = gap_slopes(force_at, s, steps, 3)
-    sizes = np.array([steps[0], steps[1], steps[1], steps[2], steps[3], steps[3]])
+    moved, sizes = moved_gaps(s, steps), _sizes(steps)
+    for gap in moved:
+        wrench(f, gap)
+    jacobian = gap_slopes(moved[:, FORCE : FORCE + 3], steps)
     # What is below the rounding of the force is nothing.
     wrench(f, s)
     noise = 1e-14 * abs(s[FORCE]) * np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
@@ -63,17 +67,12 @@ class LinearFilm:
     """
 
     def __init__(self, derivatives, s, x, steps):
-        film, f, rest, res = derivatives.film, derivatives.f, np.zeros_like(x), np.empty_like(x)
-
-        def residual_at(moved):
-            film.residual(f, moved, x, rest, res)
-            return res
-
-        def force_at(moved):
-            film.wrench(f, moved, x)
-            return moved[FORCE : FORCE + 3]
-
-        by_gap, force_by_gap = gap_slopes(residual_at, s, steps, len(x)), gap_slopes(force_at, s, steps, 3)
+        film, f, rest, moved = derivatives.film, derivatives.f, np.zeros_like(x), moved_gaps(s, steps)
+        residuals = np.empty((len(moved), len(x)))
+        for gap, res in zip(moved, residuals, strict=True):
+            film.residual(f, gap, x, rest, res)
+            film.wrench(f, gap, x)
+        by_gap, force_by_gap = gap_slopes(residuals, steps), gap_slopes(moved[:, FORCE : FORCE + 3], steps)
         self.by_gap, self.by_gap_rate = by_gap[:, :3], by_gap[:, 3:]
         self.force_by_gap, self.force_by_gap_rate = force_by_gap[:, :3], force_by_gap[:, 3:]
         self.by_x, self.force_by_x = derivatives.matrix(s, x, rest, 0.0), derivatives.wrench(s, x)

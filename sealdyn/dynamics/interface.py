@@ -131,13 +131,13 @@ class Interface:
         return stiffness, damping
 
     def linear_film(self, s, steps) -> LinearFilm:
-        """A film with unknowns about a gap state, these steady; `steps` as in condensation.gap_slopes."""
+        """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
         derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
         return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
 
     def film_about(self, s, steps, omega=0.0):
         """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in
-        condensation.gap_slopes; of a film with unknowns at the frequency `omega` (rad/s)."""
+        condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
             return linearise(self.film.wrench, self.f, s, steps)
         return self.linear_film(s, steps).matrices(omega)

@@ -1,5 +1,7 @@
 """The equations of one scene: constant once made, whatever is run with them."""
 
+import math
+
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
@@ -9,7 +11,7 @@ from . import equations, linearisation
 from .coupled_segment import CoupledSegment
 from .equilibrium import axial_shift
 from .interface import Interface
-from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks
+from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
 from .stick_slip import FRICTION_FADE
 from .unknowns import Unknowns
@@ -67,6 +69,13 @@ class Model:
     def intervals(self, duration: float) -> list[Interval]:
         """The intervals of a run of `duration` (s), on each of which everything imposed is linear."""
         return split_at_breaks(duration, self.scene.shaft.speed, self.scene.stator.speed, self._imposed())
+
+    def time_of(self, turns: float) -> float:
+        """Time (s) in which the shaft turns so often.  Raises SceneError if it never does."""
+        try:
+            return time_of_angle(self.scene.shaft.speed, 2 * math.pi * turns)
+        except ValueError as error:
+            raise SceneError("run.turns", str(error), "run.duration instead") from None
 
     def segment(self, interval: Interval | None = None, index: int = 0, last: bool = True, stuck=None) -> Segment:
         """The equations over an interval (the first one if none is given); `stuck` rings: {ring: bool}."""

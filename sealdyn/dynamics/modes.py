@@ -35,6 +35,19 @@ class RingNumbers:
     tilt_damping: float
     spin: float
 
+    def support_damping(self) -> np.ndarray:
+        """Damping matrix (3, 3) of the support, in N s/m and N m s/rad."""
+        return diagonal(self.axial_damping, self.tilt_damping)
+
+    def support_stiffness(self) -> np.ndarray:
+        """Stiffness matrix (3, 3) of the support, in N/m and N m/rad."""
+        return diagonal(self.axial_stiffness, self.tilt_stiffness)
+
+
+def diagonal(axial: float, tilt: float) -> np.ndarray:
+    """Matrix (3, 3) that is isotropic in tilt."""
+    return np.array([[axial, 0.0, 0.0], [0.0, tilt, 0.0], [0.0, 0.0, tilt]])
+
 
 @dataclass(frozen=True)
 class Harmonic:
@@ -59,8 +72,8 @@ class Mode:
 def film_matrices(tilt_stiffness, tilt_damping, axial_stiffness, axial_damping, mean_spin):
     """Stiffness and damping matrices (3, 3) of an isotropic linear film on (dz, g_x, g_y).
     **Source** M = -[K g + D (g' - i wm g)], Green (1989), eq. 2."""
-    stiffness = np.diag([axial_stiffness, tilt_stiffness, tilt_stiffness]) - mean_spin * tilt_damping * QUARTER_TURN
-    return stiffness, np.diag([axial_damping, tilt_damping, tilt_damping])
+    stiffness = diagonal(axial_stiffness, tilt_stiffness) - mean_spin * tilt_damping * QUARTER_TURN
+    return stiffness, diagonal(axial_damping, tilt_damping)
 
 
 class LinearScene:
@@ -79,9 +92,8 @@ class LinearScene:
         self.mass, self.damping, self.stiffness = np.zeros((3, n, n))
         for a, k in enumerate(self.floating):
             ring, at = rings[k], slice(3 * a, 3 * a + 3)
-            support_d = np.diag([ring.axial_damping, ring.tilt_damping, ring.tilt_damping])
-            support_k = np.diag([ring.axial_stiffness, ring.tilt_stiffness, ring.tilt_stiffness])
-            self.mass[at, at] = np.diag([ring.mass, ring.inertia, ring.inertia])
+            support_d, support_k = ring.support_damping(), ring.support_stiffness()
+            self.mass[at, at] = diagonal(ring.mass, ring.inertia)
             self.damping[at, at] += support_d - ring.polar * ring.spin * QUARTER_TURN
             self.stiffness[at, at] += support_k - ring.spin * support_d @ QUARTER_TURN
             for b, j in enumerate(self.floating):
@@ -178,8 +190,7 @@ class LinearScene:
         ring = self.rings[harmonic.ring]
         if ring.floats:
             at = 3 * self.floating.index(harmonic.ring)
-            support_d = np.diag([ring.axial_damping, ring.tilt_damping, ring.tilt_damping])
-            support_k = np.diag([ring.axial_stiffness, ring.tilt_stiffness, ring.tilt_stiffness])
+            support_d, support_k = ring.support_damping(), ring.support_stiffness()
             carrier = support_k + 1j * w * support_d - ring.spin * support_d @ QUARTER_TURN
             force[at : at + 3] = carrier @ harmonic.carrier + support_k @ harmonic.own
         else:

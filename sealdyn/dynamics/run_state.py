@@ -55,6 +55,13 @@ class RunState:
         period = self.segment(index).period()
         return self.duration / 4 if period == 0.0 else period
 
+    def watch_last_periods(self):
+        """Look for extremes in the last two forcing periods apart, for the steady state."""
+        period, end, last = self.period(-1), self.duration, self.intervals[-1]
+        constant_from = last.time if len(self.intervals) > 1 and not self.model.unknowns.constant else 0.0
+        if period and end - 2 * period >= constant_from - 1e-9 * end:
+            self.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
+
     def fastest_forcing(self) -> float:
         """Highest angular frequency (rad/s) imposed at any interval's start or end; where anything is imposed the shaft
         speed counts, where nothing is it is 0."""

@@ -100,16 +100,22 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     return errors if growth * run.duration < GROWN else None
 
 
-def choose_tolerance(run: RunState, method: str) -> TrialRun | None:
+def choose_tolerance(run: RunState, method: str) -> tuple[TrialRun | None, GlobalErrorEstimate | None]:
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
-    the cautious one.  None where the start does not represent the run: where errors cannot be followed, an unstable
-    scene, errors that add up over the whole run; and where the method fails on trial."""
-    model = run.model
-    if run.memory * model.shortest_period > 0.5 * run.duration:
-        return None
+    the cautious one, and what follows the run's errors.  No trial where the start does not represent the run: where
+    errors cannot be followed, an unstable scene, errors that add up over the whole run; and where the method fails on
+    trial."""
     errors = error_estimator(run, method)
-    if errors is None:
-        return None
+    if errors is None or run.memory * run.model.shortest_period > 0.5 * run.duration:
+        return None, errors
+    before = errors.state()
+    trial = _tried(run, method, errors)
+    errors.restore(before)
+    return trial, errors
+
+
+def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun | None:
+    model = run.model
     asked, cautious = model.accuracy, tolerance_for(method, model.accuracy, run.memory)
     tolerance, counts = min(LOOSER * cautious, asked), Counts()
     if tolerance <= cautious:

@@ -8,23 +8,23 @@ from ..dynamics.run_state import RunState
 from .film_error import model_error
 
 
-def select_film(
-    scene, duration: float, accuracy: float, start: Callable[[RunState], None]
-) -> tuple[RunState, float | None]:
-    """A run (of `duration`, s) of the scene with the lowest film model that keeps the accuracy, and the estimated error
-    of a linear film that was chosen for it (None: not estimated); `start(run)` sets its unknowns.
+def select_film(scene, settings, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
+    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
+    that was chosen for it (None: not estimated).  `settings` as the `[run]` table: `accuracy`, and `duration` (s) or
+    `turns`; `start(run)` sets the run's unknowns.
 
     Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is below
     half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
     """
-    film = scene.film
+    film, accuracy = scene.film, settings.accuracy
 
-    def started(model: Model) -> RunState:
-        run = RunState(model, duration)
+    def started(scene, observed=None) -> RunState:
+        model = Model(scene, accuracy, observed)
+        run = RunState(model, model.time_of(settings.turns) if settings.duration is None else settings.duration)
         start(run)
         return run
 
-    highest = started(Model(scene, accuracy))
+    highest = started(scene)
     name = highest.model.interface.name
     if film.model != "auto":
         return highest, None
@@ -34,7 +34,7 @@ def select_film(
     why = _why_not_linear(scene, highest)
     if why is None:
         simpler = replace(scene, film=replace(film, model="linear", coefficients="radial"))
-        linear = started(Model(simpler, accuracy, observed=highest.model.observed))
+        linear = started(simpler, highest.model.observed)
         error = model_error(linear, enough=0.5 * accuracy)
         if error is not None and error < 0.5 * accuracy:
             linear.reasons.append(

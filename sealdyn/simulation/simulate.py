@@ -13,22 +13,20 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__, archive
-from ..archive import ArchiveWriter, Fields, Series, partial_path
+from ..archive import ArchiveWriter, partial_path
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
-from ..dynamics.fields import field_grid, fields_of
-from ..dynamics.intervals import time_of_angle
-from ..dynamics.signals import DEGREES, MILLIMETRES, PARTS, signal_table
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..dynamics.intervals import largest_value
+from ..dynamics.signals import PARTS
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..solvers.contract import Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
-from .certificate import TrialRun, certify, choose_tolerance, error_estimator
+from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
-from .sinks import MOST_INSTANTS, ArchiveSink, Tally, TallySink
+from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
 from .summary import summarise
 
 
@@ -43,28 +41,19 @@ class Result:
     archive: Path
 
 
-def sampling(scenario) -> tuple[float, float, int]:
-    """Duration (s), sample interval (s) and number of intervals of a scenario's run.  Raises SceneError if the shaft
-    never turns so far."""
-    run, speed = scenario.run, scenario.scene.shaft.speed
-    if run.duration is not None:
-        duration = run.duration
-    else:
-        try:
-            duration = time_of_angle(speed, 2 * math.pi * run.turns)
-        except ValueError as error:
-            raise SceneError("run.turns", str(error), "run.duration instead") from None
-    if run.samples is not None:
-        return duration, duration / run.samples, run.samples
-    fastest = max(abs(v) for v in speed.value) if isinstance(speed, PiecewiseLinear) else abs(speed)
+def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
+    """Sample interval (s) and number of intervals of a run of `duration` (s), its shaft turning at `fastest` (rad/s) at
+    most; `settings` as the `[run]` table."""
+    if settings.samples is not None:
+        return duration / settings.samples, settings.samples
     if fastest == 0.0:
-        return duration, duration / 1000, 1000
-    count = max(1, round(duration * fastest / (2 * math.pi) * run.samples_per_turn))
-    exact = duration * fastest / (2 * math.pi) * run.samples_per_turn
+        return duration / 1000, 1000
+    count = max(1, round(duration * fastest / (2 * math.pi) * settings.samples_per_turn))
+    exact = duration * fastest / (2 * math.pi) * settings.samples_per_turn
     if abs(exact - count) < 1e-6 * count:
-        return duration, duration / count, count
-    interval = 2 * math.pi / fastest / run.samples_per_turn
-    return duration, interval, int(duration / interval)
+        return duration / count, count
+    interval = 2 * math.pi / fastest / settings.samples_per_turn
+    return interval, int(duration / interval)
 
 
 def simulate(
@@ -85,21 +74,24 @@ def simulate(
     begun = clock.perf_counter()
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
     run, method, why, interval, count, by_model = prepare_run(scenario)
+    series, fields = what_is_kept(run.model)
     writer = ArchiveWriter(
         out,
         scenario_text=scenario.text,
         resolved=scenario.resolved(),
         meta=_meta(scenario, method),
-        series=_series(run.model),
-        fields=_fields(run.model),
+        series=series,
+        fields=fields,
         resume=resume,
         expected_rows=count,
     )
     sink = ArchiveSink(run, writer, interval, count, Tally(), progress, stop)
     audit = EnergyAudit()
-    sink.audit, sink.errors = audit, error_estimator(run, method)
+    sink.audit = audit
     restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
-    trial = choose_tolerance(run, method)
+    trial, sink.errors = choose_tolerance(run, method)
+    if restart and sink.errors and writer.state.get("errors"):
+        sink.errors.restore(writer.state["errors"])
     outcome = solve(
         run, method, run.model.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_tried(trial)
     )
@@ -145,8 +137,8 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     speeds only if `speeds`.  Raises SceneError or ArchiveError."""
     begun = clock.perf_counter()
     run, method, why, interval, count, _ = prepare_run(scenario)
-    sink, trial = TallySink(run, interval, count), choose_tolerance(run, method)
-    outcome = solve(run, method, run.model.accuracy, sink, errors=error_estimator(run, method), **_tried(trial))
+    sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
+    outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_tried(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
     summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial), speeds)
     return {**summary, "wall_time": clock.perf_counter() - begun}
@@ -156,25 +148,26 @@ def prepare_run(scenario):
     """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
     number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""
-    duration, interval, count = sampling(scenario)
-    accuracy = scenario.run.accuracy
-    run, by_model = select_film(scenario.scene, duration, accuracy, lambda run: _start(run, scenario))
+    settings = scenario.run
+    run, by_model = select_film(scenario.scene, settings, lambda run: _start(run, scenario))
+    interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
     run.check_loads()
-    method, why = scenario.run.solver, "asked for"
+    method, why = settings.solver, "asked for"
     if method != "auto":
         check_method(run.model, method)
     else:
         method, why = choose_method(run)
     best = attainable(method, run.memory)
-    if best > accuracy:
+    if best > settings.accuracy:
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
         run.cautions.append(Caution(Concern.ACCURACY, sentence))
-    _set_windows(run)
+    run.watch_last_periods()
     fastest = run.fastest_forcing()
     if fastest * interval > math.pi:
+        frequency = fastest / (2 * math.pi)
         sentence = (
-            f"aliasing: forcing at {fastest / (2 * math.pi):.5g} Hz needs more than "
-            f"{2 * fastest * duration / (2 * math.pi):.0f} samples in all, {count} asked: raise run.samples_per_turn"
+            f"aliasing: forcing at {frequency:.5g} Hz needs more than {2 * frequency * run.duration:.0f} samples "
+            f"in all, {count} asked: raise run.samples_per_turn"
         )
         run.cautions.append(Caution(Concern.ALIASING, sentence))
     return run, method, why, interval, count, by_model
@@ -211,41 +204,15 @@ def _start(run, scenario):
     run.check_start()
 
 
-def _set_windows(run):
-    """The last two forcing periods, for the steady state."""
-    period, end, last = run.period(-1), run.duration, run.intervals[-1]
-    constant_from = last.time if len(run.intervals) > 1 and not run.model.unknowns.constant else 0.0
-    if period and end - 2 * period >= constant_from - 1e-9 * end:
-        run.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
-
-
 def _resumed(run, writer, sink, audit):
     state = writer.state
     run.extrema.restore(state["records"])
     tally = state["tally"]
     sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
     audit.restore(state["audit"])
-    if sink.errors and state.get("errors"):
-        sink.errors.restore(state["errors"])
     run.restore_modes(state["modes"])
     sink.logged = int(state["modes"]["logged"])
     return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
-
-
-def _series(model) -> dict[str, Series]:
-    return {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
-
-
-def _fields(model) -> Fields | None:
-    table = fields_of(model)
-    if not table:
-        return None
-    r, theta = field_grid(model)
-    grid = {
-        "r": (Series("m", "radius", *MILLIMETRES), r),
-        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
-    }
-    return Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
 
 def _meta(scenario, method) -> dict:

@@ -6,9 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..archive import FIELD_TIME
-from ..dynamics.fields import fields, fields_of
-from ..dynamics.signals import TALLIED, signals
+from ..archive import FIELD_TIME, Fields, Series
+from ..dynamics.signals import DEGREES, MILLIMETRES, TALLIED, field_grid, fields, fields_of, signal_table, signals
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -41,6 +40,20 @@ class Tally:
     def mean(self, name: str) -> float:
         """Mean (SI) of a series so far; NaN without one."""
         return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
+
+
+def what_is_kept(model) -> tuple[dict[str, Series], Fields | None]:
+    """Series by name, and the film's fields if it has any, as an archive of this model keeps them."""
+    series = {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
+    table = fields_of(model)
+    if not table:
+        return series, None
+    r, theta = field_grid(model)
+    grid = {
+        "r": (Series("m", "radius", *MILLIMETRES), r),
+        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
+    }
+    return series, Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
 
 class ArchiveSink:

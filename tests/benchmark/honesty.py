@@ -22,11 +22,12 @@ from scenes import started
 
 from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import palette
+from sealdyn.scenario.reader import Run
 from sealdyn.scene.excitation import AngularVibration, Housing, Shaft
 from sealdyn.scene.film import Film
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
-from sealdyn.simulation.certificate import certify, choose_tolerance, error_estimator
+from sealdyn.simulation.certificate import certify, choose_tolerance
 from sealdyn.simulation.film_selection import select_film
 from sealdyn.simulation.method_selection import choose_method
 from sealdyn.solvers.integrate import solve
@@ -115,9 +116,9 @@ def apart(found, truth):
 def automatic(made, duration, accuracy, start, interval):
     """Wall times (s) of choosing, running and certifying; ready, method, what was found, certificate."""
     begun = time.perf_counter()
-    ready, by_model = select_film(made, duration, accuracy, begin(start))
+    ready, by_model = select_film(made, Run(duration=duration, accuracy=accuracy), begin(start))
     method, _ = choose_method(ready)
-    trial, errors = choose_tolerance(ready, method), error_estimator(ready, method)
+    trial, errors = choose_tolerance(ready, method)
     chosen = time.perf_counter() - begun
     options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
     found, wall = looked_at(ready, method, accuracy, interval, errors=errors, **options)

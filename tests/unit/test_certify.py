@@ -27,7 +27,7 @@ from scenes import (
 
 from sealdyn.films import film_name
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.reader import Run, read_scenario
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, Housing
 from sealdyn.scene.rings import Stator
@@ -138,7 +138,7 @@ def test_a_tolerance_on_trial_keeps_the_accuracy(name, start, method, accuracy):
     """Looser than the cautious one, and the run at it is still as exact as was asked; its own steps tell its error
     within half (by Adams at 1e-7 several times too much, cause not found)."""
     ready = prepared(on(SCENES[name], "radial"), 30 * TURN, accuracy, start)
-    trial = choose_tolerance(ready, method)
+    trial = choose_tolerance(ready, method)[0]
     cautious = tolerance_for(method, accuracy, ready.memory)
     assert cautious <= trial.tolerance <= LOOSER * cautious * (1 + 1e-12)
     true, estimate = followed(ready, method, trial)
@@ -155,7 +155,7 @@ def test_what_comes_after_the_stretch_is_not_forgotten(accuracy):
     faint = AngularVibration(frequency=60.5 * SPEED / (2 * math.pi), displacement=1e-5 * TILT_SCALE)
     scene = replace(on(SCENES["larger"], "radial"), housing=Housing(angular=[faint]))
     ready = prepared(scene, 10 * TURN, accuracy)
-    true, estimate = followed(ready, "adams", choose_tolerance(ready, "adams"))
+    true, estimate = followed(ready, "adams", choose_tolerance(ready, "adams")[0])
     # Measured 0.64 and 0.7 of the true error: which steps Adams takes here hangs on rounding.
     assert true / 3 < estimate < accuracy
 
@@ -164,7 +164,7 @@ def test_a_run_goes_on_from_its_trial(monkeypatch):
     """The steps of the stretch are the run's first; what they cost is counted."""
     monkeypatch.setattr(certificate, "SHARE", 5.0)
     ready = prepared(SCENES["fmsr"], 5 * TURN, 1e-4)
-    trial, sink = choose_tolerance(ready, "adams"), Recorder(TURN / 32)
+    trial, sink = choose_tolerance(ready, "adams")[0], Recorder(TURN / 32)
     assert len(trial.times) > 10 and trial.times[-1] == pytest.approx(3 * ready.model.shortest_period)
     blocks = list(trial.steps(ready.segment(0), 0.0, ready.y0.copy(), "adams", trial.tolerance, Counts()))
     assert blocks[0][0] is trial.times and blocks[1][0][0] > trial.times[-1] and blocks[-1][0][-1] == 5 * TURN
@@ -188,7 +188,7 @@ def test_a_run_that_turns_out_too_loose_goes_on_sharper(name, accuracy, monkeypa
             times.append(taus)
             super().take(segment, taus, q, q_rate)
 
-    trial, errors, found = choose_tolerance(ready, "adams"), error_estimator(ready, "adams"), []
+    (trial, errors), found = choose_tolerance(ready, "adams"), []
     cautious = tolerance_for("adams", accuracy, ready.memory)
     assert trial.tolerance > 50 * cautious
     told = {"tolerance": trial.tolerance, "steps": trial.steps, "errors": errors}
@@ -207,16 +207,16 @@ def test_a_trial_that_errs_too_much_is_done_again_sharper(monkeypatch):
     ready = prepared(SCENES["fmsr"], 30 * TURN, 1e-4)
     cautious = tolerance_for("adams", 1e-4, ready.memory)
     monkeypatch.setattr(certificate, "SHARE", 5.0)
-    taken = choose_tolerance(ready, "adams")
+    taken = choose_tolerance(ready, "adams")[0]
     assert taken.tolerance == LOOSER * cautious and len(taken.times)
     monkeypatch.setattr(certificate, "SHARE", 0.3)
-    sharper = choose_tolerance(ready, "adams")
+    sharper = choose_tolerance(ready, "adams")[0]
     assert cautious < sharper.tolerance < taken.tolerance and not len(sharper.times)
     monkeypatch.setattr(certificate, "SHARE", 1e-6)
-    assert choose_tolerance(ready, "adams").tolerance == cautious
+    assert choose_tolerance(ready, "adams")[0].tolerance == cautious
     monkeypatch.setattr(certificate, "SHARE", 1.0)
     monkeypatch.setattr(certificate, "ENERGY", 1e-6)
-    assert choose_tolerance(ready, "adams").tolerance == cautious
+    assert choose_tolerance(ready, "adams")[0].tolerance == cautious
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
@@ -239,11 +239,12 @@ def test_a_tolerance_on_trial_keeps_the_energy(name, accuracy):
     ids=["contact", "run-up", "unstable", "undamped"],
 )
 def test_where_a_stretch_does_not_tell_of_the_run(scene):
-    assert choose_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams") is None
+    assert choose_tolerance(prepared(scene, 30 * TURN, 1e-5), "adams")[0] is None
 
 
 def choose(scene, accuracy, start=None):
-    return select_film(on(scene, "auto"), 10 * TURN, accuracy, start or (lambda ready: None))[0]
+    settings = Run(duration=10 * TURN, accuracy=accuracy)
+    return select_film(on(scene, "auto"), settings, start or (lambda ready: None))[0]
 
 
 def test_the_lowest_film_that_keeps_the_accuracy():

@@ -7,7 +7,7 @@ import pytest
 from scenes import film, fmr, started
 
 from sealdyn.report.text import resolved_lines
-from sealdyn.scenario.reader import ScenarioError, parse_scenario
+from sealdyn.scenario.reader import Run, ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
@@ -100,7 +100,7 @@ def test_half_a_profile():
 
 def test_auto_goes_straight_to_the_profiled_film():
     worn = fmr(film=film("auto", profile=Profile((0.032, 0.036, 0.04), (0.0, 2e-6, 0.0))))
-    ready, error = select_film(worn, 0.01, 1e-3, lambda p: None)
+    ready, error = select_film(worn, Run(duration=0.01, accuracy=1e-3), lambda p: None)
     assert ready.model.interface.name == "profiled" and error is None
 
 
