@@ -55,6 +55,9 @@ class CoupledSegment(Segment):
 
         self.rhs, self.ring_rates, self._loads, self.residual = rhs, ring_rates, loads, residual
 
+    def native(self):
+        """None: a film with unknowns is evaluated by Python."""
+
     # --- derivatives --------------------------------------------------------------------------------
 
     @cached_property

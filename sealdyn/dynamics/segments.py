@@ -100,6 +100,13 @@ class Segment:
         self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
         self.ring_rates = self.rhs
 
+    def native(self):
+        """These equations for C (native.py), which work on this segment's arrays."""
+        # A kernel of fixed signature is made ready by its import.
+        from .native import native
+
+        return native(self)
+
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""
         short = copy.copy(self)

@@ -59,7 +59,7 @@ class TrialRun:
         """Steps of the method over a segment, with the contract of solvers/contract.py: from the start those of the
         trial, unless a sharper tolerance has been found necessary."""
         if tau == 0.0 and segment.index == 0 and len(self.times) and tolerance >= self.tolerance:
-            counts.rhs, counts.jacobians = counts.rhs + self.counts.rhs, counts.jacobians + self.counts.jacobians
+            counts.add_work(self.counts)
             yield self.times, self.unknowns, None
             tau, y = float(self.times[-1]), self.unknowns[-1].copy()
         if tau < segment.length:

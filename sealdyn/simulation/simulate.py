@@ -20,9 +20,10 @@ from ..dynamics.intervals import largest_value
 from ..dynamics.signals import PARTS
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..solvers.contract import Status, attainable
+from ..solvers.contract import Counts, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
+from ..solvers.sundials import SCIKIT_SUNDAE, why_slow
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
@@ -100,7 +101,7 @@ def simulate(
         # What an interrupted run has not written yet it will meet again.
         run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
         sink.write_events()
-    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial))
+    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts))
     summary["certificate"] = certificate(run, method, outcome, sink.errors, by_model)
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == Status.INTERRUPTED else out
@@ -117,8 +118,11 @@ def _tried(trial: TrialRun | None) -> dict:
     return {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
 
 
-def _reasons(why: str, trial: TrialRun | None) -> str:
-    return f"{why}; {trial.said}" if trial else why
+def _reasons(why: str, trial: TrialRun | None, counts: Counts) -> str:
+    parts = [why, *([trial.said] if trial else [])]
+    if counts.back_end == SCIKIT_SUNDAE and (slow := why_slow()):
+        parts.append(slow)
+    return "; ".join(parts)
 
 
 def certificate(run, method, outcome, errors, by_model) -> dict:
@@ -140,7 +144,7 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
     outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_tried(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial), speeds)
+    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts), speeds)
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 

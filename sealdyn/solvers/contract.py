@@ -15,7 +15,7 @@ equations sees the steps first: its `accept(block, advance)` returns None or a T
 Change.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -35,6 +35,10 @@ SAFETY = {
     "expm": (1.0, 0.0),
 }
 TIGHTEST = 3e-14
+# Steps that observers get at once, at least; where the equations may change between steps.
+MANY, FEW = 192, 12
+# Orders of Adams.
+MOST_ORDERS = 12
 
 
 class Cause(StrEnum):
@@ -91,12 +95,25 @@ class SolverFailure(RuntimeError):
 @dataclass
 class Counts:
     """Counts of a run: evaluations of the right-hand side (those for Jacobians among them), accepted steps, Jacobians,
-    and starts of a solver."""
+    and starts of a solver; of a compiled loop also the steps that its error test (`rejected`) or its nonlinear solver
+    (`unsolved`) refused, and how many steps were taken at which order (`orders`, from order 1 on).  `back_end`: who
+    made the steps."""
 
     rhs: int = 0
     steps: int = 0
     jacobians: int = 0
     restarts: int = 0
+    rejected: int = 0
+    unsolved: int = 0
+    orders: list[int] = field(default_factory=lambda: [0] * MOST_ORDERS)
+    back_end: str = ""
+
+    def add_work(self, other: "Counts"):
+        """Add what another's steps cost; they are counted, like starts, where they are taken in."""
+        for name in ("rhs", "jacobians", "rejected", "unsolved"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+        self.orders = [a + b for a, b in zip(self.orders, other.orders, strict=True)]
+        self.back_end = self.back_end or other.back_end
 
 
 def tolerance_for(method: str, accuracy: float, memory: float) -> float:

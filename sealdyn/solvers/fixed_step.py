@@ -10,10 +10,10 @@ import warnings
 
 import numpy as np
 
-from .contract import SolverFailure, failure_message
+from .contract import FEW, SolverFailure, failure_message
 from .methods import METHODS
 from .scipy_methods import scipy_steps
-from .sundials import FEW, cvode
+from .sundials import cvode
 
 # Spectral radius of generalised-alpha at infinite frequency: how much it damps what the step does not resolve.
 RHO = 0.8

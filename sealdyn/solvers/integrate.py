@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .block import OVERLAP, Block
-from .contract import Cause, Change, Counts, Retry, SolverFailure, Status, Stop, tolerance_for
+from .contract import FEW, MANY, Cause, Change, Counts, Retry, SolverFailure, Status, Stop, tolerance_for
 from .energy_audit import EnergyAudit
 from .methods import METHODS
-from .sundials import BLOCK, FEW
 
 # A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
@@ -108,7 +107,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
     watched = looked = 0
     run.last = (segment.index, tau, y)
-    for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else BLOCK):
+    for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else MANY):
         counts.steps += len(block_t)
         t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])

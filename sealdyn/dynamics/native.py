@@ -1,0 +1,86 @@
+"""The equations of a segment as functions for C: an address, the address of one block of parameters, and nothing of
+Python inside.  What a compiled loop calls, and SUNDIALS itself (solvers/sundials_direct.py).
+
+The film's kernel comes as an address in the block: one function on disk serves all films.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import carray, cfunc, float64, int32, njit
+
+from ..numerics.addresses import ADDRESS, call_kernel, floats, integers
+from .equations import kinematics, rates, residual
+from .kernels import Value
+
+# The block, int64: number of unknowns, the film's kernel, then address and length of each array.
+SIZE, KERNEL, ARRAYS = 0, 1, 2
+PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = range(6)
+BLOCK = ARRAYS + 2 * 6
+# C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0.
+RATES = int32(float64, ADDRESS, ADDRESS, ADDRESS)
+RESIDUAL = int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
+
+
+@dataclass(frozen=True)
+class Native:
+    """A segment's equations for C: addresses of `rates` and `residual`, `block` (BLOCK,) and the `arrays` that it
+    points to, which it keeps alive."""
+
+    rates: int
+    residual: int
+    block: np.ndarray
+    arrays: tuple
+
+
+def native(segment) -> Native:
+    """The equations of a segment whose film has no unknowns of its own; they work on the segment's own arrays."""
+    model, work = segment.model, np.zeros(segment.size)
+    if model.contact is None:
+        functions, contact = (rates_at, residual_at), np.empty(0)
+    else:
+        # Compiled only where faces may touch.
+        from .native_contact import touching_rates_at, touching_residual_at
+
+        functions, contact = (touching_rates_at, touching_residual_at), model.contact
+    arrays = (segment.p, segment.w, segment.s, model.f, contact, work)
+    block = [segment.size, Value(model.interface.film.wrench).address]
+    for array in arrays:
+        block += [array.ctypes.data, len(array)]
+    return Native(*(function.address for function in functions), np.array(block, dtype=np.int64), arrays)
+
+
+@njit(cache=True)
+def array(block, which):
+    """One of the block's arrays."""
+    at = ARRAYS + 2 * which
+    return carray(floats(block[at]), block[at + 1])
+
+
+@njit(cache=True)
+def film(tau, y, yp, block):
+    """Kinematics and film at segment time tau (s) and unknowns `y` (size,), in the block's gap state."""
+    f, s = array(block, FILM), array(block, GAP)
+    kinematics(tau, y, yp, array(block, PARAMETERS), array(block, SCRATCH), s)
+    call_kernel(block[KERNEL], f, s)
+
+
+@cfunc(RATES, cache=True)
+def rates_at(tau, y_at, yp_at, data):
+    """The right-hand side of a scene without contact."""
+    block = carray(integers(data), BLOCK)
+    y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
+    film(tau, y, yp, block)
+    rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
+    return 0
+
+
+@cfunc(RESIDUAL, cache=True)
+def residual_at(tau, y_at, yp_at, res_at, data):
+    """The residual of a scene without contact."""
+    block = carray(integers(data), BLOCK)
+    y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
+    film(tau, y, yp, block)
+    p, w, s = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP)
+    residual(tau, y, yp, p, w, s, array(block, WORK), carray(floats(res_at), block[SIZE]))
+    return 0

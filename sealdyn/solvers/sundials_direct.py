@@ -1,0 +1,249 @@
+"""CVODE and IDA stepped by a compiled loop, without Python between steps.
+
+Steps are handed over in blocks; between blocks the integrator waits with its whole history, it never starts again.
+The right-hand side comes as an address (dynamics/native.py), SUNDIALS from the wheel of scikit-sundae
+(sundials_libraries.py), which must be open before this file is imported.
+"""
+
+import ctypes
+from contextlib import ExitStack
+
+import numpy as np
+from numba import carray, cfunc, float64, int32, int64, njit, types
+
+from ..numerics.addresses import ADDRESS, call_rates, call_residual, floats, integers
+from .contract import FEW, MOST_ORDERS, SolverFailure, absolute_tolerances, failure_message
+from .sundials_libraries import libraries
+
+# Steps handed over at once.
+BLOCK = 1024
+# What SUNDIALS carries through to the functions below, int64: the function and its block, number of unknowns, how many
+# of them have columns in a Jacobian, address of their scales; counts of evaluations and Jacobians.
+FUNCTION, DATA, SIZE, COLUMNS, SCALES, CALLS, JACOBIANS = range(7)
+CARRIED = 7
+ADAMS, BDF, ONE_STEP = 1, 2, 2
+MOST_STEPS = 1_000_000
+
+_pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
+_columns = types.ExternalFunction("SUNDenseMatrix_Data", ADDRESS(ADDRESS))
+_cvode = types.ExternalFunction("CVode", int32(ADDRESS, float64, ADDRESS, ADDRESS, int32))
+_cvode_order = types.ExternalFunction("CVodeGetLastOrder", int32(ADDRESS, ADDRESS))
+_ida_order = types.ExternalFunction("IDAGetLastOrder", int32(ADDRESS, ADDRESS))
+_ida = types.ExternalFunction("IDASolve", int32(ADDRESS, float64, ADDRESS, ADDRESS, ADDRESS, int32))
+
+
+@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS), cache=True)
+def _rates(tau, y, yp, carried):
+    carried = carray(integers(carried), CARRIED)
+    carried[CALLS] += 1
+    return call_rates(carried[FUNCTION], tau, _pointer(y), _pointer(yp), carried[DATA])
+
+
+@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS), cache=True)
+def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
+    """d y'/d y by forward differences, column by column; works feed nothing back."""
+    carried = carray(integers(carried), CARRIED)
+    size, data = carried[SIZE], _columns(matrix)
+    y, base, scales = carray(floats(_pointer(y)), size), carray(floats(_pointer(yp)), size), carried[SCALES]
+    scale, there, at = carray(floats(scales), size), _pointer(moved), carray(floats(_pointer(moved)), size)
+    at[:] = y
+    columns = carray(floats(data), (size, size))
+    columns[:] = 0.0
+    carried[JACOBIANS] += 1
+    carried[CALLS] += carried[COLUMNS]
+    for j in range(carried[COLUMNS]):
+        step = 1e-7 * max(abs(y[j]), scale[j])
+        at[j] = y[j] + step
+        status = call_rates(carried[FUNCTION], tau, there, data + 8 * size * j, carried[DATA])
+        if status != 0:
+            return status
+        for i in range(size):
+            columns[j, i] = (columns[j, i] - base[i]) / step
+        at[j] = y[j]
+    return 0
+
+
+@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS), cache=True)
+def _residual(tau, y, yp, res, carried):
+    carried = carray(integers(carried), CARRIED)
+    carried[CALLS] += 1
+    return call_residual(carried[FUNCTION], tau, _pointer(y), _pointer(yp), _pointer(res), carried[DATA])
+
+
+@njit(types.Tuple((int64, int32))(ADDRESS, ADDRESS, float64[::1], float64[::1], float64, int64[::1], float64[::1],
+                                  float64[:, ::1]), cache=True, nogil=True)  # fmt: skip
+def _step_cvode(memory, vector, y, reached, end, orders, ts, ys):
+    """Steps of CVODE until `end` (s) or `ts` (m,), `ys` (m, size) are full: how many, and the flag of the last; `y`
+    (size,) are the values of the N_Vector, `reached` (1,) is the time (s); `orders` (MOST_ORDERS,) counts."""
+    order = np.zeros(1, dtype=np.int32)
+    for k in range(len(ts)):
+        flag = _cvode(memory, end, vector, reached.ctypes.data, ONE_STEP)
+        if flag < 0:
+            return k, flag
+        _cvode_order(memory, order.ctypes.data)
+        orders[order[0] - 1] += 1
+        ts[k], ys[k] = reached[0], y
+        if reached[0] >= end:
+            return k + 1, flag
+    return len(ts), int32(0)
+
+
+@njit(types.Tuple((int64, int32))(ADDRESS, ADDRESS, ADDRESS, float64[::1], float64[::1], float64[::1], float64,
+                                  int64[::1], float64[::1], float64[:, ::1], float64[:, ::1]),
+      cache=True, nogil=True)  # fmt: skip
+def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
+    """The same of IDA, with the derivatives `yp` (size,) in `yps` (m, size)."""
+    order = np.zeros(1, dtype=np.int32)
+    for k in range(len(ts)):
+        flag = _ida(memory, end, reached.ctypes.data, vector, slopes, ONE_STEP)
+        if flag < 0:
+            return k, flag
+        _ida_order(memory, order.ctypes.data)
+        orders[order[0] - 1] += 1
+        ts[k], ys[k], yps[k] = reached[0], y, yp
+        if reached[0] >= end:
+            return k + 1, flag
+    return len(ts), int32(0)
+
+
+class _Objects:
+    """What SUNDIALS makes for one integration, given back at the end (a context manager)."""
+
+    def __init__(self, size: int):
+        self.lib, self.size, self.stack, self.kept = libraries(), size, ExitStack(), []
+
+    def __enter__(self):
+        self.context = ctypes.c_void_p()
+        self.lib.SUNContext_Create(0, ctypes.byref(self.context))
+        self.stack.callback(lambda: self.lib.SUNContext_Free(ctypes.byref(self.context)))
+        # Its own words go to the terminal; ours say the same to the user.
+        self.lib.SUNContext_ClearErrHandlers(self.context)
+        return self
+
+    def __exit__(self, *error):
+        self.stack.close()
+
+    def vector(self, values: np.ndarray):
+        """An N_Vector over the values (size,) of an array."""
+        self.kept.append(values)
+        found = self.lib.N_VMake_Serial(self.lib.index(self.size), ctypes.c_void_p(values.ctypes.data), self.context)
+        return self._owned(found, self.lib.N_VDestroy)
+
+    def dense(self, vector):
+        """A dense matrix and the linear solver for it."""
+        size = self.lib.index(self.size)
+        matrix = self._owned(self.lib.SUNDenseMatrix(size, size, self.context), self.lib.SUNMatDestroy)
+        return matrix, self._owned(self.lib.SUNLinSol_Dense(vector, matrix, self.context), self.lib.SUNLinSolFree)
+
+    def memory(self, address, free):
+        """The memory of an integrator."""
+        found = ctypes.c_void_p(address)
+        self.stack.callback(lambda: free(ctypes.byref(found)))
+        return found
+
+    def _owned(self, address, free):
+        found = ctypes.c_void_p(address)
+        self.stack.callback(lambda: free(found))
+        return found
+
+
+class _Carried:
+    """The words that SUNDIALS carries through to the functions above, kept alive, and what they count."""
+
+    def __init__(self, segment, function: int, native):
+        self.native, self.scales = native, np.ascontiguousarray(segment.scales)
+        block = self.native.block.ctypes.data
+        words = [function, block, segment.size, segment.n_mechanical, self.scales.ctypes.data, 0, 0]
+        self.words, self.orders = np.array(words, dtype=np.int64), np.zeros(MOST_ORDERS, dtype=np.int64)
+        self.failures = [0, 0]
+
+    def tell(self, counts, memory, asked):
+        """Add what has been done since the last time; `asked`: SUNDIALS' functions for the steps that the error test
+        and the nonlinear solver refused."""
+        counts.rhs, counts.jacobians = (
+            counts.rhs + int(self.words[CALLS]),
+            counts.jacobians + int(self.words[JACOBIANS]),
+        )
+        counts.orders = [a + int(b) for a, b in zip(counts.orders, self.orders, strict=True)]
+        found, number = [], ctypes.c_long()
+        for ask in asked:
+            ask(memory, ctypes.byref(number))
+            found.append(number.value)
+        counts.rejected += found[0] - self.failures[0]
+        counts.unsolved += found[1] - self.failures[1]
+        self.words[[CALLS, JACOBIANS]], self.orders[:], self.failures = 0, 0, found
+
+
+def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
+    """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
+    **Raises** SolverFailure."""
+    native, y, reached = segment.native(), y.copy(), np.array([tau])
+    carried = _Carried(segment, native.rates, native)
+    with _Objects(segment.size) as made:
+        lib, vector = made.lib, made.vector(y)
+        memory = lib.CVodeCreate(ADAMS if method == "adams" else BDF, made.context)
+        memory = made.memory(memory, lib.CVodeFree)
+        lib.CVodeInit(memory, ctypes.c_void_p(_rates.address), ctypes.c_double(tau), vector)
+        absolute = made.vector(absolute_tolerances(segment, tolerance))
+        lib.CVodeSVtolerances(memory, ctypes.c_double(tolerance), absolute)
+        lib.CVodeSetUserData(memory, ctypes.c_void_p(carried.words.ctypes.data))
+        matrix, solver = made.dense(vector)
+        lib.CVodeSetLinearSolver(memory, solver, matrix)
+        lib.CVodeSetJacFn(memory, ctypes.c_void_p(_jacobian.address))
+        lib.CVodeSetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
+        longest = segment.longest_step()
+        lib.CVodeSetMaxStep(memory, ctypes.c_double(longest if np.isfinite(longest) else 0.0))
+        lib.CVodeSetStopTime(memory, ctypes.c_double(segment.length))
+        if max_order:
+            lib.CVodeSetMaxOrd(memory, max_order)
+        rows = FEW if segment.may_change else BLOCK
+        while reached[0] < segment.length:
+            ts, ys = np.empty(rows), np.empty((rows, segment.size))
+            count, flag = _step_cvode(memory.value, vector.value, y, reached, segment.length, carried.orders, ts, ys)
+            carried.tell(counts, memory, (lib.CVodeGetNumErrTestFails, lib.CVodeGetNumNonlinSolvConvFails))
+            if count:
+                yield ts[:count], ys[:count], None
+            if flag < 0:
+                raise SolverFailure(failure_message(method, _name(lib.CVodeGetReturnFlagName, flag), reached[0]))
+
+
+def ida(segment, tau, y, method, tolerance, counts):
+    """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
+    **Raises** SolverFailure."""
+    native, reached = segment.native(), np.array([tau])
+    carried = _Carried(segment, native.residual, native)
+    y, yp = (np.ascontiguousarray(part, dtype=float) for part in segment.start(tau, y.copy()))
+    with _Objects(segment.size) as made:
+        lib, vector, slopes = made.lib, made.vector(y), made.vector(yp)
+        memory = made.memory(lib.IDACreate(made.context), lib.IDAFree)
+        lib.IDAInit(memory, ctypes.c_void_p(_residual.address), ctypes.c_double(tau), vector, slopes)
+        absolute = made.vector(absolute_tolerances(segment, tolerance))
+        lib.IDASVtolerances(memory, ctypes.c_double(tolerance), absolute)
+        lib.IDASetUserData(memory, ctypes.c_void_p(carried.words.ctypes.data))
+        matrix, solver = made.dense(vector)
+        lib.IDASetLinearSolver(memory, solver, matrix)
+        if len(segment.algebraic):
+            differential = np.ones(segment.size)
+            differential[segment.algebraic] = 0.0
+            lib.IDASetId(memory, made.vector(differential))
+        lib.IDASetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
+        longest = segment.longest_step()
+        if np.isfinite(longest):
+            lib.IDASetMaxStep(memory, ctypes.c_double(longest))
+        lib.IDASetStopTime(memory, ctypes.c_double(segment.length))
+        rows = FEW if segment.may_change else BLOCK
+        while reached[0] < segment.length:
+            ts, (ys, yps) = np.empty(rows), np.empty((2, rows, segment.size))
+            count, flag = _step_ida(
+                memory.value, vector.value, slopes.value, y, yp, reached, segment.length, carried.orders, ts, ys, yps
+            )
+            carried.tell(counts, memory, (lib.IDAGetNumErrTestFails, lib.IDAGetNumNonlinSolvConvFails))
+            if count:
+                yield ts[:count], ys[:count], yps[:count]
+            if flag < 0:
+                raise SolverFailure(failure_message(method, _name(lib.IDAGetReturnFlagName, flag), reached[0]))
+
+
+def _name(ask, flag) -> str:
+    """What SUNDIALS calls a flag."""
+    return ctypes.string_at(ask(ctypes.c_long(flag))).decode()
