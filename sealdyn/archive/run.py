@@ -10,6 +10,7 @@ and renamed again.  Readers need no lock and no luck.
 
 import json
 import os
+import shutil
 import time as clock
 import zlib
 from contextlib import contextmanager
@@ -20,13 +21,15 @@ import h5py
 import numpy as np
 
 from ..status import Status
-from .fields import FIELD_TIME, Fields, Series, create_fields, names_over, reserve, scale_of
+from .fields import FIELD_TIME, Fields, Series, attach_scale, create_fields, names_over, reserve, scale_of
 
 # Archives of the first format have no fields.
 FORMAT, OLDER = "sealdyn archive 2", ("sealdyn archive 1",)
 STATUSES = (Status.OK, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
+# Of its room a finished archive fills at least this.
+SHARE = 0.9
 
 
 class ArchiveError(Exception):
@@ -83,7 +86,7 @@ class ArchiveWriter:
         source = self._resumable() if resume else None
         if source:
             self._take_over(source)
-        self._reserve(source, max(SMALLEST_ROOM, min(expected_rows + 1, LARGEST_FIRST_ROOM)))
+        self._reserve(source, min(expected_rows + 1, LARGEST_FIRST_ROOM) if expected_rows else SMALLEST_ROOM)
 
     def append(self, columns: dict, state: dict | None = None, fields: dict | None = None) -> None:
         """Adds rows: one array of equal length for every series.  `state` (numbers, strings, arrays) is
@@ -145,7 +148,12 @@ class ArchiveWriter:
             target = self.partial
         self._attributes |= {"status": status, "message": message, "summary": summary}
         self._attributes |= {"rows": self.rows, "instants": self.instants}
-        with self._rewritten(target, self.rows, self.instants, self.partial, self._attributes) as file:
+        # What has room to spare gives it back; else the rows stay where they are.
+        full = self.rows > SHARE * self._room
+        written = self._shortened(target) if full else self._rewritten(
+            target, self.rows, self.instants, self.partial, self._attributes
+        )  # fmt: skip
+        with written as file:
             file.create_group("restart").attrs["state"] = _to_json(self.state)
             _write_events(file, _read_log(self._log))
         if target != self.partial:
@@ -220,7 +228,7 @@ class ArchiveWriter:
             places["log"] = restart.create_dataset("log", data=np.zeros(self._log_room, "u1"))
             restart["log"][: len(log)] = np.frombuffer(log, "u1")
             restart["record"][self._sequence % 2, : len(record)] = np.frombuffer(record, "u1")
-            place = {name: item.id.get_offset() for name, item in places.items()}
+            place = {name: _offset(item) for name, item in places.items()}
         self._room, self._place, self._logged, self._sequence = room, place, len(log), self._sequence + 1
         self._written = clock.monotonic()
         self._file = open(self.partial, "r+b", buffering=0)  # noqa: SIM115  kept for the whole run
@@ -230,12 +238,10 @@ class ArchiveWriter:
         """A complete new file that takes the place of `target` at once when the block ends."""
         fresh = target.with_name(target.name + ".new")
         with h5py.File(fresh, "w") as file:
-            file.attrs["format"] = FORMAT
-            for name, value in attributes.items():
-                file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
+            _write_attributes(file, {"format": FORMAT, **attributes})
             for name, series in self._series.items():
                 reserve(file, name, series, (room,))
-            _attach_scale(file, "time", self._series)
+            attach_scale(file, "time", self._series)
             if self._fields:
                 create_fields(file, self._fields, instants)
             if source and self.rows:
@@ -248,11 +254,35 @@ class ArchiveWriter:
         self._close()
         os.replace(fresh, target)
 
+    @contextmanager
+    def _shortened(self, target: Path):
+        """A copy of the file without its spare room and restart group, which takes the place of `target` at once when
+        the block ends."""
+        fresh = target.with_name(target.name + ".new")
+        shutil.copyfile(self.partial, fresh)
+        with h5py.File(fresh, "r+") as file:
+            _write_attributes(file, self._attributes)
+            lengths = dict.fromkeys(self._series, self.rows)
+            lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
+            for name, length in lengths.items():
+                item = h5py.h5d.open(file.id, name.encode())
+                if item.shape[0] != length:
+                    item.set_extent((length, *item.shape[1:]))
+            del file["restart"]
+            yield file
+        self._close()
+        os.replace(fresh, target)
+
     def _write(self, place: int, data: bytes) -> None:
         self._file.seek(place)
         view = memoryview(data)
         while view:
             view = view[self._file.write(view) :]
+
+
+def _write_attributes(file, attributes: dict):
+    for name, value in attributes.items():
+        file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
 
 
 def _copy_rows(old, new, rows: int) -> None:
@@ -261,11 +291,9 @@ def _copy_rows(old, new, rows: int) -> None:
         new[start:stop] = old[start:stop]
 
 
-def _attach_scale(group, scale: str, names) -> None:
-    group[scale].make_scale(scale)
-    for name in names:
-        if name != scale:
-            group[name].dims[0].attach_scale(group[scale])
+def _offset(item) -> int:
+    """Where a dataset's values stand in the file: in one piece, or in one chunk."""
+    return item.id.get_offset() if item.chunks is None else item.id.get_chunk_info(0).byte_offset
 
 
 def _write_events(file, events: list[dict]) -> None:
@@ -279,7 +307,10 @@ def _write_events(file, events: list[dict]) -> None:
     rest = [{k: v for k, v in event.items() if k not in group} for event in events]
     group["details"] = np.array([_to_json(item) for item in rest], h5py.string_dtype())
     group["time"].attrs["units"] = "s"
-    _attach_scale(group, "time", list(group))
+    group["time"].make_scale("time")
+    for name in group:
+        if name != "time":
+            group[name].dims[0].attach_scale(group["time"])
 
 
 def _to_json(value) -> str:

@@ -16,14 +16,17 @@ from .modes import common_period
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
+# Longest step in radians of the fastest imposed motion: a third of its period.
+LONGEST = 2.0
 
 
 class Segment:
     """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
-    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `pace`
-    (rad/s) the fastest of them; `index` among the segments of a run, `last` of them; `stuck` {ring: bool}.
+    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics,
+    `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan; `index` among the segments of a run, `last` of
+    them; `stuck` {ring: bool}.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -37,6 +40,7 @@ class Segment:
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
         self.may_change = bool(unknowns.coulomb_rings)
         self.p, self.rows = self._parameters()
+        self.imposed_pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
         self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
         self._bind()
@@ -57,12 +61,11 @@ class Segment:
 
     def _pace(self) -> float:
         """Fastest imposed motion (rad/s); of wavy faces also their waves as they pass."""
-        fastest = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
         if not self.model.face[WAVES]:
-            return fastest
+            return self.imposed_pace
         speeds = (constant_and_slope(ring, self.interval) for ring in self._speeds())
         spins = [[w, w + slope * self.length] for w, slope in speeds]
-        return scan_pace(self.model.face, fastest, 2 * math.pi / self.shortest_period, spins)
+        return scan_pace(self.model.face, self.imposed_pace, 2 * math.pi / self.shortest_period, spins)
 
     def _speeds(self):
         """Speeds (rad/s) of stator and rotor."""
@@ -155,9 +158,11 @@ class Segment:
         return y, yp
 
     def longest_step(self) -> float:
-        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; no longer than its scan
-        can see waves pass; else any."""
+        """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; not past an imposed
+        motion unseen, however faint; no longer than its scan can see waves pass; else any."""
         longest = self.shortest_period / PER_PERIOD if any(self.stuck.values()) else math.inf
+        if self.imposed_pace:
+            longest = min(longest, LONGEST / self.imposed_pace)
         return min(longest, longest_scan(self.pace)) if self.model.face[WAVES] else longest
 
     def exact_motion(self):
