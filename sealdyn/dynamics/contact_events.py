@@ -118,7 +118,7 @@ def locate_contacts(
         if state[OPEN] == 0.0 and reach[k] > level + error:
             state[SINKING] = 0.0
             continue
-        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
+        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, 0)
         size = fit(t, q_all, q_rate_all, k, count, table, nodes)
         step = (high - low) / scan
         points = 0

@@ -24,6 +24,8 @@ RECORD = 11
 WINDOWS = 3
 # Points looked at in a step: at least these, and at least so many per radian of the fastest imposed motion.
 SCAN, PER_RADIAN, MOST_SCAN = 6, 3.0, 4096
+# In a step of less than this (rad) of the fastest motion of interest, on which all that moves is nearly a parabola.
+SHORT, SHORT_SCAN = 0.5, 3
 # What is made small: the film thickness, minus the squared tilt, the squared tilt (smooth through zero).
 THICKNESS, MINUS_TILT, TILT = range(3)
 
@@ -112,12 +114,12 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
 
 
 @njit(cache=True)
-def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan):
-    """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, on the cubic between its two
-    ends."""
+def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, first):
+    """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, from the `first` of them on, on
+    the cubic between its two ends."""
     a, b = t[k], t[k + 1]
     span = b - a
-    for i in range(scan + 1):
+    for i in range(first, scan + 1):
         x = (low + (high - low) * i / scan - a) / span
         for j in range(len(q)):
             q0, q1 = q_all[k, j], q_all[k + 1, j]
@@ -153,26 +155,36 @@ def store(record, kind, out, at, theta, radius, index):
 
 
 @njit(cache=True)
-def _track(t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, index, records, tolerance, pace, reach):
+def _track(
+    t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, index, records, tolerance, pace, fastest, reach
+):
     """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in segment time;
     `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
-    fastest imposed motion (rad/s).  `reach` (count,) is filled: no film in the step is thinner than that (m).
+    fastest imposed motion (rad/s), `fastest` of any motion of interest.  `reach` (count,) is filled: no film in the
+    step is thinner than that (m).
     """
     n = q_all.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
+    ended_at, ended = -np.inf, np.zeros(3)
     for k in range(begin, end):
         size, reach[k] = 0, -np.inf
         for window in range(WINDOWS):
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
                 continue
-            scan = min(max(SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
-            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan)
+            least_scan = SHORT_SCAN if (t[k + 1] - t[k]) * fastest < SHORT else SCAN
+            scan = min(max(least_scan, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+            # A step begins where the one before ended.
+            known = window == 0 and low == ended_at
+            if known:
+                seen[0] = ended
+            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, 1 if known else 0)
             record = records[window]
             if window == 0:
+                ended_at, ended[:] = high, seen[scan]
                 least, most = np.inf, -np.inf
                 for i in range(scan + 1):
                     least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
@@ -244,7 +256,7 @@ class ExtremaTracker:
         fallen = _track(
             block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, model.f, np.zeros(segment.size),
             np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records, tolerance, segment.pace,
-            self.reach,
+            2 * math.pi / segment.shortest_period, self.reach,
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 
