@@ -197,7 +197,9 @@ class ContactEvents:
         if self.model.contact is None:
             return
         segment, (q, q_rate) = self.segment, block.motion
-        rows = np.empty((64 * (block.end - block.begin) + 64, ROW))
+        # Each dip lies between points of the scan.
+        looked = PER_RADIAN * segment.pace * np.diff(block.t[block.begin : block.end + 1])
+        rows = np.empty((64 + int(np.sum(np.clip(looked, SCAN, MOST_SCAN) + 1)), ROW))
         found = locate_contacts(
             block.t, q, q_rate, segment.impulses(block.ys), len(block.t), block.begin, block.end, self.extrema.reach,
             segment.p, self.model.f, np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, segment.time,

@@ -155,7 +155,24 @@ class Segment:
         self.residual(tau, y, yp, res)
         others = [i for i in range(self.size) if i not in light and i not in self.algebraic]
         yp[others] -= res[others]
+        if len(self.algebraic):
+            self._carry_algebraic(tau, y, yp)
         return y, yp
+
+    def _carry_algebraic(self, tau, y, yp):
+        """Derivatives in `yp` of the algebraic unknowns: those with which their rows stay zero.  Without them the first
+        steps of a solver miss by all that these unknowns move."""
+        at, base, moved = list(self.algebraic), np.empty(self.size), np.empty(self.size)
+        self.residual(tau, y, yp, base)
+        jac = np.empty((len(at), len(at)))
+        for column, j in enumerate(at):
+            near = y.copy()
+            near[j] += 1e-6 * self.scales[j]
+            self.residual(tau, near, yp, moved)
+            jac[:, column] = (moved[at] - base[at]) / (1e-6 * self.scales[j])
+        ahead = 1e-6 / self.reference_rate
+        self.residual(tau + ahead, y + ahead * yp, yp, moved)
+        yp[at] = np.linalg.lstsq(jac, -(moved[at] - base[at]) / ahead, rcond=None)[0]
 
     def longest_step(self) -> float:
         """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; not past an imposed

@@ -2,7 +2,7 @@
 
 Steps are handed over in blocks; between blocks the integrator waits with its whole history, it never starts again.
 The right-hand side comes as an address (dynamics/native.py), SUNDIALS from the wheel of scikit-sundae
-(sundials_libraries.py), which must be open before this file is imported.
+(sundials_libraries.py): without it this file cannot be imported.
 """
 
 import ctypes
@@ -14,6 +14,10 @@ from numba import carray, cfunc, float64, int32, int64, njit, types
 from ..numerics.addresses import ADDRESS, call_rates, call_residual, floats, integers
 from .contract import FEW, MOST_ORDERS, SolverFailure, absolute_tolerances, failure_message
 from .sundials_libraries import libraries
+
+# The functions below are linked to these libraries as they are compiled.
+if isinstance(libraries(), str):
+    raise ImportError(libraries())
 
 # Steps handed over at once.
 BLOCK = 1024

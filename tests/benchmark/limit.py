@@ -215,9 +215,8 @@ def whole_runs(program, repeats):
                     floor = min(
                         [floor, *(w for w, e in (in_c(program, turns, 10.0**-k) for k in (5, 5.5, 6)) if e <= 1e-6)]
                     )
-            print(
-                f"{turns} turns, {way}: {ours * 1e3:.1f} ms, C {floor * 1e3:.1f} ms: {ours / floor:.2f} times (asked {limit})"
-            )
+            walls = f"{ours * 1e3:.1f} ms, C {floor * 1e3:.1f} ms"
+            print(f"{turns} turns, {way}: {walls}: {ours / floor:.2f} times (asked {limit})")
 
 
 def main():
