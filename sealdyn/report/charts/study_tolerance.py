@@ -1,7 +1,5 @@
 """Tolerance: how the outputs scatter, which keys make them, and how sure the numbers are."""
 
-import re
-
 import numpy as np
 
 from ...archive import read_study
@@ -13,6 +11,7 @@ from .study_sweep import SHOWN
 MOST, MOST_KEYS = 4, 10
 ALSO = SHOWN | {"Pa": ("bar", 1e-5)}
 BAND = (("5", "95", 0.5), ("25", "75", 1.0))
+LINES = {"1": "1, 99 %", "50": "_", "99": "_"}
 
 
 @look()
@@ -59,14 +58,14 @@ def _histogram(ax, answer, name):
     touched = np.array(answer["samples"]["contact"], dtype=float) == 1
     edges = np.histogram_bin_edges(values[known], bins=min(40, max(8, int(np.sqrt(known.sum())))))
     ax.hist([values[known & touched], values[known & ~touched]], edges, stacked=True, color=[CONTACT, SKY],
-            label=["touched", "_"])  # fmt: skip
+            label=["touched" if touched.any() else "_", "_"])  # fmt: skip
     quantiles = answer["quantiles"][name]
-    ax.axvspan(factor * quantiles["5"], factor * quantiles["95"], color=PALE, alpha=0.5, zorder=0)
+    ax.axvspan(factor * quantiles["5"], factor * quantiles["95"], color=PALE, alpha=0.5, zorder=0, label="5 to 95 %")
     if answer["nominal"][name] is not None:
         upright(ax, factor * answer["nominal"][name], "as drawn", height=0.93, ls="--")
-    ax.set(title=f"{name}: 5 to 95 %", xlabel=label, ylabel="runs")
-    if touched.any() and name == answer["outputs"][0]:
-        legend(ax, "above")
+    ax.set(title=name, xlabel=label, ylabel="runs")
+    if name == answer["outputs"][-1]:
+        legend(ax, "best")
 
 
 def _shares(ax, answer):
@@ -108,9 +107,14 @@ def _matrix(ax, answer, outputs):
         words = number(value, ".2f") if np.isfinite(value) else "–"
         ax.text(j, i, words, ha="center", va="center", color="white" if abs(value) > 0.7 else "black")
     ax.grid(False)
-    ax.set_xticks(range(len(outputs)), [re.sub(r"[._]", "\n", name) for name in outputs])
+    ax.set_xticks(range(len(outputs)), [_folded(name) for name in outputs])
     ax.set_yticks(range(len(keys)), len(keys) * [""])
     ax.set_title(title)
+
+
+def _folded(name: str) -> str:
+    """The name of an output on lines of their own, so that neighbours have room."""
+    return "\n".join(part.replace("_", "\n") if len(part) > 8 else part for part in name.split("."))
 
 
 def _cloud(ax, answer):
@@ -141,18 +145,16 @@ def _quantiles(ax, answer):
     unit, factor = _shown(answer["output_units"][found["output"]])
     columns = {level: factor * np.array(found["quantiles"].get(level, []), dtype=float) for level in ("1", "50", "99")}
     if not np.isfinite(columns["50"]).any():
-        return absent(ax, "Quantiles settle", "no value in any run")
+        return absent(ax, "Quantiles", "no value in any run")
     runs = np.array(found["runs"])
     for low, high, strength in BAND:
         ends = [factor * np.array(found["quantiles"][level], dtype=float) for level in (low, high)]
-        ax.fill_between(runs, *ends, color=SKY, alpha=0.5 * strength, lw=0)
-        for level, end in zip((low, high), ends, strict=True):
-            ax.annotate(f"{level} %", (runs[-1], end[-1]), (3, 0), textcoords="offset points", va="center", fontsize=8)
+        ax.fill_between(runs, *ends, color=SKY, alpha=0.5 * strength, lw=0, label=f"{low} to {high} %")
     for level, values in columns.items():
-        ax.plot(runs, values, "-" if level == "50" else ":", color=BLUE)
-        ax.annotate(f"{level} %", (runs[-1], values[-1]), (3, 0), textcoords="offset points", va="center", fontsize=8)
+        ax.plot(runs, values, "-" if level == "50" else ":", color=BLUE, label=LINES[level])
     _over_runs(ax, runs)
-    ax.set(title="Do the quantiles settle?", ylabel=f"{found['output']}, {unit}", xlabel="runs")
+    ax.set(title="Quantiles", ylabel=f"{found['output']}, {unit}", xlabel="runs")
+    legend(ax, "above", ncols=3, handlelength=1.2, columnspacing=0.8, handletextpad=0.4)
 
 
 def _risk(ax, answer):

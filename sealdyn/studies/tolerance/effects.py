@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .estimates import moments, probability, quantiles, rank_correlation, sobol, sobol_intervals, weighted_mean
+from .estimates import moments, number, probability, quantiles, rank_correlation, sobol, sobol_intervals, weighted_mean
 from .scatter import SCRAMBLES
 
 # Contacts below which nothing is said about what decides them.
@@ -28,18 +28,17 @@ class Sample:
 
 def indices(found, keys, seed) -> dict:
     """Sobol indices {output: {key: value}}, `first` and `total`, their 95 % intervals, and the `base_points` of each
-    output all of whose runs have a value."""
-    answer = {name: {} for name in ("first", "total", "first_interval", "total_interval", "base_points")}
-    answer["reason"] = None
+    output all of whose runs have a value; None of an output that does not vary."""
+    kinds = ("first", "total", "first_interval", "total_interval")
+    answer = {**{kind: {} for kind in kinds}, "base_points": {}, "reason": None}
     for name, values in found.items():
-        good = np.isfinite(values).all(axis=0)
-        a, b, ab = values[0, good], values[1, good], values[2:, good]
-        answer["base_points"][name] = int(good.sum())
-        both = sobol(a, b, ab) if good.sum() > 2 * SCRAMBLES else None
-        bounds = sobol_intervals(a, b, ab, seed) if both else (None, None)
-        for kind, value, interval in zip(("first", "total"), both or (None, None), bounds, strict=True):
-            answer[kind][name] = dict(zip(keys, value.tolist(), strict=True)) if both else None
-            answer[f"{kind}_interval"][name] = dict(zip(keys, interval.T.tolist(), strict=True)) if both else None
+        a, b, *ab = values[:, np.isfinite(values).all(axis=0)]
+        answer["base_points"][name] = len(a)
+        columns = 4 * [None]
+        if len(a) > 2 * SCRAMBLES and np.isfinite(sobol(a, b, np.array(ab))).all():
+            columns = [*sobol(a, b, np.array(ab)), *(c.T for c in sobol_intervals(a, b, np.array(ab), seed))]
+        for kind, column in zip(kinds, columns, strict=True):
+            answer[kind][name] = None if column is None else dict(zip(keys, column.tolist(), strict=True))
     return answer
 
 
@@ -84,9 +83,8 @@ def convergence(found, contact, samples, output, keys) -> dict:
         answer["standard_deviation"].append(moments(part, scrambles)["standard_deviation"])
         for level, value in quantiles(part).items():
             answer["quantiles"].setdefault(level, []).append(value)
-        good = np.isfinite(values[:, :n]).all(axis=0)
-        a, b, ab = values[0, :n][good], values[sets - 1, :n][good], values[2:, :n][:, good]
-        both = sobol(a, b, ab) if sets > 1 and good.any() else None
-        for i, key in enumerate(keys):
-            answer["total"][key].append(float(both[1][i]) if both else None)
+        a, b, *ab = values[:, :n][:, np.isfinite(values[:, :n]).all(axis=0)] if sets > 1 else ([], [])
+        total = sobol(a, b, np.array(ab))[1] if len(a) else [np.nan] * len(keys)
+        for key, value in zip(keys, total, strict=True):
+            answer["total"][key].append(number(value))
     return answer

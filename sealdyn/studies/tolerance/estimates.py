@@ -58,33 +58,31 @@ def probability(happened, scrambles) -> dict:
             "unknown": unknown, "standard_error": error}  # fmt: skip
 
 
-def sobol(a, b, ab) -> tuple[np.ndarray, np.ndarray] | None:
-    """First and total Sobol indices (..., d) of an output at the points A and B (..., n), and at A with one key of B
-    (..., d, n): the share of the variance that a key makes by itself, and with all it interacts with.  None of an
-    output that does not vary.
+def sobol(a, b, ab, weights=None) -> tuple[np.ndarray, np.ndarray]:
+    """First and total Sobol indices (..., d) of an output at the points A and B (n,), and at A with one key of B
+    (d, n): the share of the variance that a key makes by itself, and with all it interacts with; `weights` (..., n) of
+    the points, with the sum 1.  Not a number for an output that does not vary.
 
     **Source** Saltelli et al. (2010), Computer Physics Communications 181, table 2 (b) and (f), as
     scipy.stats.sobol_indices has it, which takes no n but a power of two: base points with a failed run are left out.
     **Valid** independent keys.
     """
-    both = np.concatenate([a, b], axis=-1)
-    mean, variance = both.mean(axis=-1), both.var(axis=-1)
+    weights = np.full(len(a), 1 / len(a)) if weights is None else weights
+    centre, change = 0.5 * (np.mean(a) + np.mean(b)), ab - a
+    a, b = a - centre, b - centre
+    mean, square = 0.5 * weights @ (a + b), 0.5 * weights @ (a**2 + b**2)
     # What differs by rounding only does not vary.
-    if np.any(variance <= (1e-12 * np.abs(mean)) ** 2):
-        return None
-    change, scale = ab - a[..., None, :], variance[..., None]
-    first = np.mean((b - mean[..., None])[..., None, :] * change, axis=-1) / scale
-    return first, 0.5 * np.mean(change**2, axis=-1) / scale
+    scale = np.where(square > (1e-12 * centre) ** 2, square - mean**2, np.nan)[..., None]
+    first = weights @ (b * change).T - mean[..., None] * (weights @ change.T)
+    return first / scale, 0.5 * weights @ (change**2).T / scale
 
 
 def sobol_intervals(a, b, ab, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """95 % intervals (2, d) of the first and total indices, by a bootstrap over the base points as if they were
     independent; a resample that does not vary tells nothing."""
-    draws = np.random.default_rng([seed, SCRAMBLES]).integers(len(a), size=(RESAMPLES, len(a)))
-    found = [pair for draw in draws if (pair := sobol(a[draw], b[draw], ab[:, draw])) is not None]
+    draws = np.random.default_rng([seed, SCRAMBLES]).multinomial(len(a), np.full(len(a), 1 / len(a)), RESAMPLES)
     tail = 0.5 * (1 - CONFIDENCE)
-    first, total = (np.quantile(np.array(column), [tail, 1 - tail], axis=0) for column in zip(*found, strict=True))
-    return first, total
+    return tuple(np.nanquantile(found, [tail, 1 - tail], axis=0) for found in sobol(a, b, ab, draws / len(a)))
 
 
 def rank_correlation(x, y) -> float | None:
