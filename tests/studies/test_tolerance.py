@@ -96,6 +96,7 @@ BAD = [
     ("rotor.runuot=normal(1 urad)", "rotor.runuot", "nearest 'runout'"),
     ("rotr.runout=normal(1 urad)", "rotr.runout", "[rotor]"),
     ("runout=normal(1 urad)", "runout", "[rotor]"),
+    ("run.turns=normal(3)", "run.turns", "the tables are shaft, film, rotor"),
     ("rotor=normal(1 urad)", "rotor, which holds no number", "a key that holds a number"),
     ("film.model=normal(1 urad)", "film.model, which holds no number", "a key that holds a number"),
     ("film.profile.depth=uniform(1 um, 2 um)", "film.profile.depth", "no film.profile"),
@@ -413,8 +414,10 @@ def test_what_counts_as_contact(row, touched):
 
 
 def test_a_film_closed_at_the_start_has_touched():
-    closed = study.one_seal(scenario(), {"outputs": ["h_min.value"], "set": {"rotor.runout": 0.02}})
-    assert closed["status"] == "collapsed" and closed["h_min.value"] is None and closed["message"]
+    asked = ["h_min.value", "leakage.mean"]
+    closed = study.one_seal(scenario(), {"outputs": asked, "set": {"rotor.runout": 0.02}})
+    assert closed["status"] == "collapsed" and closed["message"]
+    assert closed["h_min.value"] == 0.0 and closed["leakage.mean"] is None
     with pytest.raises(FilmClosed):
         study.one_run(scenario(), {"outputs": [], "set": {"rotor.runout": 0.02}})
 

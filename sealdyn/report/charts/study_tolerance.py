@@ -62,7 +62,9 @@ def _histogram(ax, answer, name):
     quantiles = answer["quantiles"][name]
     ax.axvspan(factor * quantiles["5"], factor * quantiles["95"], color=PALE, alpha=0.5, zorder=0, label="5 to 95 %")
     if answer["nominal"][name] is not None:
-        upright(ax, factor * answer["nominal"][name], "as drawn", height=0.93, ls="--")
+        nominal = factor * answer["nominal"][name]
+        side = "right" if nominal > 0.5 * (edges[0] + edges[-1]) else "left"
+        upright(ax, nominal, "as drawn", height=0.93, ha=side, ls="--")
     ax.set(title=name, xlabel=label, ylabel="runs")
     if name == answer["outputs"][-1]:
         legend(ax, "best")
@@ -167,7 +169,7 @@ def _risk(ax, answer):
     _over_runs(ax, runs)
     ax.set(title="Probability of contact", xlabel="runs", ylabel="%")
     ax.set_ylim(bottom=0)
-    legend(ax, "upper right")
+    legend(ax, "best")
 
 
 def _totals(ax, answer):
@@ -175,7 +177,7 @@ def _totals(ax, answer):
     found, title = answer["convergence"], "Do the indices settle?"
     columns = {key: np.array(values, dtype=float) for key, values in found["total"].items()}
     if not any(np.isfinite(values).any() for values in columns.values()):
-        return absent(ax, title, answer["sobol"].get("reason") or "no total index")
+        return absent(ax, title, f"no indices: {answer['sobol']['reason'] or 'too few samples have all their runs'}")
     keys = [row["key"] for row in answer["tighten"][found["output"]]]
     for n, key in enumerate(keys):
         colour = CYCLE[n] if n < len(CYCLE) else GREY

@@ -61,7 +61,9 @@ def tightened(whole, values, contact, found, name, independent) -> list[dict]:
         if found["total"] and found["total"][name]:
             row["first"], row["total"] = (found[kind][name][scatter.key] for kind in ("first", "total"))
             row["total_low"], row["total_high"] = found["total_interval"][name][scatter.key]
-            row["halved"], row["removed"] = (float(np.sqrt(max(0.0, 1 - part * row["total"]))) for part in (0.75, 1))
+            # An index is estimated: it may come out a little above one.
+            share = min(row["total"], 1.0)
+            row["halved"], row["removed"] = (float(np.sqrt(1 - part * share)) for part in (0.75, 1))
         if independent and np.nansum(contact) >= FEW:
             row["contact_halved"] = weighted_mean(contact, scatter.halved(x))
         rows.append(row)

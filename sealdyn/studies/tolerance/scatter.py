@@ -94,7 +94,10 @@ class _Entry:
         table, _, last = self.key.rpartition(".")
         known = tables(Scene)
         if last not in known.get(without_indices(table), {}):
-            raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {nearest(Scene, table, last)}")
+            hint = nearest(Scene, table, last)
+            # Of a table that there is not: which there are.
+            hint = hint if hint[-1] != " " else f"the tables are {', '.join(known[''])}"
+            raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
         try:
             owner = variants.part(self.scenario.scene, table) if table else self.scenario.scene
             kind = typing.get_type_hints(type(owner), include_extras=True)[last]

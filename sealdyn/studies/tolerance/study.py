@@ -20,7 +20,7 @@ __all__ = ["Settings", "run", "tables"]
 WITH_CONTACT = WITH_WAVES = True
 OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
 # What every run is asked besides, to know whether the faces touched and whether the seal is stable.
-THINNEST, TOUCHES, VERDICT = "h_min.of_clearance", "contact.touches", "stability.verdict"
+FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Settings:
     "KEY, KEY = NUMBER", of a Gaussian copula.  The study takes `samples` x (keys + 2) runs, or `samples` runs with
     `indices` = false or with correlations (Sobol indices then are not defined); `samples` is a power of two; equal
     `seed`, equal numbers.  `outputs` as of a sweep; which tolerance to tighten is asked of the first.  Contact: a film
-    that collapses or gets down to `margin` x clearance, or asperities that touch."""
+    that collapses, is closed at the start or gets down to `margin` x clearance, or asperities that touch."""
 
     scatter: list[str] | str = ()
     correlations: list[str] | str = ()
@@ -76,13 +76,14 @@ def run(scenario, settings, tools) -> dict:
         "output_units": {name: unit_of(name) for name in outputs},
         "nominal": {name: nominal[name] for name in outputs},
         "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), "distribution": len(whole.values),
-                 "unstable": sum(row.get(VERDICT) == "unstable" for row in rows[: len(whole.values)])},
+                 "unstable": sum(row.get(VERDICT) == "unstable" for row in rows[: len(whole.values)]),
+                 "closed_at_start": sum("closed_at_start" in row for row in rows[: len(whole.values)])},
         "quantiles": {name: quantiles(found[name][:2].ravel()) for name in outputs},
         "moments": {name: moments(found[name][:2].ravel(), whole.scrambles) for name in outputs},
         "probability_of_contact": probability(touching, whole.scrambles),
         "sobol": indices(found, keys, settings.seed) if with_indices else
-                 {"first": None, "total": None, "reason": "correlated keys have no Sobol indices: rank correlations"
-                  if factor is not None else "not asked for (indices = false)"},
+                 {"first": None, "total": None, "reason": "correlated keys"
+                  if factor is not None else "not asked for"},
     }  # fmt: skip
     answer["tighten"] = {
         name: tightened(whole, found[name][:2].ravel(), touching, answer["sobol"], name, factor is None)
@@ -153,11 +154,12 @@ def runs_of(samples: int, keys: int, with_indices: bool) -> str:
 
 
 def one_seal(scenario, point: dict) -> dict:
-    """A sweep's row; a film that is closed before it starts has collapsed, without numbers."""
+    """A sweep's row; a film that is closed before it starts has collapsed, with no thickness and no other numbers."""
     try:
         return one_run(scenario, point)
     except FilmClosed as error:
-        return {"status": Status.COLLAPSED, **dict.fromkeys(point["outputs"]), "message": str(error)}
+        row = {name: 0.0 if name in (FILM, THINNEST) else None for name in point["outputs"]}
+        return {"status": Status.COLLAPSED, "closed_at_start": True, **row, "message": str(error)}
 
 
 def mixed(a, b):

@@ -21,25 +21,32 @@ def _contact_sentence(answer) -> str:
     share = f"{100 * risk['value']:.3g} %" if risk["count"] else "None"
     words = (f"{share} of the seals touch ({risk['count']} of {risk['runs']} runs; 95 % interval "
              f"{100 * risk['low']:.2g} to {100 * risk['high']:.2g} %)")  # fmt: skip
-    return f"{words}, and {unstable} are unstable: they may touch later." if unstable else f"{words}."
+    closed = answer["runs"]["closed_at_start"]
+    # The linear steady state that a run may begin with touches before the film, which lifts the faces, would.
+    words += f"; {closed} of them before anything moves (contact-onset follows the film further)" if closed else ""
+    return f"{words}; {unstable} are unstable and may touch later." if unstable else f"{words}."
 
 
 def _tighten_sentence(answer, name) -> str:
     spread, unit = answer["quantiles"][name], answer["output_units"][name]
     if spread["5"] is None:
         return f"{name} has no value in any run."
+    count, runs = answer["moments"][name]["count"], answer["runs"]["distribution"]
     begin = f"{name} is {spread['5']:.4g} to {spread['95']:.4g} {unit}".strip() + " in nine seals of ten"
+    begin += f" of the {count} of {runs} that have one" if count < runs else ""
     first, *others = answer["tighten"][name]
     if first["total"] is None:
         strongest = first["rank_correlation"]
         if strongest is None:
             return f"{begin}: nothing that scatters changes it."
-        return (f"{begin}; it follows {first['key']} most closely (rank correlation {strongest:.2f}; "
-                f"{answer['sobol']['reason'] or 'it does not vary'}).")  # fmt: skip
+        why = answer["sobol"]["reason"] or f"only {answer['sobol']['base_points'][name]} samples have all their runs"
+        return (f"{begin}; it follows {first['key']} most closely, with a rank correlation of {strongest:.2f} "
+                f"({why}: no indices).")  # fmt: skip
     rivals = [row["key"] for row in others if row["total_high"] > first["total_low"]]
-    total, halved, removed = (100 * first[name] for name in ("total", "halved", "removed"))
-    words = (f"{begin}; tighten {first['key']} first: {total:.2g} % of the variance hangs on it, half its scatter "
-             f"would leave {halved:.2g} % of the standard deviation, none {removed:.2g} %")  # fmt: skip
+    halved, removed = (f"{100 * first[name]:.0f} %" for name in ("halved", "removed"))
+    words = (f"{begin}; tighten {first['key']} first: its total index is {first['total']:.2f} "
+             f"({first['total_low']:.2f} to {first['total_high']:.2f}), half its scatter would leave {halved} of the "
+             f"standard deviation, none {removed}")  # fmt: skip
     more = f"; {' and '.join(rivals)} may matter as much: more samples tell" if rivals else ""
     return f"{words}{more}."
 
@@ -62,7 +69,7 @@ def tables(answer) -> list:
              ("if none, %", "removed", 100), ("contact if halved, %", "contact_halved", 100))  # fmt: skip
     found = [(spreads, columns), (answer["tighten"][first], shown)]
     total = answer["sobol"]["total"]
-    if total and len(outputs) > 1:
+    if total and len(outputs) > 1 and any(total.values()):
         keys = [row["key"] for row in answer["tighten"][first]]
         rows = [{"key": key, **{f"o{n}": total[name] and total[name][key] for n, name in enumerate(outputs)}}
                 for key in keys]  # fmt: skip
