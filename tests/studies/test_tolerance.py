@@ -138,6 +138,7 @@ def test_a_bad_entry_is_one_line(tmp_path, words, found, expected):
         ({"seed": -1}, "seed", "-1", ">= 0"),
         ({"margin": -0.1}, "margin", "-0.1", "share"),
         ({"outputs": "h_min.vlaue"}, "outputs", "h_min.vlaue; nearest h_min.value", "summary"),
+        ({"outputs": []}, "outputs", "none", "summary"),
         ({"outputs": "stability.verdict"}, "outputs", "no number", "numbers"),
         ({"correlations": "rotor.runout, rotor.mass = 0.5"}, "correlations", "rotor.mass", "rotor.runout"),
         ({"correlations": "rotor.runout = 0.5"}, "correlations", "rotor.runout", "KEY, KEY"),
@@ -292,6 +293,26 @@ def test_what_halving_and_removing_leave(tmp_path, closed_form):
     assert first["total"] == pytest.approx((4 + 2.25) / 7.25, rel=0.04)
     assert first["halved"] == pytest.approx(deviation(0.5) / deviation(), rel=0.03)
     assert first["removed"] == pytest.approx(1 / deviation(), rel=0.1)
+
+
+def test_base_points_without_all_their_runs_are_left_out(tmp_path, closed_form):
+    """A run without a value takes its base point out, and no other: a sum keeps its shares."""
+    lost = []
+
+    def sum_or_nothing(x, y):
+        lost.append(x > 22.5e-6)
+        return None if lost[-1] else x + 0.5 * y
+
+    closed_form(sum_or_nothing)
+    scatter = ["rotor.runout=normal(20, 2 urad)", "stator.misalignment=normal(10, 2 urad)"]
+    answer = tolerance(tmp_path, scatter, samples=256)
+    gone = np.array(lost).reshape(4, 256).any(axis=0)
+    assert 20 < gone.sum() < 100 and answer["sobol"]["base_points"]["h_min.value"] == 256 - gone.sum()
+    assert answer["moments"]["h_min.value"]["count"] == 512 - np.array(lost).reshape(4, 256)[:2].sum()
+    # The variance of a normal cut at 1.25 of its deviations.
+    cut = truncnorm(-np.inf, 1.25).var()
+    total = answer["sobol"]["total"]["h_min.value"]
+    assert total["rotor.runout"] == pytest.approx(cut / (cut + 0.25), abs=0.08)
 
 
 def test_an_output_that_does_not_vary_has_no_index(tmp_path, closed_form):

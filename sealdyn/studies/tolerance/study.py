@@ -47,11 +47,8 @@ def run(scenario, settings, tools) -> dict:
     scatters = read_scatter(scenario, listed(settings.scatter))
     keys = [s.key for s in scatters]
     factor = read_correlations(scenario, listed(settings.correlations), keys)
-    outputs = (
-        [w.strip() for w in settings.outputs.split(",")] if isinstance(settings.outputs, str) else settings.outputs
-    )
-    outputs = list(dict.fromkeys(outputs))
     check(scenario, settings)
+    outputs = list(dict.fromkeys(name.strip() for entry in listed(settings.outputs) for name in entry.split(",")))
     a, b = points(scatters, settings.samples, settings.seed, factor)
     check_used(scenario, keys, a[0])
     asked = [*outputs, THINNEST, VERDICT, *([TOUCHES] if scenario.scene.contact else [])]
@@ -66,38 +63,44 @@ def run(scenario, settings, tools) -> dict:
     contact = touched(rows, settings.margin).reshape(len(designs), -1)
     # The distribution is that of A and B: the mixed points repeat their values.
     whole = Sample(scatters, np.vstack(designs[:2]), settings.samples, len(designs[:2]))
-    touching = contact[:2].ravel()
     answer = {
         "keys": keys,
         "scatter": {s.key: {"words": s.words, "mean": float(s.law.mean()), "sigma": float(s.law.std()), "unit": s.unit}
                     for s in scatters},
-        "correlated": factor is not None,
         "outputs": outputs,
         "output_units": {name: unit_of(name) for name in outputs},
         "nominal": {name: nominal[name] for name in outputs},
-        "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), "distribution": len(whole.values),
-                 "unstable": sum(row.get(VERDICT) == "unstable" for row in rows[: len(whole.values)]),
-                 "closed_at_start": sum("closed_at_start" in row for row in rows[: len(whole.values)])},
-        "quantiles": {name: quantiles(found[name][:2].ravel()) for name in outputs},
-        "moments": {name: moments(found[name][:2].ravel(), whole.scrambles) for name in outputs},
-        "probability_of_contact": probability(touching, whole.scrambles),
+        "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), **counts(rows[: len(whole.values)])},
         "sobol": indices(found, keys, settings.seed) if with_indices else
-                 {"first": None, "total": None, "reason": "correlated keys"
-                  if factor is not None else "not asked for"},
+                 {"first": None, "total": None, "reason": "correlated keys" if settings.indices else "not asked for"},
     }  # fmt: skip
-    answer["tighten"] = {
-        name: tightened(whole, found[name][:2].ravel(), touching, answer["sobol"], name, factor is None)
-        for name in outputs
-    }
+    answer |= distribution(whole, found, contact, answer["sobol"], factor is None)
     answer["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
-    answer["samples"] = {
-        "keys": {key: whole.values[:, i].tolist() for i, key in enumerate(keys)},
-        "outputs": {name: [number(v) for v in found[name][:2].ravel()] for name in outputs},
-        "contact": [number(v) for v in touching],
-    }
     if not any(moment["count"] for moment in answer["moments"].values()):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer, rows)}
+
+
+def distribution(whole, found, contact, sobol, independent) -> dict:
+    """What the runs at A and B say of every output and of contact, and these runs themselves."""
+    values, touching = {name: runs[:2].ravel() for name, runs in found.items()}, contact[:2].ravel()
+    return {
+        "quantiles": {name: quantiles(x) for name, x in values.items()},
+        "moments": {name: moments(x, whole.scrambles) for name, x in values.items()},
+        "probability_of_contact": probability(touching, whole.scrambles),
+        "tighten": {name: tightened(whole, x, touching, sobol, name, independent) for name, x in values.items()},
+        "samples": {
+            "keys": {s.key: whole.values[:, i].tolist() for i, s in enumerate(whole.scatters)},
+            "outputs": {name: [number(v) for v in x] for name, x in values.items()},
+            "contact": [number(v) for v in touching],
+        },
+    }
+
+
+def counts(rows) -> dict:
+    """Of the runs that make the distribution: how many, unstable ones, and films closed at the start."""
+    return {"distribution": len(rows), "unstable": sum(row.get(VERDICT) == "unstable" for row in rows),
+            "closed_at_start": sum("closed_at_start" in row for row in rows)}  # fmt: skip
 
 
 def listed(entries) -> list[str]:
@@ -113,6 +116,8 @@ def check(scenario, settings):
         raise ScenarioError(scenario.name, "study.tolerance.samples", f"{n}", expected)
     if not 0 <= settings.margin < 1:
         raise ScenarioError(scenario.name, "study.tolerance.margin", f"{settings.margin:g}", "a share of the clearance")
+    if not listed(settings.outputs):
+        raise ScenarioError(scenario.name, "study.tolerance.outputs", "none", "keys of the run's summary")
     if settings.seed < 0:
         raise ScenarioError(scenario.name, "study.tolerance.seed", f"{settings.seed}", "a whole number >= 0")
 
