@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from typer.core import TyperCommand
 
 from .status import Status
 
@@ -302,7 +303,27 @@ def validate(as_json: AsJson = False):
     raise typer.Exit(DONE if good else CHECK_FAILED)
 
 
-@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+class _StudyCommand(TyperCommand):
+    """`sealdyn study NAME --help` ends with the settings of that study."""
+
+    def parse_args(self, context, args):
+        if {"-h", "--help"} & set(args):
+            self.epilog = _about_study(next((word for word in args if word[0] != "-"), ""))
+        return super().parse_args(context, args)
+
+
+def _about_study(name: str) -> str | None:
+    from rich.markup import escape
+
+    from .studies._runner import study_module, study_names
+
+    if name.replace("_", "-") not in study_names():
+        return None
+    module = study_module(name.replace("-", "_"))
+    return escape("\n\n".join(" ".join(part.__doc__.split()) for part in (module, module.Settings)))
+
+
+@app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def study(
     context: typer.Context,
     name: Annotated[str, typer.Argument(help="the study, e.g. critical-speed; an unknown name lists them")],

@@ -17,6 +17,10 @@ from .segments import Segment
 from .stick_slip import StickSlip
 
 
+class FilmClosed(SceneError):
+    """A film that is closed before its run begins: the faces touch there."""
+
+
 class RunState:
     """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`, `stick_slip`
     or None), `reasons` (sentences) and `cautions`, and `last`: the segment's index, time in it (s) and unknowns (size,)
@@ -93,7 +97,7 @@ class RunState:
         """Raises SceneError if the film is closed at the start."""
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
-            raise SceneError(
+            raise FilmClosed(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
                 f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance, or "

@@ -10,7 +10,7 @@ What every study module offers (the contract):
             `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
             cores, remembers finished points across interruptions, and returns a list of rows: the function's dict,
             or `{"failed": reason}`: the verdict then also says how many failed and why the first did.
-            `tools.say(fraction)` reports progress of anything else.
+            `tools.say(fraction)` reports progress of anything else, `tools.tell(words)` says a line before a long wait.
 `tables(answer)`  pairs of rows and columns printed below the verdict (report.text.study_lines), if there are any.
 `WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without
             them, and its verdict says so.

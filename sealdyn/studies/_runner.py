@@ -4,6 +4,7 @@ import importlib
 import json
 import pkgutil
 import platform
+import sys
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -48,6 +49,11 @@ class StudyContext:
         rows = evaluate(function, points, self.journal, self.workers, lambda n, m: self.say(n / max(m, 1)), what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
+
+    def tell(self, words: str):
+        """A line before a long wait, for those who watch the progress."""
+        if self.progress:
+            print(words, file=sys.stderr, flush=True)
 
     def say(self, fraction: float):
         """Report progress, a share of the whole."""

@@ -24,6 +24,7 @@ COMMANDS = {
     "campbell": ["fms_reference"],
     "contact-onset": ["fms_reference", "--set", "stator.misalignment=0"],
     "sweep": ["fms_reference", "--vary", "rotor.runout=0:1mrad:21"],
+    "tolerance": ["tolerance"],
     "wear": ["run_in"],
     "runup": ["runup_past_threshold"],
     "critical-speed": ["fms_reference"],

@@ -69,6 +69,16 @@ ANSWERS = {
     "steady_state": {"period": 1.0, "multipliers": None, "stable": None},
     "sweep": {"keys": ["a", "b"], "axes": 2 * [AXIS], "outputs": ["h_min.value"], "output_units": {"h_min.value": "m"},
               "rows": 9 * [LOST]},
+    "tolerance": {
+        "keys": ["a", "b"], "outputs": ["h_min.value"], "output_units": {"h_min.value": "m"},
+        "nominal": {"h_min.value": None}, "quantiles": {"h_min.value": dict.fromkeys(("1", "5", "25", "50"))},
+        "scatter": {name: {"unit": "rad"} for name in "ab"}, "sobol": {"total": None, "reason": WHY},
+        "tighten": {"h_min.value": [{"key": name, "total": None, "rank_correlation": None} for name in "ab"]},
+        "samples": {"keys": {name: 2 * THREE for name in "ab"}, "outputs": {"h_min.value": 2 * UNKNOWN},
+                    "contact": 2 * UNKNOWN},
+        "convergence": {"samples": [16], "runs": [32], "output": "h_min.value", "quantiles": {},
+                        "probability_of_contact": [[None, 0.0, 1.0]], "total": {"a": [None], "b": [None]}},
+    },
     "transmissibility": {
         "speed": THREE, "unit": "rad/s", "formula_holds": False, "phase": WHY, "crossings": [], "table": [],
         "better": dict.fromkeys(("static", "dynamic", "total")), "time_domain": [{"seal": "fmr", **LOST}],

@@ -1,0 +1,200 @@
+"""Tolerance: what the scatter of manufacture and operation does to the seal, and which tolerance to tighten first."""
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from ...dynamics.run_state import FilmClosed
+from ...scenario.errors import ScenarioError
+from ...scenario.settings import with_values
+from ...status import Status
+from ..sweep import one_run, unit_of
+from .effects import Sample, convergence, indices, tightened
+from .estimates import moments, number, probability, quantiles
+from .scatter import SCRAMBLES, points, read_correlations, read_scatter
+from .verdict import sentences, tables
+
+__all__ = ["Settings", "run", "tables"]
+
+WITH_CONTACT = WITH_WAVES = True
+OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
+# What every run is asked besides, to know whether the faces touched and whether the seal is stable.
+FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`scatter`, one entry a key: "KEY = normal(MEAN, SIGMA)", "uniform(LOW, HIGH)", "truncated(MEAN, SIGMA, LOW,
+    HIGH)"; without MEAN the scenario's own value; "normal(MEAN +- W)" or "normal(+- W)" with a tolerance W of 3 SIGMA
+    ("truncated" also cuts there, of "uniform" it is half the width), W in % of the mean too.  `correlations`:
+    "KEY, KEY = NUMBER", of a Gaussian copula.  The study takes `samples` x (keys + 2) runs, or `samples` runs with
+    `indices` = false or with correlations (Sobol indices then are not defined); `samples` is a power of two; equal
+    `seed`, equal numbers.  `outputs` as of a sweep; which tolerance to tighten is asked of the first.  Contact: a film
+    that collapses, is closed at the start or gets down to `margin` x clearance, or asperities that touch."""
+
+    scatter: list[str] | str = ()
+    correlations: list[str] | str = ()
+    samples: int = 256
+    seed: int = 1
+    outputs: list[str] | str = OUTPUTS
+    indices: bool = True
+    margin: float = 1e-3
+
+
+def run(scenario, settings, tools) -> dict:
+    """Runs at scrambled Sobol points of the keys: distributions, probability of contact, indices, what to tighten."""
+    scatters = read_scatter(scenario, listed(settings.scatter))
+    keys = [s.key for s in scatters]
+    factor = read_correlations(scenario, listed(settings.correlations), keys)
+    check(scenario, settings)
+    outputs = list(dict.fromkeys(name.strip() for entry in listed(settings.outputs) for name in entry.split(",")))
+    a, b = points(scatters, settings.samples, settings.seed, factor)
+    check_used(scenario, keys, a[0])
+    asked = [*outputs, THINNEST, VERDICT, *([TOUCHES] if scenario.scene.contact else [])]
+    nominal = nominal_run(scenario, asked, outputs)
+    with_indices = settings.indices and factor is None
+    designs = [a, b, *mixed(a, b)] if with_indices else [a]
+    tools.tell(f"tolerance: {runs_of(settings.samples, len(keys), with_indices)}")
+    sets = [dict(zip(keys, map(float, row), strict=True)) for design in designs for row in design]
+    rows = tools.map(partial(one_seal, scenario), [{"outputs": asked, "set": values} for values in sets], "runs")
+
+    found = {name: column(rows, name).reshape(len(designs), -1) for name in outputs}
+    contact = touched(rows, settings.margin).reshape(len(designs), -1)
+    # The distribution is that of A and B: the mixed points repeat their values.
+    whole = Sample(scatters, np.vstack(designs[:2]), settings.samples, len(designs[:2]))
+    answer = {
+        "keys": keys,
+        "scatter": {s.key: {"words": s.words, "mean": float(s.law.mean()), "sigma": float(s.law.std()), "unit": s.unit}
+                    for s in scatters},
+        "outputs": outputs,
+        "output_units": {name: unit_of(name) for name in outputs},
+        "nominal": {name: nominal[name] for name in outputs},
+        "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), **counts(rows[: len(whole.values)])},
+        "sobol": indices(found, keys, settings.seed) if with_indices else
+                 {"first": None, "total": None, "reason": "correlated keys" if settings.indices else "not asked for"},
+    }  # fmt: skip
+    answer |= distribution(whole, found, contact, answer["sobol"], factor is None)
+    answer["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
+    if not any(moment["count"] for moment in answer["moments"].values()):
+        answer["status"] = Status.FAILED
+    return {**answer, "verdict": sentences(answer, rows)}
+
+
+def distribution(whole, found, contact, sobol, independent) -> dict:
+    """What the runs at A and B say of every output and of contact, and these runs themselves."""
+    values, touching = {name: runs[:2].ravel() for name, runs in found.items()}, contact[:2].ravel()
+    return {
+        "quantiles": {name: quantiles(x) for name, x in values.items()},
+        "moments": {name: moments(x, whole.scrambles) for name, x in values.items()},
+        "probability_of_contact": probability(touching, whole.scrambles),
+        "tighten": {name: tightened(whole, x, touching, sobol, name, independent) for name, x in values.items()},
+        "samples": {
+            "keys": {s.key: whole.values[:, i].tolist() for i, s in enumerate(whole.scatters)},
+            "outputs": {name: [number(v) for v in x] for name, x in values.items()},
+            "contact": [number(v) for v in touching],
+        },
+    }
+
+
+def counts(rows) -> dict:
+    """Of the runs that make the distribution: how many, unstable ones, and films closed at the start."""
+    return {"distribution": len(rows), "unstable": sum(row.get(VERDICT) == "unstable" for row in rows),
+            "closed_at_start": sum("closed_at_start" in row for row in rows)}  # fmt: skip
+
+
+def listed(entries) -> list[str]:
+    return [entries] if isinstance(entries, str) else list(entries)
+
+
+def check(scenario, settings):
+    """Raises ScenarioError if the number of samples or the margin cannot be."""
+    n, least = settings.samples, 4 * SCRAMBLES
+    if n < least or n & (n - 1):
+        below = max(least, 1 << max(n, 1).bit_length() - 1)
+        expected = f"a power of two, without which Sobol points are not balanced: {below} or {2 * below}"
+        raise ScenarioError(scenario.name, "study.tolerance.samples", f"{n}", expected)
+    if not 0 <= settings.margin < 1:
+        raise ScenarioError(scenario.name, "study.tolerance.margin", f"{settings.margin:g}", "a share of the clearance")
+    if not listed(settings.outputs):
+        raise ScenarioError(scenario.name, "study.tolerance.outputs", "none", "keys of the run's summary")
+    if settings.seed < 0:
+        raise ScenarioError(scenario.name, "study.tolerance.seed", f"{settings.seed}", "a whole number >= 0")
+
+
+def check_used(scenario, keys, values):
+    """Raises ScenarioError for a key that this seal does not use: its runs would be in vain."""
+    for key, value in zip(keys, values, strict=True):
+        try:
+            unused = with_values(scenario, {key: float(value)}).unused()
+        except ScenarioError:
+            # A value that cannot be is a row that failed.
+            continue
+        if key in unused:
+            expected = "a key that this seal uses"
+            raise ScenarioError(scenario.name, "study.tolerance.scatter", f"{key}, which it does not", expected)
+
+
+def nominal_run(scenario, asked, outputs) -> dict:
+    """The run of the scenario as it stands, before the many.  Raises ScenarioError for outputs that are no numbers, or
+    are not there."""
+    where = "study.tolerance.outputs"
+    try:
+        row = one_seal(scenario, {"outputs": asked, "set": {}})
+    except ValueError as error:
+        if type(error) is ValueError:
+            raise ScenarioError(scenario.name, where, str(error), "keys of the run's summary") from None
+        raise
+    for name in outputs:
+        if isinstance(row[name], str | list | dict | bool):
+            raise ScenarioError(scenario.name, where, f"{name}, which is no number", "numbers of the run's summary")
+    return row
+
+
+def runs_of(samples: int, keys: int, with_indices: bool) -> str:
+    """What the study is about to run, in words."""
+    if not with_indices:
+        return f"{samples} runs"
+    return f"{samples * (keys + 2)} runs ({samples} samples x ({keys} keys + 2)); {samples} with indices = false"
+
+
+def one_seal(scenario, point: dict) -> dict:
+    """A sweep's row; a film that is closed before it starts has collapsed, with no thickness and no other numbers."""
+    try:
+        return one_run(scenario, point)
+    except FilmClosed as error:
+        row = {name: 0.0 if name in (FILM, THINNEST) else None for name in point["outputs"]}
+        return {"status": Status.COLLAPSED, "closed_at_start": True, **row, "message": str(error)}
+
+
+def mixed(a, b):
+    """The points A with one key each of B, (n, d) d times."""
+    for i in range(a.shape[1]):
+        point = a.copy()
+        point[:, i] = b[:, i]
+        yield point
+
+
+def column(rows, name) -> np.ndarray:
+    """An output of the rows, not a number where a run was not possible, its solver failed or it has none.  A run that
+    collapsed counts with what it had until then."""
+    values = [None if row.get("status", Status.FAILED) == Status.FAILED else row.get(name) for row in rows]
+    return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+
+def touched(rows, margin: float) -> np.ndarray:
+    """1 for runs in which the faces touched, 0 for others, not a number where that is not known."""
+    return np.array([contact_of(row, margin) for row in rows], dtype=float)
+
+
+def contact_of(row: dict, margin: float) -> float:
+    thinnest = row.get(THINNEST)
+    if row.get("status") == Status.COLLAPSED or row.get(TOUCHES) or (thinnest is not None and thinnest <= margin):
+        return 1.0
+    return 0.0 if row.get("status") == Status.OK else np.nan
+
+
+def ends(rows) -> dict[str, int]:
+    """How many runs ended how."""
+    words = [str(row.get("status", "not possible")) for row in rows]
+    return {word: words.count(word) for word in sorted(set(words))}

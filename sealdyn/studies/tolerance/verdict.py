@@ -1,0 +1,77 @@
+"""The answer in words: the verdict's sentences and the tables below it."""
+
+from ...status import Status
+
+
+def sentences(answer, rows) -> list[str]:
+    """The verdict: how many touch, which tolerance first, what failed."""
+    name = answer["outputs"][0]
+    lines = [_contact_sentence(answer), _tighten_sentence(answer, name)]
+    bad = [row for row in rows if row.get("status", Status.FAILED) == Status.FAILED]
+    if bad:
+        first = bad[0].get("failed") or bad[0].get("message")
+        lines.append(f"{len(bad)} of {len(rows)} runs gave no numbers and widen the interval; the first: {first}")
+    return lines
+
+
+def _contact_sentence(answer) -> str:
+    risk, unstable = answer["probability_of_contact"], answer["runs"]["unstable"]
+    if risk["value"] is None:
+        return f"No run ended, so whether the faces touch is not known ({counted_ends(answer)})."
+    share = f"{100 * risk['value']:.3g} %" if risk["count"] else "None"
+    words = (f"{share} of the seals touch ({risk['count']} of {risk['runs']} runs; 95 % interval "
+             f"{100 * risk['low']:.2g} to {100 * risk['high']:.2g} %)")  # fmt: skip
+    closed = answer["runs"]["closed_at_start"]
+    # The linear steady state that a run may begin with touches before the film, which lifts the faces, would.
+    words += f"; {closed} of them before anything moves (contact-onset follows the film further)" if closed else ""
+    return f"{words}; {unstable} are unstable and may touch later." if unstable else f"{words}."
+
+
+def _tighten_sentence(answer, name) -> str:
+    spread, unit = answer["quantiles"][name], answer["output_units"][name]
+    if spread["5"] is None:
+        return f"{name} has no value in any run."
+    count, runs = answer["moments"][name]["count"], answer["runs"]["distribution"]
+    begin = f"{name} is {spread['5']:.4g} to {spread['95']:.4g} {unit}".strip() + " in nine seals of ten"
+    begin += f" of the {count} of {runs} that have one" if count < runs else ""
+    first, *others = answer["tighten"][name]
+    if first["total"] is None:
+        strongest = first["rank_correlation"]
+        if strongest is None:
+            return f"{begin}: nothing that scatters changes it."
+        why = answer["sobol"]["reason"] or f"only {answer['sobol']['base_points'][name]} samples have all their runs"
+        return (f"{begin}; it follows {first['key']} most closely, with a rank correlation of {strongest:.2f} "
+                f"({why}: no indices).")  # fmt: skip
+    rivals = [row["key"] for row in others if row["total_high"] > first["total_low"]]
+    halved, removed = (f"{100 * first[name]:.0f} %" for name in ("halved", "removed"))
+    words = (f"{begin}; tighten {first['key']} first: its total index is {first['total']:.2f} "
+             f"({first['total_low']:.2f} to {first['total_high']:.2f}), half its scatter would leave {halved} of the "
+             f"standard deviation, none {removed}")  # fmt: skip
+    more = f"; {' and '.join(rivals)} may matter as much: more samples tell" if rivals else ""
+    return f"{words}{more}."
+
+
+def counted_ends(answer) -> str:
+    return ", ".join(f"{count} {word}" for word, count in answer["runs"]["ends"].items())
+
+
+def tables(answer) -> list:
+    """The distribution of every output; the keys, as the first output has them; total indices of all outputs."""
+    outputs, first = answer["outputs"], answer["outputs"][0]
+    spreads = [{"output": name, "nominal": answer["nominal"][name], "unit": answer["output_units"][name],
+                **answer["moments"][name], **{f"q{p}": v for p, v in answer["quantiles"][name].items()}}
+               for name in outputs]  # fmt: skip
+    columns = (("output", "output"), ("nominal", "nominal"), ("mean", "mean"), ("st. dev.", "standard_deviation"),
+               *((f"{p} %", f"q{p}") for p in answer["quantiles"][first]), ("unit", "unit"),
+               ("values", "count"))  # fmt: skip
+    shown = (("key", "key"), ("scatter", "scatter"), ("first", "first"), ("total", "total"), ("from", "total_low"),
+             ("to", "total_high"), ("rank corr.", "rank_correlation"), ("sd if halved, %", "halved", 100),
+             ("if none, %", "removed", 100), ("contact if halved, %", "contact_halved", 100))  # fmt: skip
+    found = [(spreads, columns), (answer["tighten"][first], shown)]
+    total = answer["sobol"]["total"]
+    if total and len(outputs) > 1 and any(total.values()):
+        keys = [row["key"] for row in answer["tighten"][first]]
+        rows = [{"key": key, **{f"o{n}": total[name] and total[name][key] for n, name in enumerate(outputs)}}
+                for key in keys]  # fmt: skip
+        found.append((rows, (("total index", "key"), *((name, f"o{n}") for n, name in enumerate(outputs)))))
+    return found
