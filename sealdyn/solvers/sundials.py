@@ -38,5 +38,5 @@ def _back_end(segment, counts):
     # Its compiled code needs the libraries open.
     from . import sundials_direct
 
-    counts.back_end = f"SUNDIALS {libraries().version}"
+    counts.back_end = f"SUNDIALS {libraries().version}, compiled loop"
     return sundials_direct

@@ -3,7 +3,7 @@
     PYTHONPATH=tests python tests/benchmark/film_with_unknowns.py
 
 Four turns of the FMS seal of tests/scenes.py, the same steps each time; the minimum of five runs in turn (machines are
-noisy).  On a two-core x86-64 machine 0.33 s by known derivatives in sparse form, which solvers/sundials.py takes, and
+noisy).  On a two-core x86-64 machine 0.33 s by known derivatives in sparse form, which is taken, and
 0.49 s in dense form; by differences 1.4 s dense and 2.1 s sparse (the rings' rows are dense: a colour a column).
 """
 
@@ -16,7 +16,7 @@ from radial_cells import film_of
 from scenes import SPEED, fms, prepared
 
 from sealdyn.dynamics.model import Model
-from sealdyn.solvers import sundials
+from sealdyn.solvers import sundials_python as sundials
 from sealdyn.solvers.contract import Counts, tolerance_for
 
 TURNS, CELLS, ANGLES, ACCURACY = 4, 25, 16, 1e-6

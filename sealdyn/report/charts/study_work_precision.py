@@ -195,6 +195,8 @@ def caption(info) -> str:
     answer, settings = info["answer"], info["settings"]
     m = answer["machine"]
     libraries = ", ".join(f"{k} {m[k]}" for k in ("python", "numpy", "scipy", "scikit-sundae", "numba"))
+    if "back_end" in m:
+        libraries += f"; CVODE and IDA: {m['back_end']}"
     overrides = f" with {', '.join(info['overrides'])}" if info["overrides"] else ""
     return (
         f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}. "

@@ -92,7 +92,7 @@ def run(scenario, settings, tools) -> dict:
         "judge_error": band,
         "methods": methods,
         "models": rungs,
-        "machine": {**machine(), "busy": busy(methods)},
+        "machine": {**machine(), "back_end": back_end(methods), "busy": busy(methods)},
         "names": {name: NAMES[name] for name in methods},
     }
     answer["fastest"] = [rank_methods(answer, error) for error in ASKED]
@@ -174,7 +174,7 @@ def judge(scenario, exact, judges: dict, point: dict) -> dict:
         for row in rows:
             row["errors"] = {where: {} for where in WHERE}
     names = sorted({name for row in rows for found in row["errors"].values() for name in found})
-    columns = ("tolerance", "wall", "processor", "rhs", "status", "reason", "expected")
+    columns = ("tolerance", "wall", "processor", "rhs", "status", "reason", "expected", "back_end")
     return {
         **{name: [row[name] for row in rows] for name in columns},
         "error": {where: [max(row["errors"][where].values(), default=None) for row in rows] for where in WHERE},
@@ -194,6 +194,7 @@ def _measured(scenario, method, tolerance, point, exact, limit) -> dict:
     if found.status == "stopped" and limit < point["limit"]:
         reason = f"more than {point['slowest']:g} times the fastest of the error it would reach"
     row = {"tolerance": tolerance, "wall": found.wall, "rhs": found.counts.rhs, "status": found.status}
+    row |= {"back_end": found.counts.back_end}
     return {**row, "processor": found.processor, "reason": reason, "errors": errors(found, exact)}
 
 
@@ -255,6 +256,12 @@ def busy(methods) -> float:
     """Wall over processor time of all runs together: 1 on a machine that does nothing else."""
     spent = [sum(sum(row[clock]) for row in methods.values()) for clock in ("wall", "processor")]
     return spent[0] / spent[1] if spent[1] > 0 else 1.0
+
+
+def back_end(methods) -> str:
+    """Who made the steps of CVODE and IDA."""
+    found = {name: None for row in methods.values() for name in row["back_end"] if name}
+    return " and ".join(found) or "none"
 
 
 def machine() -> dict:
