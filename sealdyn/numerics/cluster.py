@@ -1,0 +1,115 @@
+"""Many points on the workers of a Dask scheduler, on as many machines as it has.
+
+Workers may join, leave and die: what a worker had not handed in is evaluated by another.
+"""
+
+import asyncio
+import platform
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import partial
+from threading import Lock
+
+from .. import __version__
+from .parallel import row_of
+from .threads import one_thread
+
+PATIENCE = 10.0
+"""Time (s) within which a scheduler has to answer."""
+DEADLY = {"failed": "KilledWorker: all workers that tried this point died"}
+# Nobody has made solvers and kernels for several threads of one process.
+TURN = Lock()
+
+
+class ClusterError(Exception):
+    """A scheduler or workers that cannot be used; one line."""
+
+
+@contextmanager
+def workers_of(scheduler):
+    """The crew (parallel.evaluate) of a scheduler: its address "tcp://host:port", or a `dask.distributed.Client`, which
+    stays open.  Raises ClusterError."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ClusterError('a scheduler needs Dask: pip install "sealdyn[dask]"') from None
+    if isinstance(scheduler, Client):
+        _check_workers(scheduler)
+        yield partial(_on_workers, scheduler)
+        return
+    try:
+        # A client that finds no scheduler leaves a mess; a question does not.  A notebook has a loop of its own.
+        with ThreadPoolExecutor(1) as aside:
+            aside.submit(asyncio.run, _identity(scheduler)).result()
+        client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        found = f'no Dask scheduler at "{scheduler}" ({str(error) or "no answer"})'
+        raise ClusterError(f"scheduler: found {found}; expected tcp://host:port of one") from None
+    with client:
+        _check_workers(client)
+        yield partial(_on_workers, client)
+
+
+async def _identity(address: str):
+    from distributed.core import rpc
+
+    async with rpc(address, timeout=PATIENCE) as scheduler:
+        await asyncio.wait_for(scheduler.identity(), PATIENCE)
+
+
+def _check_workers(client):
+    """Refuse workers of another version; those that join later are asked by each point."""
+    # Words, for a worker without this package could not read a function of it.
+    found = client.run(eval, "__import__('sealdyn').__version__", on_error="return")
+    for worker, version in found.items():
+        if version != __version__:
+            version = repr(version) if isinstance(version, Exception) else f"sealdyn {version}"
+            raise ClusterError(f"worker {worker}: found {version}; expected sealdyn {__version__}")
+
+
+def _on_workers(client, function, todo: dict, what: str):
+    """(key, row, lasting) of the points {key: point} as they come.  A point that kills its workers is
+    {"failed": reason}, which is not lasting: another day it may be the machine.  Raises ClusterError."""
+    from distributed import KilledWorker
+
+    deadly = []
+    for key, found in _handed_in(client, function, todo, what):
+        if isinstance(found, KilledWorker):
+            deadly.append(key)
+        else:
+            yield key, found, True
+    # Dask blames all points that a dead worker had before it: alone, each shows what it does.
+    for key in deadly:
+        for _, found in _handed_in(client, function, {key: todo[key]}, f"{what} alone"):
+            killed = isinstance(found, KilledWorker)
+            yield key, DEADLY if killed else found, not killed
+
+
+def _handed_in(client, function, todo: dict, what: str):
+    """(key, row or KilledWorker) of the points as they come.  What waits is cancelled when the reader leaves."""
+    from distributed import KilledWorker, as_completed
+
+    # Named by content, so that a point which two studies ask for at the same time is evaluated once.
+    waiting = {
+        client.submit(partial(_answer, __version__, function, point), key=f"{what}-{key}"): key
+        for key, point in todo.items()
+    }
+    try:
+        for future in as_completed(list(waiting), loop=client.loop):
+            if future.status not in ("finished", "error"):
+                raise ClusterError(f"scheduler {client.scheduler.address}: lost with {len(waiting)} points to do")
+            error = future.exception()
+            if error is not None and not isinstance(error, KilledWorker):
+                raise error if isinstance(error, ClusterError) else ClusterError(f"a worker's {error!r}")
+            yield waiting.pop(future), error or future.result()
+    finally:
+        client.cancel(list(waiting))
+
+
+def _answer(version: str, function, point: dict) -> dict:
+    """What a worker does: the row of one point."""
+    if version != __version__:
+        raise ClusterError(f"worker {platform.node()}: found sealdyn {__version__}; expected sealdyn {version}")
+    with TURN:
+        one_thread()
+        return row_of(function, point)
