@@ -190,7 +190,7 @@ def test_workers_of_another_version_are_refused(scheduler, tmp_path):
     finally:
         ended(other)
         with client_of(scheduler) as client:
-            until(lambda: len(client.scheduler_info(n_workers=-1)["workers"]) == 2)
+            until(lambda: len(client.nthreads()) == 2)
 
 
 def test_a_worker_that_joins_late_is_asked_too(scheduler, tmp_path, monkeypatch):
