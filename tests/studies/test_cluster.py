@@ -120,6 +120,11 @@ def until(happened):
         time.sleep(0.02)
 
 
+def tasks_of(client) -> int:
+    """Points that the scheduler knows of."""
+    return client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks))
+
+
 def quiet(done, count):
     pass
 
@@ -167,13 +172,12 @@ def test_who_leaves_cancels_what_waits(scheduler, tmp_path):
 
     begun = tmp_path / "begun"
     begun.mkdir()
-    with workers_of(scheduler) as crew, pytest.raises(KeyboardInterrupt):
-        points = [{"x": x} for x in range(40)]
-        evaluate(partial(slow, str(begun)), points, Results(tmp_path / "kept"), crew, ctrl_c, "points")
-    time.sleep(2.0)
-    assert len(list((tmp_path / "kept").iterdir())) == 2 and len(list(begun.iterdir())) <= 6
     with client_of(scheduler) as client:
-        assert client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) == 0
+        with workers_of(client) as crew, pytest.raises(KeyboardInterrupt):
+            points = [{"x": x} for x in range(40)]
+            evaluate(partial(slow, str(begun)), points, Results(tmp_path / "kept"), crew, ctrl_c, "points")
+        until(lambda: tasks_of(client) == 0)
+    assert len(list((tmp_path / "kept").iterdir())) == 2 and len(list(begun.iterdir())) <= 6
 
 
 def test_workers_of_another_version_are_refused(scheduler, tmp_path):
@@ -213,7 +217,7 @@ def test_ctrl_c_of_the_command_cancels_what_waits(scheduler, tmp_path):
     assert process.returncode == 130 and "Traceback" not in said
     assert 1 < len(list(kept.iterdir())) < 200
     with client_of(scheduler) as client:
-        until(lambda: client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) == 0)
+        until(lambda: tasks_of(client) == 0)
 
 
 @pytest.mark.slow
