@@ -4,6 +4,7 @@ Workers may join, leave and die: what a worker had not handed in is evaluated by
 """
 
 import asyncio
+import logging
 import platform
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -16,7 +17,8 @@ from .threads import one_thread
 
 PATIENCE = 10.0
 """Time (s) within which a scheduler has to answer."""
-DEADLY = {"failed": "KilledWorker: all workers that tried this point died"}
+# Another day it may have been the machine: it does not last.
+DEADLY = {"failed": "KilledWorker: all workers that tried this point died"}, False
 # Nobody has made solvers and kernels for several threads of one process.
 TURN = Lock()
 
@@ -41,6 +43,8 @@ def workers_of(scheduler):
         # A client that finds no scheduler leaves a mess; a question does not.  A notebook has a loop of its own.
         with ThreadPoolExecutor(1) as aside:
             aside.submit(asyncio.run, _identity(scheduler)).result()
+        # What becomes of the scheduler is told by ClusterError, in a line.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         found = f'no Dask scheduler at "{scheduler}" ({str(error) or "no answer"})'
@@ -68,8 +72,8 @@ def _check_workers(client):
 
 
 def _on_workers(client, function, todo: dict, what: str):
-    """(key, row, lasting) of the points {key: point} as they come.  A point that kills its workers is
-    {"failed": reason}, which is not lasting: another day it may be the machine.  Raises ClusterError."""
+    """(key, row, lasting) of the points {key: point} as they come; DEADLY of one that kills its workers.
+    Raises ClusterError."""
     from distributed import KilledWorker
 
     deadly = []
@@ -77,16 +81,15 @@ def _on_workers(client, function, todo: dict, what: str):
         if isinstance(found, KilledWorker):
             deadly.append(key)
         else:
-            yield key, found, True
+            yield key, *found
     # Dask blames all points that a dead worker had before it: alone, each shows what it does.
     for key in deadly:
         for _, found in _handed_in(client, function, {key: todo[key]}, f"{what} alone"):
-            killed = isinstance(found, KilledWorker)
-            yield key, DEADLY if killed else found, not killed
+            yield key, *(DEADLY if isinstance(found, KilledWorker) else found)
 
 
 def _handed_in(client, function, todo: dict, what: str):
-    """(key, row or KilledWorker) of the points as they come.  What waits is cancelled when the reader leaves."""
+    """(key, answer or KilledWorker) of the points as they come.  What waits is cancelled when the reader leaves."""
     from distributed import KilledWorker, as_completed
 
     # Named by content, so that a point which two studies ask for at the same time is evaluated once.
@@ -97,7 +100,8 @@ def _handed_in(client, function, todo: dict, what: str):
     try:
         for future in as_completed(list(waiting), loop=client.loop):
             if future.status not in ("finished", "error"):
-                raise ClusterError(f"scheduler {client.scheduler.address}: lost with {len(waiting)} points to do")
+                address = client.scheduler.address
+                raise ClusterError(f"scheduler {address}: lost with {len(waiting)} points to do; the others are kept")
             error = future.exception()
             if error is not None and not isinstance(error, KilledWorker):
                 raise error if isinstance(error, ClusterError) else ClusterError(f"a worker's {error!r}")
@@ -106,8 +110,8 @@ def _handed_in(client, function, todo: dict, what: str):
         client.cancel(list(waiting))
 
 
-def _answer(version: str, function, point: dict) -> dict:
-    """What a worker does: the row of one point."""
+def _answer(version: str, function, point: dict) -> tuple[dict, bool]:
+    """What a worker does for one point: `row_of`."""
     if version != __version__:
         raise ClusterError(f"worker {platform.node()}: found sealdyn {__version__}; expected sealdyn {version}")
     with TURN:

@@ -70,7 +70,7 @@ def evaluate(function, points: list, store, crew, say, what: str) -> list[dict]:
     `points` dicts that JSON takes; `store` the Checkpoint or Results that spares the points it has, and keeps the
     others as they come; `crew` who evaluates: `processes(count)`, or a scheduler's workers (cluster.py); `say(done,
     all)` is called after each; `what` is what the points are called where the crew is watched.
-    Raises TypeError for a function that is not one of a module (results.content_keys).
+    Raises TypeError for what cannot be told by its content (results.content_keys).
     """
     keys = content_keys(function, points)
     rows = {key: row for key in dict.fromkeys(keys) if (row := store.get(key)) is not None}
@@ -94,10 +94,10 @@ def processes(count: int | None = None):
 
 
 def _on_processes(count: int, function, todo: dict, what: str):
-    """(key, row, True) of the points {key: point} as they come.  What waits is not begun once the reader has left."""
+    """(key, row, lasting) of the points {key: point} as they come; what waits is not begun once the reader has left."""
     if count == 1 or len(todo) < 2:
         for key, point in todo.items():
-            yield key, row_of(function, point), True
+            yield key, *row_of(function, point)
         return
     # Forked workers inherit the compiled kernels; where there is no fork they load them.  One point at a time.
     way = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
@@ -105,14 +105,16 @@ def _on_processes(count: int, function, todo: dict, what: str):
         waiting = {pool.submit(row_of, function, point): key for key, point in todo.items()}
         try:
             for future in as_completed(waiting):
-                yield waiting[future], future.result(), True
+                yield waiting[future], *future.result()
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def row_of(function, point: dict) -> dict:
-    """The row of one point; {"failed": reason} where the function raises."""
+def row_of(function, point: dict) -> tuple[dict, bool]:
+    """The row of one point, {"failed": reason} where the function raises, and whether it lasts: a full disk, too little
+    memory or a library that is not there say nothing about the point."""
     try:
-        return function(point)
+        return function(point), True
     except Exception as error:
-        return {"failed": f"{type(error).__name__}: {error}"}
+        lasting = not isinstance(error, OSError | MemoryError | ImportError)
+        return {"failed": f"{type(error).__name__}: {error}"}, lasting

@@ -252,6 +252,22 @@ def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path):
 
 
 @pytest.mark.slow
+def test_a_scheduler_that_dies_ends_a_study_in_one_line(tmp_path, capfd):
+    with cluster(tmp_path, "--no-nanny") as (address, (scheduler, *_)):
+
+        def kill(done, count):
+            if done == 2:
+                scheduler.kill()
+
+        capfd.readouterr()
+        with workers_of(address) as crew, pytest.raises(ClusterError, match="lost with 38 points to do") as lost:
+            points = [{"x": x} for x in range(40)]
+            evaluate(partial(slow, str(tmp_path)), points, Results(tmp_path / "kept"), crew, kill, "points")
+        assert "\n" not in str(lost.value) and capfd.readouterr().err == ""
+    assert len(list((tmp_path / "kept").iterdir())) == 2
+
+
+@pytest.mark.slow
 def test_a_point_that_kills_its_workers_is_a_row(tmp_path):
     """Those that waited behind it are answered; it is not kept, for another day it may be the machine."""
     with (

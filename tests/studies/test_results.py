@@ -27,6 +27,12 @@ def counted(scale, point):
     return {"y": scale * point["x"], "many": (1, 2)}
 
 
+def failing(error, point):
+    if point["x"] == 1:
+        raise error("not today")
+    return {"y": point["x"]}
+
+
 def quiet(done, count):
     pass
 
@@ -166,6 +172,16 @@ def test_a_failed_point_is_kept_with_its_reason(tmp_path):
         answer = swept(tmp_path / "a.h5", "film.coning=3,-9 mrad", tmp_path / "kept")
         assert "[film] coning" in answer["rows"][1]["failed"]
     assert len(list((tmp_path / "kept").iterdir())) == 2
+
+
+@pytest.mark.parametrize("error", [OSError, MemoryError, ImportError])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_the_machine_could_not_do_is_tried_again(tmp_path, error, workers):
+    function = partial(failing, error)
+    for _ in range(2):
+        rows = evaluate(function, [{"x": 1}, {"x": 2}], Results(tmp_path), processes(workers), quiet, "")
+        assert rows == [{"failed": f"{error.__name__}: not today"}, {"y": 2}]
+        assert len(list(tmp_path.iterdir())) == 1
 
 
 def test_with_and_without_a_folder_the_rows_are_equal(tmp_path):
