@@ -14,6 +14,8 @@ from types import FunctionType
 from typing import Any
 from uuid import uuid4
 
+import numpy as np
+
 from .. import __version__
 
 
@@ -47,6 +49,8 @@ def _plain(value: Any) -> Any:
         return {"content": hashlib.sha256(Path(value).read_bytes()).hexdigest()}
     if value is None or isinstance(value, bool | int | float | str):
         return value
+    if isinstance(value, np.ndarray | np.generic):
+        return {"kind": str(value.dtype), "values": value.tolist()}
     if isinstance(value, FunctionType | type):
         return _name(value)
     raise TypeError(f"{value!r} cannot be told from others by its content")

@@ -12,6 +12,7 @@ What every study module offers (the contract):
             function's dict, or `{"failed": reason}`: the verdict then also says how many failed and why the first did.
             A row hangs on nothing but the function, what it is bound to (a scenario, a scene), and the point: whoever
             asks the same again may get it from a folder of results.
+            `tools.alone()` does so one point after the other, here, for rows that measure time.
             `tools.say(fraction)` reports progress of anything else.
 `tables(answer)`  pairs of rows and columns printed below the verdict (report.text.study_lines), if there are any.
 `WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without

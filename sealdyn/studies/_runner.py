@@ -5,7 +5,7 @@ import json
 import pkgutil
 import platform
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -54,6 +54,11 @@ class StudyContext:
         rows = evaluate(function, points, store, self.crew, lambda n, m: self.say(n / max(m, 1)), what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
+
+    def alone(self) -> "StudyContext":
+        """For points that measure time: one after the other in this process, not to be kept for others, without
+        progress."""
+        return replace(self, crew=processes(1), results=None, progress=None)
 
     def say(self, fraction: float):
         """Report progress, a share of the whole."""

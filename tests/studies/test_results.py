@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import sealdyn
@@ -15,7 +16,7 @@ from sealdyn.numerics.parallel import Checkpoint, evaluate, processes
 from sealdyn.numerics.results import Results, content_keys
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import sweep
-from sealdyn.studies._runner import run_study
+from sealdyn.studies._runner import StudyContext, run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=2", 'run.start="steady"', "film.model=linear"]
@@ -85,7 +86,11 @@ def test_what_a_point_is():
     assert key(own) == key(partial(sweep.one_run, scenario(text=written_otherwise)))
     assert key(own) == key(partial(sweep.one_run, scenario("study.sweep.vary=rotor.runout=1,2")))
     assert key(partial(counted, 1), {"x": 1, "y": 2}) == key(partial(counted, 1), {"y": 2, "x": 1})
+    assert key(partial(counted, np.arange(3.0))) == key(partial(counted, np.arange(3.0)))
     others = [
+        partial(counted, np.arange(3.0)),
+        partial(counted, np.arange(3.0)[:, None]),
+        partial(counted, np.arange(3)),
         partial(sweep.one_run, scenario("film.clearance=9 um")),
         partial(sweep.one_run, scenario("run.accuracy=1e-7")),
         partial(sweep.one_run, scenario("run.solver=bdf")),
@@ -189,6 +194,16 @@ def test_with_and_without_a_folder_the_rows_are_equal(tmp_path):
     kept = swept(tmp_path / "a.h5", vary, tmp_path / "kept")
     assert swept(tmp_path / "b.h5", vary, None)["rows"] == kept["rows"]
     assert swept(tmp_path / "c.h5", vary, tmp_path / "kept")["rows"] == kept["rows"]
+
+
+def test_points_that_measure_time_are_done_here_and_not_for_others(tmp_path):
+    def elsewhere(function, todo, what):
+        raise AssertionError("on another machine")
+
+    journal = Checkpoint(tmp_path / "j", "a")
+    tools = StudyContext(journal, elsewhere, quiet, Results(tmp_path / "kept"))
+    assert tools.alone().map(partial(counted, 3), [{"x": 1}]) == [{"y": 3, "many": [1, 2]}]
+    assert len(journal.rows) == 1 and not (tmp_path / "kept").exists()
 
 
 def test_a_checkpoint_and_a_folder_have_one_way_in(tmp_path):
