@@ -98,14 +98,15 @@ def _handed_in(client, function, todo: dict, what: str):
         for key, point in todo.items()
     }
     try:
-        for future in as_completed(list(waiting), loop=client.loop):
-            if future.status not in ("finished", "error"):
-                address = client.scheduler.address
-                raise ClusterError(f"scheduler {address}: lost with {len(waiting)} points to do; the others are kept")
-            error = future.exception()
-            if error is not None and not isinstance(error, KilledWorker):
-                raise error if isinstance(error, ClusterError) else ClusterError(f"a worker's {error!r}")
-            yield waiting.pop(future), error or future.result()
+        # Answers are fetched beside those that are read here, not one round trip after the other.
+        for future, found in as_completed(list(waiting), client.loop, with_results=True, raise_errors=False):
+            if future.status == "error":
+                _, found, _ = found
+            elif future.status != "finished":
+                found = ClusterError(f"scheduler: lost with {len(waiting)} points to do; the others are kept")
+            if isinstance(found, BaseException) and not isinstance(found, KilledWorker):
+                raise found if isinstance(found, ClusterError) else ClusterError(f"a worker's {found!r}")
+            yield waiting.pop(future), found
     finally:
         client.cancel(list(waiting))
 
