@@ -40,7 +40,8 @@ def workers_of(scheduler):
         yield partial(_on_workers, scheduler)
         return
     try:
-        # A client that finds no scheduler leaves a mess; a question does not.  A notebook has a loop of its own.
+        # A client that fails to connect has more to say when it is deleted; a question has not.  It is asked in a
+        # thread, for a notebook has a loop of its own.
         with ThreadPoolExecutor(1) as aside:
             aside.submit(asyncio.run, _identity(scheduler)).result()
         # What becomes of the scheduler is told by ClusterError, in a line.

@@ -1,6 +1,7 @@
 """A study on other machines that cannot be: one line and exit code 2, before anything is computed."""
 
 import json
+import subprocess
 import sys
 
 import pytest
@@ -33,6 +34,15 @@ def test_no_scheduler_there(tmp_path, monkeypatch, address):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "PATIENCE", 0.5)
     assert address in refused("--scheduler", address, cwd=tmp_path)
+
+
+def test_a_process_that_finds_no_scheduler_says_nothing_more_at_its_end(tmp_path):
+    pytest.importorskip("distributed")
+    program = "from sealdyn import cli; from sealdyn.numerics import cluster; cluster.PATIENCE = 0.5; cli.main()"
+    words = [sys.executable, "-c", program, *map(str, SWEEP), "--scheduler", "tcp://127.0.0.1"]
+    ended = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+    lines = [line for line in ended.stderr.splitlines() if not line.startswith("first run on this machine")]
+    assert ended.returncode == 2 and ended.stdout == "" and len(lines) == 1, ended.stderr
 
 
 def test_a_scheduler_has_its_own_workers(tmp_path):
