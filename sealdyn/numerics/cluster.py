@@ -16,7 +16,7 @@ from .parallel import row_of
 from .threads import one_thread
 
 PATIENCE = 10.0
-"""Time (s) within which a scheduler has to answer."""
+"""Time (s) within which a scheduler has to be reached, and to answer."""
 # Another day it may have been the machine: it does not last.
 DEADLY = {"failed": "KilledWorker: all workers that tried this point died"}, False
 # Nobody has made solvers and kernels for several threads of one process.
@@ -59,7 +59,8 @@ async def _identity(address: str):
     from distributed.core import rpc
 
     async with rpc(address, timeout=PATIENCE) as scheduler:
-        await asyncio.wait_for(scheduler.identity(), PATIENCE)
+        # To connect, and to be answered.
+        await asyncio.wait_for(scheduler.identity(), 2 * PATIENCE)
 
 
 def _check_workers(client):
