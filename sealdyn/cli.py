@@ -13,10 +13,11 @@ from typing import Annotated
 import typer
 from typer.core import TyperCommand
 
+from .numerics.threads import VARIABLES
 from .status import Status
 
-# Matrices here have a dozen rows: threads of a BLAS, and of every worker's BLAS, only get in each other's way.
-for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
+# Before anything loads a BLAS.
+for _threads in VARIABLES:
     os.environ.setdefault(_threads, "1")
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
@@ -332,11 +333,14 @@ def study(
     out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>-<study>.h5)")] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the study's figure beside the archive")] = True,
     workers: Annotated[int | None, typer.Option(help="processes (default: all cores)")] = None,
+    scheduler: Annotated[str | None, typer.Option(help="Dask scheduler in their place, tcp://host:port")] = None,
+    results: Annotated[Path | None, typer.Option(help="folder that keeps finished points for other studies")] = None,
     as_json: AsJson = False,
 ):
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
     import importlib
 
+    from .numerics.cluster import ClusterError
     from .report.text import study_lines
     from .scenario.reader import ScenarioError
     from .scene.scene import SceneError
@@ -345,18 +349,24 @@ def study(
     names = study_names()
     if name.replace("_", "-") not in names:
         raise Stop(Status.INVALID, f'study: found "{name}"; expected one of {", ".join(names)}{_nearest(name, names)}')
+    if scheduler is not None and workers is not None:
+        raise Stop(Status.INVALID, f"--workers: found {workers}; expected nothing, the scheduler has its own")
     scenario = _read(file, set)
     _say_compiling(file=sys.stderr)
     with _Progress() as bar, _libraries_on_stderr():
         try:
             answer = run_study(
-                name, scenario, out, flags=_flags(context.args), workers=workers, progress=lambda t, end: bar(t, end)
-            )
+                name, scenario, out, flags=_flags(context.args), workers=workers, scheduler=scheduler, results=results,
+                progress=lambda t, end: bar(t, end),
+            )  # fmt: skip
         except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "
             raise Stop(Status.INVALID, f"{where}{error}") from None
+        except ClusterError as error:
+            raise Stop(Status.INVALID, str(error)) from None
         except OSError as error:
-            raise Stop(Status.INVALID, f"{out}: cannot be written ({error.strerror or error})") from None
+            where = error.filename or out
+            raise Stop(Status.INVALID, f"{where}: cannot be written ({error.strerror or error})") from None
     if plot:
         figure = Path(answer["archive"]).with_suffix(".png")
         importlib.import_module(f"sealdyn.report.charts.study_{answer['study']}").draw(answer["archive"], figure)

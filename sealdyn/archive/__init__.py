@@ -1,7 +1,9 @@
-"""HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies."""
+"""HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies; dataset.py
+shows both to xarray."""
 
+from .dataset import as_dataset, open_archive
 from .fields import FIELD_TIME, Fields, Series
-from .run import ArchiveError, ArchiveWriter, column, field, last_state, open_archive, partial_path, read_info
+from .run import ArchiveError, ArchiveWriter, column, field, last_state, partial_path, read_info
 from .study import read_study, write_study
 
 __all__ = [
@@ -10,6 +12,7 @@ __all__ = [
     "ArchiveWriter",
     "Fields",
     "Series",
+    "as_dataset",
     "column",
     "field",
     "last_state",

@@ -443,7 +443,7 @@ def field(path, name: str) -> np.ndarray:
         return file[name][: record["instants"]] if scale == FIELD_TIME else file[name][()]
 
 
-def open_archive(path):
+def open_run(path):
     """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units, fields over `field_time` and
     their grid; `attrs` hold the scenario text, status, message, and `resolved` and `summary` as JSON."""
     import xarray

@@ -63,6 +63,15 @@ def _numbers(entry):
     return entry
 
 
+def is_study(path) -> bool:
+    """Whether there is the file of a study at `path`."""
+    try:
+        with h5py.File(path, "r") as file:
+            return file.attrs.get("format") == FORMAT
+    except OSError:
+        return False
+
+
 def read_study(path) -> dict:
     """Everything of a study's file: `answer`, `scenario`, `resolved`, and the meta attributes (JSON ones decoded).
     Raises ArchiveError."""

@@ -1,1 +1,2 @@
-"""Right for any function, time series or eigenproblem: interpolation, exponents, checkpoints, orders."""
+"""Right for any function, time series or eigenproblem: interpolation, exponents, orders; many points and where they
+are kept."""

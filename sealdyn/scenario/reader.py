@@ -75,18 +75,19 @@ class Scenario:
     """A scene with its run, and the file it came from.
 
     `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
-    `question` the comment at the head of the file; `given`: dotted keys that the user wrote.  `reading`: the runout as
-    written where it is a total indicator reading, which follows the outer radius.
+    `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
+    `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.
+    Scenarios that run alike are equal, wherever they came from and whatever studies are to ask of them.
     """
 
     scene: Scene
     run: Run
-    study: dict = field(default_factory=dict)
-    text: str = ""
-    name: str = "scene"
-    path: Path | None = None
-    overrides: list[str] = field(default_factory=list)
-    question: str = ""
+    study: dict = field(default_factory=dict, compare=False)
+    text: str = field(default="", compare=False)
+    name: str = field(default="scene", compare=False)
+    path: Path | None = field(default=None, compare=False)
+    overrides: list[str] = field(default_factory=list, compare=False)
+    question: str = field(default="", compare=False)
     given: frozenset[str] = frozenset()
     reading: Any = None
 
@@ -131,10 +132,12 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
 
 def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
     """What a Scenario holds (`scene`, `run`, `study`, `given`, `reading`) of tables whose values are written as in a
-    file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told.
+    file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told, without
+    those of studies.
     Raises `ScenarioError`."""
     _refuse_odd_numbers(raw, name)
-    given = frozenset(given_keys(raw)) if given is None else given
+    given = given_keys(raw) if given is None else given
+    given = frozenset(key for key in given if key.partition(".")[0] != "study")
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     _check_run_and_study(raw, name)

@@ -8,8 +8,11 @@ What every study module offers (the contract):
             the answer, JSON-ready, with the keys of `study --json` and `verdict`, a list of at most three sentences,
             the answer to the question first.
             `tools.map(function, points, what)` evaluates a module-level function of one JSON-able point on all
-            cores, remembers finished points across interruptions, and returns a list of rows: the function's dict,
-            or `{"failed": reason}`: the verdict then also says how many failed and why the first did.
+            cores or on other machines, remembers finished points across interruptions, and returns a list of rows: the
+            function's dict, or `{"failed": reason}`: the verdict then also says how many failed and why the first did.
+            A row hangs on nothing but the function, what it is bound to (a scenario, a scene), and the point: whoever
+            asks the same again may get it from a folder of results.
+            `tools.alone()` does so one point after the other, here, for rows that measure time.
             `tools.say(fraction)` reports progress of anything else, `tools.tell(words)` says a line before a long wait.
 `tables(answer)`  pairs of rows and columns printed below the verdict (report.text.study_lines), if there are any.
 `WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without

@@ -5,13 +5,15 @@ import json
 import pkgutil
 import platform
 import sys
-from dataclasses import asdict, dataclass, field
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 
 from .. import __version__, studies
 from ..archive import write_study
-from ..numerics.parallel import Checkpoint, evaluate
+from ..numerics.parallel import Checkpoint, evaluate, processes
+from ..numerics.results import Results
 from ..scenario.settings import study_settings, without_contact
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
@@ -37,16 +39,20 @@ def study_module(name: str):
 
 @dataclass
 class StudyContext:
-    """What a study is handed: points on all cores, and progress; `failures` are the reasons of points that failed."""
+    """What a study is handed: a crew for its points, and progress.  Points are kept in `results` where there is such a
+    folder, else in the `journal`, like anything else of an interrupted study; `failures` are the reasons of points that
+    failed."""
 
     journal: Checkpoint
-    workers: int | None
+    crew: object
     progress: object
+    results: Results | None = None
     failures: list[str] = field(default_factory=list)
 
     def map(self, function, points: list, what: str = "points") -> list[dict]:
         """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
-        rows = evaluate(function, points, self.journal, self.workers, lambda n, m: self.say(n / max(m, 1)), what)
+        store = self.results or self.journal
+        rows = evaluate(function, points, store, self.crew, lambda n, m: self.say(n / max(m, 1)), what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
 
@@ -55,17 +61,27 @@ class StudyContext:
         if self.progress:
             print(words, file=sys.stderr, flush=True)
 
+    def alone(self) -> "StudyContext":
+        """For points that measure time: one after the other in this process, not to be kept for others, without
+        progress."""
+        return replace(self, crew=processes(1), results=None, progress=None)
+
     def say(self, fraction: float):
         """Report progress, a share of the whole."""
         if self.progress:
             self.progress(fraction, 1.0)
 
 
-def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progress=None) -> dict:
+def run_study(
+    name: str, scenario, out=None, *, flags=None, workers=None, scheduler=None, results=None, progress=None
+) -> dict:
     """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
-    Raises ScenarioError, SceneError.
+    Points are evaluated by `workers` processes (None: all cores), or by the workers of a Dask `scheduler`: its address
+    "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
+    and for those of other machines.
+    Raises ScenarioError, SceneError, ClusterError (numerics.cluster).
     """
     name = name.replace("-", "_")
     module = study_module(name)
@@ -77,9 +93,11 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     plain = json.loads(json.dumps(asdict(settings), default=str))
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain], sort_keys=True)
     journal = Checkpoint(out.with_suffix(".partial.jsonl"), identity)
+    kept = _folder(results) if results else None
     studied, left_out = (scenario, []) if getattr(module, "WITH_CONTACT", False) else without_contact(scenario)
-    tools = StudyContext(journal, workers, progress)
-    answer = module.run(studied, settings, tools)
+    with _crew(workers, scheduler) as crew:
+        tools = StudyContext(journal, crew, progress, kept)
+        answer = module.run(studied, settings, tools)
     verdict, failures = list(answer["verdict"]), tools.failures
     # Unless the study has told it itself.
     if failures and failures[0] not in " ".join(verdict):
@@ -102,3 +120,18 @@ def run_study(name: str, scenario, out=None, *, flags=None, workers=None, progre
     write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
     journal.done()
     return {**answer, "archive": str(out)}
+
+
+def _crew(workers: int | None, scheduler):
+    """Who evaluates points, as a context."""
+    if scheduler is None:
+        return nullcontext(processes(workers))
+    from ..numerics.cluster import workers_of
+
+    return workers_of(scheduler)
+
+
+def _folder(path) -> Results:
+    """Made at once: a folder that cannot be written is found out before the first point is done."""
+    Path(path).mkdir(parents=True, exist_ok=True)
+    return Results(path)

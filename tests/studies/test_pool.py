@@ -5,8 +5,9 @@ import os
 import time
 
 import pytest
+from threadpoolctl import threadpool_info
 
-from sealdyn.numerics.parallel import Checkpoint, evaluate
+from sealdyn.numerics.parallel import Checkpoint, evaluate, processes
 
 CALLS = "SEALDYN_TEST_CALLS"
 
@@ -18,6 +19,16 @@ def square(point):
     if point["x"] == 2:
         raise ValueError("two is not for squaring")
     return {"y": point["x"] ** 2}
+
+
+def cube(point):
+    return {"y": "cube"}
+
+
+def threads(point):
+    import scipy.linalg  # noqa: F401  loads its own BLAS
+
+    return {"threads": [library["num_threads"] for library in threadpool_info()]}
 
 
 @pytest.fixture
@@ -38,7 +49,7 @@ def quiet(done, count):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_rows_come_in_the_order_of_the_points(calls, tmp_path, workers):
-    rows = evaluate(square, points(5), Checkpoint(tmp_path / "j", "a"), workers, quiet, "squares")
+    rows = evaluate(square, points(5), Checkpoint(tmp_path / "j", "a"), processes(workers), quiet, "squares")
     assert [row.get("y") for row in rows] == [0, 1, None, 9, 16]
     assert rows[2] == {"failed": "ValueError: two is not for squaring"}
     assert calls() == ["0", "1", "2", "3", "4"]
@@ -46,21 +57,20 @@ def test_rows_come_in_the_order_of_the_points(calls, tmp_path, workers):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_finished_points_are_not_repeated(calls, tmp_path, workers):
-    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), workers, quiet, "squares")
+    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), processes(workers), quiet, "squares")
     told = []
-    rows = evaluate(
-        square, points(5), Checkpoint(tmp_path / "j", "a"), workers, lambda n, m: told.append((n, m)), "squares"
-    )
+    say = lambda n, m: told.append((n, m))  # noqa: E731
+    rows = evaluate(square, points(5), Checkpoint(tmp_path / "j", "a"), processes(workers), say, "squares")
     assert [row.get("y") for row in rows] == [0, 1, None, 9, 16]
     assert calls() == ["0", "1", "2", "3", "4"]
     assert told[0] == (3, 5) and told[-1] == (5, 5)
 
 
 def test_a_line_torn_by_the_kill_is_done_again(calls, tmp_path):
-    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
+    evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), processes(1), quiet, "squares")
     text = (tmp_path / "j").read_text()
     (tmp_path / "j").write_text(text[:-9])
-    rows = evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
+    rows = evaluate(square, points(3), Checkpoint(tmp_path / "j", "a"), processes(1), quiet, "squares")
     assert [row.get("y") for row in rows] == [0, 1, None]
     assert calls() == ["0", "1", "2", "2"]
     # The mended journal is whole again: every line reads.
@@ -68,16 +78,29 @@ def test_a_line_torn_by_the_kill_is_done_again(calls, tmp_path):
 
 
 def test_another_study_does_not_use_the_journal(calls, tmp_path):
-    evaluate(square, points(2), Checkpoint(tmp_path / "j", "a"), 1, quiet, "squares")
-    evaluate(square, points(2), Checkpoint(tmp_path / "j", "b"), 1, quiet, "squares")
+    evaluate(square, points(2), Checkpoint(tmp_path / "j", "a"), processes(1), quiet, "squares")
+    evaluate(square, points(2), Checkpoint(tmp_path / "j", "b"), processes(1), quiet, "squares")
     assert calls() == ["0", "0", "1", "1"]
 
 
 def test_the_same_point_of_another_question_is_another(calls, tmp_path):
     journal = Checkpoint(tmp_path / "j", "a")
-    evaluate(square, points(1), journal, 1, quiet, "squares")
-    evaluate(square, points(1), journal, 1, quiet, "cubes")
-    assert calls() == ["0", "0"]
+    evaluate(square, points(1), journal, processes(1), quiet, "squares")
+    assert evaluate(cube, points(1), journal, processes(1), quiet, "cubes") == [{"y": "cube"}]
+    assert calls() == ["0"]
+
+
+def test_equal_points_are_one(calls, tmp_path):
+    twice = [*points(2), *points(2)]
+    rows = evaluate(square, twice, Checkpoint(tmp_path / "j", "a"), processes(2), quiet, "squares")
+    assert [row["y"] for row in rows] == [0, 1, 0, 1]
+    assert calls() == ["0", "1"]
+
+
+def test_workers_keep_to_one_thread(tmp_path):
+    crew = processes(2)
+    for row in evaluate(threads, points(2), Checkpoint(tmp_path / "j", "a"), crew, quiet, "threads"):
+        assert set(row["threads"]) == {1}
 
 
 def test_no_journal_before_the_first_point(tmp_path):

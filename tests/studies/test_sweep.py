@@ -1,5 +1,6 @@
 """A sweep's rows are single runs' numbers; broken points are rows; a killed sweep goes on and repeats nothing."""
 
+import itertools
 import json
 import os
 import signal
@@ -11,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sealdyn
+from sealdyn.archive import ArchiveError, as_dataset
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis
@@ -98,6 +101,44 @@ def test_an_unknown_key_or_output_is_named(tmp_path):
         assert key in refused.value.key
     answer = sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
     assert "nearest h_min.value" in answer["rows"][0]["failed"]
+
+
+def test_a_sweep_is_a_dataset_over_its_keys(tmp_path):
+    """Dimensions and coordinates are the keys, variables the outputs; where a point failed there is no number."""
+    vary = ["rotor.runout=10:30 urad:3", "film.clearance=9,-9,10 um", "film.model=linear,radial"]
+    outputs = ["h_min.value", "stability.verdict", "contact_margin", "film.clearance"]
+    answer = sweep(tmp_path, vary, outputs)
+    with sealdyn.open_archive(answer["archive"]) as data:
+        assert dict(data.sizes) == {"rotor.runout": 3, "film.clearance": 3, "film.model": 2}
+        assert set(data.data_vars) == {"h_min.value", "stability.verdict", "contact_margin", "status", "message"}
+        assert data["rotor.runout"].values == pytest.approx([10, 20, 30]) and list(data["film.clearance"]) == [
+            9,
+            -9,
+            10,
+        ]
+        assert list(data["film.model"]) == ["linear", "radial"] and "units" not in data["film.model"].attrs
+        units = {name: data[name].attrs.get("units") for name in ("rotor.runout", "h_min.value", "contact_margin")}
+        assert units == {"rotor.runout": "urad", "h_min.value": "m", "contact_margin": None}
+        for row, place in zip(answer["rows"], itertools.product(range(3), range(3), range(2)), strict=True):
+            at = {name: data[name][place].item() for name in data.data_vars}
+            assert row["rotor.runout"] == data["rotor.runout"][place[0]]
+            assert row["film.model"] == data["film.model"][place[2]]
+            if place[1] == 1:
+                assert np.isnan(at["h_min.value"]) and np.isnan(at["contact_margin"]) and at["stability.verdict"] == ""
+                assert at["status"] == "not possible" and at["message"] == row["failed"]
+            else:
+                assert at == {name: row.get(name, "") for name in at} and at["status"] == "ok"
+        assert data.attrs["study"] == "sweep" and data.attrs["scenario"] == PATH.read_text()
+        assert as_dataset(answer).equals(data)
+        # Any netCDF reader takes it on.
+        data.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
+
+
+def test_a_study_without_a_grid_is_no_dataset(tmp_path):
+    scenario = parse_scenario(PATH.read_text(), "fms_reference", SHORT)
+    answer = run_study("coefficients", scenario, tmp_path / "c.h5", workers=1)
+    with pytest.raises(ArchiveError, match="no grid"):
+        sealdyn.open_archive(answer["archive"])
 
 
 @pytest.mark.slow

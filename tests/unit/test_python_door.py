@@ -1,4 +1,4 @@
-"""The three names of the package, as the README uses them."""
+"""The names of the package, as the README uses them."""
 
 from pathlib import Path
 

@@ -7,7 +7,7 @@ How much model: every rung of the ladder of films, and the harmonic balance, aga
 import math
 import os
 import platform
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
 
@@ -70,8 +70,8 @@ def run(scenario, settings, tools) -> dict:
     tools.say(0.1)
     shared = {"tolerances": tolerances(settings), "repeats": settings.repeats, "samples": settings.samples}
     judged = partial(judge, scenario, exact, judges)
-    # One at a time: runs beside each other would disturb each other's clocks.
-    alone = replace(tools, workers=1, progress=None) if hasattr(tools, "workers") else tools
+    # Runs beside each other would disturb each other's clocks.
+    alone = tools.alone() if hasattr(tools, "alone") else tools
     first = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in FAST]
     rows = alone.map(judged, first, "methods")
     tools.say(0.4)
