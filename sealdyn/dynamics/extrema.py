@@ -175,8 +175,8 @@ def _track(
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
                 continue
-            least_scan = SHORT_SCAN if (t[k + 1] - t[k]) * fastest < SHORT else SCAN
-            scan = min(max(least_scan, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
+            short = (t[k + 1] - t[k]) * fastest < SHORT
+            scan = min(max(SHORT_SCAN if short else SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
             # A step begins where the one before ended.
             known = window == 0 and low == ended_at
             if known:
@@ -200,9 +200,10 @@ def _track(
                     far_left, far_right = min(left, scan - 2), max(right, 2)
                     dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
                     held, slack = current_record(record, kind, tolerance)
-                    lowest = seen[best, kind] - dip
-                    sinks = kind == THICKNESS and lowest < f[COLLAPSE]
-                    if not sinks and lowest >= held - slack:
+                    sinks = kind == THICKNESS and seen[best, kind] - dip < f[COLLAPSE]
+                    # Of a parabola at most an eighth of that rise.
+                    likely = 0.5 * dip if short else dip
+                    if not sinks and seen[best, kind] - likely >= held - slack:
                         continue
                     if size == 0:
                         size = fit(t, q_all, q_rate_all, k, count, table, nodes)

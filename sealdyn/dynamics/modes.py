@@ -286,29 +286,25 @@ def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple
         tilt = sum(0.5 * (abs(r[1] + 1j * r[2]) + abs(r[1] - 1j * r[2])) for _, r in relative)
         return float(tilt), 0.0, float(sum(abs(r[0]) for _, r in relative))
 
-    def motion(t):
-        return sum((np.outer(np.exp(1j * w * t), r)).real for w, r in relative)
+    frequencies, amplitudes = np.array([w for w, _ in relative]), np.array([r for _, r in relative])
 
-    fastest = max(abs(w) for w, _ in relative) * period / (2 * np.pi)
-    t = np.linspace(0.0, period, 256 * max(1, round(fastest)) + 1)
-    step = t[1] - t[0]
-    found = []
-    for sign, measure in ((-1, "tilt"), (1, "tilt"), (1, "axial")):
+    def measures(t):
+        """Minus the squared tilt, the squared tilt and the axial motion at times (m,): what is made small."""
+        x = (np.exp(1j * np.multiply.outer(t, frequencies)) @ amplitudes).real
+        tilt = x[:, 1] ** 2 + x[:, 2] ** 2
+        return np.array([-tilt, tilt, x[:, 0]])
 
-        def size(times, measure=measure):
-            x = motion(np.atleast_1d(times))
-            return x[:, 0] if measure == "axial" else x[:, 1] ** 2 + x[:, 2] ** 2
-
-        values = sign * size(t)
-        at = t[int(np.argmin(values))]
-        # A smooth extremum: close in by ever finer grids.
-        for _ in range(6):
-            near = at + step * np.linspace(-1, 1, 41)
-            at = near[int(np.argmin(sign * size(near)))]
-            step /= 15
-        found.append(float(size(at)[0]))
-        step = t[1] - t[0]
-    return float(np.sqrt(found[0])), float(np.sqrt(found[1])), max(0.0, -found[2])
+    turns = np.max(np.abs(frequencies)) * period / (2 * np.pi)
+    t = np.linspace(0.0, period, 256 * max(1, round(turns)) + 1)
+    at, step, each = t[np.argmin(measures(t), axis=1)], t[1] - t[0], np.arange(3)
+    # Smooth extrema: close in by ever finer grids.
+    for _ in range(6):
+        near = at[:, None] + step * np.linspace(-1, 1, 41)
+        found = measures(near.ravel()).reshape(3, 3, 41)[each, each]
+        at = near[each, np.argmin(found, axis=1)]
+        step /= 15
+    most, least, axial = measures(at)[each, each]
+    return float(np.sqrt(-most)), float(np.sqrt(least)), max(0.0, -float(axial))
 
 
 def common_period(frequencies, most: int = 64) -> float | None:
