@@ -7,6 +7,7 @@ import os
 import shlex
 import signal
 import sys
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +27,9 @@ EXIT = {
     Status.FAILED: FAILED,
     Status.INTERRUPTED: INTERRUPTED,
 }
+
+# Time (s) after which a wait is worth a progress bar.
+PATIENCE = 1.0
 
 app = typer.Typer(
     add_completion=False,
@@ -168,10 +172,11 @@ def _say_compiling(file):
 
 
 class _Progress:
-    """Progress bar on standard error: simulated time, turns of time left."""
+    """Progress bar on standard error: simulated time, turns of time left.  What is done in a second needs none."""
 
     def __init__(self):
         self.bar = self.task = None
+        self.begun = time.monotonic()
 
     def __enter__(self):
         return self
@@ -182,6 +187,8 @@ class _Progress:
 
     def __call__(self, t: float, end: float):
         if self.bar is None:
+            if time.monotonic() - self.begun < PATIENCE:
+                return
             from rich.console import Console
             from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 

@@ -221,5 +221,10 @@ def test_names_and_expressions_as_pint_reads_them(by_pint):
 
 
 def test_spelled_out():
-    for text, short in (("kg per cubic meter", "kg/m^3"), ("sq inch", "in**2"), ("m squared", "m*m"), ("s cubed", "s^3")):
+    for text, short in (
+        ("kg per cubic meter", "kg/m^3"),
+        ("sq inch", "in**2"),
+        ("m squared", "m*m"),
+        ("s cubed", "s^3"),
+    ):
         assert ours(text) == ours(short)
