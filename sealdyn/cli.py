@@ -18,6 +18,8 @@ from .status import Status
 # Matrices here have a dozen rows: threads of a BLAS, and of every worker's BLAS, only get in each other's way.
 for _threads in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ.setdefault(_threads, "1")
+# It would look for plugins in everything that is installed.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
 EXIT = {
@@ -176,7 +178,7 @@ class _Progress:
 
     def __init__(self):
         self.bar = self.task = None
-        self.begun = time.monotonic()
+        self.begun = None
 
     def __enter__(self):
         return self
@@ -187,6 +189,7 @@ class _Progress:
 
     def __call__(self, t: float, end: float):
         if self.bar is None:
+            self.begun = self.begun or time.monotonic()
             if time.monotonic() - self.begun < PATIENCE:
                 return
             from rich.console import Console

@@ -98,7 +98,7 @@ def cvode(segment, tau, y, method, tolerance, counts, **options):
     """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py; `options` of its own, such as
     `max_order`.
     **Raises** SolverFailure."""
-    from sksundae.cvode import CVODE
+    from .sundae import CVODE
 
     rhs, jacobian = segment.rhs, segment.jacobian
     check, allow = _counting(counts)
@@ -128,7 +128,7 @@ def cvode(segment, tau, y, method, tolerance, counts, **options):
 def ida(segment, tau, y, method, tolerance, counts):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
-    from sksundae.ida import IDA
+    from .sundae import IDA
 
     inner = segment.residual
     check, allow = _counting(counts)
