@@ -7,6 +7,7 @@ import os
 import shlex
 import signal
 import sys
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -19,6 +20,8 @@ from .status import Status
 # Before anything loads a BLAS.
 for _threads in VARIABLES:
     os.environ.setdefault(_threads, "1")
+# It would look for plugins in everything that is installed.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
 EXIT = {
@@ -28,6 +31,9 @@ EXIT = {
     Status.FAILED: FAILED,
     Status.INTERRUPTED: INTERRUPTED,
 }
+
+# Time (s) after which a wait is worth a progress bar.
+PATIENCE = 1.0
 
 app = typer.Typer(
     add_completion=False,
@@ -170,10 +176,11 @@ def _say_compiling(file):
 
 
 class _Progress:
-    """Progress bar on standard error: simulated time, turns of time left."""
+    """Progress bar on standard error: simulated time, turns of time left.  What is done in a second needs none."""
 
     def __init__(self):
         self.bar = self.task = None
+        self.begun = None
 
     def __enter__(self):
         return self
@@ -184,6 +191,9 @@ class _Progress:
 
     def __call__(self, t: float, end: float):
         if self.bar is None:
+            self.begun = self.begun or time.monotonic()
+            if time.monotonic() - self.begun < PATIENCE:
+                return
             from rich.console import Console
             from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 

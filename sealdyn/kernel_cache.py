@@ -19,9 +19,16 @@ STAMP = "kernels.stamp"
 IMPORT = re.compile(rb"^from (\.+)([\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
 
-def kernel_sources() -> dict[Path, bytes]:
-    """Files that hold kernels, and all that they import, however far: the constants they take in.  Path -> content."""
-    texts = {path: path.read_bytes() for path in PACKAGE.rglob("*.py")}
+def _sources() -> dict[Path, bytes]:
+    """All source files of the package.  Path -> content."""
+    files = (Path(folder, name) for folder, _, names in os.walk(PACKAGE) for name in names if name.endswith(".py"))
+    return {path: path.read_bytes() for path in files}
+
+
+def kernel_sources(texts: dict[Path, bytes] | None = None) -> dict[Path, bytes]:
+    """Files that hold kernels, and all that they import, however far: the constants they take in.  Path -> content;
+    `texts` those of all source files, if read already."""
+    texts = texts or _sources()
     found, ahead = set(), [path for path, text in texts.items() if b"@njit" in text]
     while ahead:
         path = ahead.pop()
@@ -57,15 +64,17 @@ def _shared_folder() -> Path | None:
 
 
 def kernel_folders() -> list[Path]:
-    """Folders of this package's kept kernels, that of its top first; they need not exist."""
-    sources = [PACKAGE, *sorted({path.parent for path in PACKAGE.rglob("*.py")} - {PACKAGE})]
+    """Folders of this package's kept kernels; they need not exist."""
     shared = _shared_folder()
+    return [_kept_in(folder, shared) for folder in sorted({path.parent for path in PACKAGE.rglob("*.py")})]
+
+
+def _kept_in(folder: Path, shared: Path | None) -> Path:
+    """Where the kernels of a source folder are kept."""
     if shared is None:
-        return [folder / "__pycache__" for folder in sources]
+        return folder / "__pycache__"
     # numba's own names: a source folder's name and the SHA-1 of its path.
-    return [
-        shared / f"{folder.name}_{hashlib.sha1(os.path.abspath(folder).encode()).hexdigest()}" for folder in sources
-    ]
+    return shared / f"{folder.name}_{hashlib.sha1(os.path.abspath(folder).encode()).hexdigest()}"
 
 
 def kept_kernels() -> list[Path]:
@@ -78,21 +87,31 @@ def clear_stale_kernels() -> bool:
     any.
     Where no kernel can be kept at all, this process and its children keep them in a temporary folder, with a warning
     (numba would raise)."""
-    digest = hashlib.sha256()
-    for path, text in kernel_sources().items():
-        digest.update(str(path.relative_to(PACKAGE)).encode() + text)
-    stamp, found = kernel_folders()[0] / STAMP, digest.hexdigest()
+    texts, stamp, before = _sources(), _kept_in(PACKAGE, _shared_folder()) / STAMP, ["", ""]
+    whole = _digest(texts)
     with contextlib.suppress(OSError):
-        if stamp.read_text() == found:
-            return False
-    if not _writable(stamp.parent):
-        _keep_for_this_process()
+        before = [*stamp.read_text().split(), "", ""][:2]
+    if before[0] == whole:
+        # Nothing has changed at all, so that nobody needs to ask what kernels import.
         return False
-    kept = kept_kernels()
+    of_kernels = _digest(kernel_sources(texts))
+    if not _writable(stamp.parent):
+        if before[1] != of_kernels:
+            _keep_for_this_process()
+        return False
+    kept = kept_kernels() if before[1] != of_kernels else []
     for file in kept:
         file.unlink(missing_ok=True)
-    stamp.write_text(found)
+    stamp.write_text(f"{whole} {of_kernels}")
     return bool(kept)
+
+
+def _digest(texts: dict[Path, bytes]) -> str:
+    """Digest of files, names and contents."""
+    digest = hashlib.sha256()
+    for path in sorted(texts):
+        digest.update(str(path.relative_to(PACKAGE)).encode() + texts[path])
+    return digest.hexdigest()
 
 
 def _keep_for_this_process():

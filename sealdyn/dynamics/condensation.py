@@ -4,7 +4,6 @@ unknowns eliminated (dynamic condensation)."""
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse.linalg import splu
 
 from ..faces.geometry import FORCE
 
@@ -82,6 +81,8 @@ class LinearFilm:
     @cached_property
     def slow(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness K and damping D (3, 3) of slow motion: value and slope of H at p = 0."""
+        from scipy.sparse.linalg import splu
+
         solved = splu(self.by_x.tocsc())
         moved = -solved.solve(self.by_gap)
         stiffness = -(self.force_by_x @ moved + self.force_by_gap)
@@ -90,6 +91,8 @@ class LinearFilm:
 
     def unknowns(self, p: complex) -> np.ndarray:
         """Unknowns (n, 3) of the film per unit of the gap's three amplitudes, moving as exp(p t)."""
+        from scipy.sparse.linalg import splu
+
         pushed = self.by_gap + p * self.by_gap_rate
         return -splu((self.by_x + p * self.by_rate).tocsc()).solve(pushed)
 

@@ -13,6 +13,7 @@ from numba import njit
 from ..faces.geometry import TOUCH
 from ..numerics.hermite import NODES, fit, value
 from .extrema import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, crossing_time, gap_and_tilt, locate_minimum, scan_step
+from .function_values import thinnest_value
 
 # One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film
 # thickness (m), angle (rad) and radius (m) there; impulse (N s).
@@ -94,15 +95,34 @@ def _close(state, lifted, impulse, level, error, rows, count):
 
 @njit(cache=True)
 def locate_contacts(
-    t, q_all, q_rate_all, impulse, count, begin, end, reach, p, f, y, yp, w, s, start, pace, error, state, rows
+    t,
+    q_all,
+    q_rate_all,
+    impulse,
+    count,
+    begin,
+    end,
+    reach,
+    p,
+    thinnest,
+    f,
+    y,
+    yp,
+    w,
+    s,
+    start,
+    pace,
+    error,
+    state,
+    rows,
 ):
     """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows` (k, ROW); returns how many
     ended.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps, `impulse` (count,) the impulse so far (N s),
-    `reach` (count,) what no film of a step is thinner than (m); `p`, `w`, `s` as in dynamics/equations.py, `f` the
-    film's block, `y`, `yp` (size,) scratch; `error` of the gap (m); `pace` the fastest imposed motion (rad/s); `state`
-    (STATE,) is carried from call to call.
+    `reach` (count,) what no film of a step is thinner than (m); `p`, `w`, `s` as in dynamics/equations.py, `thinnest`
+    as in extrema.py, `f` the film's block, `y`, `yp` (size,) scratch; `error` of the gap (m); `pace` the fastest
+    imposed motion (rad/s); `state` (STATE,) is carried from call to call.
     """
     n, level = q_all.shape[1], f[TOUCH]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
@@ -118,23 +138,23 @@ def locate_contacts(
         if state[OPEN] == 0.0 and reach[k] > level + error:
             state[SINKING] = 0.0
             continue
-        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, 0)
+        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, 0)
         size = fit(t, q_all, q_rate_all, k, count, table, nodes)
         step = (high - low) / scan
         points = 0
         for i in range(scan + 1):
             value(table, nodes, size, low + i * step, q, q_rate)
-            gap_and_tilt(low + i * step, q, y, yp, p, f, w, s, out)
+            gap_and_tilt(low + i * step, q, y, yp, p, thinnest, f, w, s, out)
             left, right = max(i - 1, 0), min(i + 1, scan)
             dip = seen[i, THICKNESS] <= seen[left, THICKNESS] and seen[i, THICKNESS] <= seen[right, THICKNESS]
             here, here_h = low + i * step, out[THICKNESS]
             if dip:
                 best = locate_minimum(
                     THICKNESS, low + left * step, low + right * step,
-                    table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
+                    table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
                 )  # fmt: skip
                 value(table, nodes, size, best, q, q_rate)
-                gap_and_tilt(best, q, y, yp, p, f, w, s, out)
+                gap_and_tilt(best, q, y, yp, p, thinnest, f, w, s, out)
                 before = best < here
                 if out[THICKNESS] < here_h and best != here:
                     if before:
@@ -150,20 +170,20 @@ def locate_contacts(
         for i in range(points):
             if i > 0 and height[i - 1] >= level > height[i] and state[OPEN] == 0.0:
                 touched = crossing_time(
-                    at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                    at[i - 1], at[i], level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
                 )  # fmt: skip
                 _begin(state, start + touched, impulse[k])
             elif state[OPEN] == 0.0 and height[i] < level:
                 _begin(state, start + at[i], impulse[k])
             if height[i] < level:
                 value(table, nodes, size, at[i], q, q_rate)
-                theta, radius = gap_and_tilt(at[i], q, y, yp, p, f, w, s, out)
+                theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
                 _deepen(state, start + at[i], height[i], theta, radius)
             elif state[OPEN] != 0.0:
                 lifted = at[i]
                 if i > 0:
                     lifted = crossing_time(
-                        at[i], at[i - 1], level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                        at[i], at[i - 1], level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
                     )
                 if found < len(rows):
                     found = _close(state, start + lifted, impulse[k + 1], level, error, rows, found)
@@ -171,7 +191,7 @@ def locate_contacts(
                 sinking = height[i] <= height[i - 1] if i > 0 else state[SINKING] != 0.0
                 if sinking and height[i] < height[i + 1] and found < len(rows):
                     value(table, nodes, size, at[i], q, q_rate)
-                    theta, radius = gap_and_tilt(at[i], q, y, yp, p, f, w, s, out)
+                    theta, radius = gap_and_tilt(at[i], q, y, yp, p, thinnest, f, w, s, out)
                     _begin(state, start + at[i], impulse[k])
                     _deepen(state, start + at[i], height[i], theta, radius)
                     found = _close(state, start + at[i], impulse[k + 1], level, error, rows, found)
@@ -202,8 +222,8 @@ class ContactEvents:
         rows = np.empty((64 + int(np.sum(np.clip(looked, SCAN, MOST_SCAN) + 1)), ROW))
         found = locate_contacts(
             block.t, q, q_rate, segment.impulses(block.ys), len(block.t), block.begin, block.end, self.extrema.reach,
-            segment.p, self.model.f, np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, segment.time,
-            segment.pace, self.model.gap_error(), self.open, rows,
+            segment.p, thinnest_value(self.model.face), self.model.f, np.zeros(segment.size), np.zeros(segment.size),
+            segment.w, segment.s, segment.time, segment.pace, self.model.gap_error(), self.open, rows,
         )  # fmt: skip
         self.waiting.extend(rows[:found])
 

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
@@ -134,6 +133,9 @@ def film_stiffness(opening_force, clearance, inner, outer, step) -> float:
 def crossing(excess, low: float, high: float) -> float:
     """The clearance, or its change (m), between `low` and `high` at which an `excess` of opening force (N) is zero.
     Raises ValueError if it has one sign."""
+    # Loaded only where there is something to search: a given clearance needs none of it.
+    from scipy.optimize import brentq
+
     return float(brentq(excess, low, high, xtol=1e-18, rtol=1e-14))
 
 

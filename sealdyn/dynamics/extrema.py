@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numba import njit
 
-from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
+from .function_values import thinnest_value
 
 # One record per window: value, segment time, angle, radius of h_min; value and time of the largest and of the
 # smallest relative misalignment.  Windows: the whole run, the last forcing period, the one before.
@@ -56,19 +56,21 @@ def longest_scan(pace: float) -> float:
 
 
 @njit(cache=True)
-def gap_and_tilt(tau, q, y, yp, p, f, w, s, out):
+def gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out):
     """The three measures (m, rad^2) at displacements q (n,) and segment time tau (s), into `out` (3,); returns angle
-    (rad) and radius (m) of h_min.  Other arguments as `_track`."""
-    y[: len(q)] = q
+    (rad) and radius (m) of h_min, which the function value `thinnest` finds.  Other arguments as `_track`."""
+    # One by one, here and below: assigning whole arrays would take seconds to compile.
+    for j in range(len(q)):
+        y[j] = q[j]
     kinematics(tau, y, yp, p, w, s)
-    out[THICKNESS], theta, radius = h_min(f, s)
+    out[THICKNESS], theta, radius = thinnest(f, s)
     out[TILT] = s[GX] ** 2 + s[GY] ** 2
     out[MINUS_TILT] = -out[TILT]
     return theta, radius
 
 
 @njit(cache=True)
-def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
+def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
     """Time (s) in [low, high] where one measure (`kind`) is smallest on the full interpolant (`table`, `nodes`, `size`
     of numerics/hermite.py): three rounds of five points, then the vertex of a parabola."""
     best, best_at = np.inf, low
@@ -77,7 +79,7 @@ def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, 
         for i in range(5):
             tau = low + i * width
             value(table, nodes, size, tau, q, q_rate)
-            gap_and_tilt(tau, q, y, yp, p, f, w, s, out)
+            gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out)
             if out[kind] < best:
                 best, best_at = out[kind], tau
         low, high = max(low, best_at - width), min(high, best_at + width)
@@ -85,27 +87,27 @@ def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, f, 
     points = np.zeros(3)
     for i in range(3):
         value(table, nodes, size, middle + (i - 1) * half, q, q_rate)
-        gap_and_tilt(middle + (i - 1) * half, q, y, yp, p, f, w, s, out)
+        gap_and_tilt(middle + (i - 1) * half, q, y, yp, p, thinnest, f, w, s, out)
         points[i] = out[kind]
     bend = points[0] - 2.0 * points[1] + points[2]
     if bend > 0.0:
         vertex = middle + 0.5 * half * (points[0] - points[2]) / bend
         vertex = min(max(vertex, low), high)
         value(table, nodes, size, vertex, q, q_rate)
-        gap_and_tilt(vertex, q, y, yp, p, f, w, s, out)
+        gap_and_tilt(vertex, q, y, yp, p, thinnest, f, w, s, out)
         if out[kind] <= best:
             return vertex
     return best_at
 
 
 @njit(cache=True)
-def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, f, w, s, out):
+def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
     """Time (s) at which the film crosses a `level` (m), by bisection between a time `above` (s) when it is above and
     one `below` when it is below, whichever is earlier; the film is below there."""
     for _ in range(60):
         middle = 0.5 * (above + below)
         value(table, nodes, size, middle, q, q_rate)
-        gap_and_tilt(middle, q, y, yp, p, f, w, s, out)
+        gap_and_tilt(middle, q, y, yp, p, thinnest, f, w, s, out)
         if out[THICKNESS] < level:
             below = middle
         else:
@@ -114,7 +116,7 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
 
 
 @njit(cache=True)
-def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, first):
+def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first):
     """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, from the `first` of them on, on
     the cubic between its two ends."""
     a, b = t[k], t[k + 1]
@@ -125,8 +127,9 @@ def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, see
             q0, q1 = q_all[k, j], q_all[k + 1, j]
             v0, v1 = span * q_rate_all[k, j], span * q_rate_all[k + 1, j]
             q[j] = q0 + x * (v0 + x * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + x * (2.0 * (q0 - q1) + v0 + v1)))
-        gap_and_tilt(a + x * span, q, y, yp, p, f, w, s, out)
-        seen[i] = out
+        gap_and_tilt(a + x * span, q, y, yp, p, thinnest, f, w, s, out)
+        for j in range(3):
+            seen[i, j] = out[j]
 
 
 @njit(cache=True)
@@ -156,8 +159,9 @@ def store(record, kind, out, at, theta, radius, index):
 
 @njit(cache=True)
 def _track(
-    t, q_all, q_rate_all, count, begin, end, p, f, y, yp, w, s, windows, index, records, tolerance, pace, fastest, reach
-):
+    t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, windows, index, records, tolerance, pace,
+    fastest, reach,
+):  # fmt: skip
     """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
     `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in segment time;
@@ -181,7 +185,8 @@ def _track(
             known = window == 0 and low == ended_at
             if known:
                 seen[0] = ended
-            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, f, w, s, q, out, seen, scan, 1 if known else 0)
+            first = 1 if known else 0
+            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first)
             record = records[window]
             if window == 0:
                 ended_at, ended[:] = high, seen[scan]
@@ -210,16 +215,16 @@ def _track(
                     step = (high - low) / scan
                     at = locate_minimum(
                         kind, low + left * step, low + right * step,
-                        table, nodes, size, q, q_rate, y, yp, p, f, w, s, out,
+                        table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
                     )  # fmt: skip
                     value(table, nodes, size, at, q, q_rate)
-                    theta, radius = gap_and_tilt(at, q, y, yp, p, f, w, s, out)
+                    theta, radius = gap_and_tilt(at, q, y, yp, p, thinnest, f, w, s, out)
                     if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:
                         fallen = crossing_time(
-                            t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, f, w, s, out
+                            t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
                         )
                         value(table, nodes, size, fallen, q, q_rate)
-                        theta, radius = gap_and_tilt(fallen, q, y, yp, p, f, w, s, out)
+                        theta, radius = gap_and_tilt(fallen, q, y, yp, p, thinnest, f, w, s, out)
                         for other in range(3):
                             # The tilt's extremes up to the last instant, which belongs to the run.
                             if other == THICKNESS or out[other] < current_record(record, other, tolerance)[0]:
@@ -250,14 +255,15 @@ class ExtremaTracker:
     def accept(self, block):
         """Update the records over a block of steps; a Stop where the film collapses."""
         segment, model = self.segment, self.model
+        thinnest = thinnest_value(model.face)
         windows = np.array(self.windows) - segment.time
         tolerance = 0.02 * model.accuracy * np.array([model.clearance, model.clearance / model.face[OUTER_RADIUS]])
         q, q_rate = block.motion
         self.reach = np.empty(len(block.t))
         fallen = _track(
-            block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, model.f, np.zeros(segment.size),
-            np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records, tolerance, segment.pace,
-            2 * math.pi / segment.shortest_period, self.reach,
+            block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, thinnest, model.f,
+            np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records,
+            tolerance, segment.pace, 2 * math.pi / segment.shortest_period, self.reach,
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 

@@ -25,7 +25,6 @@ from ..faces.geometry import (
 )
 from ..faces.surfaces import lay_surfaces
 from ..films import film_module, film_name, film_of, has_unknowns
-from ..films._unknowns import FilmDerivatives
 from ..numerics.piecewise_linear import initially
 from ..scene.film import Coefficients
 from ..scene.scene import SceneError
@@ -59,7 +58,7 @@ class Interface:
     def _borrowed(self):
         """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
         borrows = self.name == "linear" and self.scene.film.coefficients == "radial"
-        return film_module("radial") if borrows else self.film
+        return film_module("radial", self.scene.film) if borrows else self.film
 
     def _table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
@@ -132,6 +131,9 @@ class Interface:
 
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
+        # Sparse matrices are loaded for a film with unknowns only.
+        from ..films._unknowns import FilmDerivatives
+
         derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
         return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
 

@@ -1,13 +1,13 @@
 """A scene linearised about its aligned equilibrium: matrices, steady state, exact motion of a linear scene."""
 
 import numpy as np
-from scipy.linalg import expm
 
 from ..scene.rings import STATOR
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
 from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
+from .whirl_speeds import all_at_once, one_by_one
 
 
 def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
@@ -21,8 +21,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     shift = model.axial_shift(interval) if shift is None else shift
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
-    spun = model.scene.film.cavitation_pressure is not None or interface.unknowns is not None
-    if speed is None or spun:
+    if speed is None or not linear_in_speed(model):
         if interface.stores:
             film = interface.linear_film(*rest_state(model.scene, interface.clearance, interval, spin, shift))
         stiffness, damping = interface.linearised(interval, spin, shift, film=film)
@@ -48,6 +47,22 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
             )
         )
     return LinearScene(rings, stiffness, damping, film)
+
+
+def linear_in_speed(model) -> bool:
+    """Whether the matrices at any shaft speed follow from one linearisation of the film."""
+    return model.scene.film.cavitation_pressure is None and model.interface.unknowns is None
+
+
+def whirl_over_speed(model, interval, fastest: float):
+    """Eigenvalues of the whirl over shaft speed up to the `fastest` (rad/s), the rest as at an interval's start: the
+    function `values` of whirl_speeds.py."""
+
+    def at_speed(w):
+        return model.linear_scene(interval, speed=w)
+
+    found = all_at_once(at_speed, fastest) if linear_in_speed(model) else None
+    return found or one_by_one(at_speed)
 
 
 def harmonics(segment) -> list[Harmonic]:
@@ -112,6 +127,9 @@ class ExactMotion:
     def free(self, start, ages) -> np.ndarray:
         """What becomes (m, n) of a free motion `start` (n,) after `ages` (m,)."""
         if not self.sound:
+            # Rarely needed, and loaded only then.
+            from scipy.linalg import expm
+
             return np.array([expm(self.matrix * age) @ start for age in ages])
         return (np.exp(np.outer(ages, self.values)) @ ((self.inverse @ start)[:, None] * self.vectors.T)).real
 

@@ -8,7 +8,6 @@ from ..faces.geometry import FACE_SIZE
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
-from .coupled_segment import CoupledSegment
 from .equilibrium import axial_shift
 from .interface import Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks, time_of_angle
@@ -79,7 +78,11 @@ class Model:
 
     def segment(self, interval: Interval | None = None, index: int = 0, last: bool = True, stuck=None) -> Segment:
         """The equations over an interval (the first one if none is given); `stuck` rings: {ring: bool}."""
-        kind = Segment if self.unknowns.film_unknowns is None else CoupledSegment
+        if self.unknowns.film_unknowns is None:
+            kind = Segment
+        else:
+            # Sparse matrices are loaded for a film with unknowns only.
+            from .coupled_segment import CoupledSegment as kind
         return kind(self, interval or self.start, index, last, stuck)
 
     # --- numbers at rest ----------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Linearised scene: matrices, eigenvalues, stability, critical speed, harmonic balance.
+"""Linearised scene: matrices, eigenvalues, stability, harmonic balance.
 
 Assembled in numpy from the ring and film coefficients alone, sharing no code with the compiled equations
 of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of every floating ring.
@@ -6,13 +6,8 @@ of motion, so that the two check each other.  Unknowns: (z, tilt_x, tilt_y) of e
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import block_diag, eig
-from scipy.optimize import brentq
-
-from .film_modes import coupled_modes, reach_of
 
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
 QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -112,18 +107,27 @@ class LinearScene:
         if np.all(np.diag(self.mass) != 0.0):
             values, vectors = np.linalg.eig(self.state_matrix())
             return values, vectors[:n]
+        # Loaded only for a pencil, here and below.
+        from scipy.linalg import eig
+
         values, vectors = eig(*self.pencil())
         finite = np.isfinite(values) & (np.abs(values) < 1e12)
         return values[finite], vectors[:n, finite]
 
     @cached_property
     def _coupled(self):
+        from .film_modes import coupled_modes
+
         return coupled_modes(self, self.reach)
 
     @cached_property
     def reach(self) -> float:
         """Largest size (1/s) of an eigenvalue that `eigen` looks for."""
-        return np.inf if self.film is None else reach_of(self)
+        if self.film is None:
+            return np.inf
+        from .film_modes import reach_of
+
+        return reach_of(self)
 
     def at_frequency(self, omega: float) -> "LinearScene":
         """The scene with the film's stiffness and damping at one frequency (rad/s), whatever moves."""
@@ -139,6 +143,8 @@ class LinearScene:
         if self.film is None:
             left = np.block([[np.zeros((n, n)), np.eye(n)], [-self.stiffness, -self.damping]])
             return left, np.block([[np.eye(n), np.zeros((n, n))], [np.zeros((n, n)), self.mass]])
+        from scipy.linalg import block_diag
+
         reduced = self._coupled[2]
         left, right, rows, columns = reduced.pencil(self)
         whole = block_diag(np.eye(n), self.mass, reduced.stored_by_unknowns())
@@ -221,56 +227,6 @@ def verdict(modes: list[Mode]) -> str:
     if abs(growth) <= NEUTRAL * largest:
         return "neutral"
     return "unstable" if growth > 0 else "stable"
-
-
-def critical_speed(at_speed, low: float, high: float, points: int = 160) -> float | None:
-    """Lowest shaft speed (rad/s) in [low, high] where the largest growth rate of a tilt mode changes sign;
-    None if it does not, or only within rounding.  `at_speed(w)` gives the LinearScene at speed w."""
-
-    def growth(w):
-        return max(mode.value.real for mode in at_speed(w).modes() if mode.kind == "tilt")
-
-    def beyond_rounding(w):
-        tilt = [mode.value for mode in at_speed(w).modes() if mode.kind == "tilt"]
-        rate = max(value.real for value in tilt)
-        return rate if abs(rate) > NEUTRAL * max(map(abs, tilt)) else 0.0
-
-    last = None
-    for w in np.geomspace(low, high, points):
-        rate = beyond_rounding(w)
-        if last and last[1] * rate < 0:
-            return float(brentq(growth, last[0], w, rtol=1e-13))
-        # A speed at the threshold itself, within rounding, hides no change of sign.
-        last = (w, rate) if rate else last
-    return None
-
-
-def resonance_speeds(at_speed, low: float, high: float, points: int = 120) -> list[float]:
-    """Shaft speeds (rad/s) where a tilt mode's frequency equals the shaft speed (once per turn)."""
-    found = []
-    speeds = np.geomspace(low, high, points)
-
-    def distances(w):
-        # Forward modes only: an unbalance-like forcing turns with the shaft.
-        return sorted(m.value.imag - w for m in at_speed(w).modes() if m.kind == "tilt" and m.direction == "forward")
-
-    previous = distances(speeds[0])
-    for a, b in pairwise(speeds):
-        present = distances(b)
-        if len(present) == len(previous):
-            for i, (p, q) in enumerate(zip(previous, present, strict=True)):
-                if p * q < 0:
-                    found.append(_crossing(distances, i, a, b))
-        previous = present
-    return [w for w in found if w is not None]
-
-
-def _crossing(distances, i, a, b):
-    try:
-        return float(brentq(lambda w: distances(w)[i], a, b, rtol=1e-10))
-    except (IndexError, ValueError):
-        # The mode stops oscillating inside the bracket: no crossing.
-        return None
 
 
 def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:

@@ -198,11 +198,13 @@ class Segment:
     def derivatives(self, taus, ys) -> np.ndarray:
         """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
         # A kernel of fixed signature is made ready by its import.
-        from .kernels import Value, rates_along
+        from .function_values import Value, load_value
+        from .kernels import rates_along
 
         model, out = self.model, np.zeros((len(taus), self.size))
         block = np.empty(0) if model.contact is None else model.contact
-        rates_along(Value(model.interface.film.wrench), model.f, block, self.p, self.w, self.s, taus, ys, out)
+        film, contact = Value(model.interface.film.wrench), load_value(model.contact)
+        rates_along(film, model.f, contact, block, self.p, self.w, self.s, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:

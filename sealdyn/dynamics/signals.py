@@ -218,7 +218,8 @@ def _of_ring(ring, parts, first):
 def samples(segment, taus, q, q_rate, x=None) -> Samples:
     """States at times (m,) of a segment; `q`, `q_rate` (m, n) displacements and rates, `x` (m, n) the film's."""
     # Kernels of fixed signature are made ready by their import.
-    from .kernels import Value, states_along
+    from .function_values import Value, load_value, thinnest_value
+    from .kernels import states_along
 
     m, taus = len(taus), np.ascontiguousarray(taus, dtype=float)
     gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, equations.SCRATCH)), np.empty((m, 3))
@@ -228,9 +229,12 @@ def samples(segment, taus, q, q_rate, x=None) -> Samples:
     ys[:, : segment.n], yps[:, : segment.n] = q, q_rate
     ys[:, segment.rate_places[massive]] = q_rate[:, massive]
     (film, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
-    blocks = contact, bool(model.unknowns.seals), segment.p, segment.w, segment.s
+    blocks = load_value(model.contact, complete=True), contact, bool(model.unknowns.seals)
+    blocks = *blocks, segment.p, segment.w, segment.s
     if x is None:
-        states_along(Value(film.flow), f, *blocks, taus, ys, yps, model.face, gap, scratch, low)
+        states_along(
+            Value(film.flow), f, *blocks, taus, ys, yps, thinnest_value(model.face), model.face, gap, scratch, low
+        )
     else:
         ys[:, segment.film] = x
         segment.states(taus, ys, yps, gap, scratch, low)

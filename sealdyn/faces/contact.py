@@ -150,6 +150,11 @@ def _face(k, f, s, complete):
 
 
 @njit(cache=True)
+def no_load(k, f, s):
+    """In place of `contact_load` where there is no contact: leaves the gap state as it is."""
+
+
+@njit(cache=True)
 def contact_load(k, f, s):
     """Contact force (N, opening) and moments (N m) on the stator, into the gap state: minus the derivatives of
     CONTACT_ENERGY by gap and tilt."""

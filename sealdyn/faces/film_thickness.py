@@ -65,11 +65,19 @@ def film_thickness_rate(f, s, r, theta):
     return s[DZ_RATE] + _arm(f, r) * tilting + waves_rate(f, s, theta)
 
 
-@njit(cache=True)
-def h_min(f, s):
+def h_min(f, s) -> tuple[float, float, float]:
     """Smallest film thickness (m) over the face, its angle (rad, from the x axis, up to half a turn) and radius (m)."""
-    if f[WAVES] != 0.0:
-        return thinnest_of_waves(f, s)
+    return h_min_of(f)(f, s)
+
+
+def h_min_of(f):
+    """The compiled kernel that finds `h_min` of a face block; that of waves is compiled for wavy faces only."""
+    return thinnest_of_waves if f[WAVES] != 0.0 else thinnest_of_cones
+
+
+@njit(cache=True)
+def thinnest_of_cones(f, s):
+    """As `h_min`, of faces without waves."""
     # h = C + dz + ... - r G cos(beta): beta counts from the thinnest place (faces/geometry.py).
     least, radius = smallest_gap(f, s[DZ], math.hypot(s[GX], s[GY]))
     theta = math.atan2(s[GY], s[GX]) - 0.5 * math.pi

@@ -53,21 +53,29 @@ def _nodes(f):
 
 @njit(cache=True)
 def _steps(nodes):
-    """Equal steps between each node and the next."""
-    return np.ceil(STEPS * (nodes[1:] - nodes[:-1]) / (nodes[-1] - nodes[0]) - 1e-9).astype(np.int64)
+    """Equal steps between each node and the next, and how many in all."""
+    steps, total = np.empty(len(nodes) - 1, np.int64), 0
+    for n in range(len(steps)):
+        steps[n] = math.ceil(STEPS * (nodes[n + 1] - nodes[n]) / (nodes[-1] - nodes[0]) - 1e-9)
+        total += steps[n]
+    return steps, total
 
 
 @njit(cache=True)
-def grid(f):
-    """Radii (m) of the grid, edges and nodes of a profile among them, and its angles (rad)."""
-    nodes = _nodes(f)
-    steps = _steps(nodes)
-    r, at = np.empty(np.sum(steps) + 1), 0
+def _radii(nodes, steps, total):
+    """Radii (m) of the grid."""
+    r, at = np.empty(total + 1), 0
     for n in range(len(steps)):
         for i in range(steps[n]):
             r[at], at = nodes[n] + (nodes[n + 1] - nodes[n]) * i / steps[n], at + 1
     r[at] = nodes[-1]
-    return r, 2.0 * math.pi / ANGLES * np.arange(ANGLES)
+    return r
+
+
+def grid(f):
+    """Radii (m) of the grid, edges and nodes of a profile among them, and its angles (rad)."""
+    nodes = _nodes(f)
+    return _radii(nodes, *_steps(nodes)), 2.0 * math.pi / ANGLES * np.arange(ANGLES)
 
 
 @njit(cache=True)
@@ -86,14 +94,16 @@ def _thicknesses(f, s, nodes, steps, theta, h):
 def fields(f, s, out):
     """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
     has one."""
-    nodes, (r, theta) = _nodes(f), grid(f)
-    steps, mean, planar = _steps(nodes), f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
+    nodes = _nodes(f)
+    steps, total = _steps(nodes)
+    r, mean, planar = _radii(nodes, steps, total), f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     per, p_i, p_o = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE]
     # Integrals of Phi / (r h^3) and of 1 / (r h^3) from the inner radius.
     h, driven, through = np.empty(len(r)), np.zeros(len(r)), np.zeros(len(r))
-    for j in range(len(theta)):
-        sin, cos = math.sin(theta[j]), math.cos(theta[j])
-        _thicknesses(f, s, nodes, steps, theta[j], h)
+    for j in range(ANGLES):
+        theta = 2.0 * math.pi / ANGLES * j
+        sin, cos = math.sin(theta), math.cos(theta)
+        _thicknesses(f, s, nodes, steps, theta, h)
         tilt_rate = s[GX_RATE] * sin - s[GY_RATE] * cos + s[MEAN_SPIN] * (s[GX] * cos + s[GY] * sin)
         q, _ = cubic(s[DZ_RATE], tilt_rate, r[0], r[-1], mean, planar)
         for k in range(1, len(r)):

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
-from scipy.linalg import expm
 
 from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 from ..films import film_module
@@ -46,7 +45,7 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     slowest = float(np.max(np.linalg.eigvals(matrix).real))
     if slowest > 0:
         return None
-    film = film_module(higher)
+    film = film_module(higher, model.scene.film)
     block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)
     comparison = FilmComparison(segment, linear, film, block)
     # The steady state first: it is cheap, and on it what is left of the start no longer acts.
@@ -62,6 +61,8 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
 
 def _transient_error(run, linear, comparison, answers, matrix, step, count, worst, enough) -> np.ndarray:
     """The worst of `worst` and the errors at `count` steps from the start on."""
+    from scipy.linalg import expm
+
     n = len(linear.mass)
     # Exact for a push that is constant over a step, so that a stiff film does not shorten it.
     whole = expm(matrix * step)
@@ -143,7 +144,8 @@ class FilmComparison:
         """Forces (N) and moments (N m), shape (m, n), by which the higher film pushes more than the lower one, at
         segment `times` (m,) (s) and `states` (m, 2 n), displacements and rates."""
         # Kernels of fixed signature are made ready by their import.
-        from ..dynamics.kernels import Value, at_each, states_along
+        from ..dynamics.function_values import Value, load_value, thinnest_value
+        from ..dynamics.kernels import at_each, states_along
 
         segment, linear, n = self.segment, self.linear, len(self.linear.mass)
         model, kept = segment.model, segment.model.unknowns.among_three()
@@ -152,8 +154,16 @@ class FilmComparison:
         self.gaps = np.empty((len(times), GAP_STATE_SIZE))
         unused = np.empty((len(times), len(segment.w))), np.empty((len(times), 3))
         scratch = segment.p, segment.w, segment.s
-        blocks = np.empty(0), False, *scratch, np.ascontiguousarray(times), ys, np.zeros_like(ys)
-        states_along(Value(model.interface.film.wrench), model.f, *blocks, model.face, self.gaps, *unused)
+        blocks = load_value(None), np.empty(0), False, *scratch, np.ascontiguousarray(times), ys, np.zeros_like(ys)
+        states_along(
+            Value(model.interface.film.wrench),
+            model.f,
+            *blocks,
+            thinnest_value(model.face),
+            model.face,
+            self.gaps,
+            *unused,
+        )
         more = self.gaps[:, FORCE : FORCE + 3].copy()
         at_each(Value(self.film.flow), self.block, self.gaps)
         more = self.gaps[:, FORCE : FORCE + 3] - more
@@ -164,7 +174,8 @@ class FilmComparison:
         """Largest change (2,) by displacements and rates `moved` (m, 2 n) at the states last seen: of the film at the
         outer radius in clearances, of the leakage relative to its largest."""
         # Kernels of fixed signature are made ready by their import.
-        from ..dynamics.kernels import Value, at_each
+        from ..dynamics.function_values import Value
+        from ..dynamics.kernels import at_each
 
         linear, model, n = self.linear, self.segment.model, len(self.linear.mass)
         x, v = (

@@ -2,7 +2,8 @@
 
 import math
 
-from ..dynamics import modes
+from ..dynamics import modes, whirl_speeds
+from ..dynamics.linearisation import whirl_over_speed
 from ..scene.rings import ROTOR
 
 
@@ -40,7 +41,8 @@ def critical_speed(model, interval=None) -> float | None:
     natural = natural_frequency(model, interval)
     if not natural:
         return None
-    return modes.critical_speed(lambda w: model.linear_scene(interval, speed=w), 1e-3 * natural, 1e3 * natural)
+    low, high = 1e-3 * natural, 1e3 * natural
+    return whirl_speeds.critical_speed(whirl_over_speed(model, interval, high), low, high)
 
 
 def resonance_speeds(model, interval=None) -> list[float]:
@@ -50,7 +52,8 @@ def resonance_speeds(model, interval=None) -> list[float]:
     natural = natural_frequency(model, interval)
     if not natural:
         return []
-    return modes.resonance_speeds(lambda w: model.linear_scene(interval, speed=w), 1e-2 * natural, 1e2 * natural)
+    low, high = 1e-2 * natural, 1e2 * natural
+    return whirl_speeds.resonance_speeds(whirl_over_speed(model, interval, high), low, high)
 
 
 def natural_frequency(model, interval=None) -> float:

@@ -12,9 +12,10 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, SUPPORT, TILT_SCALE, film, fmr, f
 from scipy.linalg import eig
 
 from sealdyn.analysis.whirl.time_domain import fitted
-from sealdyn.dynamics import modes
+from sealdyn.dynamics import modes, whirl_speeds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic
+from sealdyn.dynamics.whirl_speeds import one_by_one
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.rings import Stator
@@ -127,7 +128,7 @@ def thresholds():
     """Critical speeds (rad/s) of a stored FMS scene, and as slow motion has it."""
     model = stored(aligned(fms))
     roads = (lambda w: model.linear_scene(speed=w)), (lambda w: model.linear_scene(speed=w).at_frequency(0.0))
-    return tuple(modes.critical_speed(road, 300.0, 3e4, 40) for road in roads)
+    return tuple(whirl_speeds.critical_speed(one_by_one(road), 300.0, 3e4, 40) for road in roads)
 
 
 def test_threshold_is_that_of_rings_and_film_together_and_not_that_of_slow_motion():

@@ -14,7 +14,8 @@ from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
 from sealdyn.analysis.whirl.mode_over_speed import along
-from sealdyn.dynamics import modes
+from sealdyn.dynamics import whirl_speeds
+from sealdyn.dynamics.whirl_speeds import one_by_one
 from sealdyn.numerics.order_tracking import centres, tracked
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies.runup.ramp_run import RampCycle, run_cycle
@@ -59,7 +60,7 @@ def scenario(name="runup_past_threshold", *overrides, model="linear"):
 def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     """The trip past the threshold and back, and the mode along it."""
     ready = free_model(asked.scene, 1000.0)
-    crossing = modes.critical_speed(lambda w: ready.linear_scene(speed=w), 500.0, 2e4)
+    crossing = whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
     mode = along(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
     return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
@@ -91,7 +92,7 @@ def oracle(ring, trip, times, start):
 
 def test_thresholds_are_those_of_the_complex_ring():
     ready = free_model(scenario().scene, 1000.0)
-    assert modes.critical_speed(lambda w: ready.linear_scene(speed=w), 500.0, 2e4) == pytest.approx(
+    assert whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4) == pytest.approx(
         threshold(stator), rel=1e-9
     )
     assert threshold(stator) == pytest.approx(5890.6, abs=0.1)

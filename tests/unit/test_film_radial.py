@@ -7,7 +7,9 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, film, fmr
 
 from sealdyn.dynamics.interface import linearised_film
 from sealdyn.faces import geometry
+from sealdyn.films._radial_quadrature import HAS_CAVITATION
 from sealdyn.films.radial import film as radial
+from sealdyn.films.radial import floored
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5
 AREA = np.pi * (R_O**2 - R_I**2)
@@ -25,7 +27,8 @@ def face_of(coning, geometry="cylindrical", tilt_radius="local"):
 
 
 def block(coning, geometry="cylindrical", tilt_radius="local", error=1e-13, **more):
-    return radial.parameters(
+    module = radial if more.get("cavitation_pressure") is None else floored
+    return module.parameters(
         film(coning=coning, geometry=geometry, tilt_radius=tilt_radius, **more), CLEARANCE, error
     )  # fmt: skip
 
@@ -50,7 +53,7 @@ def gap_state(state, spin_difference=SPEED):
 def kernel(f, state, spin_difference=SPEED):
     """Force, complex moment, flow in +r at both radii, torque."""
     s = gap_state(state, spin_difference)
-    radial.flow(f, s)
+    (floored if f[HAS_CAVITATION] else radial).flow(f, s)
     moment = complex(s[geometry.MOMENT_X], s[geometry.MOMENT_Y])
     return s[geometry.FORCE], moment, s[geometry.FLOW_INNER], s[geometry.FLOW_OUTER], s[geometry.TORQUE]
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from sealdyn.faces import geometry
 from sealdyn.films.radial import cavitated_circle
-from sealdyn.films.radial import film as radial
+from sealdyn.films.radial import floored as radial
 from sealdyn.scene.film import Film
 
 R_I, R_O, C, MU = 0.0495, 0.0505, 2e-6, 5e-3

@@ -10,7 +10,8 @@ from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, fms, ring
 from scenes import of_given_film as run_of
 
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.modes import Mode, critical_speed, film_matrices, resonance_speeds, verdict
+from sealdyn.dynamics.modes import Mode, film_matrices, verdict
+from sealdyn.dynamics.whirl_speeds import critical_speed, one_by_one, resonance_speeds
 from sealdyn.scene.rings import Rotor, Stator
 
 K_F, D_F, K_FZ, D_FZ = GIVEN
@@ -144,7 +145,7 @@ def fms_threshold():
 @pytest.mark.parametrize("rings,expected", [(FMS, fms_threshold()), (FMR, fmr_threshold())], ids=["FMS", "FMR"])
 def test_critical_speed_is_the_formula(rings, expected):
     whole = run_of(**rings)
-    found = critical_speed(lambda w: whole.model.linear_scene(speed=w), 100.0, 1e6)
+    found = critical_speed(one_by_one(lambda w: whole.model.linear_scene(speed=w)), 100.0, 1e6)
     assert found == pytest.approx(expected, rel=1e-10)
     at = [verdict(whole.model.linear_scene(speed=share * expected).modes()) for share in (1 - 1e-6, 1.0, 1 + 1e-6)]
     assert at == ["stable", "neutral", "unstable"]
@@ -152,7 +153,7 @@ def test_critical_speed_is_the_formula(rings, expected):
 
 def test_a_short_disk_has_no_critical_speed():
     whole = run_of(rotor=Rotor(**ring(0.5)))
-    assert critical_speed(lambda w: whole.model.linear_scene(speed=w), 100.0, 1e6) is None
+    assert critical_speed(one_by_one(lambda w: whole.model.linear_scene(speed=w)), 100.0, 1e6) is None
 
 
 def test_an_undamped_ring_is_neutral_at_every_speed():
@@ -162,7 +163,7 @@ def test_an_undamped_ring_is_neutral_at_every_speed():
     )
     for speed in (10.0, 1000.0, 1e5):
         assert verdict(free.model.linear_scene(speed=speed).modes()) == "neutral"
-    assert critical_speed(lambda w: free.model.linear_scene(speed=w), 10.0, 1e5) is None
+    assert critical_speed(one_by_one(lambda w: free.model.linear_scene(speed=w)), 10.0, 1e5) is None
 
 
 def test_verdict_reads_the_worst_mode():
@@ -180,7 +181,7 @@ def test_an_aligned_scene_above_its_threshold_is_unstable():
 def test_resonance_is_where_a_forward_mode_turns_with_the_shaft():
     """Undamped slender ring: -I w^2 + J w^2 + K = 0."""
     free = free_ring()
-    found = resonance_speeds(lambda w: free.model.linear_scene(speed=w), 10.0, 1e5)
+    found = resonance_speeds(one_by_one(lambda w: free.model.linear_scene(speed=w)), 10.0, 1e5)
     assert found == pytest.approx([math.sqrt(K_S / (INERTIA - SLENDER))], rel=1e-9)
 
 

@@ -20,6 +20,7 @@ from sealdyn.dynamics.contact_events import (
     locate_contacts,
 )
 from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
+from sealdyn.dynamics.function_values import thinnest_value
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, film_thickness_rate, h_min
@@ -346,7 +347,8 @@ def test_touches_of_waves_between_steps():
     t, count = np.linspace(0, TURN, 4), 4
     q, f = np.zeros((count, segment.n)), segment.model.f.copy()
     f[G.TOUCH] = level
-    scratch = segment.p, f, np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s
+    scratch = np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s
+    scratch = segment.p, thinnest_value(f), f, *scratch
     rows, state = np.zeros((500, ROW)), np.zeros(STATE)
     steps = t, q, q, np.zeros(count), count, 0, count - 1, np.full(count, -np.inf)
     found = locate_contacts(*steps, *scratch, 0.0, segment.pace, 1e-8 * CLEARANCE, state, rows)

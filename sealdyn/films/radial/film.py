@@ -54,18 +54,15 @@ from ...faces.geometry import (
 from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import (
     COSINES,
-    HAS_CAVITATION,
     MOST_ANGLES,
     RADIAL_POINTS,
     RULE_SIZE,
     RULES,
     SINES,
     angle_count,
-    parameters,
     points_for,
     relative_clearance,
 )
-from .cavitated_circle import cavitated_circle
 
 RUNG = 2
 FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
@@ -79,6 +76,21 @@ T, REACH, SCALE, U_I, H_G, EVEN, A0, AE, A1, B0, BE, B1, C0, CE, C1, D0 = range(
 def accepts(film, waves=()) -> str:
     """What faces it takes, "" if it can take these."""
     return "plain cones only" if waves or (film is not None and film.profile is not None) else ""
+
+
+def floored():
+    """The same film for a table with a floor of the pressure, the only one to compile what that takes."""
+    from . import floored
+
+    return floored
+
+
+def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
+    """The film's block of the parameter array (films/_radial_quadrature.py).  Raises ValueError for a table with a
+    floor of the pressure, which these kernels do not know."""
+    if film.cavitation_pressure is not None:
+        raise ValueError("a floor of the pressure is for films/radial/floored.py")
+    return _radial_quadrature.parameters(film, clearance, error)
 
 
 def opening_law(film):
@@ -149,7 +161,7 @@ def _lines(at, lanes, width):
 
 
 @njit(cache=True, error_model="numpy")
-def _circle(f, s, complete):
+def circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too; returns the torque's part that
     the pressure has on the slope of the film."""
     r_i, r_o, coning, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[CONING], f[FLOOR]
@@ -235,18 +247,11 @@ def _circle(f, s, complete):
 @njit(cache=True)
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
-    if f[HAS_CAVITATION] != 0.0 and cavitated_circle(f, s)[0]:
-        return
-    _circle(f, s, False)
+    circle(f, s, False)
 
 
 @njit(cache=True)
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
-    `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies.  The leakage of a floored
-    film is that of the film not floored."""
-    by_pressure = _circle(f, s, True)
-    if f[HAS_CAVITATION] != 0.0:
-        dry, floored = cavitated_circle(f, s)
-        if dry:
-            s[TORQUE] += floored - by_pressure
+    `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""
+    circle(f, s, True)

@@ -1,6 +1,7 @@
 """The figure a seal engineer pins to the wall: question, verdict, orbit, film, tilt, leakage, spectrum, numbers."""
 
 import numpy as np
+from matplotlib import rc_context
 
 from ...status import Status
 from . import orbit, spectrum
@@ -29,6 +30,9 @@ NUMBERS = (
 )  # fmt: skip
 
 
+# Titles stay where they are put: nothing is above them that they had to make room for, and looking takes a quarter of
+# the drawing.
+@rc_context({"axes.titley": 1.0})
 @look()
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""

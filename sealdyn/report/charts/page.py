@@ -190,6 +190,14 @@ def logarithmic(ax, axis: str) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def decades(axis) -> None:
+    """Powers of ten at the decades of a logarithmic axis, in plain letters: mathematical ones take as long to load as
+    to draw the rest of the panel."""
+    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+    axis.set_major_formatter(lambda value, _: "10" + str(round(np.log10(value))).translate(raised))
+    axis.set_minor_formatter(NullFormatter())
+
+
 def number(value: float, form: str = "g") -> str:
     """A number with the minus of print."""
     return f"{value:{form}}".replace("-", "−")

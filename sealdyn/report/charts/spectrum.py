@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .page import absent, look, number, run_page, save
+from .page import absent, decades, look, number, run_page, save
 from .palette import CONTACT, FILM, LEAK, TILT
 from .record import Run
 
@@ -70,6 +70,7 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
     ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * 12))
+    decades(ax.yaxis)
     for at in named:
         words = f"{number(orders[at], '.3g')}×\n{number(amplitude[at], '.3g')}"
         ax.annotate(words, (orders[at], amplitude[at]), xytext=(0, 3), textcoords="offset points", ha="center",

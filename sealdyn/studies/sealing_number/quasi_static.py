@@ -25,7 +25,7 @@ from ...faces.geometry import (
     MOMENT_Y,
     VISCOSITY,
 )
-from ...films.radial import film as radial
+from ...films.radial import floored as radial
 from ...scene.film import Film
 from ...solvers.contract import Counts, SolverFailure, tolerance_for
 from ...solvers.methods import METHODS

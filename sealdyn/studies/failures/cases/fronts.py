@@ -8,7 +8,7 @@ import numpy as np
 from ....analysis.validation import reference_scene
 from ....faces.geometry import FORCE, GAP_STATE_SIZE, GY, MEAN_SPIN, VISCOSITY
 from ....films._radial_quadrature import RADIAL_POINTS, RULE_SIZE, RULES
-from ....films.radial import film as radial
+from ....films.radial import floored as radial
 from ....films.radial.cavitated_line import cavitated_line
 from ._common import not_available, row
 

@@ -47,7 +47,7 @@ def no_equilibrium() -> dict:
     scene = reference_scene("FMR")
     film = replace(scene.film, model="radial", clearance=None)
     overloaded = replace(scene, film=film, closing=Closing(balance_ratio=1.3, spring_force=0.0))
-    opening = film_module("radial").opening_law(film)
+    opening = film_module("radial", film).opening_law(film)
     area = np.pi * (film.outer_radius**2 - film.inner_radius**2)
     closing = 1.3 * area * film.outer_pressure
 

@@ -1,0 +1,44 @@
+"""Kernels handed to kernels as function values: what a scene chooses is called through its address, not compiled in."""
+
+from functools import lru_cache
+
+from numba import float64, types
+
+from ..faces.contact import contact_load, contact_load_and_friction, no_load
+from ..faces.film_thickness import h_min_of
+
+VECTOR, MATRIX = float64[::1], float64[:, ::1]
+# A film's kernel on its block and a gap state; the load of contact on its block, a film's and a gap state; the thinnest
+# place of a face block at a gap state.
+OF_FILM, OF_LOAD = types.void(VECTOR, VECTOR), types.void(VECTOR, VECTOR, VECTOR)
+OF_THINNEST = types.UniTuple(float64, 3)(VECTOR, VECTOR)
+FILM, LOAD, THINNEST = (types.FunctionType(signature) for signature in (OF_FILM, OF_LOAD, OF_THINNEST))
+
+
+@lru_cache
+class Value(types.WrapperAddressProtocol):
+    """A kernel as a function value, its address looked up once: each look-up costs as much as thirty films."""
+
+    def __init__(self, kernel, signature=OF_FILM):
+        self._signature, found = signature, kernel.get_compile_result(signature)
+        self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
+
+    def __wrapper_address__(self):
+        return self.address
+
+    def signature(self):
+        """The kernel's signature, which numba asks for."""
+        return self._signature
+
+
+def load_value(block, complete=False) -> Value:
+    """Load of contact as a function value, `complete` with friction and wear; without a contact `block` (None) one
+    that does nothing."""
+    if block is None:
+        return Value(no_load, OF_LOAD)
+    return Value(contact_load_and_friction if complete else contact_load, OF_LOAD)
+
+
+def thinnest_value(face) -> Value:
+    """What finds the thinnest place of a face block, as a function value."""
+    return Value(h_min_of(face), OF_THINNEST)

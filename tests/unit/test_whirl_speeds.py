@@ -1,0 +1,166 @@
+"""Critical and resonance speeds of all speeds at once against a search one eigenproblem after the other with SciPy's
+root finder, over random seals."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scenes import SUPPORT, film, fmr, fms, fmsr, ring
+from scipy.optimize import brentq
+
+from sealdyn.dynamics import linearisation, whirl_speeds
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.modes import NEUTRAL
+from sealdyn.numerics.crossing import crossing
+from sealdyn.scene.film import Coefficients
+from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.simulation import stability
+
+
+def tilts(at_speed, w):
+    return [mode for mode in at_speed(w).modes() if mode.kind == "tilt"]
+
+
+def critical_one_by_one(at_speed, low, high, points=160):
+    last = None
+    for w in np.geomspace(low, high, points):
+        values = [mode.value for mode in tilts(at_speed, w)]
+        rate = max(value.real for value in values)
+        rate = rate if abs(rate) > NEUTRAL * max(map(abs, values)) else 0.0
+        if last and last[1] * rate < 0:
+            return brentq(lambda w: max(mode.value.real for mode in tilts(at_speed, w)), last[0], w, rtol=1e-13)
+        last = (w, rate) if rate else last
+    return None
+
+
+def resonances_one_by_one(at_speed, low, high, points=120):
+    def distances(w):
+        return sorted(mode.value.imag - w for mode in tilts(at_speed, w) if mode.direction == "forward")
+
+    found = []
+    for a, b in pairwise(np.geomspace(low, high, points)):
+        before, after = distances(a), distances(b)
+        if len(before) != len(after):
+            continue
+        for i, (p, q) in enumerate(zip(before, after, strict=True)):
+            if p * q < 0:
+                try:
+                    found.append(brentq(lambda w, i=i: distances(w)[i], a, b, rtol=1e-13))
+                except (IndexError, ValueError):
+                    continue
+    return found
+
+
+def drawn_model(draw):
+    """A seal with numbers apart by decades: rings slender, flat, light, without inertia, films of any damping."""
+
+    def number(low, high):
+        return float(np.exp(draw.uniform(np.log(low), np.log(high))))
+
+    def support():
+        still = dict(axial_stiffness=number(1e4, 1e7), axial_damping=number(1.0, 3e3) * draw.integers(0, 2))
+        return replace(SUPPORT, **still)
+
+    def drawn_ring():
+        light = draw.random() < 0.1
+        return ring(support=support()) | dict(
+            mass=0.0 if light else number(0.1, 10.0),
+            transverse_inertia=0.0 if light else number(1e-6, 1e-1),
+            polar_inertia=0.0 if light else number(1e-6, 1e-1),
+        )
+
+    values = Coefficients(
+        tilt_stiffness=number(10.0, 1e5), tilt_damping=number(1e-2, 1e2),
+        axial_stiffness=number(1e4, 1e8), axial_damping=number(1e2, 1e5),
+    )  # fmt: skip
+    table = film("linear", coefficients=values)
+    kind, speed = draw.choice(["fms", "fmr", "fmsr"]), number(10.0, 1e4)
+    if kind == "fms":
+        scene = replace(fms(speed=speed), film=table, stator=Stator(**drawn_ring()))
+    elif kind == "fmr":
+        scene = replace(fmr(speed=speed), film=table, rotor=Rotor(**drawn_ring()))
+    else:
+        turning = float(draw.choice([0.0, number(10.0, 1e3)]))
+        stator = Stator(**drawn_ring(), speed=turning)
+        scene = replace(fmsr(speed=speed), film=table, rotor=Rotor(**drawn_ring()), stator=stator)
+    return Model(scene)
+
+
+def listed(speed):
+    return [] if speed is None else [speed]
+
+
+def compared(model):
+    """Critical speeds, then resonances, each as a list, found by both searches."""
+    natural = stability.natural_frequency(model)
+    if not natural:
+        return ([], []), ([], [])
+
+    def at_speed(w):
+        return model.linear_scene(speed=w)
+
+    return (
+        (listed(stability.critical_speed(model)), listed(critical_one_by_one(at_speed, 1e-3 * natural, 1e3 * natural))),
+        (stability.resonance_speeds(model), resonances_one_by_one(at_speed, 1e-2 * natural, 1e2 * natural)),
+    )
+
+
+def agree(model):
+    """Whether both searches find the same; how many critical and resonance speeds there are."""
+    for found, expected in (both := compared(model)):
+        assert found == pytest.approx(expected, rel=1e-9), model.scene
+    return [len(found) for found, _ in both]
+
+
+@pytest.mark.parametrize("seals", [10, pytest.param(300, marks=pytest.mark.slow)])
+def test_all_at_once_finds_what_one_by_one_finds(seals):
+    draw = np.random.default_rng(2026)
+    counts = np.sum([agree(drawn_model(draw)) for _ in range(seals)], axis=0)
+    assert np.all(counts > 0.3 * seals)
+
+
+@pytest.mark.parametrize("scene", [fms(), fmr(c=2.0), fmsr(), fms(speed=0.0)], ids=["fms", "fmr", "fmsr", "standing"])
+def test_of_the_radial_film_too(scene):
+    model = Model(scene)
+    agree(model)
+    with pytest.MonkeyPatch.context() as patch:
+        # The film is asked for nothing at other speeds than two.
+        asked, one = [], Model.linear_scene
+        patch.setattr(Model, "linear_scene", lambda self, *a, **k: asked.append(k.get("speed")) or one(self, *a, **k))
+        stability.critical_speed(model)
+    assert len([w for w in asked if w is not None]) == 2
+
+
+def test_a_floored_film_is_linearised_at_every_speed():
+    model = Model(fms(film=film(cavitation_pressure=1e3)))
+    assert not linearisation.linear_in_speed(model)
+    values = linearisation.whirl_over_speed(model, None, 1e5)
+    at_once = linearisation.whirl_over_speed(Model(fms()), None, 1e5)
+    speeds = np.array([10.0, 1e3, 1e4])
+    assert np.sort_complex(values(speeds[:1])) == pytest.approx(np.sort_complex(at_once(speeds[:1])), rel=1e-5)
+
+
+def test_massless_and_undamped_has_no_state_to_go_by():
+    nothing = Coefficients(tilt_stiffness=1e3, tilt_damping=0.0, axial_stiffness=1e7, axial_damping=1.0)
+    held = replace(SUPPORT, axial_damping=0.0)
+    light = Stator(**ring(mass=0.0, support=held) | dict(transverse_inertia=0.0, polar_inertia=0.0))
+    model = Model(replace(fms(film=film("linear", coefficients=nothing)), stator=light))
+    assert whirl_speeds.all_at_once(lambda w: model.linear_scene(speed=w), 1e4) is None
+    assert stability.critical_speed(model) is None
+
+
+def test_crossing_of_hard_functions():
+    hard = (
+        (lambda x: x**3 - 2.0, 0.0, 5.0, 2.0 ** (1 / 3)),
+        (lambda x: np.expm1(50 * (x - 0.3)), 0.0, 1.0, 0.3),
+        (lambda x: np.sign(x - 0.7) * abs(x - 0.7) ** 0.2, 0.0, 1.0, 0.7),
+        (lambda x: np.sign(x - 0.5), -1.0, 3.0, 0.5),
+        (lambda x: (x - 0.625) ** 9, -1.0, 3.0, 0.625),
+    )
+    for function, a, b, at in hard:
+        assert crossing(function, a, b, 1e-14) == pytest.approx(at, rel=1e-12)
+        assert crossing(function, b, a, 1e-14) == pytest.approx(at, rel=1e-12)
+    with pytest.raises(ValueError):
+        crossing(lambda x: 1.0 + x * x, -1.0, 1.0, 1e-12)
+    assert np.isnan(crossing(lambda x: x if abs(x) > 0.9 else np.nan, -1.0, 1.0, 1e-12))
