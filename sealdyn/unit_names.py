@@ -1,13 +1,11 @@
 """Unit names: "mPa*s" becomes a dimension and an exact factor to SI.
 
-Angles are counted as a dimension (where a radian is a pure number, 2 pi is lost between Hz and rad/s).
-The definitions are written as pint reads them, and read as pint does (tests/unit/test_units.py holds both against each
-other) without its third of a second at every start.
+Angles are counted as a dimension (pint's own definitions call a radian a pure number, and lose 2 pi between
+Hz and rad/s), so the definitions are our own few.
 """
 
 import difflib
 import re
-from collections import Counter
 from decimal import Decimal
 from functools import cache, lru_cache
 
@@ -63,15 +61,17 @@ calorie = 4.184 joule = cal
 """
 # A unit is names, one-digit powers, * / ( ) and blanks: nothing that could be made to compute for long.
 UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|[*/() ])+")
-# Spelled out, and what it stands for.
-SPELLED = (
-    (re.compile(r" per "), "/"),
-    (re.compile(r"\b(?:square|sq) (\w+)"), r"\1**2"),
-    (re.compile(r"\bcubic (\w+)"), r"\1**3"),
-    (re.compile(r"(\w+) squared\b"), r"\1**2"),
-    (re.compile(r"(\w+) cubed\b"), r"\1**3"),
-)
-TOKEN = re.compile(r" *([a-zA-Z_]\w*|\d+(?:\.\d*)?(?:e-?\d+)?|(?:\^|\*\*) ?[+-]?\d|[*/()])")
+
+
+@cache
+def _registry():
+    import pint
+
+    registry = pint.UnitRegistry(None, non_int_type=Decimal, cache_folder=None)
+    for line in (PREFIXES + DEFINITIONS).split("\n"):
+        if line:
+            registry.define(line)
+    return registry
 
 
 @lru_cache(maxsize=1024)
@@ -79,86 +79,12 @@ def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
     """Dimension (with angle counted) and exact factor to SI of a unit such as "mPa*s"; ValueError when it is none."""
     if len(text) > 60 or not UNIT.fullmatch(text):
         raise ValueError(text)
-    return _evaluated(text)
-
-
-def _evaluated(text: str) -> tuple[frozenset, Decimal]:
-    """As `dimension_and_factor`, of any expression: products and quotients from left to right."""
-    for spelled, meant in SPELLED:
-        text = spelled.sub(meant, text)
-    tokens, at = [], 0
-    while rest := text[at:].strip():
-        found = TOKEN.match(text, at)
-        if not found:
-            raise ValueError(rest)
-        tokens.append(found[1])
-        at = found.end()
-    powers, factor = _product(tokens)
-    if tokens:
-        raise ValueError(text)
-    return frozenset((name, power) for name, power in powers.items() if power), factor
-
-
-def _product(tokens: list[str]) -> tuple[Counter, Decimal]:
-    """Powers of the dimensions, and factor, of a product, taken off the front of the tokens."""
-    powers, factor, sign = Counter(), Decimal(1), 1
-    while True:
-        if not tokens:
-            raise ValueError("nothing to multiply")
-        more, size = _atom(tokens)
-        if tokens and tokens[0][0] in "*^" and tokens[0] != "*":
-            power = int(tokens.pop(0).lstrip("*^ "))
-            more, size = {name: power * n for name, n in more.items()}, size**power
-        for name, n in more.items():
-            powers[name] += sign * n
-        factor = factor * size if sign > 0 else factor / size
-        if not tokens or tokens[0] == ")":
-            return powers, factor
-        # Blanks multiply.
-        sign = -1 if tokens[0] == "/" else 1
-        if tokens[0] in "*/":
-            tokens.pop(0)
-
-
-def _atom(tokens: list[str]) -> tuple[dict, Decimal]:
-    """The same of a number, a name or a bracket."""
-    token = tokens.pop(0)
-    if token == "(":
-        found = _product(tokens)
-        if not tokens or tokens.pop(0) != ")":
-            raise ValueError("a bracket that is not closed")
-        return found
-    return ({}, Decimal(token)) if token[0].isdigit() else _named(token)
-
-
-@cache
-def _named(word: str) -> tuple[dict, Decimal]:
-    """The same of a unit's name: as it stands, else with a prefix, else either in the plural."""
-    prefixes, units = _definitions()
-    for plural in ("", "s"):
-        for prefix, scale in {"": Decimal(1), **prefixes}.items():
-            name = word.removeprefix(prefix).removesuffix(plural)
-            if prefix + name + plural != word or name not in units or (plural and len(name) == 1):
-                continue
-            if units[name].startswith("["):
-                return {units[name]: 1}, scale
-            powers, factor = _evaluated(units[name])
-            return dict(powers), scale * factor
-    raise ValueError(word)
-
-
-@cache
-def _definitions() -> tuple[dict[str, Decimal], dict[str, str]]:
-    """Scale of every prefix, and definition of every name of a unit."""
-    prefixes, units = {}, {}
-    for line in filter(None, (PREFIXES + DEFINITIONS).split("\n")):
-        name, definition, *others = line.split(" = ")
-        for word in (name, *others):
-            if word.endswith("-"):
-                prefixes[word[:-1]] = Decimal(definition)
-            else:
-                units[word] = definition
-    return prefixes, units
+    registry = _registry()
+    try:
+        root = registry.Quantity(Decimal(1), registry.parse_units(text)).to_root_units()
+    except Exception as error:  # the expression parser underneath raises whatever it likes
+        raise ValueError(text) from error
+    return frozenset(root.dimensionality.items()), Decimal(root.magnitude)
 
 
 def unknown_unit(text: str) -> str:

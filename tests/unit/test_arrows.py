@@ -30,6 +30,7 @@ ONLY_IN = {
     "h5py": ("archive",),
     "tomllib": ("scenario",),
     "tomlkit": ("toml_line.py",),
+    "pint": ("unit_names.py",),
     "matplotlib": ("report/charts",),
     "typer": ("cli.py",),
     "rich": ("cli.py",),
