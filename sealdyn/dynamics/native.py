@@ -1,7 +1,7 @@
 """The equations of a segment as functions for C: an address, the address of one block of parameters, and nothing of
 Python inside.  What a compiled loop calls, and SUNDIALS itself (solvers/sundials_direct.py).
 
-The film's kernel comes as an address in the block: one function on disk serves all films.
+The kernels of film and contact come as addresses in the block: one function on disk serves all scenes.
 """
 
 from dataclasses import dataclass
@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numba import carray, cfunc, float64, int32, njit
 
-from ..numerics.addresses import ADDRESS, call_kernel, floats, integers
+from ..numerics.addresses import ADDRESS, call_film, call_load, floats, integers
 from .equations import kinematics, rates, residual
-from .kernels import Value
+from .function_values import Value, load_value
 
-# The block, int64: number of unknowns, the film's kernel, then address and length of each array.
-SIZE, KERNEL, ARRAYS = 0, 1, 2
+# The block, int64: number of unknowns, kernels of film and contact, then address and length of each array.
+SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
 PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = range(6)
 BLOCK = ARRAYS + 2 * 6
 # C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0.
@@ -36,18 +36,12 @@ class Native:
 def native(segment) -> Native:
     """The equations of a segment whose film has no unknowns of its own; they work on the segment's own arrays."""
     model, work = segment.model, np.zeros(segment.size)
-    if model.contact is None:
-        functions, contact = (rates_at, residual_at), np.empty(0)
-    else:
-        # Compiled only where faces may touch.
-        from .native_contact import touching_rates_at, touching_residual_at
-
-        functions, contact = (touching_rates_at, touching_residual_at), model.contact
+    contact = np.empty(0) if model.contact is None else model.contact
     arrays = (segment.p, segment.w, segment.s, model.f, contact, work)
-    block = [segment.size, Value(model.interface.film.wrench).address]
+    block = [segment.size, Value(model.interface.film.wrench).address, load_value(model.contact).address]
     for array in arrays:
         block += [array.ctypes.data, len(array)]
-    return Native(*(function.address for function in functions), np.array(block, dtype=np.int64), arrays)
+    return Native(rates_at.address, residual_at.address, np.array(block, dtype=np.int64), arrays)
 
 
 @njit(cache=True)
@@ -58,29 +52,30 @@ def array(block, which):
 
 
 @njit(cache=True)
-def film(tau, y, yp, block):
-    """Kinematics and film at segment time tau (s) and unknowns `y` (size,), in the block's gap state."""
+def loads(tau, y, yp, block):
+    """Kinematics, film and contact at segment time tau (s) and unknowns `y` (size,), in the block's gap state."""
     f, s = array(block, FILM), array(block, GAP)
     kinematics(tau, y, yp, array(block, PARAMETERS), array(block, SCRATCH), s)
-    call_kernel(block[KERNEL], f, s)
+    call_film(block[KERNEL], f, s)
+    call_load(block[LOAD], array(block, CONTACT), f, s)
 
 
 @cfunc(RATES, cache=True)
 def rates_at(tau, y_at, yp_at, data):
-    """The right-hand side of a scene without contact."""
+    """The right-hand side."""
     block = carray(integers(data), BLOCK)
     y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
-    film(tau, y, yp, block)
+    loads(tau, y, yp, block)
     rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
     return 0
 
 
 @cfunc(RESIDUAL, cache=True)
 def residual_at(tau, y_at, yp_at, res_at, data):
-    """The residual of a scene without contact."""
+    """The residual."""
     block = carray(integers(data), BLOCK)
     y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
-    film(tau, y, yp, block)
+    loads(tau, y, yp, block)
     p, w, s = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP)
     residual(tau, y, yp, p, w, s, array(block, WORK), carray(floats(res_at), block[SIZE]))
     return 0

@@ -29,17 +29,32 @@ def integers(context, address):
     return _pointer_to(int64)(context, address)
 
 
+def _call(context, builder, arguments):
+    """Call a function of arrays at an address; the arrays go as numba's own C wrappers take them."""
+    array = context.get_value_type(VECTOR)
+    kind = ir.FunctionType(ir.VoidType(), [array] * (len(arguments) - 1))
+    builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
+    return context.get_dummy_value()
+
+
 @intrinsic
-def call_kernel(context, kernel, f, s):
-    """Call the kernel void(f, s) at an address; the arrays go as numba's own C wrappers take them."""
+def call_film(context, kernel, f, s):
+    """Call the kernel void(f, s) at an address."""
 
     def code(context, builder, signature, arguments):
-        array = context.get_value_type(VECTOR)
-        kind = ir.FunctionType(ir.VoidType(), [array, array])
-        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
+        return _call(context, builder, arguments)
 
     return types.void(ADDRESS, VECTOR, VECTOR), code
+
+
+@intrinsic
+def call_load(context, kernel, k, f, s):
+    """Call the kernel void(k, f, s) at an address."""
+
+    def code(context, builder, signature, arguments):
+        return _call(context, builder, arguments)
+
+    return types.void(ADDRESS, VECTOR, VECTOR, VECTOR), code
 
 
 @intrinsic

@@ -50,7 +50,7 @@ def test_the_package_alone_loads_nothing():
 
 
 BESIDE_A_RUN = {
-    "matplotlib", "PIL", "pint", "xarray", "h5netcdf", "dask", "scipy.optimize", "scipy.integrate",
+    "matplotlib", "PIL", "sksundae", "xarray", "h5netcdf", "distributed", "scipy.optimize", "scipy.integrate",
     "scipy.stats", "scipy.signal", "scipy.special", "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
 }  # fmt: skip
 OF_OTHERS = ("cavitated", "contact_load", "thinnest_of_waves", "locate_contacts", "profiled")
@@ -62,7 +62,7 @@ def named(kernels, names):
 
 def test_a_run_without_figure_loads_no_more_than_it_needs(tmp_path):
     modules, kernels = run(tmp_path, "fms_reference", "--set", "run.turns=2")
-    assert "sksundae" in modules and not modules & BESIDE_A_RUN
+    assert not modules & BESIDE_A_RUN
     assert "films.radial.film.wrench" in kernels and "faces.contact.no_load" in kernels
     assert not named(kernels, OF_OTHERS), kernels
 
@@ -70,7 +70,7 @@ def test_a_run_without_figure_loads_no_more_than_it_needs(tmp_path):
 def test_a_linear_run_needs_no_sundials(tmp_path):
     words = ("--set", "film.model=linear", "--set", "run.turns=2")
     modules, kernels = run(tmp_path, "fms_reference", *words)
-    assert not modules & (BESIDE_A_RUN | {"sksundae", "scipy.sparse"})
+    assert not modules & (BESIDE_A_RUN | {"scipy.sparse"})
     # Its leakage is that of the radial film, which it is judged by.
     assert not named(kernels, (*OF_OTHERS, "films.radial.film.wrench"))
 
@@ -79,12 +79,3 @@ def test_a_linear_run_needs_no_sundials(tmp_path):
 def test_what_a_scene_has_is_made_ready(tmp_path, key, kernel):
     _, kernels = run(tmp_path, "fms_reference", "--set", "run.turns=1", "--set", key)
     assert named(kernels, [kernel])
-
-
-def test_scipys_optimisers_come_whole_to_whoever_asks_after_a_run():
-    code = "from sealdyn.solvers.sundae import CVODE, IDA\nimport sys\nassert 'scipy.optimize' not in sys.modules\n"
-    code += "from scipy.optimize import brentq, least_squares\n"
-    code += "assert abs(brentq(lambda x: x - 0.3, 0, 1) - 0.3) < 1e-9\n"
-    code += "assert abs(least_squares(lambda x: x - 3, [1.0]).x - 3) < 1e-9\n"
-    modules, _ = loaded(code)
-    assert {"scipy.optimize", "sksundae"} <= modules
