@@ -55,8 +55,8 @@ class CoupledSegment(Segment):
 
         self.rhs, self.ring_rates, self._loads, self.residual = rhs, ring_rates, loads, residual
 
-    def native(self):
-        """None: a film with unknowns is evaluated by Python."""
+    # A film with unknowns is evaluated by Python.
+    native = None
 
     # --- derivatives --------------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -103,8 +104,9 @@ class Segment:
         self.rhs, self.residual = (rhs, residual) if block is None else (touching_rhs, touching_residual)
         self.ring_rates = self.rhs
 
+    @cached_property
     def native(self):
-        """These equations for C (native.py), which work on this segment's arrays."""
+        """These equations for C (native.py), which work on this segment's arrays and those of its copies."""
         # A kernel of fixed signature is made ready by its import.
         from .native import native
 

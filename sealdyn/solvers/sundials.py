@@ -32,7 +32,7 @@ def why_slow() -> str:
 
 
 def _back_end(segment, counts):
-    if why_slow() or not (hasattr(segment, "native") and segment.native()):
+    if why_slow() or getattr(segment, "native", None) is None:
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
     # Its compiled code needs the libraries open.

@@ -181,7 +181,7 @@ class _Carried:
 def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
     **Raises** SolverFailure."""
-    native, y, reached = segment.native(), y.copy(), np.array([tau])
+    native, y, reached = segment.native, y.copy(), np.array([tau])
     carried = _Carried(segment, native.rates, native)
     with _Objects(segment.size) as made:
         lib, vector = made.lib, made.vector(y)
@@ -214,7 +214,7 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
 def ida(segment, tau, y, method, tolerance, counts):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
-    native, reached = segment.native(), np.array([tau])
+    native, reached = segment.native, np.array([tau])
     carried = _Carried(segment, native.residual, native)
     y, yp = (np.ascontiguousarray(part, dtype=float) for part in segment.start(tau, y.copy()))
     with _Objects(segment.size) as made:

@@ -1,4 +1,4 @@
-"""What one right-hand side costs, and where: film kernel, rings and forcing, scikit-sundae, gap watching.
+"""What one right-hand side costs, and where: film kernel, rings and forcing, SUNDIALS, gap watching.
 
     python tests/benchmark/right_hand_side.py
 
@@ -11,12 +11,14 @@ from pathlib import Path
 
 import numpy as np
 from scenes import started
-from sksundae.cvode import CVODE
 
 import sealdyn
+from sealdyn.dynamics.function_values import Value
+from sealdyn.dynamics.kernels import at_each
 from sealdyn.films.radial import film as radial
-from sealdyn.solvers.contract import absolute_tolerances, tolerance_for
+from sealdyn.solvers.contract import Counts, tolerance_for
 from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.methods import METHODS
 from sealdyn.solvers.recorder import Recorder
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
@@ -56,23 +58,20 @@ def shares(scene):
     duration = TURNS * 2 * math.pi / scene.shaft.speed
     ready = started(scene, duration, 1e-6)
     segment = ready.segment(0)
-    y, yp = ready.y0.copy(), np.empty(segment.size)
-    film = per_call(lambda: ready.model.interface.film.wrench(ready.model.f, segment.s))
-    rhs = per_call(lambda: segment.rhs(0.1, y, yp))
-    tolerance = tolerance_for("adams", 1e-6, ready.memory)
-    calls = [0]
-
-    def counted(t, y, yp):
-        calls[0] += 1
-        segment.rhs(t, y, yp)
+    calls = 20_000
+    taus, ys = np.linspace(0.0, duration, calls), np.tile(ready.y0, (calls, 1))
+    gaps, (f, wrench) = np.tile(segment.s, (calls, 1)), (ready.model.f, Value(ready.model.interface.film.wrench))
+    film = best(lambda: at_each(wrench, f, gaps)) / calls * 1e6
+    rhs = best(lambda: segment.derivatives(taus, ys)) / calls * 1e6
+    tolerance, counts = tolerance_for("adams", 1e-6, ready.memory), [0]
 
     def bare():
-        calls[0] = 0
-        solver = CVODE(counted, method="Adams", rtol=tolerance, atol=absolute_tolerances(segment, tolerance),
-                       jacfn=segment.jacobian, max_num_steps=10**7)  # fmt: skip
-        return solver.solve(np.array([0.0, duration]), ready.y0)
+        counted = Counts()
+        for _ in METHODS["adams"](segment, 0.0, ready.y0, "adams", tolerance, counted):
+            pass
+        counts[0] = counted.rhs
 
-    alone = best(bare) / calls[0] * 1e6
+    alone = best(bare) / counts[0] * 1e6
     outcome = [None]
 
     def whole():
@@ -86,8 +85,8 @@ def shares(scene):
     total = total / rhs_calls * 1e6
     print(f"\n{TURNS} turns at accuracy 1e-6: {rhs_calls} right-hand sides, {outcome[0].counts.steps} steps")
     print(f"  film kernel                              {film:6.2f} us per right-hand side")
-    print(f"  rings, forcing, works, counting          {rhs - film:6.2f}")
-    print(f"  scikit-sundae and CVODE, steps returned  {alone - rhs:6.2f}")
+    print(f"  rings, forcing, works                    {rhs - film:6.2f}")
+    print(f"  CVODE, steps returned                    {alone - rhs:6.2f}")
     print(f"  gap watching, energy audit, blocks       {total - alone:6.2f}")
     print(f"  all                                      {total:6.2f}")
 
@@ -97,25 +96,7 @@ def _wall(scene, duration):
     return solve(ready, "adams", 1e-6, Recorder()).wall_time
 
 
-def floor():
-    """What scikit-sundae costs with nothing to compute: the floor under any right-hand side."""
-    calls = [0]
-
-    def nothing(t, y, yp):
-        calls[0] += 1
-        yp[0], yp[1] = y[1], -y[0]
-
-    def run():
-        calls[0] = 0
-        solver = CVODE(nothing, method="Adams", rtol=1e-8, atol=1e-10, max_num_steps=10**7)
-        solver.solve(np.array([0.0, 2 * math.pi * TURNS]), np.array([1.0, 0.0]))
-
-    wall = best(run)
-    print(f"  scikit-sundae on y'' = -y (two unknowns, nothing to compute): {wall / calls[0] * 1e6:.2f} us per call")
-
-
 if __name__ == "__main__":
     scene = sealdyn.read_scenario(SCENARIO).scene
     film_kernel(scene)
     shares(scene)
-    floor()

@@ -69,7 +69,7 @@ class CountedSegment(Segment):
             check(t, y)
             residual(t, y, yp, res)
 
-        self.rhs, self.residual, self.native = counted_rhs, counted_residual, lambda: None
+        self.rhs, self.residual, self.native = counted_rhs, counted_residual, None
 
 
 class Counted(Model):

@@ -27,7 +27,7 @@ def wrong(change):
                 yp[rate] += push.real
                 yp[rate + 1] += push.imag
 
-            self.rhs, self.native = rhs, lambda: None
+            self.rhs, self.native = rhs, None
 
     class Wrong(Model):
         def segment(self, interval=None, index=0, last=True, stuck=None):
