@@ -91,13 +91,18 @@ def critical_speed(values, low: float, high: float, points: int = 160) -> float 
     does not, or only within rounding."""
     speeds = np.geomspace(low, high, points)
     found = values(speeds)
-    rates = np.nanmax(found.real, axis=1)
-    rates[np.abs(rates) <= NEUTRAL * np.nanmax(np.abs(found), axis=1)] = 0.0
-    # A speed at the threshold itself, within rounding, hides no change of sign.
+    rates = _largest(found.real)
+    # A speed at the threshold itself, within rounding, hides no change of sign, nor does one without a tilt mode.
+    rates[~np.isfinite(rates) | (np.abs(rates) <= NEUTRAL * _largest(np.abs(found)))] = 0.0
     for a, b in pairwise(np.flatnonzero(rates)):
         if rates[a] * rates[b] < 0:
-            return crossing(lambda w: np.nanmax(values([w]).real), speeds[a], speeds[b], 1e-13)
+            return crossing(lambda w: _largest(values([w]).real)[0], speeds[a], speeds[b], 1e-13)
     return None
+
+
+def _largest(rows) -> np.ndarray:
+    """Largest number (m,) of each row, minus infinity of a row of NaN."""
+    return np.max(np.where(np.isnan(rows), -np.inf, rows), axis=1)
 
 
 def resonance_speeds(values, low: float, high: float, points: int = 120) -> list[float]:

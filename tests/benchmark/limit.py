@@ -213,7 +213,7 @@ def whole_runs(program, repeats):
                 ours = min(ours, time.perf_counter() - begun)
                 if program:
                     floor = min(
-                        [floor, *(w for w, e in (in_c(program, turns, 10.0**-k) for k in (5, 5.5, 6)) if e <= 1e-6)]
+                        [floor, *(w for w, e in (in_c(program, turns, 10.0**-k) for k in (5, 6, 7, 8)) if e <= 1e-6)]
                     )
             walls = f"{ours * 1e3:.1f} ms, C {floor * 1e3:.1f} ms"
             print(f"{turns} turns, {way}: {walls}: {ours / floor:.2f} times (asked {limit})")
