@@ -7,6 +7,7 @@ import platform
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -219,11 +220,17 @@ def _resumed(run, writer, sink, audit):
     return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
 
 
+@cache
+def _libraries() -> dict[str, str]:
+    """Versions of what decides the numbers; looked up once, since each costs milliseconds."""
+    names = ("numpy", "scipy", "scikit-sundae", "h5py", "numba")
+    return {name: version(name) for name in names} | {"python": platform.python_version()}
+
+
 def _meta(scenario, method) -> dict:
-    libraries = ("numpy", "scipy", "scikit-sundae", "h5py", "numba")
     return {
         "version": __version__,
-        "libraries": {name: version(name) for name in libraries} | {"python": platform.python_version()},
+        "libraries": _libraries(),
         "solver": method,
         "accuracy": scenario.run.accuracy,
         "question": scenario.question,
