@@ -208,7 +208,7 @@ def test_ctrl_c_of_the_command_cancels_what_waits(scheduler, tmp_path):
     kept = tmp_path / "kept"
     command = [
         sys.executable, "-m", "sealdyn.cli", "study", "sweep", str(PATH), "--vary", "rotor.runout=10:60 urad:200",
-        "--set", "run.turns=100", "--out", str(tmp_path / "s.h5"), "--scheduler", scheduler, "--results", str(kept),
+        "--set", "run.turns=3000", "--out", str(tmp_path / "s.h5"), "--scheduler", scheduler, "--results", str(kept),
     ]  # fmt: skip
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     until(lambda: process.poll() is not None or len(list(kept.glob("*.json"))) > 1)
