@@ -10,6 +10,8 @@ TEXT_TYPE = h5py.string_dtype()
 TEXT = h5t.py_create(TEXT_TYPE, logical=True)
 # The dimension of the instants at which fields are kept.
 FIELD_TIME = "field_time"
+# Rows of a series in one chunk: HDF5 takes 4 GiB.
+MOST_IN_PLACE = 1 << 28
 
 
 class Series(NamedTuple):
@@ -74,12 +76,14 @@ def names_over(file, scale: str) -> list[str]:
 
 def reserve(file, name: str, series: Series, shape: tuple[int, ...]):
     """A dataset with room for `shape`, NaN until written, which stays where it is in the file: a single chunk, so that
-    it can be shortened there."""
-    plan = h5p.create(h5p.DATASET_CREATE)
-    plan.set_chunk(tuple(max(length, 1) for length in shape))
+    it can be shortened there, or in one piece where HDF5 has no chunk so large."""
+    plan, most = h5p.create(h5p.DATASET_CREATE), None
+    if shape[0] <= MOST_IN_PLACE:
+        plan.set_chunk(tuple(max(length, 1) for length in shape))
+        most = h5s.UNLIMITED, *shape[1:]
     plan.set_alloc_time(h5d.ALLOC_TIME_EARLY)
     plan.set_fill_value(np.array(np.nan))
-    space = h5s.create_simple(shape, (h5s.UNLIMITED, *shape[1:]))
+    space = h5s.create_simple(shape, most)
     describe(h5d.create(file.id, name.encode(), h5t.IEEE_F64LE, space, plan), series._asdict())
 
 

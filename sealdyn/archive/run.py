@@ -21,7 +21,17 @@ import h5py
 import numpy as np
 
 from ..status import Status
-from .fields import FIELD_TIME, Fields, Series, attach_scale, create_fields, names_over, reserve, scale_of
+from .fields import (
+    FIELD_TIME,
+    MOST_IN_PLACE,
+    Fields,
+    Series,
+    attach_scale,
+    create_fields,
+    names_over,
+    reserve,
+    scale_of,
+)
 
 # Archives of the first format have no fields.
 FORMAT, OLDER = "sealdyn archive 2", ("sealdyn archive 1",)
@@ -148,11 +158,11 @@ class ArchiveWriter:
             target = self.partial
         self._attributes |= {"status": status, "message": message, "summary": summary}
         self._attributes |= {"rows": self.rows, "instants": self.instants}
-        # What has room to spare gives it back; else the rows stay where they are.
-        full = self.rows > SHARE * self._room
-        written = self._shortened(target) if full else self._rewritten(
-            target, self.rows, self.instants, self.partial, self._attributes
-        )  # fmt: skip
+        if self.rows > SHARE * self._room and self._room <= MOST_IN_PLACE:
+            written = self._shortened(target)
+        else:
+            # What has much room to spare gives it back.
+            written = self._rewritten(target, self.rows, self.instants, self.partial, self._attributes)
         with written as file:
             file.create_group("restart").attrs["state"] = _to_json(self.state)
             _write_events(file, _read_log(self._log))
@@ -235,9 +245,8 @@ class ArchiveWriter:
 
     @contextmanager
     def _rewritten(self, target: Path, room: int, instants: int, source, attributes: dict):
-        """A complete new file that takes the place of `target` at once when the block ends."""
-        fresh = target.with_name(target.name + ".new")
-        with h5py.File(fresh, "w") as file:
+        """A complete new file that takes the place of `target` when the block ends."""
+        with self._beside(target) as fresh, h5py.File(fresh, "w") as file:
             _write_attributes(file, {"format": FORMAT, **attributes})
             for name, series in self._series.items():
                 reserve(file, name, series, (room,))
@@ -251,25 +260,28 @@ class ArchiveWriter:
                     for name in self._fields.over_time() if self.instants else ():
                         file[name][: self.instants] = old[name][: self.instants]
             yield file
-        self._close()
-        os.replace(fresh, target)
 
     @contextmanager
     def _shortened(self, target: Path):
-        """A copy of the file without its spare room and restart group, which takes the place of `target` at once when
-        the block ends."""
-        fresh = target.with_name(target.name + ".new")
-        shutil.copyfile(self.partial, fresh)
-        with h5py.File(fresh, "r+") as file:
-            _write_attributes(file, self._attributes)
-            lengths = dict.fromkeys(self._series, self.rows)
-            lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
-            for name, length in lengths.items():
-                item = h5py.h5d.open(file.id, name.encode())
-                if item.shape[0] != length:
+        """A copy of the file without its spare room and restart group, which takes the place of `target` when the block
+        ends."""
+        with self._beside(target) as fresh:
+            shutil.copyfile(self.partial, fresh)
+            with h5py.File(fresh, "r+") as file:
+                _write_attributes(file, self._attributes)
+                lengths = dict.fromkeys(self._series, self.rows)
+                lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
+                for name, length in lengths.items():
+                    item = h5py.h5d.open(file.id, name.encode())
                     item.set_extent((length, *item.shape[1:]))
-            del file["restart"]
-            yield file
+                del file["restart"]
+                yield file
+
+    @contextmanager
+    def _beside(self, target: Path):
+        """Where the file is written that takes the place of `target` at once when the block ends."""
+        fresh = target.with_name(target.name + ".new")
+        yield fresh
         self._close()
         os.replace(fresh, target)
 
@@ -307,10 +319,7 @@ def _write_events(file, events: list[dict]) -> None:
     rest = [{k: v for k, v in event.items() if k not in group} for event in events]
     group["details"] = np.array([_to_json(item) for item in rest], h5py.string_dtype())
     group["time"].attrs["units"] = "s"
-    group["time"].make_scale("time")
-    for name in group:
-        if name != "time":
-            group[name].dims[0].attach_scale(group["time"])
+    attach_scale(group, "time", list(group))
 
 
 def _to_json(value) -> str:

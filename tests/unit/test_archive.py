@@ -40,6 +40,23 @@ def assert_rows(path, stop):
         np.testing.assert_array_equal(column(path, name), expected.astype(float))
 
 
+@pytest.mark.parametrize("expected", [0, 299, 310, 5000])
+@pytest.mark.parametrize("in_place", [1 << 28, 100])
+def test_whatever_room_was_kept_a_finished_file_has_its_rows_alone(tmp_path, monkeypatch, expected, in_place):
+    """Shortened where it stands or written anew: no row of room is left, nor anything of a run that goes on."""
+    for module in ("run", "fields"):
+        monkeypatch.setattr(f"sealdyn.archive.{module}.MOST_IN_PLACE", in_place)
+    run = writer(tmp_path / "run.h5", expected_rows=expected)
+    run.append(rows(0, 300))
+    run.finish("ok", "done", {})
+    assert_rows(tmp_path / "run.h5", 300)
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert {file[name].shape for name in ("time", *SERIES)} == {(300,)}
+        assert (file["h_min"].chunks is None) == (in_place < 300)
+        assert "record" not in file["restart"] and file["h_min"].dims[0][0].name == "/time"
+    assert list(tmp_path.iterdir()) == [tmp_path / "run.h5"]
+
+
 def test_what_goes_in_comes_out_to_the_last_bit(tmp_path):
     path = tmp_path / "run.h5"
     run = writer(path)
