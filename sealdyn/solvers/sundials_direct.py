@@ -14,6 +14,7 @@ from numba import carray, cfunc, float64, int32, int64, njit, types
 from ..numerics.addresses import ADDRESS, call_rates, call_residual, floats, integers
 from .contract import FEW, MOST_ORDERS, SolverFailure, absolute_tolerances, failure_message
 from .sundials_libraries import libraries
+from .sundials_python import MOST_STEPS, longest_step
 
 # The functions below are linked to these libraries as they are compiled.
 if isinstance(libraries(), str):
@@ -26,7 +27,6 @@ BLOCK = 1024
 FUNCTION, DATA, SIZE, COLUMNS, SCALES, CALLS, JACOBIANS = range(7)
 CARRIED = 7
 ADAMS, BDF, ONE_STEP = 1, 2, 2
-MOST_STEPS = 1_000_000
 
 _pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
 _columns = types.ExternalFunction("SUNDenseMatrix_Data", ADDRESS(ADDRESS))
@@ -47,11 +47,14 @@ def _rates(tau, y, yp, carried):
 def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
     """d y'/d y by forward differences, column by column; works feed nothing back."""
     carried = carray(integers(carried), CARRIED)
-    size, data = carried[SIZE], _columns(matrix)
-    y, base, scales = carray(floats(_pointer(y)), size), carray(floats(_pointer(yp)), size), carried[SCALES]
-    scale, there, at = carray(floats(scales), size), _pointer(moved), carray(floats(_pointer(moved)), size)
+    size, data, there = carried[SIZE], _columns(matrix), _pointer(moved)
+    y, base, scale = (
+        carray(floats(_pointer(y)), size),
+        carray(floats(_pointer(yp)), size),
+        carray(floats(carried[SCALES]), size),
+    )
+    at, columns = carray(floats(there), size), carray(floats(data), (size, size))
     at[:] = y
-    columns = carray(floats(data), (size, size))
     columns[:] = 0.0
     carried[JACOBIANS] += 1
     carried[CALLS] += carried[COLUMNS]
@@ -154,20 +157,18 @@ class _Objects:
 class _Carried:
     """The words that SUNDIALS carries through to the functions above, kept alive, and what they count."""
 
-    def __init__(self, segment, function: int, native):
-        self.native, self.scales = native, np.ascontiguousarray(segment.scales)
-        block = self.native.block.ctypes.data
-        words = [function, block, segment.size, segment.n_mechanical, self.scales.ctypes.data, 0, 0]
+    def __init__(self, segment, function: int):
+        self.native, self.scales = segment.native, np.ascontiguousarray(segment.scales)
+        block, scales = self.native.block.ctypes.data, self.scales.ctypes.data
+        words = [function, block, segment.size, segment.n_mechanical, scales, 0, 0]
         self.words, self.orders = np.array(words, dtype=np.int64), np.zeros(MOST_ORDERS, dtype=np.int64)
         self.failures = [0, 0]
 
     def tell(self, counts, memory, asked):
         """Add what has been done since the last time; `asked`: SUNDIALS' functions for the steps that the error test
         and the nonlinear solver refused."""
-        counts.rhs, counts.jacobians = (
-            counts.rhs + int(self.words[CALLS]),
-            counts.jacobians + int(self.words[JACOBIANS]),
-        )
+        counts.rhs += int(self.words[CALLS])
+        counts.jacobians += int(self.words[JACOBIANS])
         counts.orders = [a + int(b) for a, b in zip(counts.orders, self.orders, strict=True)]
         found, number = [], ctypes.c_long()
         for ask in asked:
@@ -181,8 +182,7 @@ class _Carried:
 def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
     **Raises** SolverFailure."""
-    native, y, reached = segment.native, y.copy(), np.array([tau])
-    carried = _Carried(segment, native.rates, native)
+    carried, y, reached = _Carried(segment, segment.native.rates), y.copy(), np.array([tau])
     with _Objects(segment.size) as made:
         lib, vector = made.lib, made.vector(y)
         memory = lib.CVodeCreate(ADAMS if method == "adams" else BDF, made.context)
@@ -195,8 +195,7 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
         lib.CVodeSetLinearSolver(memory, solver, matrix)
         lib.CVodeSetJacFn(memory, ctypes.c_void_p(_jacobian.address))
         lib.CVodeSetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
-        longest = segment.longest_step()
-        lib.CVodeSetMaxStep(memory, ctypes.c_double(longest if np.isfinite(longest) else 0.0))
+        lib.CVodeSetMaxStep(memory, ctypes.c_double(longest_step(segment)))
         lib.CVodeSetStopTime(memory, ctypes.c_double(segment.length))
         if max_order:
             lib.CVodeSetMaxOrd(memory, max_order)
@@ -214,8 +213,7 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
 def ida(segment, tau, y, method, tolerance, counts):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
-    native, reached = segment.native, np.array([tau])
-    carried = _Carried(segment, native.residual, native)
+    carried, reached = _Carried(segment, segment.native.residual), np.array([tau])
     y, yp = (np.ascontiguousarray(part, dtype=float) for part in segment.start(tau, y.copy()))
     with _Objects(segment.size) as made:
         lib, vector, slopes = made.lib, made.vector(y), made.vector(yp)
@@ -231,9 +229,7 @@ def ida(segment, tau, y, method, tolerance, counts):
             differential[segment.algebraic] = 0.0
             lib.IDASetId(memory, made.vector(differential))
         lib.IDASetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
-        longest = segment.longest_step()
-        if np.isfinite(longest):
-            lib.IDASetMaxStep(memory, ctypes.c_double(longest))
+        lib.IDASetMaxStep(memory, ctypes.c_double(longest_step(segment)))
         lib.IDASetStopTime(memory, ctypes.c_double(segment.length))
         rows = FEW if segment.may_change else BLOCK
         while reached[0] < segment.length:

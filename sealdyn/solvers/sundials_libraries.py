@@ -15,6 +15,12 @@ POINTERS = (
     "N_VMake_Serial", "CVodeCreate", "IDACreate", "SUNDenseMatrix", "SUNSparseMatrix", "SUNLinSol_Dense",
     "CVodeGetReturnFlagName", "IDAGetReturnFlagName",
 )  # fmt: skip
+# What compiled code calls by itself: without one of them its loading would end the process.
+COMPILED = (
+    "N_VGetArrayPointer_Serial", "SUNDenseMatrix_Data", "CVode", "CVodeGetLastOrder", "IDASolve", "IDAGetLastOrder",
+)  # fmt: skip
+# What may not be refused, by the beginnings of names.
+ASKED = ("CVodeInit", "CVodeSV", "CVodeSet", "IDAInit", "IDASV", "IDASet")
 
 
 class Libraries:
@@ -38,6 +44,8 @@ class Libraries:
             llvmlite.binding.load_library_permanently(str(found[0]))
         self._check_version()
         self._check_layout()
+        for name in COMPILED:
+            getattr(self, name)
 
     def __getattr__(self, name):
         for library in self.opened:
@@ -46,6 +54,8 @@ class Libraries:
             except AttributeError:
                 continue
             found.restype = ctypes.c_void_p if name in POINTERS else ctypes.c_int
+            if name.startswith(ASKED):
+                found.errcheck = _accepted
             setattr(self, name, found)
             return found
         raise OSError(f"SUNDIALS offers no {name}")
@@ -70,6 +80,13 @@ class Libraries:
         if [3, 3, 7] not in (narrow, wide):
             raise OSError("SUNDIALS lays its matrices out otherwise than known")
         self.index = ctypes.c_int32 if narrow == [3, 3, 7] else ctypes.c_int64
+
+
+def _accepted(flag, function, given):
+    """What SUNDIALS answers to a setting, if it takes it."""
+    if flag < 0:
+        raise OSError(f"SUNDIALS refused {function.__name__} ({flag})")
+    return flag
 
 
 @cache

@@ -4,15 +4,17 @@ import warnings
 
 import numpy as np
 
-from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
+from .contract import FEW, MANY, SolverFailure, absolute_tolerances, failure_message
 
-# Blocks of single steps; chunks of SUNDIALS' steps, and what a healthy one may cost (evaluations per
-# fastest forcing period): beyond it something is closing or crawling, and it is walked step by step.
-BLOCK, FIRST_CHUNK, STEPS_PER_CHUNK, BUDGET = 192, 20.0, 3000, 400.0
+# Chunks of SUNDIALS' steps, and what a healthy one may cost (evaluations per fastest forcing period): beyond it
+# something is closing or crawling, and it is walked step by step.
+FIRST_CHUNK, STEPS_PER_CHUNK, BUDGET = 20.0, 3000, 400.0
+# Between two of its answers.
+MOST_STEPS = 1_000_000
 
 
-def _longest(segment):
-    """Longest step as SUNDIALS wants it: 0 means any."""
+def longest_step(segment) -> float:
+    """Longest step (s) as SUNDIALS wants it: 0 means any."""
     longest = segment.longest_step()
     return longest if np.isfinite(longest) else 0.0
 
@@ -52,7 +54,7 @@ def _in_chunks(solver, segment, tau, y, yp, method, counts, allow):
         span = (stop - tau + span) * min(max(STEPS_PER_CHUNK / max(taken, 1), 0.2), 4.0)
 
 
-def _one_by_one(solver, end, tau, y, yp, method, block=BLOCK):
+def _one_by_one(solver, end, tau, y, yp, method, block=MANY):
     """The same, step by step: for stretches that may not end well.  Returns time, unknowns and derivatives there."""
     solver.init_step(tau, y) if yp is None else solver.init_step(tau, y, yp)
     ts, ys, yps = [], [], []
@@ -117,8 +119,8 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
         rtol=tolerance,
         atol=absolute_tolerances(segment, tolerance),
         jacfn=counted_jacobian,
-        max_step=_longest(segment),
-        max_num_steps=1_000_000,
+        max_step=longest_step(segment),
+        max_num_steps=MOST_STEPS,
         **options,
     )
     yield from _in_chunks(solver, segment, tau, y, None, method, counts, allow)
@@ -143,8 +145,8 @@ def ida(segment, tau, y, method, tolerance, counts):
     with warnings.catch_warnings():
         # It warns that a pattern beside derivatives is used for its shape only.
         warnings.simplefilter("ignore", UserWarning)
-        solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(segment, tolerance), max_num_steps=1_000_000,
-                     max_step=_longest(segment), **options)  # fmt: skip
+        solver = IDA(counted, rtol=tolerance, atol=absolute_tolerances(segment, tolerance), max_num_steps=MOST_STEPS,
+                     max_step=longest_step(segment), **options)  # fmt: skip
     yield from _in_chunks(solver, segment, tau, y, yp, method, counts, allow)
 
 

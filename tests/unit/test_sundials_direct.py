@@ -114,6 +114,22 @@ def test_another_version_is_refused_and_scikit_sundae_serves(monkeypatch):
         sundials_libraries.libraries.cache_clear()
 
 
+def test_what_compiled_code_would_miss_is_found_first(monkeypatch):
+    """Linked to a function that is not there, it would end the process."""
+    monkeypatch.setattr(sundials_libraries, "COMPILED", ("CVode", "CVodeOfAnotherName"))
+    sundials_libraries.libraries.cache_clear()
+    try:
+        assert sundials.why_slow().endswith("SUNDIALS offers no CVodeOfAnotherName")
+    finally:
+        sundials_libraries.libraries.cache_clear()
+
+
+def test_a_setting_that_sundials_refuses_is_told():
+    with pytest.raises(OSError, match=r"SUNDIALS refused CVodeSetMaxOrd \(-2\d\)"):
+        list(METHODS["bdf"](prepared(fmr(), TURN, 1e-6).segment(0), 0.0, np.zeros(12), "bdf", 1e-6, Counts(),
+                            max_order=-1))  # fmt: skip
+
+
 RUN = """
 import sys, sealdyn
 from sealdyn.simulation.simulate import simulate_in_memory
