@@ -29,7 +29,7 @@ def kernel_sources(texts: dict[Path, bytes] | None = None) -> dict[Path, bytes]:
     """Files that hold kernels, and all that they import, however far: the constants they take in.  Path -> content;
     `texts` those of all source files, if read already."""
     texts = texts or _sources()
-    found, ahead = set(), [path for path, text in texts.items() if b"@njit" in text]
+    found, ahead = set(), [path for path, text in texts.items() if b"@njit" in text or b"@cfunc" in text]
     while ahead:
         path = ahead.pop()
         if path in found:

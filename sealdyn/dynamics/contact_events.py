@@ -94,28 +94,8 @@ def _close(state, lifted, impulse, level, error, rows, count):
 
 
 @njit(cache=True)
-def locate_contacts(
-    t,
-    q_all,
-    q_rate_all,
-    impulse,
-    count,
-    begin,
-    end,
-    reach,
-    p,
-    thinnest,
-    f,
-    y,
-    yp,
-    w,
-    s,
-    start,
-    pace,
-    error,
-    state,
-    rows,
-):
+def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, thinnest, f, y, yp, w, s, start, pace,
+                    error, state, rows):  # fmt: skip
     """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows` (k, ROW); returns how many
     ended.
 

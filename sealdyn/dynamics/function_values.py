@@ -2,6 +2,7 @@
 
 from functools import lru_cache
 
+import numpy as np
 from numba import float64, types
 
 from ..faces.contact import contact_load, contact_load_and_friction, no_load
@@ -31,12 +32,12 @@ class Value(types.WrapperAddressProtocol):
         return self._signature
 
 
-def load_value(block, complete=False) -> Value:
-    """Load of contact as a function value, `complete` with friction and wear; without a contact `block` (None) one
-    that does nothing."""
+def load_value(block, complete=False) -> tuple[Value, np.ndarray]:
+    """Load of contact as a function value, `complete` with friction and wear, and its block; without one (None) a load
+    that does nothing, and an empty block."""
     if block is None:
-        return Value(no_load, OF_LOAD)
-    return Value(contact_load_and_friction if complete else contact_load, OF_LOAD)
+        return Value(no_load, OF_LOAD), np.empty(0)
+    return Value(contact_load_and_friction if complete else contact_load, OF_LOAD), block
 
 
 def thinnest_value(face) -> Value:

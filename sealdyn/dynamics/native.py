@@ -36,9 +36,9 @@ class Native:
 def native(segment) -> Native:
     """The equations of a segment whose film has no unknowns of its own; they work on the segment's own arrays."""
     model, work = segment.model, np.zeros(segment.size)
-    contact = np.empty(0) if model.contact is None else model.contact
+    load, contact = load_value(model.contact)
     arrays = (segment.p, segment.w, segment.s, model.f, contact, work)
-    block = [segment.size, Value(model.interface.film.wrench).address, load_value(model.contact).address]
+    block = [segment.size, Value(model.interface.film.wrench).address, load.address]
     for array in arrays:
         block += [array.ctypes.data, len(array)]
     return Native(rates_at.address, residual_at.address, np.array(block, dtype=np.int64), arrays)

@@ -204,9 +204,8 @@ class Segment:
         from .kernels import rates_along
 
         model, out = self.model, np.zeros((len(taus), self.size))
-        block = np.empty(0) if model.contact is None else model.contact
-        film, contact = Value(model.interface.film.wrench), load_value(model.contact)
-        rates_along(film, model.f, contact, block, self.p, self.w, self.s, taus, ys, out)
+        film = Value(model.interface.film.wrench), model.f
+        rates_along(*film, *load_value(model.contact), self.p, self.w, self.s, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:

@@ -228,13 +228,12 @@ def samples(segment, taus, q, q_rate, x=None) -> Samples:
     massive = segment.rate_places >= 0
     ys[:, : segment.n], yps[:, : segment.n] = q, q_rate
     ys[:, segment.rate_places[massive]] = q_rate[:, massive]
-    (film, f), contact = model.observed, np.empty(0) if model.contact is None else model.contact
-    blocks = load_value(model.contact, complete=True), contact, bool(model.unknowns.seals)
-    blocks = *blocks, segment.p, segment.w, segment.s
     if x is None:
+        film, f = model.observed
         states_along(
-            Value(film.flow), f, *blocks, taus, ys, yps, thinnest_value(model.face), model.face, gap, scratch, low
-        )
+            Value(film.flow), f, *load_value(model.contact, complete=True), bool(model.unknowns.seals), segment.p,
+            segment.w, segment.s, taus, ys, yps, thinnest_value(model.face), model.face, gap, scratch, low,
+        )  # fmt: skip
     else:
         ys[:, segment.film] = x
         segment.states(taus, ys, yps, gap, scratch, low)

@@ -154,16 +154,11 @@ class FilmComparison:
         self.gaps = np.empty((len(times), GAP_STATE_SIZE))
         unused = np.empty((len(times), len(segment.w))), np.empty((len(times), 3))
         scratch = segment.p, segment.w, segment.s
-        blocks = load_value(None), np.empty(0), False, *scratch, np.ascontiguousarray(times), ys, np.zeros_like(ys)
         states_along(
-            Value(model.interface.film.wrench),
-            model.f,
-            *blocks,
-            thinnest_value(model.face),
-            model.face,
-            self.gaps,
+            Value(model.interface.film.wrench), model.f, *load_value(None), False, *scratch,
+            np.ascontiguousarray(times), ys, np.zeros_like(ys), thinnest_value(model.face), model.face, self.gaps,
             *unused,
-        )
+        )  # fmt: skip
         more = self.gaps[:, FORCE : FORCE + 3].copy()
         at_each(Value(self.film.flow), self.block, self.gaps)
         more = self.gaps[:, FORCE : FORCE + 3] - more

@@ -95,7 +95,7 @@ def simulate(
     if restart and sink.errors and writer.state.get("errors"):
         sink.errors.restore(writer.state["errors"])
     outcome = solve(
-        run, method, run.model.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_tried(trial)
+        run, method, run.model.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_found(trial)
     )
     sink.flush(outcome.segment, outcome.tau, outcome.y)
     if outcome.status != Status.INTERRUPTED:
@@ -114,7 +114,7 @@ def simulate(
     return Result(str(outcome.status), outcome.message, summary, path)
 
 
-def _tried(trial: TrialRun | None) -> dict:
+def _found(trial: TrialRun | None) -> dict:
     """What a trial asks of `solve`."""
     return {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
 
@@ -143,7 +143,7 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     begun = clock.perf_counter()
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
-    outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_tried(trial))
+    outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_found(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
     summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts), speeds)
     return {**summary, "wall_time": clock.perf_counter() - begun}

@@ -2,15 +2,12 @@
 
 import itertools
 import json
-import os
-import signal
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
 from sealdyn.archive import ArchiveError, as_dataset
@@ -145,24 +142,13 @@ def test_a_study_without_a_grid_is_no_dataset(tmp_path):
 def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
     """Killed by SIGKILL half-way: what was finished is kept as it was, the rest is done, the numbers are the same."""
     command = [
-        sys.executable, "-m", "sealdyn.cli", "study", "sweep", str(PATH), "--vary", "rotor.runout=10:60 urad:8",
-        "--set", "run.turns=100", "--out", str(tmp_path / "s.h5"), "--workers", "1", "--no-plot", "--json",
+        *COMMAND, "sweep", str(PATH), "--vary", "rotor.runout=10:60 urad:8", "--set", "run.turns=100",
+        "--out", str(tmp_path / "s.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "s.partial.jsonl"
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    begun = time.monotonic()
-    while not (journal.exists() and len(journal.read_text().splitlines()) > 3):
-        assert process.poll() is None and time.monotonic() - begun < 120
-        time.sleep(0.02)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    kept = [json.loads(line) for line in journal.read_text().splitlines()[1:] if line.endswith("}}")]
+    kept = [line for line in kill_midway(command, journal, 2)[1:] if line.endswith("}}")]
     assert 3 <= len(kept) < 8
-    # A mark in what is kept shows in the answer if, and only if, these points are not run again.
-    marked = journal.read_text().splitlines()
-    entry = json.loads(marked[1])
-    entry["row"]["h_min.of_clearance"] = 0.123456
-    journal.write_text("\n".join([marked[0], json.dumps(entry), *marked[2:]]) + "\n")
+    mark_first(journal, "h_min.of_clearance", 0.123456)
     again = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
     assert not journal.exists()
     marks = [row["h_min.of_clearance"] == 0.123456 for row in again["rows"]]

@@ -2,16 +2,13 @@
 
 import json
 import math
-import os
-import signal
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from drawn import drawn, panel, text_trouble
+from killed import COMMAND, kill_midway, mark_first
 from scipy.stats import kstest, multivariate_normal, norm, sobol_indices, truncnorm, uniform
 
 from sealdyn.dynamics.run_state import FilmClosed
@@ -482,22 +479,12 @@ def test_an_interrupted_study_goes_on(tmp_path, closed_form):
 @pytest.mark.slow
 def test_a_killed_study_goes_on_without_repeating(tmp_path):
     command = [
-        sys.executable, "-m", "sealdyn.cli", "study", "tolerance", str(PATH), "--scatter",
-        "rotor.runout=normal(5 urad)", "--samples", "16", "--set", "run.turns=3000", "--out", str(tmp_path / "t.h5"),
-        "--workers", "1", "--no-plot", "--json",
+        *COMMAND, "tolerance", str(PATH), "--scatter", "rotor.runout=normal(5 urad)", "--samples", "16", "--set",
+        "run.turns=3000", "--out", str(tmp_path / "t.h5"), "--workers", "1", "--no-plot", "--json",
     ]  # fmt: skip
     journal = tmp_path / "t.partial.jsonl"
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    begun = time.monotonic()
-    while not (journal.exists() and len(journal.read_text().splitlines()) > 3):
-        assert process.poll() is None and time.monotonic() - begun < 120
-        time.sleep(0.02)
-    os.kill(process.pid, signal.SIGKILL)
-    process.wait()
-    head, first, *others = journal.read_text().splitlines()
-    entry = json.loads(first)
-    entry["row"]["h_min.value"] = 0.123456
-    journal.write_text("\n".join([head, json.dumps(entry), *others]) + "\n")
+    kill_midway(command, journal, 2)
+    mark_first(journal, "h_min.value", 0.123456)
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     answer = json.loads(done.stdout)
     assert answer["samples"]["outputs"]["h_min.value"].count(0.123456) == 1 and not journal.exists()

@@ -3,16 +3,14 @@
 import json
 import math
 import os
-import signal
-import subprocess
 import sys
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from drawn import curve, drawn, has_points, panel, text_trouble
+from killed import kill_midway
 from scenes import fms, ring
 
 import sealdyn
@@ -401,12 +399,7 @@ def test_a_killed_study_goes_on_where_it_was(run_in, tmp_path, calls):
     out = tmp_path / "run_in.h5"
     journal = out.with_suffix(".partial.jsonl")
     words = [sys.executable, "-c", SLOWLY, str(SCENARIOS / "run_in.toml"), str(out)]
-    child = subprocess.Popen(words, env=os.environ | {"PYTHONPATH": str(Path(sealdyn.__file__).parents[1])})
-    until = time.time() + 120
-    while child.poll() is None and time.time() < until and not (journal.exists() and len(steps_of(journal)) > 6):
-        time.sleep(0.05)
-    child.send_signal(signal.SIGKILL)
-    child.wait()
+    kill_midway(words, journal, 6, env=os.environ | {"PYTHONPATH": str(Path(sealdyn.__file__).parents[1])})
     done = len(steps_of(journal))
     assert 6 < done < 40 and not out.exists()
 

@@ -107,3 +107,9 @@ def test_sources_of_this_package_reach_their_constants():
     found = {path.name for path in sealdyn.kernel_cache.kernel_sources()}
     assert {"film.py", "geometry.py", "contact.py", "roughness.py"} <= found
     assert not {"cli.py", "summary.py", "recorder.py"} & found
+
+
+def test_functions_for_c_are_kernels(tmp_path):
+    texts = {tmp_path / "a.py": b"from .b import WIDTH\n\n\n@cfunc(SIGNATURE)\ndef a(x):\n    return WIDTH\n",
+             tmp_path / "b.py": b"WIDTH = 1.0\n", tmp_path / "c.py": b"OTHER = 1.0\n"}  # fmt: skip
+    assert [path.name for path in sealdyn.kernel_cache.kernel_sources(texts)] == ["a.py", "b.py"]

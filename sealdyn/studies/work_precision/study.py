@@ -71,7 +71,7 @@ def run(scenario, settings, tools) -> dict:
     shared = {"tolerances": tolerances(settings), "repeats": settings.repeats, "samples": settings.samples}
     judged = partial(judge, scenario, exact, judges)
     # Runs beside each other would disturb each other's clocks.
-    alone = tools.alone() if hasattr(tools, "alone") else tools
+    alone = tools.alone()
     first = [{**shared, "method": m, "limit": settings.longest} for m in chosen if m in FAST]
     rows = alone.map(judged, first, "methods")
     tools.say(0.4)
