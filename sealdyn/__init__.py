@@ -8,7 +8,7 @@ data = sealdyn.open_archive(result.archive)          # xarray Dataset
 from .kernel_cache import clear_stale_kernels
 
 __version__ = "0.1.0"
-__all__ = ["open_archive", "read_scenario", "run_study", "simulate"]
+__all__ = ["open_archive", "read_scenario", "run_study", "simulate", "simulate_many"]
 
 clear_stale_kernels()
 
@@ -19,6 +19,8 @@ def __getattr__(name):
         from .scenario.reader import read_scenario as found
     elif name == "simulate":
         from .simulation.simulate import simulate as found
+    elif name == "simulate_many":
+        from .simulation.batch import simulate_many as found
     elif name == "run_study":
         from .studies._runner import run_study as found
     elif name == "open_archive":

@@ -58,7 +58,7 @@ def longest_scan(pace: float) -> float:
 @njit(cache=True)
 def gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out):
     """The three measures (m, rad^2) at displacements q (n,) and segment time tau (s), into `out` (3,); returns angle
-    (rad) and radius (m) of h_min, which the function value `thinnest` finds.  Other arguments as `_track`."""
+    (rad) and radius (m) of h_min, which the function value `thinnest` finds.  Other arguments as `track_extremes`."""
     # One by one, here and below: assigning whole arrays would take seconds to compile.
     for j in range(len(q)):
         y[j] = q[j]
@@ -158,7 +158,7 @@ def store(record, kind, out, at, theta, radius, index):
 
 
 @njit(cache=True)
-def _track(
+def track_extremes(
     t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, windows, index, records, tolerance, pace,
     fastest, reach,
 ):  # fmt: skip
@@ -235,6 +235,11 @@ def _track(
     return -1.0
 
 
+def slack(model) -> np.ndarray:
+    """Improvements (2,) of film thickness (m) and tilt (rad) that are not worth locating."""
+    return 0.02 * model.accuracy * np.array([model.clearance, model.clearance / model.face[OUTER_RADIUS]])
+
+
 class ExtremaTracker:
     """An observer of the gap: `records` (WINDOWS, RECORD) of extremes in the `windows` [[from, to], ...] (s): the whole
     run of `duration` (s), its last forcing period and the one before.  `reach` (m,) bounds the film of each step last
@@ -257,13 +262,12 @@ class ExtremaTracker:
         segment, model = self.segment, self.model
         thinnest = thinnest_value(model.face)
         windows = np.array(self.windows) - segment.time
-        tolerance = 0.02 * model.accuracy * np.array([model.clearance, model.clearance / model.face[OUTER_RADIUS]])
         q, q_rate = block.motion
         self.reach = np.empty(len(block.t))
-        fallen = _track(
+        fallen = track_extremes(
             block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, thinnest, model.f,
             np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records,
-            tolerance, segment.pace, 2 * math.pi / segment.shortest_period, self.reach,
+            slack(model), segment.pace, 2 * math.pi / segment.shortest_period, self.reach,
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 

@@ -4,17 +4,40 @@ Finished points go to a checkpoint file, one JSON line each, flushed at once, or
 study killed half-way and started again repeats nothing.  A point that fails is a row with its reason.
 """
 
+import contextlib
 import hashlib
 import json
 import os
-from concurrent.futures import ProcessPoolExecutor, as_completed
+import time
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from contextlib import closing
+from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 from multiprocessing import get_all_start_methods, get_context
 from pathlib import Path
 
 from .results import content_keys
 from .threads import one_thread
+
+# Points that a process gets at once where that pays: so many at most, and for so long (s).
+AT_ONCE, PIECE = 64, 0.5
+
+
+@dataclass(frozen=True)
+class Together:
+    """A function of many points whose rows cost less together than one by one: `function(points)` returns for each its
+    row, or the exception why there is none."""
+
+    function: Callable
+
+    def __call__(self, point: dict) -> dict:
+        """The row of one point."""
+        (row,) = self.function([point])
+        if isinstance(row, Exception):
+            raise row
+        return row
 
 
 class Checkpoint:
@@ -95,19 +118,69 @@ def processes(count: int | None = None):
 
 def _on_processes(count: int, function, todo: dict, what: str):
     """(key, row, lasting) of the points {key: point} as they come; what waits is not begun once the reader has left."""
+    pieces = _Pieces(function, todo, count)
     if count == 1 or len(todo) < 2:
-        for key, point in todo.items():
-            yield key, *row_of(function, point)
+        while some := pieces.next():
+            yield from _with_keys(some, pieces.took(some, _timed(function, [todo[key] for key in some])))
         return
-    # Forked workers inherit the compiled kernels; where there is no fork they load them.  One point at a time.
+    # Forked workers inherit the compiled kernels; where there is no fork they load them.
     way = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
     with ProcessPoolExecutor(min(count, len(todo)), mp_context=way, initializer=one_thread) as pool:
-        waiting = {pool.submit(row_of, function, point): key for key, point in todo.items()}
+        waiting = {}
         try:
-            for future in as_completed(waiting):
-                yield waiting[future], *future.result()
+            while True:
+                # No process waits for its next piece.
+                while len(waiting) < 2 * count and (some := pieces.next()):
+                    waiting[pool.submit(_timed, function, [todo[key] for key in some])] = some
+                if not waiting:
+                    return
+                for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                    some = waiting.pop(future)
+                    yield from _with_keys(some, pieces.took(some, future.result()))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+class _Pieces:
+    """Points that one process gets at once: a single one, or as many as it does in PIECE seconds if the function takes
+    them Together.  What is killed loses no more."""
+
+    def __init__(self, function, todo: dict, count: int):
+        self.keys, self.left, self.count = iter(todo), len(todo), count
+        self.together, self.size = isinstance(function, Together), 1
+
+    def next(self) -> list:
+        """Keys of the next piece; none at the end.  The last ones are small, so that all processes end together."""
+        some = list(islice(self.keys, min(self.size, max(self.left // (2 * self.count), 1))))
+        self.left -= len(some)
+        return some
+
+    def took(self, some: list, timed: tuple):
+        """What `_timed` answers to a piece, less the time."""
+        answers, seconds = timed
+        if self.together:
+            self.size = max(1, min(AT_ONCE, int(len(some) * PIECE / max(seconds, 1e-9))))
+        return answers
+
+
+def _timed(function, points: list[dict]):
+    """Rows of the points, and how long (s) they took."""
+    begun = time.perf_counter()
+    return rows_of(function, points), time.perf_counter() - begun
+
+
+def _with_keys(keys, answers):
+    for key, answer in zip(keys, answers, strict=True):
+        yield key, *answer
+
+
+def rows_of(function, points: list[dict]) -> list[tuple[dict, bool]]:
+    """`row_of` for each of the points, Together if that is how the function takes them."""
+    if isinstance(function, Together):
+        with contextlib.suppress(Exception):
+            return [_failed(row) if isinstance(row, Exception) else (row, True) for row in function.function(points)]
+        # One of them may have spoilt it for all.
+    return [row_of(function, point) for point in points]
 
 
 def row_of(function, point: dict) -> tuple[dict, bool]:
@@ -116,5 +189,9 @@ def row_of(function, point: dict) -> tuple[dict, bool]:
     try:
         return function(point), True
     except Exception as error:
-        lasting = not isinstance(error, OSError | MemoryError | ImportError)
-        return {"failed": f"{type(error).__name__}: {error}"}, lasting
+        return _failed(error)
+
+
+def _failed(error: Exception) -> tuple[dict, bool]:
+    lasting = not isinstance(error, OSError | MemoryError | ImportError)
+    return {"failed": f"{type(error).__name__}: {error}"}, lasting

@@ -29,7 +29,7 @@ from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
-from .summary import summarise
+from .summary import parts, plain, summarise
 
 
 @dataclass(frozen=True)
@@ -141,12 +141,17 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     """A run without an archive: the summary as `run --json` prints it, without a certificate; critical and resonance
     speeds only if `speeds`.  Raises SceneError or ArchiveError."""
     begun = clock.perf_counter()
+    summary = plain(in_memory(scenario, speeds))
+    return {**summary, "wall_time": clock.perf_counter() - begun}
+
+
+def in_memory(scenario, speeds: bool = False) -> dict:
+    """The same, as its `parts` (summary.py)."""
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
     outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_found(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts), speeds)
-    return {**summary, "wall_time": clock.perf_counter() - begun}
+    return parts(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts), speeds)
 
 
 def prepare_run(scenario):

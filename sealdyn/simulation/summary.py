@@ -1,6 +1,7 @@
 """What a run amounts to: the numbers of `run --json`, from the run, the outcome and the running tallies."""
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from ..solvers.contract import Status
 from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
+# What of the stability is found only where it is asked for.
+SPEEDS = ("critical_speed", "resonance_speeds")
 
 
 def model_chosen(scenario, run, method: str, why: str) -> dict:
@@ -33,15 +36,20 @@ def model_chosen(scenario, run, method: str, why: str) -> dict:
 def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
     """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite.  `outcome` of `solve`, `tally`
     of its sink; `speeds`: with critical and resonance speeds, which cost more than a short run."""
+    return plain(parts(scenario, run, outcome, tally, method, why, speeds))
+
+
+def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
+    """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     steady, sentence = _steady(run, outcome, period, scenario.run.start == "steady")
     record = run.extrema.records[0]
-    tilt = _linear_steady(segment, linear, period)
-    summary = {
+    tilt = cache(lambda: _linear_steady(segment, linear, period))
+    return {
         "status": outcome.status,
         "message": outcome.message,
-        "model": model_chosen(scenario, run, method, why),
+        "model": lambda: model_chosen(scenario, run, method, why),
         "h_min": {
             "value": record[H],
             "time": run.end_time(int(record[H_LEG]), record[H_TAU]),
@@ -52,12 +60,12 @@ def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -
         "relative_misalignment": {
             "max": record[MOST],
             "min": record[LEAST],
-            "mean": tally.mean("relative_misalignment"),
+            "mean": lambda: tally.mean("relative_misalignment"),
             **steady,
             "steady_said": sentence,
         },
-        "leakage": _leakage(model, tally),
-        "friction": {
+        "leakage": lambda: _leakage(model, tally),
+        "friction": lambda: {
             "torque": tally.mean("friction_torque"),
             "power": tally.mean("friction_power"),
             "max_power": tally.largest["friction_power"] if tally.largest else math.nan,
@@ -67,11 +75,11 @@ def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -
         "secondary_seal": _secondary_seal(run),
         "film": _film(segment, linear, tally),
         "closing": _closing(segment),
-        "contact_margin": _contact_margin(segment, linear, tilt),
-        "closed_form": _closed_form(segment, linear, tilt),
-        "stability": stability(model, segment.interval, linear, speeds),
+        "contact_margin": lambda: _contact_margin(segment, linear, tilt()),
+        "closed_form": lambda: _closed_form(segment, linear, tilt()),
+        "stability": lambda: stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
-        "warnings": [caution.sentence for caution in (*run.cautions, *_blown_open(model, tally))],
+        "warnings": lambda: [caution.sentence for caution in (*run.cautions, *_blown_open(model, tally))],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -84,17 +92,38 @@ def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -
         },
         "tolerance": outcome.tolerance,
         "accuracy": model.accuracy,
-        "end": {"time": run.end_time(outcome.segment, outcome.tau), "asked": run.duration},
+        "end": {
+            "time": run.end_time(outcome.segment, outcome.tau),
+            "asked": run.duration,
+            "state": _state(run, outcome),
+        },
     }
-    return _plain(summary)
 
 
-def _plain(value):
-    """JSON-ready: numpy scalars become Python's, NaN and infinity become null."""
+def _state(run, outcome) -> dict:
+    """Displacements and rates by name, at the end."""
+    places = _state_places(run.model.unknowns)
+    return {name: outcome.y[place] for name, place in places.items()}
+
+
+def state_names(unknowns) -> list[str]:
+    """Names of `end.state`."""
+    return [*_state_places(unknowns)]
+
+
+def _state_places(unknowns) -> dict:
+    rates = {f"{n}_rate": at for n, at in zip(unknowns.names, unknowns.rate_places, strict=True) if at >= 0}
+    return {name: place for place, name in enumerate(unknowns.names)} | rates
+
+
+def plain(value):
+    """JSON-ready: what a function finds, numpy scalars as Python's, NaN and infinity as null."""
+    if callable(value):
+        value = value()
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, float) and not math.isfinite(value):
@@ -144,8 +173,15 @@ def _contact(run, tally):
     model = run.model
     if model.contact is None:
         return None
-    found, largest, level = run.contacts.summary, tally.largest or {}, model.face[TOUCH]
-    closing = tally.mean("closing_force")
+    found, level = run.contacts.summary, model.face[TOUCH]
+
+    def largest(name):
+        return (tally.largest or {}).get(name)
+
+    def share():
+        closing = tally.mean("closing_force")
+        return tally.mean("contact_force") / closing if closing else None
+
     return {
         "touches": found.count,
         "grazing": found.grazing,
@@ -156,12 +192,12 @@ def _contact(run, tally):
         "depth": None if found.lowest is None else level - found.lowest,
         "longest": found.longest,
         "impulse": found.impulse,
-        "force": {"mean": tally.mean("contact_force"), "max": largest.get("contact_force")},
-        "share_of_closing": tally.mean("contact_force") / closing if closing else None,
-        "torque": tally.mean("contact_torque"),
-        "max_area_fraction": largest.get("contact_area_fraction"),
-        "max_pressure": largest.get("contact_pressure"),
-        "wear_rate": tally.mean("wear_rate"),
+        "force": lambda: {"mean": tally.mean("contact_force"), "max": largest("contact_force")},
+        "share_of_closing": share,
+        "torque": lambda: tally.mean("contact_torque"),
+        "max_area_fraction": lambda: largest("contact_area_fraction"),
+        "max_pressure": lambda: largest("contact_pressure"),
+        "wear_rate": lambda: tally.mean("wear_rate"),
     }
 
 
@@ -213,7 +249,7 @@ def _film(segment, linear, tally):
         "tilt_stiffness": k[1, 1],
         "tilt_damping": d[1, 1],
         "cross_stiffness": k[1, 2],
-        "max_cavitated_fraction": tally.largest["cavitated_fraction"] if tally.largest else math.nan,
+        "max_cavitated_fraction": lambda: tally.largest["cavitated_fraction"] if tally.largest else math.nan,
         "equilibria": [
             {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
         ],

@@ -31,8 +31,13 @@ def why_slow() -> str:
     return f"through scikit-sundae, several times slower: {found}" if isinstance(found, str) else ""
 
 
+def looped(segment) -> bool:
+    """Whether the compiled loop takes a segment."""
+    return not why_slow() and getattr(segment, "native", None) is not None
+
+
 def _back_end(segment, counts):
-    if why_slow() or getattr(segment, "native", None) is None:
+    if not looped(segment):
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
     # Its compiled code needs the libraries open.

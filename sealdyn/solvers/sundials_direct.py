@@ -6,7 +6,7 @@ The right-hand side comes as an address (dynamics/native.py), SUNDIALS from the 
 """
 
 import ctypes
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 
 import numpy as np
 from numba import carray, cfunc, float64, int32, int64, njit, types
@@ -31,6 +31,12 @@ ADAMS, BDF, ONE_STEP = 1, 2, 2
 _pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
 _columns = types.ExternalFunction("SUNDenseMatrix_Data", ADDRESS(ADDRESS))
 _cvode = types.ExternalFunction("CVode", int32(ADDRESS, float64, ADDRESS, ADDRESS, int32))
+_reinit = types.ExternalFunction("CVodeReInit", int32(ADDRESS, float64, ADDRESS))
+_tolerances = types.ExternalFunction("CVodeSVtolerances", int32(ADDRESS, float64, ADDRESS))
+_max_step = types.ExternalFunction("CVodeSetMaxStep", int32(ADDRESS, float64))
+_stop_time = types.ExternalFunction("CVodeSetStopTime", int32(ADDRESS, float64))
+_error_fails = types.ExternalFunction("CVodeGetNumErrTestFails", int32(ADDRESS, ADDRESS))
+_newton_fails = types.ExternalFunction("CVodeGetNumNonlinSolvConvFails", int32(ADDRESS, ADDRESS))
 _cvode_order = types.ExternalFunction("CVodeGetLastOrder", int32(ADDRESS, ADDRESS))
 _ida_order = types.ExternalFunction("IDAGetLastOrder", int32(ADDRESS, ADDRESS))
 _ida = types.ExternalFunction("IDASolve", int32(ADDRESS, float64, ADDRESS, ADDRESS, ADDRESS, int32))
@@ -77,9 +83,31 @@ def _residual(tau, y, yp, res, carried):
     return call_residual(carried[FUNCTION], tau, _pointer(y), _pointer(yp), _pointer(res), carried[DATA])
 
 
+@njit(int32(ADDRESS, ADDRESS, ADDRESS, float64, float64, float64, float64), cache=True, nogil=True)
+def restart_cvode(memory, vector, absolute, tau, tolerance, end, longest):
+    """Make CVODE ready to step from the values of its N_Vector at `tau` (s) to `end` (s), no step longer than `longest`
+    (s, 0: any), at a relative `tolerance` and the N_Vector `absolute`; negative where a setting is refused."""
+    return min(
+        _reinit(memory, tau, vector),
+        _tolerances(memory, tolerance, absolute),
+        _max_step(memory, longest),
+        _stop_time(memory, end),
+    )
+
+
+@njit(types.void(ADDRESS, int64[::1]), cache=True, nogil=True)
+def add_refused(memory, refused):
+    """Add the steps that the error test and the nonlinear solver refused since the restart to `refused` (2,)."""
+    number = np.zeros(1, dtype=np.int64)
+    _error_fails(memory, number.ctypes.data)
+    refused[0] += number[0]
+    _newton_fails(memory, number.ctypes.data)
+    refused[1] += number[0]
+
+
 @njit(types.Tuple((int64, int32))(ADDRESS, ADDRESS, float64[::1], float64[::1], float64, int64[::1], float64[::1],
                                   float64[:, ::1]), cache=True, nogil=True)  # fmt: skip
-def _step_cvode(memory, vector, y, reached, end, orders, ts, ys):
+def step_cvode(memory, vector, y, reached, end, orders, ts, ys):
     """Steps of CVODE until `end` (s) or `ts` (m,), `ys` (m, size) are full: how many, and the flag of the last; `y`
     (size,) are the values of the N_Vector, `reached` (1,) is the time (s); `orders` (MOST_ORDERS,) counts."""
     order = np.zeros(1, dtype=np.int32)
@@ -154,14 +182,19 @@ class _Objects:
         return found
 
 
+def words_for(segment, function: int) -> np.ndarray:
+    """The words (CARRIED,) for the equations of a segment, by the address of their `function`; they point into its
+    native block and its scales, which have to stay."""
+    block, scales = segment.native.block.ctypes.data, segment.scales.ctypes.data
+    return np.array([function, block, segment.size, segment.n_mechanical, scales, 0, 0], dtype=np.int64)
+
+
 class _Carried:
     """The words that SUNDIALS carries through to the functions above, kept alive, and what they count."""
 
     def __init__(self, segment, function: int):
-        self.native, self.scales = segment.native, np.ascontiguousarray(segment.scales)
-        block, scales = self.native.block.ctypes.data, self.scales.ctypes.data
-        words = [function, block, segment.size, segment.n_mechanical, scales, 0, 0]
-        self.words, self.orders = np.array(words, dtype=np.int64), np.zeros(MOST_ORDERS, dtype=np.int64)
+        self.native, self.scales = segment.native, segment.scales
+        self.words, self.orders = words_for(segment, function), np.zeros(MOST_ORDERS, dtype=np.int64)
         self.failures = [0, 0]
 
     def tell(self, counts, memory, asked):
@@ -179,30 +212,38 @@ class _Carried:
         self.words[[CALLS, JACOBIANS]], self.orders[:], self.failures = 0, 0, found
 
 
-def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
-    """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
-    **Raises** SolverFailure."""
-    carried, y, reached = _Carried(segment, segment.native.rates), y.copy(), np.array([tau])
-    with _Objects(segment.size) as made:
-        lib, vector = made.lib, made.vector(y)
-        memory = lib.CVodeCreate(ADAMS if method == "adams" else BDF, made.context)
-        memory = made.memory(memory, lib.CVodeFree)
-        lib.CVodeInit(memory, ctypes.c_void_p(_rates.address), ctypes.c_double(tau), vector)
-        absolute = made.vector(absolute_tolerances(segment, tolerance))
-        lib.CVodeSVtolerances(memory, ctypes.c_double(tolerance), absolute)
-        lib.CVodeSetUserData(memory, ctypes.c_void_p(carried.words.ctypes.data))
+@contextmanager
+def cvode_for(y, absolute, words, method):
+    """CVODE on the unknowns `y` (size,) with absolute tolerances `absolute` (size,) and the words that SUNDIALS carries
+    (see above), Adams if so called, else BDF: its memory, and the N_Vectors of both, for `restart_cvode`."""
+    with _Objects(len(y)) as made:
+        lib, vector, tolerances = made.lib, made.vector(y), made.vector(absolute)
+        memory = made.memory(lib.CVodeCreate(ADAMS if method == "adams" else BDF, made.context), lib.CVodeFree)
+        lib.CVodeInit(memory, ctypes.c_void_p(_rates.address), ctypes.c_double(0.0), vector)
+        lib.CVodeSVtolerances(memory, ctypes.c_double(1e-6), tolerances)
+        lib.CVodeSetUserData(memory, ctypes.c_void_p(words.ctypes.data))
         matrix, solver = made.dense(vector)
         lib.CVodeSetLinearSolver(memory, solver, matrix)
         lib.CVodeSetJacFn(memory, ctypes.c_void_p(_jacobian.address))
         lib.CVodeSetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
-        lib.CVodeSetMaxStep(memory, ctypes.c_double(longest_step(segment)))
-        lib.CVodeSetStopTime(memory, ctypes.c_double(segment.length))
+        yield memory, vector, tolerances
+
+
+def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
+    """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
+    **Raises** SolverFailure."""
+    carried, y, reached = _Carried(segment, segment.native.rates), y.copy(), np.array([tau])
+    lib, absolute = libraries(), absolute_tolerances(segment, tolerance)
+    with cvode_for(y, absolute, carried.words, method) as (memory, vector, absolute):
+        settings = tau, tolerance, segment.length, longest_step(segment)
+        if restart_cvode(memory.value, vector.value, absolute.value, *settings) < 0:
+            raise OSError("SUNDIALS refused a setting")
         if max_order:
             lib.CVodeSetMaxOrd(memory, max_order)
         rows = FEW if segment.may_change else BLOCK
         while reached[0] < segment.length:
             ts, ys = np.empty(rows), np.empty((rows, segment.size))
-            count, flag = _step_cvode(memory.value, vector.value, y, reached, segment.length, carried.orders, ts, ys)
+            count, flag = step_cvode(memory.value, vector.value, y, reached, segment.length, carried.orders, ts, ys)
             carried.tell(counts, memory, (lib.CVodeGetNumErrTestFails, lib.CVodeGetNumNonlinSolvConvFails))
             if count:
                 yield ts[:count], ys[:count], None

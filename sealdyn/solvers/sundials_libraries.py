@@ -18,6 +18,8 @@ POINTERS = (
 # What compiled code calls by itself: without one of them its loading would end the process.
 COMPILED = (
     "N_VGetArrayPointer_Serial", "SUNDenseMatrix_Data", "CVode", "CVodeGetLastOrder", "IDASolve", "IDAGetLastOrder",
+    "CVodeReInit", "CVodeSVtolerances", "CVodeSetMaxStep", "CVodeSetStopTime", "CVodeGetNumErrTestFails",
+    "CVodeGetNumNonlinSolvConvFails",
 )  # fmt: skip
 # What may not be refused, by the beginnings of names.
 ASKED = ("CVodeInit", "CVodeSV", "CVodeSet", "IDAInit", "IDASV", "IDASet")

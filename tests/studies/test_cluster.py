@@ -16,9 +16,10 @@ import pytest
 import sealdyn
 from sealdyn.numerics import cluster as cluster_module
 from sealdyn.numerics.cluster import ClusterError, workers_of
-from sealdyn.numerics.parallel import evaluate, processes
+from sealdyn.numerics.parallel import Together, evaluate, processes
 from sealdyn.numerics.results import Results
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.simulation.batch import run_many
 from sealdyn.studies import sweep
 from sealdyn.studies._runner import run_study
 
@@ -39,7 +40,7 @@ def logged(log, scenario, point):
     with open(log, "a") as file:
         file.write(f"{os.getpid()} {json.dumps(point['set'])}\n")
     time.sleep(0.1)
-    return sweep.one_run(scenario, point)
+    return Together(partial(run_many, scenario))(point)
 
 
 def odd(point):

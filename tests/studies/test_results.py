@@ -15,6 +15,7 @@ from sealdyn.numerics import results
 from sealdyn.numerics.parallel import Checkpoint, evaluate, processes
 from sealdyn.numerics.results import Results, content_keys
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.simulation import batch
 from sealdyn.studies import sweep
 from sealdyn.studies._runner import StudyContext, run_study
 
@@ -50,13 +51,13 @@ def scenario(*overrides, text=None, name="fms_reference"):
 @pytest.fixture
 def ran(monkeypatch):
     """Points that were evaluated: what they set."""
-    found, whole = [], sweep.simulate_in_memory
+    found, whole = [], batch.LoopedRun
 
-    def noted(scenario, speeds):
+    def noted(scenario, outputs):
         found.append(scenario.overrides[-1])
-        return whole(scenario, speeds)
+        return whole(scenario, outputs)
 
-    monkeypatch.setattr(sweep, "simulate_in_memory", noted)
+    monkeypatch.setattr(batch, "LoopedRun", noted)
     return found
 
 
@@ -79,25 +80,25 @@ def test_finished_points_are_kept_for_others(tmp_path):
 
 def test_what_a_point_is():
     """Whatever decides the answer makes another point; where the scenario came from does not."""
-    own = partial(sweep.one_run, scenario())
-    assert key(own) == key(partial(sweep.one_run, scenario(text="# Why?\n" + PATH.read_text(), name="other")))
+    own = partial(batch.run_many, scenario())
+    assert key(own) == key(partial(batch.run_many, scenario(text="# Why?\n" + PATH.read_text(), name="other")))
     written_otherwise = PATH.read_text().replace('"10 um"', '"0.01 mm"')
     assert written_otherwise != PATH.read_text()
-    assert key(own) == key(partial(sweep.one_run, scenario(text=written_otherwise)))
-    assert key(own) == key(partial(sweep.one_run, scenario("study.sweep.vary=rotor.runout=1,2")))
+    assert key(own) == key(partial(batch.run_many, scenario(text=written_otherwise)))
+    assert key(own) == key(partial(batch.run_many, scenario("study.sweep.vary=rotor.runout=1,2")))
     assert key(partial(counted, 1), {"x": 1, "y": 2}) == key(partial(counted, 1), {"y": 2, "x": 1})
     assert key(partial(counted, np.arange(3.0))) == key(partial(counted, np.arange(3.0)))
     others = [
         partial(counted, np.arange(3.0)),
         partial(counted, np.arange(3.0)[:, None]),
         partial(counted, np.arange(3)),
-        partial(sweep.one_run, scenario("film.clearance=9 um")),
-        partial(sweep.one_run, scenario("run.accuracy=1e-7")),
-        partial(sweep.one_run, scenario("run.solver=bdf")),
-        partial(sweep.one_run, scenario('rotor.runout="20 um TIR"')),
-        partial(sweep.one_run, scenario().scene),
+        partial(batch.run_many, scenario("film.clearance=9 um")),
+        partial(batch.run_many, scenario("run.accuracy=1e-7")),
+        partial(batch.run_many, scenario("run.solver=bdf")),
+        partial(batch.run_many, scenario('rotor.runout="20 um TIR"')),
+        partial(batch.run_many, scenario().scene),
         partial(sweep.run, scenario()),
-        sweep.one_run,
+        batch.run_many,
     ]
     keys = [key(own), *map(key, others), key(own, {"x": 2}), key(own, {"x": 1.5})]
     assert len(set(keys)) == len(keys)

@@ -64,9 +64,12 @@ def test_rows_equal_single_runs(tmp_path):
     single = parse_scenario(PATH.read_text(), "one", [*SHORT, 'rotor.runout="40 urad"', 'film.coning="2 mrad"'])
     summary = simulate(single, tmp_path / "one.h5").summary
     assert row["status"] == summary["status"] == "ok"
-    assert row["h_min.value"] == summary["h_min"]["value"]
-    assert row["relative_misalignment.steady_max"] == summary["relative_misalignment"]["steady_max"]
-    assert row["leakage.mean"] == summary["leakage"]["mean"]
+    # Within the accuracy: the tolerances differ.
+    accuracy, clearance = summary["accuracy"], 1e-5
+    assert abs(row["h_min.value"] - summary["h_min"]["value"]) < accuracy * clearance
+    steady = summary["relative_misalignment"]["steady_max"]
+    assert abs(row["relative_misalignment.steady_max"] - steady) < accuracy * clearance / 0.04
+    assert row["leakage.mean"] == pytest.approx(summary["leakage"]["mean"], rel=5 * accuracy)
     assert row["stability.verdict"] == "stable"
 
 

@@ -6,10 +6,12 @@ from functools import partial
 import numpy as np
 
 from ...dynamics.run_state import FilmClosed
+from ...numerics.parallel import Together
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
+from ...simulation.batch import run_many
+from ...simulation.outputs import unit_of
 from ...status import Status
-from ..sweep import one_run, unit_of
 from .effects import Sample, convergence, indices, tightened
 from .estimates import moments, number, probability, quantiles
 from .scatter import SCRAMBLES, points, read_correlations, read_scatter
@@ -57,7 +59,7 @@ def run(scenario, settings, tools) -> dict:
     designs = [a, b, *mixed(a, b)] if with_indices else [a]
     tools.tell(f"tolerance: {runs_of(settings.samples, len(keys), with_indices)}")
     sets = [dict(zip(keys, map(float, row), strict=True)) for design in designs for row in design]
-    rows = tools.map(partial(one_seal, scenario), [{"outputs": asked, "set": values} for values in sets], "runs")
+    rows = tools.map(Together(partial(seals, scenario)), [{"outputs": asked, "set": values} for values in sets], "runs")
 
     found = {name: column(rows, name).reshape(len(designs), -1) for name in outputs}
     contact = touched(rows, settings.margin).reshape(len(designs), -1)
@@ -140,7 +142,7 @@ def nominal_run(scenario, asked, outputs) -> dict:
     are not there."""
     where = "study.tolerance.outputs"
     try:
-        row = one_seal(scenario, {"outputs": asked, "set": {}})
+        row = Together(partial(seals, scenario))({"outputs": asked, "set": {}})
     except ValueError as error:
         if type(error) is ValueError:
             raise ScenarioError(scenario.name, where, str(error), "keys of the run's summary") from None
@@ -158,13 +160,17 @@ def runs_of(samples: int, keys: int, with_indices: bool) -> str:
     return f"{samples * (keys + 2)} runs ({samples} samples x ({keys} keys + 2)); {samples} with indices = false"
 
 
-def one_seal(scenario, point: dict) -> dict:
-    """A sweep's row; a film that is closed before it starts has collapsed, with no thickness and no other numbers."""
-    try:
-        return one_run(scenario, point)
-    except FilmClosed as error:
-        row = {name: 0.0 if name in (FILM, THINNEST) else None for name in point["outputs"]}
-        return {"status": Status.COLLAPSED, "closed_at_start": True, **row, "message": str(error)}
+def seals(scenario, points: list[dict]) -> list:
+    """Rows as a sweep's; a film that is closed before it starts has collapsed, with no thickness and no other
+    numbers."""
+    rows = run_many(scenario, points)
+    return [closed(row, point) if isinstance(row, FilmClosed) else row for row, point in zip(rows, points, strict=True)]
+
+
+def closed(error, point: dict) -> dict:
+    """The row of a film that is closed at the start."""
+    row = {name: 0.0 if name in (FILM, THINNEST) else None for name in point["outputs"]}
+    return {"status": Status.COLLAPSED, "closed_at_start": True, **row, "message": str(error)}
 
 
 def mixed(a, b):

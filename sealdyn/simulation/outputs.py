@@ -1,0 +1,43 @@
+"""Single numbers of a run's summary by their dotted keys: which there are, and their units."""
+
+import difflib
+
+from .summary import SPEEDS, plain
+
+UNITS = {
+    "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
+    "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
+    "friction.power": "W", "friction.max_power": "W", "stability.critical_speed": "rad/s", "film.clearance": "m",
+    "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m", "film.tilt_stiffness": "N m/rad",
+    "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad", "closing.force": "N",
+}  # fmt: skip
+
+
+def output(parts: dict, key: str):
+    """The value at a dotted key of a summary, or of its `parts` (summary.py).  Raises ValueError, which names the
+    nearest key there is."""
+    place = parts
+    for name in key.split("."):
+        place = place() if callable(place) else place
+        if not isinstance(place, dict) or name not in place:
+            known = [*leaves(plain(parts)), *(f"stability.{speeds}" for speeds in SPEEDS)]
+            near = difflib.get_close_matches(key, known, 1, 0.3)
+            raise ValueError(f"the run's summary has no {key}" + (f"; nearest {near[0]}" if near else ""))
+        place = place[name]
+    place = plain(place)
+    if isinstance(place, dict):
+        raise ValueError(f"{key} holds several numbers: one of {', '.join(f'{key}.{k}' for k in place)}")
+    return place
+
+
+def leaves(tree: dict, key: str = "") -> list[str]:
+    """Dotted keys of all values."""
+    found = []
+    for name, below in tree.items():
+        found += leaves(below, f"{key}{name}.") if isinstance(below, dict) else [f"{key}{name}"]
+    return found
+
+
+def unit_of(key: str) -> str:
+    """SI unit of the value at a dotted key; empty without one."""
+    return UNITS.get(key) or UNITS.get(key.partition(".")[0]) or ""

@@ -1,0 +1,206 @@
+"""Many runs in one compiled loop: to the bit what each is by itself at the same tolerance, and what cannot be in it."""
+
+import signal
+import time
+from pathlib import Path
+from threading import Timer
+
+import numpy as np
+import pytest
+
+import sealdyn
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.settings import with_values
+from sealdyn.simulation import batch, looped_run
+from sealdyn.simulation.batch import run_many
+from sealdyn.simulation.looped_run import SAMPLED, LoopedRun, NotSampled, integrate
+from sealdyn.simulation.outputs import leaves, output
+from sealdyn.simulation.simulate import in_memory, prepare_run, simulate_in_memory
+from sealdyn.simulation.sinks import TallySink
+from sealdyn.simulation.summary import parts, plain
+from sealdyn.solvers.contract import Status, tolerance_for
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.sundials import why_slow
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+pytestmark = pytest.mark.skipif(bool(why_slow()), reason="no compiled loop here")
+
+RAMP = ['shaft.speed={time=[0, 0.01, 0.02], value=["3000 rpm", "9000 rpm", "9000 rpm"]}', "run.duration=0.03"]
+SCENES = {
+    "one ring": ("fms_reference", ["run.turns=6"], {"rotor.runout": [1e-5, 3e-5, 2e-5]}),
+    "a turning ring": ("fmr_reference", ["run.turns=6"], {"film.viscosity": [1e-3, 5e-4]}),
+    "both rings": ("fmsr_both_flexible", ["run.turns=6"], {"rotor.misalignment": ["50 urad", "80 urad"]}),
+    "shaken": ("housing_vibration", ["run.turns=6"], {"rotor.runout": ["50 urad", "0 urad"]}),
+    "stiff": ("squeeze", ["run.duration=2 ms"], {"film.viscosity": [1e-3, 2e-3]}),
+    "starting": ("fms_reference", RAMP, {"rotor.runout": [1e-5, 3e-5]}),
+    "pulsing": ("fms_reference", ["run.turns=4", "stator.speed=20 rad/s"], {"rotor.runout": [1e-5, 3e-5]}),
+    "floored": (
+        "fms_reference",
+        ["run.turns=4", "film.cavitation_pressure=0", "film.outer_pressure=1e4"],
+        {"rotor.runout": [1e-5, 2e-5]},
+    ),
+    "touching": ("rub", ["run.duration=0.27"], {"stator.misalignment": ["1 mrad", "0.8 mrad"]}),
+}
+
+
+def alone(scenario):
+    """The run by itself, at the tolerance of the loop: run, tally, outcome."""
+    run, method, why, interval, count, _ = prepare_run(scenario)
+    sink = TallySink(run, interval, count)
+    outcome = solve(run, method, run.model.accuracy, sink,
+                    tolerance=tolerance_for(method, run.model.accuracy, run.memory))  # fmt: skip
+    run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
+    return plain(parts(scenario, run, outcome, sink.tally, method, why))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_of_the_loop_is_the_run_by_itself(name):
+    file, overrides, varied = SCENES[name]
+    ((key, values),) = varied.items()
+    base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
+    scenarios = [with_values(base, {key: value}) for value in values]
+    looped = [LoopedRun(scenario, ["leakage.mean"]) for scenario in scenarios]
+    assert len({run.structure for run in looped}) == 1 and looped[0].structure
+    integrate(looped)
+    for scenario, run in zip(scenarios, looped, strict=True):
+        expected, found = alone(scenario), plain(run.parts())
+        assert (run.outcome is None) == (expected["status"] != Status.OK)
+        if run.outcome is None:
+            continue
+        assert {**found["counts"], "restarts": 0} == {**expected["counts"], "restarts": 0, "back_end": ""}
+        for part in ("h_min", "relative_misalignment", "contact", "end", "film", "closing", "warnings"):
+            assert_same(found[part], expected[part], part)
+        # Means are summed in other pieces.
+        for part in ("leakage", "friction"):
+            assert found[part] == pytest.approx(expected[part], rel=1e-12)
+
+
+def assert_same(found, expected, name):
+    """Equal to the bit, but for means."""
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys(), name
+        for key in expected:
+            assert_same(found[key], expected[key], f"{name}.{key}")
+    elif name.rpartition(".")[2] in ("mean", "share_of_closing", "torque", "wear_rate"):
+        assert found == pytest.approx(expected, rel=1e-12), name
+    else:
+        assert found == expected, name
+
+
+def points(key, values, outputs):
+    return [{"set": {key: value}, "outputs": outputs} for value in values]
+
+
+def rows(file, key, values, outputs, *overrides):
+    return run_many(read_scenario(SCENARIOS / f"{file}.toml", overrides), points(key, values, outputs))
+
+
+@pytest.fixture
+def by_itself(monkeypatch):
+    """What went by itself: overrides of the scenarios."""
+    seen, whole = [], batch.in_memory
+
+    def noted(scenario, speeds):
+        seen.append(scenario.overrides[-1])
+        return whole(scenario, speeds)
+
+    monkeypatch.setattr(batch, "in_memory", noted)
+    return seen
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
+def test_rows_are_single_runs_within_the_accuracy(by_itself, accuracy):
+    runout, outputs = ["10 urad", "30 urad"], ["h_min.value", "relative_misalignment.max", "end.state.stator_tilt_x"]
+    overrides = "run.turns=8", f"run.accuracy={accuracy}"
+    found = rows("fms_reference", "rotor.runout", runout, outputs, *overrides)
+    assert by_itself == []
+    for row, value in zip(found, runout, strict=True):
+        single = simulate_in_memory(
+            read_scenario(SCENARIOS / "fms_reference.toml", [*overrides, f'rotor.runout="{value}"'])
+        )
+        assert row["status"] == "ok" and "message" not in row
+        assert abs(row["h_min.value"] - single["h_min"]["value"]) < accuracy * 1e-5
+        assert abs(row["relative_misalignment.max"] - single["relative_misalignment"]["max"]) < accuracy * 1e-5 / 0.04
+        state = single["end"]["state"]["stator_tilt_x"]
+        assert abs(row["end.state.stator_tilt_x"] - state) < accuracy * 1e-5 / 0.04
+
+
+def test_numbers_of_samples_are_taken_only_where_they_are_asked_for():
+    lean = LoopedRun(read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=2"]), ["h_min.value"])
+    integrate([lean])
+    with pytest.raises(NotSampled):
+        output(lean.parts(), "leakage.mean")
+    assert output(lean.parts(), "stability.verdict") == "stable"
+    for key in leaves(plain(in_memory(lean.scenario))):
+        try:
+            output(lean.parts(), key)
+        except NotSampled:
+            assert key.startswith(SAMPLED)
+
+
+def test_what_there_is_not_is_named(by_itself):
+    (row,) = rows("fms_reference", "rotor.runout", ["10 urad"], ["h_min.vlaue"], "run.turns=2")
+    assert "nearest h_min.value" in str(row)
+
+
+@pytest.mark.parametrize(
+    "file, key, values",
+    [
+        ("massless_ring", "rotor.runout", ["20 urad", "30 urad"]),
+        ("hang_up", "shaft.speed", ["2900 rpm", "3000 rpm"]),
+        ("fms_reference", "film.model", ["linear", "linear"]),
+    ],
+)
+def test_what_the_loop_cannot_goes_by_itself(by_itself, file, key, values):
+    found = rows(file, key, values, ["h_min.value"], "run.turns=2")
+    assert len(by_itself) == 2 and all(row["h_min.value"] > 0 for row in found)
+
+
+def test_a_failing_run_costs_one_row(by_itself):
+    falls = '{ time = ["0 s", "0.02 s"], value = ["10 urad", "20 mrad"] }'
+    values = ["20 urad", "-nonsense", falls, "30 urad", "2 mrad"]
+    good, unread, fallen, other, closed = rows("fms_reference", "rotor.runout", values, ["h_min.value"], "run.turns=8")
+    assert good["status"] == other["status"] == "ok" and good["h_min.value"] > other["h_min.value"]
+    assert isinstance(unread, ScenarioError) and "closed at the start" in str(closed)
+    assert fallen["status"] == "collapsed" and "film collapsed at t =" in fallen["message"]
+    assert len(by_itself) == 1
+
+
+def test_more_contacts_than_a_loop_keeps(by_itself, monkeypatch):
+    monkeypatch.setattr(looped_run, "MOST_CONTACTS", 4)
+    (row,) = rows("rub", "stator.misalignment", ["1 mrad"], ["contact.touches"], "run.duration=0.27")
+    assert len(by_itself) == 1 and row["contact.touches"] > 4
+
+
+def test_runs_of_other_structure_beside_each_other(by_itself):
+    found = rows("fms_reference", "film.model", ["linear", "radial", "auto"], ["h_min.value"], "run.turns=3")
+    assert [row["status"] for row in found] == ["ok"] * 3
+    assert found[0]["h_min.value"] == pytest.approx(found[1]["h_min.value"], rel=1e-3)
+
+
+def test_a_dataset_of_many_runs():
+    scenario, told = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=3"]), []
+    sets = [{"rotor.runout": value} for value in (1e-5, 2e-5, -1.0, 3e-5)]
+    data = sealdyn.simulate_many(scenario, sets, ["leakage.mean"], workers=2, progress=lambda n, m: told.append((n, m)))
+    assert list(data["status"].values) == ["ok", "ok", "not possible", "ok"] and told[-1] == (4, 4)
+    assert "[rotor] runout" in str(data["message"].values[2]) and np.isnan(data["leakage.mean"][2])
+    assert data["leakage.mean"].attrs["units"] == "m^3/s"
+    assert {"end.state.stator_z", "end.state.stator_tilt_y_rate"} <= set(data.data_vars)
+    again = sealdyn.simulate_many(scenario, sets, ["leakage.mean"], workers=1)
+    assert again.equals(data)
+    with pytest.raises(ScenarioError, match="runuot"):
+        sealdyn.simulate_many(scenario, [{"rotor.runuot": 1.0}])
+    with pytest.raises(ScenarioError, match="none"):
+        sealdyn.simulate_many(scenario, [])
+
+
+def test_a_loop_stops_when_it_is_told_to():
+    """In the middle of a run that would take seconds."""
+    run = LoopedRun(read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=20000"]), ["h_min.value"])
+    stopped = Timer(0.3, lambda: signal.raise_signal(signal.SIGINT))
+    stopped.start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        integrate([run, run])
+    assert time.monotonic() - begun < 5.0 and run.outcome is None
