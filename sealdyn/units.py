@@ -43,11 +43,11 @@ class Quantity:
         """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`: no number, another
         dimension, not finite, below the least value."""
         if isinstance(value, str):
-            return self._limited(self._from_string(value), quoted(value))
+            return self._limited(self._from_string(value), value)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise QuantityError(quoted(value), self.expected())
         try:
-            return self._limited(float(value), quoted(value))
+            return self._limited(float(value), value)
         except OverflowError:
             raise QuantityError("a number beyond 1e308", self.expected()) from None
 
@@ -57,11 +57,12 @@ class Quantity:
         limit = "" if self.least == -math.inf else f" {'>' if self.open else '>='} {self.least:g}"
         return f"{article} {self.name}{limit} in {self.unit} or with its unit, e.g. {self.example}"
 
-    def _limited(self, value: float, found: str) -> float:
+    def _limited(self, value: float, found: Any) -> float:
+        """The value, if it can be; `found` as it was written."""
         if not math.isfinite(value):
-            raise QuantityError(found, f"a finite {self.name}")
+            raise QuantityError(quoted(found), f"a finite {self.name}")
         if value < self.least or (self.open and value == self.least):
-            raise QuantityError(found, self.expected())
+            raise QuantityError(quoted(found), self.expected())
         return value
 
     def _from_string(self, text: str) -> float:

@@ -203,9 +203,10 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
             _refuse_odd_numbers(value, name, path, depth + 1)
     if isinstance(tree, float) and not math.isfinite(tree):
         raise ScenarioError(name, key, str(tree), "a finite number")
-    table, _, last = without_indices(key).rpartition(".")
-    if isinstance(tree, bool) and tables(ScenarioFile).get(table, {}).get(last) is not bool and key:
-        raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+    if isinstance(tree, bool) and key:
+        table, _, last = without_indices(key).rpartition(".")
+        if tables(ScenarioFile).get(table, {}).get(last) is not bool:
+            raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
 def given_keys(tree: dict, key: str = "") -> list[str]:

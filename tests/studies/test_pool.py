@@ -7,7 +7,8 @@ import time
 import pytest
 from threadpoolctl import threadpool_info
 
-from sealdyn.numerics.parallel import Checkpoint, evaluate, processes
+from sealdyn.numerics import parallel, results
+from sealdyn.numerics.parallel import Checkpoint, Together, evaluate, processes
 
 CALLS = "SEALDYN_TEST_CALLS"
 
@@ -108,3 +109,37 @@ def test_no_journal_before_the_first_point(tmp_path):
     assert not journal.path.parent.exists()
     journal.add("x", {"y": 1})
     assert Checkpoint(journal.path, "a").rows == {"x": {"y": 1}}
+
+
+# --- points that cost less together ---------------------------------------------------------------------
+
+
+def squares(points):
+    with open(os.environ[CALLS], "a") as file:
+        file.write(f"{len(points)}\n")
+    time.sleep(0.01 * len(points))
+    if len(points) > 1 and any(point["x"] == 40 for point in points):
+        raise RuntimeError("spoilt for all")
+    return [ValueError("not for squaring") if point["x"] == 2 else {"y": point["x"] ** 2} for point in points]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_points_that_cost_less_together(calls, tmp_path, monkeypatch, workers):
+    """In pieces that take about as long as they may, the last ones small; one that fails fails alone."""
+    monkeypatch.setattr(parallel, "PIECE", 0.08)
+    told = []
+    rows = evaluate(Together(squares), points(60), Checkpoint(tmp_path / "j", "a"), processes(workers),
+                    lambda n, m: told.append((n, m)), "squares")  # fmt: skip
+    expected = [{"y": x**2} for x in range(60)]
+    expected[2] = {"failed": "ValueError: not for squaring"}
+    assert rows == expected
+    sizes = sorted(map(int, calls()))
+    assert 4 <= sizes[-1] <= 20 and sizes[0] == 1 and len(sizes) < 40
+    assert [n for n, _ in told] == list(range(61))
+
+
+def test_a_row_is_the_same_alone_and_together(calls):
+    assert Together(squares)({"x": 3}) == {"y": 9}
+    with pytest.raises(ValueError, match="not for squaring"):
+        Together(squares)({"x": 2})
+    assert results.content_keys(Together(squares), points(1)) != results.content_keys(Together(cube), points(1))
