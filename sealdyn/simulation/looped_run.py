@@ -34,13 +34,12 @@ class LoopedRun:
         run, unknowns = self.run, self.run.model.unknowns
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)
         self.structure, self.sampled = None, any(key.startswith(SAMPLED) for key in outputs)
+        self.segments = [run.segment(index) for index in range(len(run.intervals))]
+        alone = run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(self.segments[0])
         heavy = self.sampled and count * unknowns.n > MOST_OUTPUT
-        if heavy or run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(run.segment(0)):
-            return
-        if self.method not in ("adams", "bdf"):
+        if alone or heavy or self.method not in ("adams", "bdf"):
             return
         self.sink = TallySink(run, interval, count) if self.sampled else None
-        self.segments = [run.segment(index) for index in range(len(run.intervals))]
         thinnest, touching = thinnest_value(run.model.face), run.model.contact is not None
         places = tuple(unknowns.rate_places)
         self.structure = self.method, unknowns.size, places, thinnest, touching, unknowns.impulse, self.sampled
