@@ -133,6 +133,21 @@ def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q
 
 
 @njit(cache=True)
+def falls_outwards(seen, kind, best, scan):
+    """Whether a measure of the scan `seen` (scan + 1, 3), lowest at its first or last point, still falls there: then
+    the end is its least, with no dip inside.  By the cubic through the four points there, and that it differs from the
+    parabola through three by less than its slope."""
+    if best != 0 and best != scan:
+        return False
+    inwards = 1 if best == 0 else -1
+    first = seen[best + inwards, kind] - seen[best, kind]
+    second = seen[best + 2 * inwards, kind] - seen[best + inwards, kind] - first
+    third = seen[best + 3 * inwards, kind] - seen[best + 2 * inwards, kind] - first - 2.0 * second
+    # Newton's forward differences: slope at the end, per interval of the scan.
+    return first - 0.5 * second + third / 3.0 > abs(third) / 3.0
+
+
+@njit(cache=True)
 def current_record(record, kind, tolerance):
     """The record so far in the measure of this kind (m, rad^2), and the improvement not worth locating."""
     if kind == THICKNESS:
@@ -213,10 +228,14 @@ def track_extremes(
                     if size == 0:
                         size = fit(t, q_all, q_rate_all, k, count, table, nodes)
                     step = (high - low) / scan
-                    at = locate_minimum(
-                        kind, low + left * step, low + right * step,
-                        table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
-                    )  # fmt: skip
+                    if not sinks and falls_outwards(seen, kind, best, scan):
+                        # The next step tells where it ends.
+                        at = low if best == 0 else high
+                    else:
+                        at = locate_minimum(
+                            kind, low + left * step, low + right * step,
+                            table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
+                        )  # fmt: skip
                     value(table, nodes, size, at, q, q_rate)
                     theta, radius = gap_and_tilt(at, q, y, yp, p, thinnest, f, w, s, out)
                     if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:

@@ -11,35 +11,36 @@ from ..faces.film_thickness import h_min_of
 VECTOR, MATRIX = float64[::1], float64[:, ::1]
 # A film's kernel on its block and a gap state; the load of contact on its block, a film's and a gap state; the thinnest
 # place of a face block at a gap state.
-OF_FILM, OF_LOAD = types.void(VECTOR, VECTOR), types.void(VECTOR, VECTOR, VECTOR)
-OF_THINNEST = types.UniTuple(float64, 3)(VECTOR, VECTOR)
-FILM, LOAD, THINNEST = (types.FunctionType(signature) for signature in (OF_FILM, OF_LOAD, OF_THINNEST))
+FILM, LOAD = types.FunctionType(types.void(VECTOR, VECTOR)), types.FunctionType(types.void(VECTOR, VECTOR, VECTOR))
+THINNEST = types.FunctionType(types.UniTuple(float64, 3)(VECTOR, VECTOR))
 
 
 @lru_cache
 class Value(types.WrapperAddressProtocol):
     """A kernel as a function value, its address looked up once: each look-up costs as much as thirty films."""
 
-    def __init__(self, kernel, signature=OF_FILM):
-        self._signature, found = signature, kernel.get_compile_result(signature)
+    def __init__(self, kernel, kind=FILM):
+        found = kernel.get_compile_result(kind.signature)
         self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
+        # What numba looks for first: without it the type is made anew at every call.
+        self._numba_type_ = kind
 
     def __wrapper_address__(self):
         return self.address
 
     def signature(self):
         """The kernel's signature, which numba asks for."""
-        return self._signature
+        return self._numba_type_.signature
 
 
 def load_value(block, complete=False) -> tuple[Value, np.ndarray]:
     """Load of contact as a function value, `complete` with friction and wear, and its block; without one (None) a load
     that does nothing, and an empty block."""
     if block is None:
-        return Value(no_load, OF_LOAD), np.empty(0)
-    return Value(contact_load_and_friction if complete else contact_load, OF_LOAD), block
+        return Value(no_load, LOAD), np.empty(0)
+    return Value(contact_load_and_friction if complete else contact_load, LOAD), block
 
 
 def thinnest_value(face) -> Value:
     """What finds the thinnest place of a face block, as a function value."""
-    return Value(h_min_of(face), OF_THINNEST)
+    return Value(h_min_of(face), THINNEST)

@@ -109,7 +109,7 @@ class ExactMotion:
     WORST = 1e6
 
     def __init__(self, segment):
-        _, answers, linear = steady_motion(segment)
+        _, answers, linear = segment.steady_motion()
         kept, places = segment.model.unknowns.among_three(), [*range(segment.n), *segment.rate_places]
         rows = np.array([*kept, *[len(linear.mass) + i for i in kept]])[np.argsort(places)]
         self.matrix = linear.state_matrix()[np.ix_(rows, rows)]

@@ -252,10 +252,10 @@ def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple
 
     turns = np.max(np.abs(frequencies)) * period / (2 * np.pi)
     t = np.linspace(0.0, period, 256 * max(1, round(turns)) + 1)
-    at, step, each = t[np.argmin(measures(t), axis=1)], t[1] - t[0], np.arange(3)
+    at, step, each, grid = t[np.argmin(measures(t), axis=1)], t[1] - t[0], np.arange(3), np.linspace(-1, 1, 41)
     # Smooth extrema: close in by ever finer grids.
     for _ in range(6):
-        near = at[:, None] + step * np.linspace(-1, 1, 41)
+        near = at[:, None] + step * grid
         found = measures(near.ravel()).reshape(3, 3, 41)[each, each]
         at = near[each, np.argmin(found, axis=1)]
         step /= 15
@@ -273,7 +273,7 @@ def common_period(frequencies, most: int = 64) -> float | None:
     if not moving:
         return None
     base, multiple = moving[0], 1
-    for w in moving:
+    for w in moving[1:]:
         ratio = Fraction(w / base).limit_denominator(most)
         if abs(ratio - Fraction(w / base)) > 1e-9 * ratio:
             return None

@@ -35,14 +35,17 @@ class RunState:
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         self.reasons, self.cautions = list(model.unknowns.reasons), []
         self.last = (0, 0.0, self.y0)
+        self._segment = None
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
         """The equations over the interval `index` (negative: from the end); `stuck` {ring: bool} in place of the rings
-        that stick now."""
+        that stick now.  Where none can stick, the last one is not made twice."""
         index %= len(self.intervals)
         if stuck is None and self.stick_slip:
             stuck = self.stick_slip.stuck
-        return self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
+        if self.stick_slip or self._segment is None or self._segment.index != index:
+            self._segment = self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
+        return self._segment
 
     @cached_property
     def memory(self) -> float:

@@ -248,5 +248,9 @@ class Segment:
         return linearisation.harmonics(self)
 
     def steady_motion(self):
-        """Linear steady state (linearisation.py)."""
+        """Linear steady state (linearisation.py), worked out once."""
+        return self._steady
+
+    @cached_property
+    def _steady(self):
         return linearisation.steady_motion(self)

@@ -240,10 +240,11 @@ def samples(segment, taus, q, q_rate, x=None) -> Samples:
     return Samples(segment, taus, gap, scratch, low)
 
 
-def signals(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
-    """Named series (m,) at times of a segment, given as to `samples`; SI, leakage counts from high to low pressure."""
+def signals(segment, taus, q, q_rate, x=None, tallied=False) -> dict[str, np.ndarray]:
+    """Named series (m,) at times of a segment, given as to `samples`, or those only of which a run keeps its mean and
+    maximum (`tallied`); SI, leakage counts from high to low pressure."""
     at = samples(segment, taus, q, q_rate, x)
-    table = signal_table(segment.model)
+    table = [signal for signal in signal_table(segment.model) if signal.tallied or not tallied]
     columns = {"time": segment.interval.time + at.taus} | {signal.name: signal.values(at) for signal in table}
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}
 

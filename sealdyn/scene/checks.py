@@ -249,4 +249,5 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":
         leaves += ["film.geometry", "film.cavitation_pressure"]
-    return sorted(k for k in given if any(k == u or (k + ".").startswith(u.rstrip(".") + ".") for u in leaves))
+    beginnings = tuple(leaf.rstrip(".") + "." for leaf in leaves)
+    return sorted(key for key in given if (key + ".").startswith(beginnings))

@@ -160,7 +160,7 @@ class TallySink(ArchiveSink):
 
     def take(self, segment, taus, q, q_rate, x=None):
         """Take signals into the tally, as `ArchiveSink.take`."""
-        self.tally.add(signals(segment, taus, q, q_rate, x))
+        self.tally.add(signals(segment, taus, q, q_rate, x, tallied=True))
 
     def log(self, events):
         """Events are not kept."""

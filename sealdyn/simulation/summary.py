@@ -280,8 +280,7 @@ def _linear_steady(segment, linear, period):
         frequencies = [w for w in rows[:, 7] if w]
         if frequencies and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
             return None
-    answers = [(h, linear.response(h)) for h in segment.harmonics()]
-    return (*modes.steady_extremes(linear, answers, period), period)
+    return (*modes.steady_extremes(linear, segment.steady_motion()[1], period), period)
 
 
 def _contact_margin(segment, linear, tilt):

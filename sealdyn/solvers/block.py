@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..numerics.hermite import sample
+from ..numerics.hermite import integrals, sample
 
 # Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
 OVERLAP = 4
@@ -40,6 +40,11 @@ class Block:
         """Second derivatives (m, n) of the displacements at the steps; None where a ring has no mass."""
         slopes = self.slopes
         return None if slopes is None else np.ascontiguousarray(slopes[:, self.segment.rate_places])
+
+    @cached_property
+    def increments(self) -> np.ndarray:
+        """Integrals (end - begin, size) of the right-hand side over each new step; every ring has mass."""
+        return integrals(self.t, self.slopes, self.begin, self.end)
 
     @property
     def whole(self) -> int:

@@ -11,7 +11,6 @@ import math
 import numpy as np
 from numba import njit
 
-from ..numerics.hermite import integrals
 from .contract import Retry
 
 # By how much a tolerance is sharpened when errors grow too large.
@@ -41,10 +40,8 @@ class GlobalErrorEstimate:
         if block.whole <= block.begin or not self.sound:
             return None
         before, t, ys, begin, end = self.state(), block.t, block.ys, block.begin, block.end
-        n, places = self.segment.n, self.segment.rate_places
-        defects = np.diff(ys[begin : end + 1, : self.segment.n_mechanical], axis=0)
-        defects[:, :n] -= integrals(t, np.ascontiguousarray(ys[:, places]), begin, end)
-        defects[:, places] -= integrals(t, block.accelerations, begin, end)
+        n = self.segment.n_mechanical
+        defects = np.diff(ys[begin : end + 1, :n], axis=0) - block.increments[:, :n]
         errors = np.empty((end - begin, len(self.modal)), dtype=complex)
         _answer(self.motion.values, np.diff(t[begin : end + 1]), defects @ self.motion.inverse.T, self.modal, errors)
         self.worst = max(self.worst, float(np.max(np.abs((errors @ self.shapes.T).real))))

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scenes import fmr, fms, fmsr, housing_vibration, prepared
+from scenes import fmr, fms, fmsr, housing_vibration, prepared, runup
 
-from sealdyn.dynamics.signals import signals
+from sealdyn.dynamics.signals import TALLIED, signals
 from sealdyn.faces.film_thickness import h_min
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.secondary_seal import SecondarySeal
@@ -57,6 +57,9 @@ def test_signals_are_those_of_each_instant(drawn):
         s = segment.gap_state(taus[k], segment.model.vector(q[k], rate[k]))
         assert together["h_min"][k] == h_min(face, s)[0] and together["axial_gap_change"][k] == s[0]
     assert signals(segment, taus[:0], q[:0], rate[:0])["h_min"].shape == (0,)
+    tallied = signals(segment, taus, q, rate, tallied=True)
+    assert set(tallied) == {"time", *TALLIED} & set(together) and len(tallied) < len(together)
+    assert all(np.array_equal(values, together[name]) for name, values in tallied.items())
 
 
 def test_the_thinnest_film_at_the_start():
@@ -64,3 +67,12 @@ def test_the_thinnest_film_at_the_start():
     segment = ready.segment(0)
     q, rate = segment.motion(ready.y0[None, :], None)
     assert ready.start_film() == signals(segment, np.zeros(1), q, rate)["h_min"][0] < ready.model.clearance
+
+
+def test_the_same_segment_is_not_made_twice_but_where_rings_stick():
+    free, sticking = prepared(runup(), 0.05, 1e-6), prepared(SCENES["sealed"], 0.05, 1e-6)
+    first, last = free.segment(0), free.segment(-1)
+    assert (first.index, last.index, last.last) == (0, len(free.intervals) - 1, True) and last.index > 0
+    assert free.segment(-1) is last and np.array_equal(free.segment(0).p, first.p)
+    for held in (True, False):
+        assert sticking.segment(0, {0: held}).stuck == {0: held}
