@@ -74,14 +74,15 @@ def names_over(file, scale: str) -> list[str]:
     return [name for name in file if scale_of(file, name) == scale]
 
 
-def reserve(file, name: str, series: Series, shape: tuple[int, ...]):
+def reserve(file, name: str, series: Series, shape: tuple[int, ...], early: bool):
     """A dataset with room for `shape`, NaN until written, which stays where it is in the file: a single chunk, so that
-    it can be shortened there, or in one piece where HDF5 has no chunk so large."""
+    it can be shortened there, or in one piece where HDF5 has no chunk so large.  It has its place at once if `early`,
+    else with its first values."""
     plan, most = h5p.create(h5p.DATASET_CREATE), None
     if shape[0] <= MOST_IN_PLACE:
         plan.set_chunk(tuple(max(length, 1) for length in shape))
         most = h5s.UNLIMITED, *shape[1:]
-    plan.set_alloc_time(h5d.ALLOC_TIME_EARLY)
+    plan.set_alloc_time(h5d.ALLOC_TIME_EARLY if early else h5d.ALLOC_TIME_LATE)
     plan.set_fill_value(np.array(np.nan))
     space = h5s.create_simple(shape, most)
     describe(h5d.create(file.id, name.encode(), h5t.IEEE_F64LE, space, plan), series._asdict())
@@ -104,13 +105,13 @@ def attach_scale(file, scale: str, names):
             h5ds.attach_scale(h5d.open(file.id, name.encode()), along, 0)
 
 
-def create_fields(file, fields: Fields, instants: int) -> None:
-    """Room for so many instants of the fields, their grid beside them as dimension scales."""
+def create_fields(file, fields: Fields, instants: int, early: bool) -> None:
+    """Room for so many instants of the fields (`early` as in `reserve`), their grid beside them as dimension scales."""
     for name, (series, values) in fields.grid.items():
         file[name] = np.asarray(values, "<f8")
         describe(file[name].id, series._asdict())
     for name, series in fields.over_time().items():
-        reserve(file, name, series, (instants, *(() if name == FIELD_TIME else fields.shape)))
+        reserve(file, name, series, (instants, *(() if name == FIELD_TIME else fields.shape)), early)
     scales = FIELD_TIME, *fields.grid
     for name in scales:
         file[name].make_scale(name)
