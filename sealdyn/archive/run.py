@@ -29,6 +29,7 @@ from .fields import (
     Series,
     attach_scale,
     create_fields,
+    describe,
     names_over,
     reserve,
     scale_of,
@@ -312,7 +313,7 @@ class ArchiveWriter:
 
 def _write_attributes(file, attributes: dict):
     for name, value in attributes.items():
-        file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
+        describe(file.id, {name: value if isinstance(value, str | int | float) else _to_json(value)})
 
 
 def _copy_rows(old, new, rows: int) -> None:
@@ -334,7 +335,8 @@ def _write_events(file, events: list[dict]) -> None:
         group[name] = np.array([event.get(name, np.nan) for event in events], "<f8")
     for name in ("kind", "text"):
         group[name] = np.array([str(event.get(name, "")) for event in events], h5py.string_dtype())
-    rest = [{k: v for k, v in event.items() if k not in group} for event in events]
+    columns = tuple(group)
+    rest = [{k: v for k, v in event.items() if k not in columns} for event in events]
     group["details"] = np.array([_to_json(item) for item in rest], h5py.string_dtype())
     group["time"].attrs["units"] = "s"
     attach_scale(group, "time", list(group))
