@@ -5,7 +5,8 @@ it never does that in a file anybody reads: the skeleton is written once beside 
 and renamed into place; rows then go straight to the places HDF5 has reserved for them; a record of how
 many rows count (two slots in turn, each with a checksum) goes last.  Whatever instant the run ends at, the
 file opens and one record is whole.  When the room is used up, or the run is done, the file is written anew
-and renamed again.  Readers need no lock and no luck.
+and renamed again.  A run that is done before its rows have waited long enough is written once.  Readers need
+no lock and no luck.
 """
 
 import json
@@ -28,6 +29,7 @@ from .fields import (
     Series,
     attach_scale,
     create_fields,
+    describe,
     names_over,
     reserve,
     scale_of,
@@ -57,7 +59,8 @@ class ArchiveWriter:
 
     `series` maps a column's name to its `Series`; `time` (s) is added when missing.  `fields`: what is kept over
     a grid at a few of the rows.  `meta` becomes root attributes.  `expected_rows` spares copying: room for so
-    many rows is reserved at once.  Rows wait in memory for at most `interval` seconds or `buffer_rows` rows.
+    many rows is reserved at once.  Rows wait in memory for at most `interval` seconds or `buffer_rows` rows; before,
+    there is no file.
     With `resume`, goes on from `<stem>.partial.h5`, or from a `path` that was interrupted: `rows`, `state` say
     from where; without either it starts anew.  Raises `ArchiveError` when the series or fields differ from those
     of the file resumed.
@@ -91,12 +94,17 @@ class ArchiveWriter:
         }
         self._interval, self._buffer_rows = interval, buffer_rows
         self._waiting, self._state, self._log, self._sequence = [], {}, b"", 0
-        self._room, self._slot, self._log_room, self._file = 0, SLOT, LOG, None
+        self._room, self._slot, self._log_room, self._file, self._ended = 0, SLOT, LOG, None, False
         self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._first_room = min(expected_rows + 1, LARGEST_FIRST_ROOM) if expected_rows else SMALLEST_ROOM
+        self._written = clock.monotonic()
         source = self._resumable() if resume else None
         if source:
             self._take_over(source)
-        self._reserve(source, min(expected_rows + 1, LARGEST_FIRST_ROOM) if expected_rows else SMALLEST_ROOM)
+            self._reserve(source, self._first_room)
+        else:
+            # What an earlier run has left here is not this one's.
+            self.partial.unlink(missing_ok=True)
 
     def append(self, columns: dict, state: dict | None = None, fields: dict | None = None) -> None:
         """Adds rows: one array of equal length for every series.  `state` (numbers, strings, arrays) is
@@ -128,16 +136,10 @@ class ArchiveWriter:
         if full or not self._file:
             self._slot = max(self._slot, 2 * len(record))
             self._log_room = max(self._log_room, 2 * len(log))
-            self._reserve(self.partial, rows)
+            self._reserve(self.partial, max(rows, self._first_room))
             record = self._record(rows, instants, state, log)
-        if self._waiting:
-            first = self._waiting[0][0][0]
-            for name in self._series:
-                values = np.concatenate([columns[name] for _, columns, _, _ in self._waiting])
-                self._write(self._place[name] + 8 * first, values.tobytes())
-        for (_, first), _, fields, _ in self._waiting:
-            for name, values in fields.items():
-                self._write(self._place[name] + first * values[0].nbytes, values.tobytes())
+        for name, first, values in self._pieces():
+            self._write(self._place[name] + first * values.strides[0], values.tobytes())
         self._write(self._place["log"] + self._logged, log[self._logged :])
         # The record last: it is what makes the bytes above count.
         self._write(self._place["record"] + (self._sequence % 2) * self._slot, record)
@@ -152,29 +154,36 @@ class ArchiveWriter:
         """
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
-        self.flush()
+        if self._file:
+            self.flush()
         target = self.path
         if status == Status.INTERRUPTED and not self._may_replace():
             target = self.partial
+        rows, instants = self._appended()
         self._attributes |= {"status": status, "message": message, "summary": summary}
-        self._attributes |= {"rows": self.rows, "instants": self.instants}
-        if self.rows > SHARE * self._room and self._room <= MOST_IN_PLACE:
+        self._attributes |= {"rows": rows, "instants": instants}
+        if rows > SHARE * self._room and 0 < self._room <= MOST_IN_PLACE:
             written = self._shortened(target)
         else:
             # What has much room to spare gives it back.
-            written = self._rewritten(target, self.rows, self.instants, self.partial, self._attributes)
+            written = self._rewritten(target, rows, instants, self.partial, self._attributes)
         with written as file:
+            # Of a run that is written once, all.
+            for name, _, values in self._pieces():
+                h5py.h5d.open(file.id, name.encode()).write(h5py.h5s.ALL, h5py.h5s.ALL, values)
             file.create_group("restart").attrs["state"] = _to_json(self.state)
             _write_events(file, _read_log(self._log))
         if target != self.partial:
             self.partial.unlink(missing_ok=True)
+        self.rows, self.instants, self._waiting, self._ended = rows, instants, [], True
         return target
 
     def close(self) -> None:
         """Leaves the run as it is, to be continued."""
-        if self._file:
+        if not self._ended:
             self.flush()
             self._close()
+            self._ended = True
 
     def _close(self) -> None:
         if self._file:
@@ -187,6 +196,16 @@ class ArchiveWriter:
             return self.rows, self.instants
         (row, instant), columns, fields, _ = self._waiting[-1]
         return row + len(columns["time"]), instant + len(fields.get(FIELD_TIME, ()))
+
+    def _pieces(self) -> list[tuple[str, int, np.ndarray]]:
+        """What waits: the name of a series or field, the first of its rows or instants, and their values."""
+        series = [(row, columns) for (row, _), columns, _, _ in self._waiting]
+        fields = [(instant, values) for (_, instant), _, values, _ in self._waiting if values]
+        return [
+            (name, parts[0][0], np.concatenate([values[name] for _, values in parts]))
+            for parts in (series, fields)
+            for name in (parts[0][1] if parts else ())
+        ]
 
     # -- continuing --------------------------------------------------------------------------------
 
@@ -229,7 +248,7 @@ class ArchiveWriter:
         self._slot = max(self._slot, 2 * len(record))
         self._log_room = max(self._log_room, 2 * len(log))
         most = self._fields.most if self._fields else 0
-        with self._rewritten(self.partial, room, most, source, attributes) as file:
+        with self._rewritten(self.partial, room, most, source, attributes, early=True) as file:
             restart = file.create_group("restart")
             restart.attrs["note"] = "rows beyond those of the newest whole record are room, not data"
             names = [*self._series, *(self._fields.over_time() if self._fields else ())]
@@ -244,15 +263,15 @@ class ArchiveWriter:
         self._file = open(self.partial, "r+b", buffering=0)  # noqa: SIM115  kept for the whole run
 
     @contextmanager
-    def _rewritten(self, target: Path, room: int, instants: int, source, attributes: dict):
-        """A complete new file that takes the place of `target` when the block ends."""
+    def _rewritten(self, target: Path, room: int, instants: int, source, attributes: dict, early: bool = False):
+        """A complete new file that takes the place of `target` when the block ends; `early` as in `reserve`."""
         with self._beside(target) as fresh, h5py.File(fresh, "w") as file:
             _write_attributes(file, {"format": FORMAT, **attributes})
             for name, series in self._series.items():
-                reserve(file, name, series, (room,))
+                reserve(file, name, series, (room,), early)
             attach_scale(file, "time", self._series)
             if self._fields:
-                create_fields(file, self._fields, instants)
+                create_fields(file, self._fields, instants, early)
             if source and self.rows:
                 with h5py.File(source, "r") as old:
                     for name in self._series:
@@ -294,7 +313,7 @@ class ArchiveWriter:
 
 def _write_attributes(file, attributes: dict):
     for name, value in attributes.items():
-        file.attrs[name] = value if isinstance(value, str | int | float) else _to_json(value)
+        describe(file.id, {name: value if isinstance(value, str | int | float) else _to_json(value)})
 
 
 def _copy_rows(old, new, rows: int) -> None:
@@ -316,7 +335,8 @@ def _write_events(file, events: list[dict]) -> None:
         group[name] = np.array([event.get(name, np.nan) for event in events], "<f8")
     for name in ("kind", "text"):
         group[name] = np.array([str(event.get(name, "")) for event in events], h5py.string_dtype())
-    rest = [{k: v for k, v in event.items() if k not in group} for event in events]
+    columns = tuple(group)
+    rest = [{k: v for k, v in event.items() if k not in columns} for event in events]
     group["details"] = np.array([_to_json(item) for item in rest], h5py.string_dtype())
     group["time"].attrs["units"] = "s"
     attach_scale(group, "time", list(group))

@@ -243,9 +243,13 @@ def samples(segment, taus, q, q_rate, x=None) -> Samples:
 def signals(segment, taus, q, q_rate, x=None, tallied=False) -> dict[str, np.ndarray]:
     """Named series (m,) at times of a segment, given as to `samples`, or those only of which a run keeps its mean and
     maximum (`tallied`); SI, leakage counts from high to low pressure."""
-    at = samples(segment, taus, q, q_rate, x)
-    table = [signal for signal in signal_table(segment.model) if signal.tallied or not tallied]
-    columns = {"time": segment.interval.time + at.taus} | {signal.name: signal.values(at) for signal in table}
+    return series_of(samples(segment, taus, q, q_rate, x), tallied)
+
+
+def series_of(at: Samples, tallied=False) -> dict[str, np.ndarray]:
+    """The same of Samples."""
+    table = [signal for signal in signal_table(at.segment.model) if signal.tallied or not tallied]
+    columns = {"time": at.segment.interval.time + at.taus} | {signal.name: signal.values(at) for signal in table}
     return {name: np.ascontiguousarray(values) for name, values in columns.items()}
 
 
@@ -263,12 +267,11 @@ def field_grid(model) -> tuple[np.ndarray, np.ndarray]:
     return film.grid(f)
 
 
-def fields(segment, taus, q, q_rate, x=None) -> dict[str, np.ndarray]:
-    """Fields (m, radii, angles) at times (m,) of a segment, given as to `signals`; SI."""
-    table = fields_of(segment.model)
-    (film, f), gap = segment.model.observed, samples(segment, taus, q, q_rate, x).gap
-    out = np.empty((len(taus), len(table), *map(len, field_grid(segment.model))))
-    for i in range(len(taus)):
-        own = () if x is None else (x[i],)
-        film.fields(f, gap[i], *own, out[i])
+def fields(at: Samples, places, x=None) -> dict[str, np.ndarray]:
+    """Fields (m, radii, angles) at `places` (m,) of Samples, with the film's unknowns `x` there as to `samples`; SI."""
+    table, (film, f) = fields_of(at.segment.model), at.segment.model.observed
+    out = np.empty((len(places), len(table), *map(len, field_grid(at.segment.model))))
+    for i, place in enumerate(places):
+        own = () if x is None else (x[place],)
+        film.fields(f, at.gap[place], *own, out[i])
     return {field.name: out[:, k] for k, field in enumerate(table)}

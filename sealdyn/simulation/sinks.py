@@ -7,7 +7,18 @@ from fractions import Fraction
 import numpy as np
 
 from ..archive import FIELD_TIME, Fields, Series
-from ..dynamics.signals import DEGREES, MILLIMETRES, TALLIED, field_grid, fields, fields_of, signal_table, signals
+from ..dynamics.signals import (
+    DEGREES,
+    MILLIMETRES,
+    TALLIED,
+    field_grid,
+    fields,
+    fields_of,
+    samples,
+    series_of,
+    signal_table,
+    signals,
+)
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -84,20 +95,23 @@ class ArchiveSink:
     def take(self, segment, taus, q, q_rate, x=None):
         """Signals at segment times (m,) (s) from displacements and rates (m, n) and the film's unknowns, kept until the
         next flush."""
-        columns = signals(segment, taus, q, q_rate, x)
+        at = samples(segment, taus, q, q_rate, x)
+        columns = series_of(at)
         self.tally.add(columns)
         if fields_of(segment.model):
-            self.keep_fields(segment, columns["time"], (taus, q, q_rate, *(() if x is None else (x,))))
+            self.keep_fields(at, columns["time"], x)
         self.waiting = _joined(self.waiting, columns)
 
-    def keep_fields(self, segment, times, motion):
-        """Fields at the samples that keep them: those that are due, and one that is no sample, the end of a run."""
+    def keep_fields(self, at, times, x):
+        """Fields at those of the samples `at` that keep them, at `times` (m,) (s) of the run: those that are due, and
+        one that is no sample, the end of a run."""
         steps = times / self.dt
-        sample = np.rint(steps)
-        kept = np.isin(sample, self.kept) | (np.abs(steps - sample) > 1e-6)
-        if kept.any():
-            found = fields(segment, *(part[kept] for part in motion))
-            self.waiting_fields = _joined(self.waiting_fields, {FIELD_TIME: times[kept], **found})
+        number = np.rint(steps)
+        next_kept = self.kept[np.minimum(np.searchsorted(self.kept, number), KEPT - 1)]
+        places = np.flatnonzero((next_kept == number) | (np.abs(steps - number) > 1e-6))
+        if len(places):
+            found = {FIELD_TIME: times[places], **fields(at, places, x)}
+            self.waiting_fields = _joined(self.waiting_fields, found)
 
     def event(self, segment, tau, event):
         """Keep a change of the equations (an archive's event without its time) at segment time `tau` (s)."""

@@ -128,10 +128,20 @@ def test_rows_wait_in_memory_until_the_interval_or_the_row_limit(tmp_path):
     path = tmp_path / "run.h5"
     run = writer(path, interval=1e9, buffer_rows=100)
     run.append(rows(0, 99))
-    assert read_info(path)["rows"] == 0
+    assert not list(tmp_path.iterdir())
     run.append(rows(99, 101))
     assert read_info(path)["rows"] == 101
     run.close()
+
+
+def test_what_an_earlier_run_left_is_not_that_of_a_new_one(tmp_path):
+    path = tmp_path / "run.h5"
+    run = writer(path)
+    run.append(rows(0, 10))
+    run.close()
+    writer(path)
+    # Killed before its first rows were due.
+    assert writer(path, resume=True).rows == 0
 
 
 @pytest.mark.parametrize("final", ["ok", "interrupted", None])
@@ -252,6 +262,7 @@ def test_a_run_killed_at_any_instant_is_readable_to_its_last_row(tmp_path):
 def test_reading_while_a_run_writes(tmp_path):
     path = tmp_path / "run.h5"
     run = writer(path, interval=0.0)
+    run.append(rows(0, 0), {"row": 0})
     stop, seen, errors = threading.Event(), [], []
 
     def watch():

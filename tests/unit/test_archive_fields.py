@@ -57,6 +57,21 @@ def test_what_goes_in_comes_out_to_the_last_bit(tmp_path):
             field(path, name)
 
 
+def test_a_file_written_once_is_one_written_bit_by_bit(tmp_path):
+    contents = []
+    for name, interval in (("often", 0.0), ("once", 1e9)):
+        run = written(tmp_path / name / "run.h5", 75, interval=interval)
+        run.events([{"kind": "touch", "time": 0.01, "value": 1.0, "text": "there"}])
+        assert archive.partial_path(tmp_path / name / "run.h5").exists() == (name == "often")
+        with h5py.File(run.finish("ok", "done", {"a": 1}), "r") as file:
+            found = {".": dict(file.attrs) | {"created": ""}}
+            file.visititems(lambda name, item, found=found: found.update({name: (item[()], dict(item.attrs))})
+                            if isinstance(item, h5py.Dataset) else found.update({name: dict(item.attrs)}))  # fmt: skip
+        contents.append(found)
+    assert list(contents[0]) == list(contents[1]) and repr(contents[0]) == repr(contents[1])
+    assert len(contents[0]["h_min"][0]) == 75
+
+
 def test_a_stranger_reads_them_with_h5py_and_with_xarray(tmp_path):
     path = written(tmp_path / "run.h5", 75).finish("ok", "", {})
     with h5py.File(path) as file:
