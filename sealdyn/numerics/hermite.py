@@ -54,23 +54,23 @@ def fit(t, q, q_rate, k, count, table, nodes):
         if right < last:
             nodes[filled] = nodes[filled + 1] = t[right]
             for i in range(q.shape[1]):
-                table[i, filled], table[i, filled + 1] = q[right, i], q[right, i]
+                table[i, filled], table[i, filled + 1] = q[right, i], q_rate[right, i]
             filled += 2
             right += 1
         if left >= first and filled < size:
             nodes[filled] = nodes[filled + 1] = t[left]
             for i in range(q.shape[1]):
-                table[i, filled], table[i, filled + 1] = q[left, i], q[left, i]
+                table[i, filled], table[i, filled + 1] = q[left, i], q_rate[left, i]
             filled += 2
             left -= 1
     for i in range(q.shape[1]):
-        for order in range(1, size):
+        row = table[i]
+        # In its second place each step holds its rate: the first difference there.
+        for m in range(size - 2, 0, -2):
+            row[m] = (row[m] - row[m - 2]) / (nodes[m] - nodes[m - 2])
+        for order in range(2, size):
             for m in range(size - 1, order - 1, -1):
-                width = nodes[m] - nodes[m - order]
-                if width != 0.0:
-                    table[i, m] = (table[i, m] - table[i, m - 1]) / width
-                else:
-                    table[i, m] = _rate(t, q_rate, nodes[m], i, first, last)
+                row[m] = (row[m] - row[m - 1]) / (nodes[m] - nodes[m - order])
     _drop_noise(0.5 * (t[k] + t[k + 1]), table, nodes, size)
     return size
 
@@ -96,14 +96,6 @@ def _drop_noise(middle, table, nodes, size):
                 if not falls:
                     table[i, 2 * j : size] = 0.0
                     break
-
-
-@njit(cache=True)
-def _rate(t, q_rate, at, i, first, last):
-    for m in range(first, last):
-        if t[m] == at:
-            return q_rate[m, i]
-    return 0.0
 
 
 @njit(cache=True)

@@ -68,15 +68,13 @@ class Block:
         """
         first, last = max(0, self.begin - OVERLAP), min(len(self.t), self.end + OVERLAP + 1)
         begin, end, count = self.begin - first, self.end - first, last - first
-        q, q_rate = (part[first:last] for part in self.motion)
-        t = self.t[first:last]
-        out, slope = np.empty((len(times), q.shape[1])), np.empty((len(times), q.shape[1]))
-        sample(t, q, q_rate, count, begin, end, times, out, slope)
-        if self.accelerations is None:
-            return out, slope
-        rate = np.empty_like(out)
-        sample(t, q_rate, self.accelerations[first:last], count, begin, end, times, rate, slope)
-        return out, rate
+        (values, slopes), more = self.motion, self.accelerations
+        n = values.shape[1]
+        if more is not None:
+            values, slopes = np.hstack([values, slopes]), np.hstack([slopes, more])
+        out, slope = np.empty((2, len(times), values.shape[1]))
+        sample(self.t[first:last], values[first:last], slopes[first:last], count, begin, end, times, out, slope)
+        return (out, slope) if more is None else (out[:, :n], out[:, n:])
 
     def film_at(self, times) -> tuple:
         """The film's unknowns (k, n) at `times` (k,) (s), in a tuple; an empty one where it has none."""

@@ -173,6 +173,14 @@ def test_more_contacts_than_a_loop_keeps(by_itself, monkeypatch):
     assert len(by_itself) == 1 and row["contact.touches"] > 4
 
 
+def test_more_samples_than_a_loop_hands_over(by_itself, monkeypatch):
+    monkeypatch.setattr(looped_run, "MOST_OUTPUT", 300)
+    for outputs, alone in ((["leakage.mean"], 1), (["h_min.value"], 0)):
+        by_itself.clear()
+        rows("fms_reference", "rotor.runout", ["10 urad"], outputs, "run.turns=2")
+        assert len(by_itself) == alone
+
+
 def test_runs_of_other_structure_beside_each_other(by_itself):
     found = rows("fms_reference", "film.model", ["linear", "radial", "auto"], ["h_min.value"], "run.turns=3")
     assert [row["status"] for row in found] == ["ok"] * 3
