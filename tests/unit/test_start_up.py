@@ -51,7 +51,8 @@ def test_the_package_alone_loads_nothing():
 
 BESIDE_A_RUN = {
     "matplotlib", "PIL", "sksundae", "xarray", "h5netcdf", "distributed", "scipy.optimize", "scipy.integrate",
-    "scipy.stats", "scipy.signal", "scipy.special", "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
+    "scipy.stats", "scipy.signal", "scipy.special", "pint",
+    "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
 }  # fmt: skip
 OF_OTHERS = ("cavitated", "contact_load", "thinnest_of_waves", "locate_contacts", "profiled")
 
