@@ -1,7 +1,9 @@
 """The verbs: run, check, schema, show, plot, validate, study.  Everything heavy is imported by the verb that
 needs it."""
 
+import atexit
 import contextlib
+import gc
 import json
 import os
 import shlex
@@ -34,6 +36,8 @@ EXIT = {
 
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
+# New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
+GARBAGE = 100_000
 
 app = typer.Typer(
     add_completion=False,
@@ -421,6 +425,9 @@ def _flags(words: list[str]) -> dict:
 def main():
     """Entry point: one line for every error, never a traceback."""
     as_json = "--json" in sys.argv
+    gc.set_threshold(GARBAGE)
+    # Python would look through all that was loaded once more as it ends.
+    atexit.register(gc.freeze)
     try:
         code = app(standalone_mode=False)
         sys.exit(code if isinstance(code, int) else DONE)

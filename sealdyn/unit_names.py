@@ -59,6 +59,29 @@ joule = newton * meter = J
 watt = joule / second = W
 calorie = 4.184 joule = cal
 """
+# What most scenarios are written in, as pint reads it: exponents of the dimensions, then units and factors.  To load
+# pint takes as long as all else that reads a scenario.
+DIMENSIONS = ("[length]", "[mass]", "[time]", "[angle]")
+COMMON = {
+    (0, 0, 0, 0): {"m/m": "1"},
+    (1, 0, 0, 0): {"m": "1", "mm": "1e-3", "um": "1e-6"},
+    (0, 1, 0, 0): {"kg": "1", "g": "1e-3"},
+    (0, 0, 1, 0): {"s": "1", "ms": "1e-3"},
+    (0, 0, 0, 1): {"rad": "1", "mrad": "1e-3", "urad": "1e-6", "deg": "0.01745329251994329576923690769"},
+    (0, 0, -1, 1): {"rad/s": "1", "rpm": "0.1047197551196597746154214461", "Hz": "6.283185307179586476925286767"},
+    (1, 0, -1, 0): {"m/s": "1"},
+    (1, 1, -2, 0): {"N": "1"},
+    (-1, 1, -2, 0): {"Pa": "1", "bar": "1e5", "MPa": "1e6", "GPa": "1e9"},
+    (-1, 1, -1, 0): {"Pa*s": "1", "mPa*s": "1e-3"},
+    (2, 1, 0, 0): {"kg*m^2": "1"},
+    (0, 1, -2, 0): {"N/m": "1", "N/mm": "1e3"},
+    (0, 1, -1, 0): {"N*s/m": "1"},
+    (2, 1, -2, -1): {"N*m/rad": "1"},
+    (2, 1, -1, -1): {"N*m*s/rad": "1"},
+    (2, 1, -2, 0): {"N*m": "1"},
+    (2, 1, -1, 0): {"N*m*s": "1"},
+    (1, -1, 2, 0): {"1/Pa": "1"},
+}
 # A unit is names, one-digit powers, * / ( ) and blanks: nothing that could be made to compute for long.
 UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|[*/() ])+")
 
@@ -74,9 +97,23 @@ def _registry():
     return registry
 
 
+@cache
+def _common() -> dict[str, tuple[frozenset, Decimal]]:
+    """Dimension and factor of the common units."""
+    found = {}
+    for exponents, units in COMMON.items():
+        dimension = frozenset((name, n) for name, n in zip(DIMENSIONS, exponents, strict=True) if n)
+        found |= {unit: (dimension, Decimal(factor)) for unit, factor in units.items()}
+    return found
+
+
 @lru_cache(maxsize=1024)
 def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
     """Dimension (with angle counted) and exact factor to SI of a unit such as "mPa*s"; ValueError when it is none."""
+    return _common().get(text) or _by_pint(text)
+
+
+def _by_pint(text: str) -> tuple[frozenset, Decimal]:
     if len(text) > 60 or not UNIT.fullmatch(text):
         raise ValueError(text)
     registry = _registry()

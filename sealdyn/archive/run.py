@@ -229,8 +229,8 @@ class ArchiveWriter:
                 raise ArchiveError(f"{source}: cannot be continued, its fields differ from this run's")
             self.rows, self.instants, self.state = record["rows"], record["instants"], record["state"]
             self._attributes["created"] = file.attrs["created"]
+            self.events(_events(file, record))
         self._state = self.state
-        self.events(record["events"])
 
     # -- the file ----------------------------------------------------------------------------------
 
@@ -379,9 +379,8 @@ def _read_record(file) -> dict:
     if "record" not in file["restart"]:
         state = _from_json(file["restart"].attrs["state"])
         rows, instants = int(file.attrs["rows"]), int(file.attrs.get("instants", 0))
-        return {"rows": rows, "instants": instants, "state": state, "events": _read_events(file["events"])}
-    record = _newest_record(file["restart/record"][()])
-    return record | {"events": _read_log(file["restart/log"][: record["log"]].tobytes())}
+        return {"rows": rows, "instants": instants, "state": state}
+    return _newest_record(file["restart/record"][()])
 
 
 def _open_file(path: Path):
@@ -413,6 +412,13 @@ def _read_log(log: bytes) -> list[dict]:
     return [_from_json(line) for line in log.splitlines()]
 
 
+def _events(file, record: dict) -> list[dict]:
+    """Events up to a record: a running run has them in its log."""
+    if "log" in record:
+        return _read_log(file["restart/log"][: record["log"]].tobytes())
+    return _read_events(file["events"])
+
+
 def _read_events(group) -> list[dict]:
     if "time" not in group:
         return []
@@ -441,7 +447,7 @@ def read_info(path) -> dict:
             # What lies beyond is room, not data.
             info["grid"][FIELD_TIME] = record["instants"]
         counts = {name: record[name] for name in ("rows", "instants")}
-        return info | counts | {"restart": record["state"], "events": record["events"]}
+        return info | counts | {"restart": record["state"], "events": _events(file, record)}
 
 
 def _series(attributes) -> Series:

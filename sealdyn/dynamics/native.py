@@ -15,7 +15,8 @@ from .function_values import Value, load_value
 
 # The block, int64: number of unknowns, kernels of film and contact, then address and length of each array.
 SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
-PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = range(6)
+# NumPy's integers: for each of Python's, a type of its own, `array` would be compiled once more.
+PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = np.arange(6)
 BLOCK = ARRAYS + 2 * 6
 # C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0.
 RATES = int32(float64, ADDRESS, ADDRESS, ADDRESS)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from sealdyn.kernel_cache import kept_kernels
+
 ROOT = Path(__file__).parents[2]
 RUN = """
 import json, sys
@@ -51,7 +53,8 @@ def test_the_package_alone_loads_nothing():
 
 BESIDE_A_RUN = {
     "matplotlib", "PIL", "sksundae", "xarray", "h5netcdf", "distributed", "scipy.optimize", "scipy.integrate",
-    "scipy.stats", "scipy.signal", "scipy.special", "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
+    "scipy.stats", "scipy.signal", "scipy.special", "pint",
+    "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
 }  # fmt: skip
 OF_OTHERS = ("cavitated", "contact_load", "thinnest_of_waves", "locate_contacts", "profiled")
 
@@ -65,6 +68,12 @@ def test_a_run_without_figure_loads_no_more_than_it_needs(tmp_path):
     assert not modules & BESIDE_A_RUN
     assert "films.radial.film.wrench" in kernels and "faces.contact.no_load" in kernels
     assert not named(kernels, OF_OTHERS), kernels
+
+
+def test_a_kernel_called_with_many_constants_is_compiled_once(tmp_path):
+    """A literal in the call is a type of its own: the arrays of a segment's block took six of them."""
+    run(tmp_path, "fms_reference", "--set", "run.turns=2")
+    assert len([kept for kept in kept_kernels() if kept.match("native.array-*.nbc")]) == 1
 
 
 def test_a_linear_run_needs_no_sundials(tmp_path):

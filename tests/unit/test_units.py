@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from sealdyn import units
+from sealdyn import unit_names, units
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.units import QuantityError
 
@@ -168,6 +168,14 @@ def test_bad_tables(table, says):
     assert says in str(refusal.value)
 
 
-def test_units_are_loaded_only_for_a_string():
-    code = "import sys, sealdyn.units as u; u.Length.__metadata__[0].read(1.0); sys.exit('pint' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+@pytest.mark.parametrize("value, loaded", [(1.0, False), ("1 um", False), ("1 mil", True)])
+def test_pint_is_loaded_only_for_a_unit_that_is_not_common(value, loaded):
+    code = f"import sys, sealdyn.units as u; u.Length.__metadata__[0].read({value!r}); sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == loaded
+
+
+def test_common_units_are_as_pint_reads_them():
+    """Exactly: the same decimals."""
+    common = unit_names._common()
+    assert {"um", "rpm", "bar", "N*m*s/rad"} <= set(common)
+    assert {unit: unit_names._by_pint(unit) for unit in common} == common

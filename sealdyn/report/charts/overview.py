@@ -165,7 +165,8 @@ def key_numbers(ax, run: Run) -> None:
         y = 0.95 - step * line
         ax.text(0.0, y, name, va="center", transform=ax.transAxes, color=GREY, fontsize=8)
         ax.text(0.44, y, value, va="center", transform=ax.transAxes, fontsize=8)
-        ax.plot((0, 1), (y - step / 2, y - step / 2), color=PALE, lw=0.5, transform=ax.transAxes)
+    below = 0.95 - step * (np.arange(len(rows)) + 0.5)
+    ax.hlines(below, 0, 1, color=PALE, lw=0.5, capstyle="projecting", transform=ax.transAxes)
 
 
 def _numbers(summary: dict):
