@@ -49,11 +49,12 @@ from sealdyn.faces.geometry import (
 from sealdyn.films._fields import PRESSURE as PRESSURE_FIELD
 from sealdyn.films._unknowns import FilmUnknowns
 
-# Block after the faces: cells over the radius, angles, compressibility (1/Pa), scale of the pressure (Pa).
-CELLS, ANGLES, COMPRESSIBILITY, PRESSURE = range(FACE_SIZE, FACE_SIZE + 4)
+# Block after the faces: cells over the radius, angles, compressibility (1/Pa), scale of the pressure (Pa), and the
+# thickness (m) at the inner radius below which it says that it has no solution.
+CELLS, ANGLES, COMPRESSIBILITY, PRESSURE, THINNEST = range(FACE_SIZE, FACE_SIZE + 5)
 
 RUNG = 99
-STATUS = {1: "no pressures: a line of cells is singular"}
+STATUS = {1: "no pressures: a line of cells is singular", 2: "thinner than this film may be"}
 FIELDS = (PRESSURE_FIELD,)
 
 
@@ -114,6 +115,8 @@ def residual(f, s, x, x_rate, res):
     for k in range(angles):
         theta = 2.0 * math.pi * k / angles
         cos, sin = math.cos(theta), math.sin(theta)
+        if _thickness(f, s, f[INNER_RADIUS], cos, sin) < f[THINNEST]:
+            return 2
         _conductances(f, s, cos, sin, g)
         for j in range(cells):
             i = k * cells + j
@@ -242,15 +245,18 @@ def fields(f, s, x, out):
             out[0, j, k] = x[k * cells + j]
 
 
-def film_of(cells: int, angles: int, compressibility: float = 0.0, own_derivatives: bool = True) -> SimpleNamespace:
-    """The film with so many cells over the radius and angles, `compressibility` in 1/Pa; a Model takes it as it takes
-    a module.  `own_derivatives`: with kernels for its derivatives, else by differences."""
+def film_of(
+    cells: int, angles: int, compressibility: float = 0.0, own_derivatives: bool = True, thinnest: float = 0.0
+) -> SimpleNamespace:
+    """The film with so many cells over the radius and angles, `compressibility` in 1/Pa, without a solution where it is
+    below `thinnest` (m); a Model takes it as it takes a module.  `own_derivatives`: with kernels for its derivatives,
+    else by differences."""
 
     def parameters(film, clearance, error=None):
-        f = np.zeros(PRESSURE + 1)
+        f = np.zeros(THINNEST + 1)
         f[:FACE_SIZE] = face_parameters(film, clearance)
         f[CELLS], f[ANGLES], f[COMPRESSIBILITY] = cells, angles, compressibility
-        f[PRESSURE] = 5e5
+        f[PRESSURE], f[THINNEST] = 5e5, thinnest
         return f
 
     def opening_law(film):

@@ -8,10 +8,8 @@ from scipy.sparse.linalg import splu
 
 from ..faces import contact
 from ..faces.film_thickness import h_min
-from ..faces.geometry import FORCE, MOMENT_X, MOMENT_Y, OUTER_RADIUS
-from ..films._unknowns import FilmDerivatives
 from ..solvers.contract import SolverFailure
-from . import equations
+from . import coupled_native, equations
 from .segments import Segment
 
 # Newton's steps to a consistent start, and the change relative to the scales at which it has arrived.
@@ -20,43 +18,43 @@ MOST_STEPS, ARRIVED = 12, 1e-12
 
 class CoupledSegment(Segment):
     """A Segment whose film has unknowns: it has a residual and its derivatives, and no right-hand side (SolverFailure);
-    `ring_rates` are those of the rings at given unknowns of the film.  The residual raises SolverFailure with the
-    film's sentence where the film has no solution."""
+    `ring_rates` are those of the rings at given unknowns of the film."""
 
     def _bind(self):
-        model, at, p, w, s = self.model, self.film, self.p, self.w, self.s
-        film, f, block = model.interface.film, model.f, model.contact
-        self._of_film = FilmDerivatives(film, model.unknowns.film_unknowns, f)
-        count = at.stop - at.start
-        x, x_rate, rest, work = np.empty(count), np.empty(count), np.empty(count), np.zeros(self.size)
+        """The equations are functions of this segment's own (coupled_native.py)."""
 
-        def loads(tau, y, yp):
-            equations.kinematics(tau, y, yp, p, w, s)
-            x[:] = y[at]
-            film.wrench(f, s, x)
-            if block is not None:
-                contact.contact_load(block, f, s)
+    @cached_property
+    def native(self):
+        """These equations for C (coupled_native.py), which work on this segment's arrays and those of its copies."""
+        return coupled_native.native(self)
 
-        def residual(tau, y, yp, res):
-            loads(tau, y, yp)
-            equations.residual(tau, y, yp, p, w, s, work, res)
-            x_rate[:] = yp[at]
-            code = film.residual(f, s, x, x_rate, rest)
-            if code:
-                raise SolverFailure(f"{film.STATUS[code]} (at {tau:.6g} s into this segment)")
-            res[at] = rest
+    def rhs(self, tau, y, yp):
+        """There is none: raises SolverFailure."""
+        raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
 
-        def rhs(tau, y, yp):
-            raise SolverFailure("a film with unknowns of its own has no rates: only the residual form (IDA)")
+    def ring_rates(self, tau, y, yp):
+        """Rates of rings and works at given unknowns of the film, into `yp` (size,)."""
+        coupled_native.ring_rates(tau, np.array(y), yp, self.native.block)
 
-        def ring_rates(tau, y, yp):
-            loads(tau, y, yp)
-            equations.rates(tau, y, p, w, s, yp)
+    def residual(self, tau, y, yp, res):
+        """The residual into `res` (size,).  Raises SolverFailure where the film has no solution."""
+        # A solver's arrays may be for reading only, which no kernel takes.
+        self._check(coupled_native.residual(tau, np.array(y), np.array(yp), res, self.native.block))
 
-        self.rhs, self.ring_rates, self._loads, self.residual = rhs, ring_rates, loads, residual
+    def _check(self, code):
+        if code:
+            raise SolverFailure(self.failure())
 
-    # A film with unknowns is evaluated by Python.
-    native = None
+    def failure(self) -> str:
+        """What the film says if it has failed since it was asked last, else ""."""
+        numbers = self.native.arrays[coupled_native.NUMBERS]
+        code, tau = int(numbers[coupled_native.CODE]), numbers[coupled_native.WHEN]
+        numbers[coupled_native.CODE] = 0.0
+        if not code:
+            return ""
+        numberless = "a residual, or a derivative of it, is not a number"
+        sentence = numberless if code == coupled_native.NO_NUMBER else self.model.interface.film.STATUS[code]
+        return f"{sentence} (at {tau:.6g} s into this segment)"
 
     # --- derivatives --------------------------------------------------------------------------------
 
@@ -76,60 +74,11 @@ class CoupledSegment(Segment):
         indices = np.concatenate(columns).astype(np.int32)
         return csc_array((np.ones(len(indices)), indices, indptr), shape=(size, size))
 
-    @cached_property
-    def _places(self):
-        """Places among the pattern's values: of the film's block, and of the rows of rings and works (n, rows)."""
-        m, n = self.n_mechanical, self.film.stop - self.film.start
-        own, starts = self.model.unknowns.film_unknowns.pattern, self.pattern.indptr[m : m + n]
-        counts, measures = np.diff(own.indptr), self.size - self.film.stop
-        block = np.concatenate([np.arange(c) + a + m for a, c in zip(starts, counts, strict=True)])
-        above = starts[:, None] + np.arange(m)
-        below = (starts + m + counts)[:, None] + np.arange(measures)
-        return block, np.hstack([above, below])
-
     def residual_derivatives(self, tau, y, yp, alpha, data, by_y=1.0):
-        """`by_y` d res / d y + `alpha` d res / d y' at segment time `tau` (s), the values `data` (nnz,) of the pattern.
-        The rings' columns are differences of the whole residual; the film's are its own, and its force's into the
-        rings' rows."""
-        m, size, at = self.n_mechanical, self.size, self.film
-        base, moved = np.empty(size), np.empty(size)
-        y, yp, data[:] = y.copy(), yp.copy(), 0.0
-        self.residual(tau, y, yp, base)
-        s, force = self.s.copy(), self.s[[FORCE, MOMENT_X, MOMENT_Y]]
-        for j in range(m):
-            step = 1e-7 * max(abs(y[j]), self.scales[j]) / max(by_y, alpha / self.reference_rate)
-            before = y[j], yp[j]
-            y[j], yp[j] = y[j] + by_y * step, yp[j] + alpha * step
-            self.residual(tau, y, yp, moved)
-            data[size * j : size * (j + 1)] = (moved - base) / step
-            y[j], yp[j] = before
-        block, rows = self._places
-        # From here `s` is that of the base again.
-        self._loads(tau, y, yp)
-        x, x_rate = y[at].copy(), yp[at].copy()
-        if not by_y:
-            data[block] = self._of_film.residual(s, x, x_rate, 1.0)
-            data[block] -= self._of_film.residual(s, x, x_rate, 0.0)
-            data[block] *= alpha
-        else:
-            data[block] = self._of_film.residual(s, x, x_rate, alpha)
-            others = np.concatenate([np.arange(m), np.arange(at.stop, size)])
-            data[rows] = (self._by_force(tau, y, yp, force)[others] @ self._of_film.wrench(s, x)).T
-        data[self.pattern.indptr[at.stop] :] = alpha
-
-    def _by_force(self, tau, y, yp, force):
-        """Derivatives (size, 3) of the rings' and works' rows by the film's force and moments."""
-        s, work, columns = self.s, np.zeros(self.size), np.zeros((self.size, 3))
-        base, moved = np.zeros(self.size), np.zeros(self.size)
-        equations.residual(tau, y, yp, self.p, self.w, s, work, base)
-        # Short: the sum of absolute works has kinks.
-        step = 1e-6 * max(abs(force[0]), 1.0) * np.array([1.0, self.model.f[OUTER_RADIUS], self.model.f[OUTER_RADIUS]])
-        for k, slot in enumerate((FORCE, MOMENT_X, MOMENT_Y)):
-            s[slot] = force[k] + step[k]
-            equations.residual(tau, y, yp, self.p, self.w, s, work, moved)
-            columns[:, k] = (moved - base) / step[k]
-            s[slot] = force[k]
-        return columns
+        """`by_y` d res / d y + `alpha` d res / d y' at segment time `tau` (s), `by_y` 0 or 1, into the values `data`
+        (nnz,) of the pattern.  Raises SolverFailure where the film has no solution."""
+        block = self.native.block
+        self._check(coupled_native.derivatives(tau, alpha, by_y, np.array(y), np.array(yp), data, block))
 
     # --- starts -------------------------------------------------------------------------------------
 
@@ -171,8 +120,7 @@ class CoupledSegment(Segment):
     def derivatives(self, taus, ys):
         """Derivatives (m, size) at times and unknowns `ys` (m, size), zero for the film's; every ring has mass."""
         out = np.zeros((len(taus), self.size))
-        for tau, y, yp in zip(taus, ys, out, strict=True):
-            self.ring_rates(tau, y, yp)
+        coupled_native.ring_rates_along(taus, ys, out, self.native.block)
         return out
 
     def states(self, taus, ys, yps, gaps, scratch, low):

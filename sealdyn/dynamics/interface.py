@@ -132,7 +132,7 @@ class Interface:
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
         # Sparse matrices are loaded for a film with unknowns only.
-        from ..films._unknowns import FilmDerivatives
+        from .film_derivatives import FilmDerivatives
 
         derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
         return LinearFilm(derivatives, s, self.steady(self.f, s), steps)

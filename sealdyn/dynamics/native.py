@@ -18,24 +18,27 @@ SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
 # NumPy's integers: for each of Python's, a type of its own, `array` would be compiled once more.
 PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = np.arange(6)
 BLOCK = ARRAYS + 2 * 6
-# C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0.
+# C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0, or -1 where a film
+# with unknowns of its own (coupled_native.py) has no solution.
 RATES = int32(float64, ADDRESS, ADDRESS, ADDRESS)
 RESIDUAL = int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
 
 
 @dataclass(frozen=True)
 class Native:
-    """A segment's equations for C: addresses of `rates` and `residual`, `block` (BLOCK,) and the `arrays` that it
-    points to, which it keeps alive."""
+    """A segment's equations for C: addresses of `rates` and `residual`, the `block` and the `arrays` that it points to,
+    which it keeps alive; of a film with unknowns no rates (0), and the address of the residual's `derivatives`."""
 
     rates: int
     residual: int
     block: np.ndarray
     arrays: tuple
+    derivatives: int = 0
 
 
 def native(segment) -> Native:
-    """The equations of a segment whose film has no unknowns of its own; they work on the segment's own arrays."""
+    """The equations of a segment whose film has no unknowns of its own (else coupled_native.py); they work on the
+    segment's own arrays."""
     model, work = segment.model, np.zeros(segment.size)
     load, contact = load_value(model.contact)
     arrays = (segment.p, segment.w, segment.s, model.f, contact, work)

@@ -112,6 +112,10 @@ class Segment:
 
         return native(self)
 
+    def failure(self) -> str:
+        """What the film says if it has failed: an algebraic film never does."""
+        return ""
+
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""
         short = copy.copy(self)

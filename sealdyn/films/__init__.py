@@ -32,7 +32,7 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
 `start(f, s, x)`  compiled: x of the steady film at a gap state, its rates among it; returns 0, or a code of STATUS.
 `residual(f, s, x, x_rate, res)`
                   compiled: what is left of the film's equations, in any units; returns 0, or a code of STATUS, which
-                  ends the run.  Finite and smooth at any gap state that a solver may try.
+                  ends the run, as does what is not a number.  Finite and smooth at any gap state that a solver may try.
 `STATUS`          {code: sentence}.
 `jacobian(f, s, x, x_rate, alpha, data)`
                   (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.

@@ -24,7 +24,6 @@ from ..scene.scene import SceneError
 from ..solvers.contract import Counts, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
-from ..solvers.sundials import SCIKIT_SUNDAE, why_slow
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
@@ -121,9 +120,7 @@ def _found(trial: TrialRun | None) -> dict:
 
 def _reasons(why: str, trial: TrialRun | None, counts: Counts) -> str:
     parts = [why, *([trial.said] if trial else [])]
-    if counts.back_end == SCIKIT_SUNDAE and (slow := why_slow()):
-        parts.append(slow)
-    return "; ".join(parts)
+    return "; ".join([*parts, *([counts.slow] if counts.slow else [])])
 
 
 def certificate(run, method, outcome, errors, by_model) -> dict:

@@ -6,8 +6,9 @@ A method is a generator `steps(segment, tau, y, method, tolerance, counts)` over
 displacements (first in the unknowns) and the `rate_places` (n,) of their rates, `n_mechanical`, `size`, the slices
 `film` and `works`, `length` (s), `rhs(tau, y, yp)`, `residual(tau, y, yp, res)`, `jacobian`, `start`, `scales` (size,),
 `reference_rate` (rad/s), `longest_step()` and `shortest_period` (s), `has_residual_form` (there is no `rhs`),
-`lacks_inertia` (n,), `algebraic` (places), and `may_change`: whether its equations may, at any step.  A linear scene of
-constant conditions also has its `exact_motion()`.
+`lacks_inertia` (n,), `algebraic` (places), `may_change`: whether its equations may, at any step; and, if it has
+equations for C (`native`), `failure()`: a sentence if these have failed.  A linear scene of constant conditions also
+has its `exact_motion()`.
 
 An observer looks at accepted steps: `begin(segment, tau, y)` at every start, `accept(block)` for each Block, which
 returns None, a Stop or a Retry; `state()` and `restore(state)` for a run that is continued.  What finds changes of the
@@ -97,7 +98,7 @@ class Counts:
     """Counts of a run: evaluations of the right-hand side (those for Jacobians among them), accepted steps, Jacobians,
     and starts of a solver; of a compiled loop also the steps that its error test (`rejected`) or its nonlinear solver
     (`unsolved`) refused, and how many steps were taken at which order (`orders`, from order 1 on).  `back_end`: who
-    made the steps."""
+    made the steps, `slow` why not the compiled loop, a sentence."""
 
     rhs: int = 0
     steps: int = 0
@@ -107,13 +108,14 @@ class Counts:
     unsolved: int = 0
     orders: list[int] = field(default_factory=lambda: [0] * MOST_ORDERS)
     back_end: str = ""
+    slow: str = ""
 
     def add_work(self, other: "Counts"):
         """Add what another's steps cost; they are counted, like starts, where they are taken in."""
         for name in ("rhs", "jacobians", "rejected", "unsolved"):
             setattr(self, name, getattr(self, name) + getattr(other, name))
         self.orders = [a + b for a, b in zip(self.orders, other.orders, strict=True)]
-        self.back_end = self.back_end or other.back_end
+        self.back_end, self.slow = self.back_end or other.back_end, self.slow or other.slow
 
 
 def tolerance_for(method: str, accuracy: float, memory: float) -> float:

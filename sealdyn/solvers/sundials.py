@@ -14,30 +14,36 @@ SCIKIT_SUNDAE = "scikit-sundae"
 def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = None):
     """Steps of CVODE, Adams if so called, else BDF, with the contract of contract.py.
     **Raises** SolverFailure."""
-    yield from _back_end(segment, counts).cvode(segment, tau, y, method, tolerance, counts, max_order)
+    yield from _back_end(segment, counts, "rates").cvode(segment, tau, y, method, tolerance, counts, max_order)
 
 
 def ida(segment, tau, y, method, tolerance, counts):
     """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
     **Raises** SolverFailure."""
-    yield from _back_end(segment, counts).ida(segment, tau, y, method, tolerance, counts)
+    yield from _back_end(segment, counts, "residual").ida(segment, tau, y, method, tolerance, counts)
 
 
-def why_slow() -> str:
-    """Why no run can take the compiled loop, a sentence; empty where it can."""
+def why_slow(sparse: bool = False) -> str:
+    """Why no run can take the compiled loop, or none that needs `sparse` matrices, a sentence; empty where it can."""
     if os.environ.get(CHOICE) == "python":
-        return f"through scikit-sundae, several times slower: {CHOICE} asks for it"
-    found = libraries()
-    return f"through scikit-sundae, several times slower: {found}" if isinstance(found, str) else ""
+        why = f"{CHOICE} asks for it"
+    else:
+        found = libraries()
+        why = found if isinstance(found, str) else found.why_not_sparse if sparse else ""
+    return f"through scikit-sundae, several times slower: {why}" if why else ""
 
 
 def looped(segment) -> bool:
-    """Whether the compiled loop takes a segment."""
-    return not why_slow() and getattr(segment, "native", None) is not None
+    """Whether the compiled loop takes a segment's rates."""
+    return not why_slow() and bool(getattr(segment.native, "rates", 0))
 
 
-def _back_end(segment, counts):
-    if not looped(segment):
+def _back_end(segment, counts, form):
+    """Who makes the steps, from a segment's `form` (rates or residual)."""
+    native = getattr(segment, "native", None)
+    sparse = native is not None and bool(native.derivatives)
+    counts.slow = why_slow(sparse)
+    if counts.slow or not getattr(native, form, 0):
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
     # Its compiled code needs the libraries open.

@@ -23,9 +23,10 @@ if isinstance(libraries(), str):
 # Steps handed over at once.
 BLOCK = 1024
 # What SUNDIALS carries through to the functions below, int64: the function and its block, number of unknowns, how many
-# of them have columns in a Jacobian, address of their scales; counts of evaluations and Jacobians.
-FUNCTION, DATA, SIZE, COLUMNS, SCALES, CALLS, JACOBIANS = range(7)
-CARRIED = 7
+# of them have columns in a Jacobian, address of their scales; counts of evaluations and Jacobians; room for what only
+# sparse Jacobians need (sundials_sparse.py).
+FUNCTION, DATA, SIZE, COLUMNS, SCALES, CALLS, JACOBIANS, SPARSE = range(8)
+CARRIED = SPARSE + 6
 ADAMS, BDF, ONE_STEP = 1, 2, 2
 
 _pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
@@ -170,6 +171,27 @@ class _Objects:
         matrix = self._owned(self.lib.SUNDenseMatrix(size, size, self.context), self.lib.SUNMatDestroy)
         return matrix, self._owned(self.lib.SUNLinSol_Dense(vector, matrix, self.context), self.lib.SUNLinSolFree)
 
+    def sparse(self, vector, count: int, factored):
+        """A sparse matrix of so many values, by columns, and SuperLU_MT on one thread for it; `factored()` says whether
+        it ever got a matrix."""
+        self.lib.one_thread()
+        size, kind, threads = self.lib.index(self.size), 0, 1
+        matrix = self.lib.SUNSparseMatrix(size, size, self.lib.index(count), kind, self.context)
+        matrix = self._owned(matrix, self.lib.SUNMatDestroy)
+        solver = ctypes.c_void_p(self.lib.SUNLinSol_SuperLUMT(vector, matrix, threads, self.context))
+
+        def free():
+            if not factored():
+                # The process would end if it were given back without: it gets the identity.
+                self.lib.SUNMatZero(matrix)
+                self.lib.SUNMatScaleAddI(ctypes.c_double(0.0), matrix)
+                self.lib.SUNLinSolInitialize(solver)
+                self.lib.SUNLinSolSetup(solver, matrix)
+            self.lib.SUNLinSolFree(solver)
+
+        self.stack.callback(free)
+        return matrix, solver
+
     def memory(self, address, free):
         """The memory of an integrator."""
         found = ctypes.c_void_p(address)
@@ -186,7 +208,8 @@ def words_for(segment, function: int) -> np.ndarray:
     """The words (CARRIED,) for the equations of a segment, by the address of their `function`; they point into its
     native block and its scales, which have to stay."""
     block, scales = segment.native.block.ctypes.data, segment.scales.ctypes.data
-    return np.array([function, block, segment.size, segment.n_mechanical, scales, 0, 0], dtype=np.int64)
+    words = [function, block, segment.size, segment.n_mechanical, scales, *[0] * (CARRIED - CALLS)]
+    return np.array(words, dtype=np.int64)
 
 
 class _Carried:
@@ -263,8 +286,14 @@ def ida(segment, tau, y, method, tolerance, counts):
         absolute = made.vector(absolute_tolerances(segment, tolerance))
         lib.IDASVtolerances(memory, ctypes.c_double(tolerance), absolute)
         lib.IDASetUserData(memory, ctypes.c_void_p(carried.words.ctypes.data))
-        matrix, solver = made.dense(vector)
-        lib.IDASetLinearSolver(memory, solver, matrix)
+        if segment.native.derivatives:
+            # Few integrations need it.
+            from .sundials_sparse import set_sparse_solver
+
+            set_sparse_solver(made, memory, vector, segment, carried)
+        else:
+            matrix, solver = made.dense(vector)
+            lib.IDASetLinearSolver(memory, solver, matrix)
         if len(segment.algebraic):
             differential = np.ones(segment.size)
             differential[segment.algebraic] = 0.0
@@ -282,7 +311,8 @@ def ida(segment, tau, y, method, tolerance, counts):
             if count:
                 yield ts[:count], ys[:count], yps[:count]
             if flag < 0:
-                raise SolverFailure(failure_message(method, _name(lib.IDAGetReturnFlagName, flag), reached[0]))
+                message = failure_message(method, _name(lib.IDAGetReturnFlagName, flag), reached[0])
+                raise SolverFailure(segment.failure() or message)
 
 
 def _name(ask, flag) -> str:

@@ -1,7 +1,7 @@
 """The SUNDIALS libraries that the scikit-sundae wheel carries, opened without its Python."""
 
 import ctypes
-from functools import cache
+from functools import cache, cached_property
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -9,16 +9,19 @@ import llvmlite.binding
 
 # In the order in which they need each other.
 NAMES = ("core", "nvecserial", "sunmatrixdense", "sunmatrixsparse", "sunlinsoldense", "cvode", "ida")
+# For sparse matrices only: it brings a whole BLAS with it.
+SPARSE = "sunlinsolsuperlumt"
 MAJOR = 7
 # What returns a pointer; all else returns an int.
 POINTERS = (
     "N_VMake_Serial", "CVodeCreate", "IDACreate", "SUNDenseMatrix", "SUNSparseMatrix", "SUNLinSol_Dense",
-    "CVodeGetReturnFlagName", "IDAGetReturnFlagName",
+    "SUNLinSol_SuperLUMT", "CVodeGetReturnFlagName", "IDAGetReturnFlagName",
 )  # fmt: skip
 # What compiled code calls by itself: without one of them its loading would end the process.
 COMPILED = (
-    "N_VGetArrayPointer_Serial", "SUNDenseMatrix_Data", "CVode", "CVodeGetLastOrder", "IDASolve", "IDAGetLastOrder",
-    "CVodeReInit", "CVodeSVtolerances", "CVodeSetMaxStep", "CVodeSetStopTime", "CVodeGetNumErrTestFails",
+    "N_VGetArrayPointer_Serial", "SUNDenseMatrix_Data", "SUNSparseMatrix_Data", "SUNSparseMatrix_IndexValues",
+    "SUNSparseMatrix_IndexPointers", "CVode", "CVodeGetLastOrder", "IDASolve", "IDAGetLastOrder", "CVodeReInit",
+    "CVodeSVtolerances", "CVodeSetMaxStep", "CVodeSetStopTime", "CVodeGetNumErrTestFails",
     "CVodeGetNumNonlinSolvConvFails",
 )  # fmt: skip
 # What may not be refused, by the beginnings of names.
@@ -36,18 +39,36 @@ class Libraries:
         spec = find_spec("sksundae")
         if spec is None or not spec.origin:
             raise OSError("scikit-sundae is not installed")
-        folder = Path(spec.origin).parents[1] / "scikit_sundae.libs"
-        self.opened = []
+        self.folder, self.opened = Path(spec.origin).parents[1] / "scikit_sundae.libs", []
         for name in NAMES:
-            found = sorted(folder.glob(f"libsundials_{name}-*.so*"))
-            if not found:
-                raise OSError(f"the wheel of scikit-sundae carries no library {name}")
-            self.opened.append(ctypes.CDLL(str(found[0])))
-            llvmlite.binding.load_library_permanently(str(found[0]))
+            self._open(name)
         self._check_version()
         self._check_layout()
         for name in COMPILED:
             getattr(self, name)
+
+    def _open(self, name):
+        found = sorted(self.folder.glob(f"libsundials_{name}-*.so*"))
+        if not found:
+            raise OSError(f"the wheel of scikit-sundae carries no library {name}")
+        self.opened.append(ctypes.CDLL(str(found[0])))
+        llvmlite.binding.load_library_permanently(str(found[0]))
+
+    @cached_property
+    def why_not_sparse(self) -> str:
+        """Why there is no linear solver for sparse matrices, a sentence; "" if there is.  Opened when first asked."""
+        try:
+            self._open(SPARSE)
+            self.SUNLinSol_SuperLUMT  # noqa: B018
+        except OSError as error:
+            return str(error)
+        return ""
+
+    def one_thread(self):
+        """Keep the OpenMP of the sparse solver, the wheel's own, to one thread where this thread calls it: the solver,
+        asked for one, still gathers all of them and waits several times as long as it works."""
+        if limit := getattr(self.opened[-1], "omp_set_num_threads", None):
+            limit(1)
 
     def __getattr__(self, name):
         for library in self.opened:
