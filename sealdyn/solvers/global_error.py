@@ -15,8 +15,6 @@ from .contract import Retry
 
 # By how much a tolerance is sharpened when errors grow too large.
 SHARPER = 10.0
-# Steps of one length differ by no more than this share: the rounding of their times.
-SAME = 1e-11
 
 
 class GlobalErrorEstimate:
@@ -66,14 +64,10 @@ class GlobalErrorEstimate:
 def _answer(values, widths, pushes, state, out):
     """Modal errors `out` (m, n) after each step: the `state` before it, carried on, and what the step has left over,
     spread over it; `state` is left at the end."""
-    width, grown, spread = 0.0, np.empty_like(values), np.empty_like(values)
     for k in range(len(widths)):
-        if abs(widths[k] - width) > SAME * widths[k]:
-            width = widths[k]
-            for i in range(len(values)):
-                z = values[i] * width
-                grown[i] = np.exp(z)
-                spread[i] = (grown[i] - 1.0) / z if abs(z) > 1e-6 else 1.0 + 0.5 * z
         for i in range(len(values)):
-            state[i] = grown[i] * state[i] + spread[i] * pushes[k, i]
+            z = values[i] * widths[k]
+            grown = np.exp(z)
+            spread = (grown - 1.0) / z if abs(z) > 1e-6 else 1.0 + 0.5 * z
+            state[i] = grown * state[i] + spread * pushes[k, i]
             out[k, i] = state[i]

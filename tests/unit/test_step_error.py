@@ -10,7 +10,7 @@ from scenes import SPEED, TILT_SCALE, apart, fmr, fms, fmsr, free_ring, prepared
 from sealdyn.numerics.hermite import integrals
 from sealdyn.solvers import sundials_direct
 from sealdyn.solvers.contract import tolerance_for
-from sealdyn.solvers.global_error import GlobalErrorEstimate, _answer
+from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -98,16 +98,3 @@ def test_integrals_keep_their_order():
         found = integrals(t, np.sin(t)[:, None], 10, 30)[:, 0]
         errors.append(np.max(np.abs(found + np.diff(np.cos(t[10:31])))))
     assert np.polyfit(np.log(sizes), np.log(errors), 1)[0] == pytest.approx(7, abs=0.2)
-
-
-def test_errors_are_carried_on_by_each_step_s_own_length():
-    """Constant pushes answered exactly, over steps of one length but for rounding and of others."""
-    rng, values = np.random.default_rng(5), np.array([-2.0 + 30.0j, -2.0 - 30.0j, -400.0, -1e-9])
-    widths = np.repeat([1e-2, 2e-2, 2.0000001e-2, 5e-3], 20) * (1.0 + rng.uniform(-1e-15, 1e-15, 80))
-    pushes = rng.normal(size=(80, 4)) + 1j * rng.normal(size=(80, 4))
-    state, out, exact = np.zeros(4, complex), np.empty((80, 4), complex), np.zeros(4, complex)
-    _answer(values, widths, pushes, state, out)
-    for width, push, found in zip(widths, pushes, out, strict=True):
-        exact = np.exp(values * width) * exact + push * np.expm1(values * width) / (values * width)
-        np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-9)
-    assert np.array_equal(state, out[-1])
