@@ -16,7 +16,7 @@ from .native import RESIDUAL as OF_RESIDUAL
 
 # The block goes on after that of native.py: two arrays of float64, four of int64; where the film's unknowns begin, and
 # how many values the segment's pattern has.
-SCALES, NUMBERS, KERNELS, STARTS, ROWS, COLOURS = range(6, 12)
+SCALES, NUMBERS, KERNELS, STARTS, ROWS, COLOURS = np.arange(6, 12)
 FIRST, VALUES = ARRAYS + 2 * 12, ARRAYS + 2 * 12 + 1
 BLOCK = VALUES + 1
 # The numbers: rate (rad/s) between displacements and rates; the code of a film that has failed, and when (s).

@@ -199,12 +199,15 @@ def track_extremes(
             # A step begins where the one before ended.
             known = window == 0 and low == ended_at
             if known:
-                seen[0] = ended
+                for j in range(3):
+                    seen[0, j] = ended[j]
             first = 1 if known else 0
             scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first)
             record = records[window]
             if window == 0:
-                ended_at, ended[:] = high, seen[scan]
+                ended_at = high
+                for j in range(3):
+                    ended[j] = seen[scan, j]
                 least, most = np.inf, -np.inf
                 for i in range(scan + 1):
                     least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])

@@ -15,15 +15,15 @@ from ..numerics.addresses import (
     call_load,
     call_wrench_jacobian,
 )
-from .function_values import OF_LOAD, Value
+from .function_values import LOAD, Value
 
 # Addresses of a film's kernels, int64; 0 where it has none.
 WRENCH, RESIDUAL, JACOBIAN, WRENCH_JACOBIAN = range(4)
-SIGNATURES = {
-    "wrench": OF_LOAD,
-    "residual": int64(VECTOR, VECTOR, VECTOR, VECTOR, VECTOR),
-    "jacobian": types.void(VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR),
-    "wrench_jacobian": types.void(VECTOR, VECTOR, VECTOR, MATRIX),
+KINDS = {
+    "wrench": LOAD,
+    "residual": types.FunctionType(int64(VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
+    "jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR)),
+    "wrench_jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, MATRIX)),
 }
 # Steps of differences, as a share of the unknowns' scales.
 STEP = 1e-4
@@ -31,8 +31,8 @@ STEP = 1e-4
 
 def kernels_of(film) -> np.ndarray:
     """Addresses (4,) of a film's kernels."""
-    kernels = ((getattr(film, name, None), signature) for name, signature in SIGNATURES.items())
-    return np.array([Value(kernel, signature).address if kernel else 0 for kernel, signature in kernels])
+    kernels = ((getattr(film, name, None), kind) for name, kind in KINDS.items())
+    return np.array([Value(kernel, kind).address if kernel else 0 for kernel, kind in kernels])
 
 
 @njit(cache=True)

@@ -61,7 +61,9 @@ def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
         carray(floats(carried[SCALES]), size),
     )
     at, columns = carray(floats(there), size), carray(floats(data), (size, size))
-    at[:] = y
+    # One by one, here and below: an array into an array compiles numba's message of shapes that differ.
+    for i in range(size):
+        at[i] = y[i]
     columns[:] = 0.0
     carried[JACOBIANS] += 1
     carried[CALLS] += carried[COLUMNS]
@@ -118,7 +120,9 @@ def step_cvode(memory, vector, y, reached, end, orders, ts, ys):
             return k, flag
         _cvode_order(memory, order.ctypes.data)
         orders[order[0] - 1] += 1
-        ts[k], ys[k] = reached[0], y
+        ts[k] = reached[0]
+        for i in range(len(y)):
+            ys[k, i] = y[i]
         if reached[0] >= end:
             return k + 1, flag
     return len(ts), int32(0)
@@ -136,7 +140,9 @@ def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
             return k, flag
         _ida_order(memory, order.ctypes.data)
         orders[order[0] - 1] += 1
-        ts[k], ys[k], yps[k] = reached[0], y, yp
+        ts[k] = reached[0]
+        for i in range(len(y)):
+            ys[k, i], yps[k, i] = y[i], yp[i]
         if reached[0] >= end:
             return k + 1, flag
     return len(ts), int32(0)
