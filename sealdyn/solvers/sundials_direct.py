@@ -28,6 +28,8 @@ BLOCK = 1024
 FUNCTION, DATA, SIZE, COLUMNS, SCALES, CALLS, JACOBIANS, SPARSE = range(8)
 CARRIED = SPARSE + 6
 ADAMS, BDF, ONE_STEP = 1, 2, 2
+# What SUNDIALS says of steps that come to nothing.
+TOO_MUCH_WORK = -1
 
 _pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
 _columns = types.ExternalFunction("SUNDenseMatrix_Data", ADDRESS(ADDRESS))
@@ -115,7 +117,11 @@ def step_cvode(memory, vector, y, reached, end, orders, ts, ys):
     (size,) are the values of the N_Vector, `reached` (1,) is the time (s); `orders` (MOST_ORDERS,) counts."""
     order = np.zeros(1, dtype=np.int32)
     for k in range(len(ts)):
+        before = reached[0]
         flag = _cvode(memory, end, vector, reached.ctypes.data, ONE_STEP)
+        # It would make steps without an end.
+        if reached[0] <= before and flag >= 0:
+            flag = int32(TOO_MUCH_WORK)
         if flag < 0:
             return k, flag
         _cvode_order(memory, order.ctypes.data)
@@ -135,7 +141,10 @@ def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
     """The same of IDA, with the derivatives `yp` (size,) in `yps` (m, size)."""
     order = np.zeros(1, dtype=np.int32)
     for k in range(len(ts)):
+        before = reached[0]
         flag = _ida(memory, end, reached.ctypes.data, vector, slopes, ONE_STEP)
+        if reached[0] <= before and flag >= 0:
+            flag = int32(TOO_MUCH_WORK)
         if flag < 0:
             return k, flag
         _ida_order(memory, order.ctypes.data)
@@ -255,6 +264,8 @@ def cvode_for(y, absolute, words, method):
         lib.CVodeSetLinearSolver(memory, solver, matrix)
         lib.CVodeSetJacFn(memory, ctypes.c_void_p(_jacobian.address))
         lib.CVodeSetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
+        # Steps that vanish are told by `step_cvode`, not on the terminal.
+        lib.CVodeSetMaxHnilWarns(memory, ctypes.c_int(-1))
         yield memory, vector, tolerances
 
 

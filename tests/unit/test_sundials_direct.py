@@ -11,8 +11,10 @@ import pytest
 from scenes import SPEED, fmr, fms, fmsr, prepared, runup
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
+from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.solvers import sundials, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.methods import METHODS
@@ -87,6 +89,16 @@ def test_what_sundials_says_when_it_gives_up():
     y0[0] = np.nan
     with pytest.raises(SolverFailure, match=r"adams gave up 0 s into this segment: CV_\w+ "):
         list(METHODS["adams"](ready.segment(0), 0.0, y0, "adams", 1e-6, Counts()))
+
+
+@pytest.mark.parametrize("solver", ["adams", "bdf", "ida"])
+def test_steps_that_come_to_nothing_end_the_run(solver, capfd):
+    """A spring beyond all measure: steps of no length, which SUNDIALS would go on with for ever."""
+    changes = ["stator.support.axial_stiffness=1e300", "run.turns=1", f"run.solver={solver}"]
+    with np.errstate(over="ignore"):
+        summary = simulate_in_memory(read_scenario(ROOT / "scenarios" / "fms_reference.toml", changes))
+    assert summary["status"] == "failed" and f"{solver} gave up 0 s into this segment" in summary["message"]
+    assert "WARNING" not in "".join(capfd.readouterr())
 
 
 def test_a_step_that_is_left_gives_everything_back():
