@@ -15,9 +15,9 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import with_values
 from ..solvers.contract import Status
 from .looped_run import LoopedRun, NotSampled, integrate
-from .outputs import output, unit_of
+from .outputs import output, unit_of, with_speeds
 from .simulate import in_memory, prepare_run
-from .summary import SPEEDS, state_names
+from .summary import state_names
 
 OUTPUTS = ("h_min.value", "relative_misalignment.max")
 
@@ -35,7 +35,8 @@ def simulate_many(
     Raises ScenarioError if no run can be read, SceneError if the first that can be read cannot be run.
     """
     sets = [dict(values) for values in sets]
-    outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in _names(scenario, sets))])]
+    names = state_names(first_ready(scenario, sets).model.unknowns)
+    outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in names)])]
     todo = {k: {"set": values, "outputs": outputs} for k, values in enumerate(sets)}
     rows = [None] * len(sets)
     with closing(processes(workers)(Together(partial(run_many, scenario)), todo, "runs")) as answers:
@@ -48,21 +49,17 @@ def simulate_many(
     return as_dataset({"keys": ["run"], "axes": [axis], "rows": rows, "outputs": outputs, "output_units": units})
 
 
-def _names(scenario, sets) -> list[str]:
-    """Names of the end state, and all kernels loaded once for all processes."""
-    return state_names(prepare_run(with_values(scenario, first_read(scenario, sets)))[0].model.unknowns)
-
-
-def first_read(scenario, sets) -> dict:
-    """The first of the sets that can be read.  Raises the first one's error if none can."""
+def first_ready(scenario, sets):
+    """The first of the runs that can be read, made ready (RunState), so that kernels are loaded once for all processes.
+    Raises the first one's ScenarioError if none can be read, SceneError if it cannot be run."""
     first = ScenarioError(scenario.name, "sets", "none", "values of at least one run")
     for k, values in enumerate(sets):
         try:
-            with_values(scenario, values)
+            found = with_values(scenario, values)
         except ScenarioError as error:
             first = error if k == 0 else first
         else:
-            return values
+            return prepare_run(found)[0]
     raise first
 
 
@@ -100,8 +97,7 @@ def _caught(function, *given):
 
 
 def _alone(scenario, point) -> dict:
-    speeds = any(name in key for key in point["outputs"] for name in SPEEDS)
-    return _row(in_memory(with_values(scenario, point["set"]), speeds), point)
+    return _row(in_memory(with_values(scenario, point["set"]), with_speeds(point["outputs"])), point)
 
 
 def _row(parts, point) -> dict:

@@ -10,9 +10,10 @@ from ..dynamics.function_values import thinnest_value
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, Status, tolerance_for
 from ..solvers.integrate import Outcome
 from ..solvers.sundials import looped
+from .outputs import with_speeds
 from .simulate import prepare_run
 from .sinks import TallySink
-from .summary import SPEEDS, parts
+from .summary import parts
 
 # Contacts of one run at most, numbers that a run may hand over, and seconds between two looks at the keyboard.
 MOST_CONTACTS, MOST_OUTPUT, PATIENCE = 256, 4_000_000, 0.1
@@ -39,17 +40,16 @@ class LoopedRun:
         heavy = self.sampled and count * unknowns.n > MOST_OUTPUT
         if alone or heavy or self.method not in ("adams", "bdf"):
             return
-        self.sink = TallySink(run, interval, count) if self.sampled else None
+        self.sink = TallySink(run, interval, count)
         thinnest, touching = thinnest_value(run.model.face), run.model.contact is not None
         places = tuple(unknowns.rate_places)
         self.structure = self.method, unknowns.size, places, thinnest, touching, unknowns.impulse, self.sampled
 
     def parts(self) -> dict:
         """The `parts` of its summary (summary.py), once it has ended."""
-        speeds = any(name in key for key in self.outputs for name in SPEEDS)
-        tally = self.sink.tally if self.sink else Unsampled()
+        tally = self.sink.tally if self.sampled else Unsampled()
         why = f"{self.why}; one loop for many runs, cautious tolerance"
-        return parts(self.scenario, self.run, self.outcome, tally, self.method, why, speeds)
+        return parts(self.scenario, self.run, self.outcome, tally, self.method, why, with_speeds(self.outputs))
 
     def ends(self, runs, i, touching, output):
         """Take what the loop has left in row `i`."""
@@ -65,8 +65,8 @@ class LoopedRun:
         self.outcome = Outcome(
             Status.OK, Cause.DONE, said, counts, 0.0, last.index, last.length, y, self.tolerance, np.nan
         )
-        run.contacts.tell(_forget, end=(run.end_time(last.index, last.length), y))
-        if self.sink:
+        run.contacts.tell(self.sink.log, end=(run.end_time(last.index, last.length), y))
+        if self.sampled:
             for k, segment in enumerate(self.segments):
                 at = slice(*runs.whole[runs.stretches[i] + k, 2:4])
                 if at.stop > at.start:
@@ -82,10 +82,6 @@ class Unsampled:
 
     def __getattr__(self, name):
         raise NotSampled
-
-
-def _forget(events):
-    """Events of single contacts are not kept."""
 
 
 def integrate(alike: list[LoopedRun]):
@@ -139,7 +135,7 @@ def _stacked(alike, loop):
     models, count = [one.run.model for one in alike], len(alike)
     stretches = np.cumsum([0, *(len(one.segments) for one in alike)])
     segments = [segment for one in alike for segment in one.segments]
-    due = [one.sink.due(segment) if one.sink else np.empty(0) for one in alike for segment in one.segments]
+    due = [one.sink.due(segment) if one.sampled else np.empty(0) for one in alike for segment in one.segments]
     ends = np.cumsum([0, *map(len, due)])
     runs = loop.Runs(
         stretches,
@@ -165,7 +161,7 @@ def _stacked(alike, loop):
             np.empty((count, MOST_CONTACTS, ROW)),
             np.zeros(count, dtype=np.int64),
         )
-    if alike[0].sink:
+    if alike[0].sampled:
         q, q_rate = np.empty((2, ends[-1], models[0].unknowns.n))
         output = loop.Output(np.concatenate(due), q, q_rate)
     return runs, touching, output

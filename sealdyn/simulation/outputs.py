@@ -38,6 +38,11 @@ def leaves(tree: dict, key: str = "") -> list[str]:
     return found
 
 
+def with_speeds(keys) -> bool:
+    """Whether one of the keys asks for critical or resonance speeds."""
+    return any(name in key for key in keys for name in SPEEDS)
+
+
 def unit_of(key: str) -> str:
     """SI unit of the value at a dotted key; empty without one."""
     return UNITS.get(key) or UNITS.get(key.partition(".")[0]) or ""

@@ -1,5 +1,6 @@
 """Sweep: any scenario keys over any grid or list, any numbers of the run's summary."""
 
+import contextlib
 import itertools
 from dataclasses import dataclass
 from functools import partial
@@ -7,7 +8,8 @@ from functools import partial
 from ..numerics.parallel import Together
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis
-from ..simulation.batch import first_read, run_many
+from ..scene.scene import SceneError
+from ..simulation.batch import first_ready, run_many
 from ..simulation.outputs import unit_of
 
 WITH_CONTACT = WITH_WAVES = True
@@ -44,7 +46,9 @@ def run(scenario, settings, tools) -> dict:
     if len(set(keys)) < len(keys):
         raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
     grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
-    first_read(scenario, grid)
+    # What is wrong with every point is found before any is run; a point that cannot run is a row.
+    with contextlib.suppress(SceneError):
+        first_ready(scenario, grid)
     found = tools.map(
         Together(partial(run_many, scenario)), [{"outputs": outputs, "set": values} for values in grid], "runs"
     )

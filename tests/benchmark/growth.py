@@ -10,12 +10,12 @@ import argparse
 import math
 import os
 import tempfile
-import time
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 from radial_cells import film_of
+from right_hand_side import best
 from scenes import SPEED, fms, prepared
 
 import sealdyn
@@ -35,12 +35,7 @@ CORES = os.cpu_count() or 1
 def least(function, repeats):
     """Least wall time (s) of several calls, after one that is not counted."""
     function()
-    found = math.inf
-    for _ in range(repeats):
-        begun = time.perf_counter()
-        function()
-        found = min(found, time.perf_counter() - begun)
-    return found
+    return best(function, repeats)
 
 
 def scenario(**run):
