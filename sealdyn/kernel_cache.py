@@ -15,6 +15,8 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parent
 STAMP = "kernels.stamp"
+# What a kernel has above its first line.
+KERNEL = re.compile(rb"^@(njit|cfunc|inner_kernel)\b", re.MULTILINE)
 # Relative imports at the left margin: dots, module, names.
 IMPORT = re.compile(rb"^from (\.+)([\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 
@@ -29,7 +31,7 @@ def kernel_sources(texts: dict[Path, bytes] | None = None) -> dict[Path, bytes]:
     """Files that hold kernels, and all that they import, however far: the constants they take in.  Path -> content;
     `texts` those of all source files, if read already."""
     texts = texts or _sources()
-    found, ahead = set(), [path for path, text in texts.items() if b"@njit" in text or b"@cfunc" in text]
+    found, ahead = set(), [path for path, text in texts.items() if KERNEL.search(text)]
     while ahead:
         path = ahead.pop()
         if path in found:

@@ -13,18 +13,10 @@ from numba import carray, njit
 
 from ..numerics.addresses import call_rates, integers
 from ..numerics.hermite import sample
+from ..numerics.inner_kernel import inner_kernel
 from ..solvers.block import OVERLAP
-from ..solvers.sundials_direct import (
-    BLOCK,
-    CALLS,
-    DATA,
-    FUNCTION,
-    JACOBIANS,
-    SCALES,
-    add_refused,
-    restart_cvode,
-    step_cvode,
-)
+from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
+from ..solvers.sundials_objects import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
 from ..solvers.sundials_python import longest_step
 from .contact_events import locate_contacts
 from .extrema import track_extremes
@@ -114,7 +106,7 @@ def integrate_many(cvode, runs, thinnest, touching, output, told):
         told[1] += 1
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel()
 def _one(cvode, runs, i, thinnest, touching, output, told):
     """The run `i`; returns how it ended."""
     cvode.y[:] = runs.y[i]
@@ -131,7 +123,7 @@ def _one(cvode, runs, i, thinnest, touching, output, told):
     return status
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel()
 def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
     """One stretch of the run `i` from the unknowns in `cvode.y` on; returns how it ended."""
     size, n, real, whole = len(cvode.y), len(runs.rate_places), runs.real[stretch], runs.whole[stretch]
@@ -195,7 +187,7 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
     return DONE
 
 
-@njit(cache=True, nogil=True)
+@inner_kernel()
 def _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, begin, end, done, output):
     """Output due in the steps [begin, end], as Block.at (solvers/block.py); returns how many are done."""
     last = done

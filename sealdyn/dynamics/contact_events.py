@@ -12,6 +12,7 @@ from numba import njit
 
 from ..faces.geometry import TOUCH
 from ..numerics.hermite import NODES, fit, value
+from ..numerics.inner_kernel import inner_kernel
 from .extrema import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, crossing_time, gap_and_tilt, locate_minimum, scan_step
 from .function_values import thinnest_value
 
@@ -72,18 +73,18 @@ def _no_contact() -> np.ndarray:
     return np.zeros(STATE)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _begin(state, touched, impulse):
     state[OPEN], state[TOUCHED], state[IMPULSE], state[DEPTH_H] = 1.0, touched, impulse, np.inf
 
 
-@njit(cache=True)
+@inner_kernel()
 def _deepen(state, at, h, theta, radius):
     if h < state[DEPTH_H]:
         state[DEEPEST], state[DEPTH_H], state[DEPTH_THETA], state[DEPTH_RADIUS] = at, h, theta, radius
 
 
-@njit(cache=True)
+@inner_kernel()
 def _close(state, lifted, impulse, level, error, rows, count):
     """A contact ends: its row is written; shallower than the error it is grazing."""
     rows[count] = state[:ROW]

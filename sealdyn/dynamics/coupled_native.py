@@ -8,6 +8,7 @@ from numba import carray, cfunc, float64, int32, njit
 
 from ..faces.geometry import FORCE, MOMENT_X, MOMENT_Y, OUTER_RADIUS
 from ..numerics.addresses import ADDRESS, call_film_residual, call_load, floats, integers
+from ..numerics.inner_kernel import inner_kernel
 from . import equations
 from .film_derivatives import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
 from .function_values import load_value
@@ -16,7 +17,7 @@ from .native import RESIDUAL as OF_RESIDUAL
 
 # The block goes on after that of native.py: two arrays of float64, four of int64; where the film's unknowns begin, and
 # how many values the segment's pattern has.
-SCALES, NUMBERS, KERNELS, STARTS, ROWS, COLOURS = np.arange(6, 12)
+SCALES, NUMBERS, KERNELS, STARTS, ROWS, COLOURS = range(6, 12)
 FIRST, VALUES = ARRAYS + 2 * 12, ARRAYS + 2 * 12 + 1
 BLOCK = VALUES + 1
 # The numbers: rate (rad/s) between displacements and rates; the code of a film that has failed, and when (s).
@@ -40,23 +41,23 @@ def native(segment) -> Native:
     for part in arrays:
         block += [part.ctypes.data, len(part)]
     block = np.array([*block, segment.film.start, segment.pattern.nnz], dtype=np.int64)
-    return Native(0, residual_at.address, block, arrays, derivatives_at.address)
+    return Native(0, block, arrays, residual_at.address, derivatives_at.address)
 
 
-@njit(cache=True)
+@inner_kernel()
 def integer_array(block, which):
     """One of the block's int64 arrays."""
     at = ARRAYS + 2 * which
     return carray(integers(block[at]), block[at + 1])
 
 
-@njit(cache=True)
+@inner_kernel()
 def of_film(y, block):
     """The film's part of `y` (size,)."""
     return y[block[FIRST] : block[FIRST] + len(integer_array(block, COLOURS))]
 
 
-@njit(cache=True)
+@inner_kernel()
 def loads(tau, y, yp, block):
     """Kinematics, film and contact at segment time tau (s) and unknowns `y` (size,), in the block's gap state."""
     f, s = array(block, FILM), array(block, GAP)
@@ -81,7 +82,7 @@ def ring_rates_along(taus, ys, yps, block):
         ring_rates(taus[i], ys[i], yps[i], block)
 
 
-@njit(cache=True)
+@inner_kernel()
 def rows_of_rings(tau, y, yp, res, block):
     """The residual's rows of rings and works, at the loads of the block's gap state."""
     p, w, s = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP)
@@ -101,7 +102,7 @@ def residual(tau, y, yp, res, block):
     return _verdict(code, res, tau, block)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _verdict(code, values, tau, block):
     """The film's code, or NO_NUMBER if one of the values is none; kept with the time if it is one of failure."""
     wrong = False
@@ -137,7 +138,7 @@ def derivatives(tau, alpha, by_y, y, yp, data, block):
     return _verdict(code, data, tau, block)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _columns_of_film(tau, alpha, by_y, y, yp, data, block):
     """The values of `derivatives` after the rings' columns, into `data`; returns the film's code."""
     size, rings, starts = block[SIZE], block[FIRST], integer_array(block, STARTS)
@@ -164,7 +165,7 @@ def _columns_of_film(tau, alpha, by_y, y, yp, data, block):
     return code
 
 
-@njit(cache=True)
+@inner_kernel()
 def _by_force(by_force, force_by_film, j, first, last, data, at):
     """Rows from `first` to `last` of the film's column j into `data` from place `at` on; returns the place after."""
     for i in range(first, last):
@@ -175,7 +176,7 @@ def _by_force(by_force, force_by_film, j, first, last, data, at):
     return at
 
 
-@njit(cache=True)
+@inner_kernel()
 def _block_of_film(alpha, y, yp, own, block):
     """The film's own derivatives into the values `own` of its pattern; returns its code."""
     return residual_by_unknowns(
@@ -185,7 +186,7 @@ def _block_of_film(alpha, y, yp, own, block):
     )  # fmt: skip
 
 
-@njit(cache=True)
+@inner_kernel()
 def _rows_by_force(tau, y, yp, columns, block):
     """Derivatives `columns` (3, size) of the rings' and works' rows by the film's force and moments."""
     s, size = array(block, GAP), block[SIZE]

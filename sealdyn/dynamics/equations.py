@@ -40,6 +40,7 @@ from ..faces.geometry import (
     STATOR_ANGLE,
     VISCOSITY,
 )
+from ..numerics.inner_kernel import inner_kernel
 from .imposed_motion import (
     CLOSING_AT,
     INNER_AT,
@@ -131,7 +132,7 @@ def kinematics(tau, y, yp, p, w, s):
     s[OUTER_PRESSURE] = leg[OUTER_AT] + leg[OUTER_AT + 1] * tau
 
 
-@njit(cache=True)
+@inner_kernel()
 def _net(tau, k, p, w, s, power):
     """Net force and moments on ring k (without inertia) into the scratch; adds the powers of the elements and
     returns the springs' power."""
@@ -169,7 +170,7 @@ def _net(tau, k, p, w, s, power):
     return spring * v + spring_x * v_x + spring_y * v_y
 
 
-@njit(cache=True)
+@inner_kernel()
 def _secondary_seal(k, spin, spin_rate, p, w):
     """Friction of ring k's secondary seal onto its net load; returns the power of that friction."""
     ring, c, x, net, seal = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k, SEALS + PER_SEAL * k
@@ -204,7 +205,7 @@ def _secondary_seal(k, spin, spin_rate, p, w):
     return friction[0] * v + friction[1] * v_x + friction[2] * v_y
 
 
-@njit(cache=True)
+@inner_kernel()
 def _works(tau, p, w, s, yp, at):
     """Powers of the elements into yp[at:]: support dampers, film, closing force, carriers, gyroscopic
     term (zero), contact and secondary seals, and the sum of absolute powers, springs included; the contact force, whose
@@ -298,7 +299,7 @@ def energies(taus, ys, yp, p, w, s, out):
         out[k] = energy(p, w)
 
 
-@njit(cache=True)
+@inner_kernel()
 def energy(p, w):
     """Kinetic energy of the rings and energy of their support springs (J), from the scratch state."""
     total = 0.0

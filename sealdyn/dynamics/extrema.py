@@ -13,6 +13,7 @@ from numba import njit
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
+from ..numerics.inner_kernel import inner_kernel
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 from .function_values import thinnest_value
@@ -55,7 +56,7 @@ def longest_scan(pace: float) -> float:
     return MOST_SCAN / (PER_RADIAN * pace) if pace else math.inf
 
 
-@njit(cache=True)
+@inner_kernel()
 def gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out):
     """The three measures (m, rad^2) at displacements q (n,) and segment time tau (s), into `out` (3,); returns angle
     (rad) and radius (m) of h_min, which the function value `thinnest` finds.  Other arguments as `track_extremes`."""
@@ -69,7 +70,7 @@ def gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out):
     return theta, radius
 
 
-@njit(cache=True)
+@inner_kernel()
 def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
     """Time (s) in [low, high] where one measure (`kind`) is smallest on the full interpolant (`table`, `nodes`, `size`
     of numerics/hermite.py): three rounds of five points, then the vertex of a parabola."""
@@ -100,7 +101,7 @@ def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, thi
     return best_at
 
 
-@njit(cache=True)
+@inner_kernel()
 def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
     """Time (s) at which the film crosses a `level` (m), by bisection between a time `above` (s) when it is above and
     one `below` when it is below, whichever is earlier; the film is below there."""
@@ -115,7 +116,7 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
     return below
 
 
-@njit(cache=True)
+@inner_kernel()
 def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first):
     """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, from the `first` of them on, on
     the cubic between its two ends."""
@@ -132,7 +133,7 @@ def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q
             seen[i, j] = out[j]
 
 
-@njit(cache=True)
+@inner_kernel()
 def falls_outwards(seen, kind, best, scan):
     """Whether a measure of the scan `seen` (scan + 1, 3), lowest at its first or last point, still falls there: then
     the end is its least, with no dip inside.  By the cubic through the four points there, and that it differs from the
@@ -147,7 +148,7 @@ def falls_outwards(seen, kind, best, scan):
     return first - 0.5 * second + third / 3.0 > abs(third) / 3.0
 
 
-@njit(cache=True)
+@inner_kernel()
 def current_record(record, kind, tolerance):
     """The record so far in the measure of this kind (m, rad^2), and the improvement not worth locating."""
     if kind == THICKNESS:
@@ -159,7 +160,7 @@ def current_record(record, kind, tolerance):
     return sign * known * known, tolerance[1] * (2.0 * known + tolerance[1])
 
 
-@njit(cache=True)
+@inner_kernel()
 def store(record, kind, out, at, theta, radius, index):
     """A new record in the measure of this kind: its value `out`, segment time `at` (s), angle (rad), radius (m) and
     segment index."""

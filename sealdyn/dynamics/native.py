@@ -7,16 +7,16 @@ The kernels of film and contact come as addresses in the block: one function on 
 from dataclasses import dataclass
 
 import numpy as np
-from numba import carray, cfunc, float64, int32, njit
+from numba import carray, cfunc, float64, int32
 
 from ..numerics.addresses import ADDRESS, call_film, call_load, floats, integers
-from .equations import kinematics, rates, residual
+from ..numerics.inner_kernel import inner_kernel
+from .equations import kinematics, rates
 from .function_values import Value, load_value
 
 # The block, int64: number of unknowns, kernels of film and contact, then address and length of each array.
 SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
-# NumPy's integers: for each of Python's, a type of its own, `array` would be compiled once more.
-PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = np.arange(6)
+PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = range(6)
 BLOCK = ARRAYS + 2 * 6
 # C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0, or -1 where a film
 # with unknowns of its own (coupled_native.py) has no solution.
@@ -26,14 +26,23 @@ RESIDUAL = int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
 
 @dataclass(frozen=True)
 class Native:
-    """A segment's equations for C: addresses of `rates` and `residual`, the `block` and the `arrays` that it points to,
-    which it keeps alive; of a film with unknowns no rates (0), and the address of the residual's `derivatives`."""
+    """A segment's equations for C: address of its `rates`, the `block` and the `arrays` that it points to, which it
+    keeps alive; of a film with unknowns no rates (0), and addresses of its own `residual` and its `derivatives`."""
 
     rates: int
-    residual: int
     block: np.ndarray
     arrays: tuple
+    own_residual: int = 0
     derivatives: int = 0
+
+    @property
+    def residual(self) -> int:
+        """Address of the residual; that of rings alone is compiled by its import, which few integrations need."""
+        if self.own_residual:
+            return self.own_residual
+        from .native_residual import residual_at
+
+        return residual_at.address
 
 
 def native(segment) -> Native:
@@ -45,17 +54,17 @@ def native(segment) -> Native:
     block = [segment.size, Value(model.interface.film.wrench).address, load.address]
     for array in arrays:
         block += [array.ctypes.data, len(array)]
-    return Native(rates_at.address, residual_at.address, np.array(block, dtype=np.int64), arrays)
+    return Native(rates_at.address, np.array(block, dtype=np.int64), arrays)
 
 
-@njit(cache=True)
+@inner_kernel()
 def array(block, which):
     """One of the block's arrays."""
     at = ARRAYS + 2 * which
     return carray(floats(block[at]), block[at + 1])
 
 
-@njit(cache=True)
+@inner_kernel()
 def loads(tau, y, yp, block):
     """Kinematics, film and contact at segment time tau (s) and unknowns `y` (size,), in the block's gap state."""
     f, s = array(block, FILM), array(block, GAP)
@@ -71,15 +80,4 @@ def rates_at(tau, y_at, yp_at, data):
     y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
     loads(tau, y, yp, block)
     rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
-    return 0
-
-
-@cfunc(RESIDUAL, cache=True)
-def residual_at(tau, y_at, yp_at, res_at, data):
-    """The residual."""
-    block = carray(integers(data), BLOCK)
-    y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
-    loads(tau, y, yp, block)
-    p, w, s = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP)
-    residual(tau, y, yp, p, w, s, array(block, WORK), carray(floats(res_at), block[SIZE]))
     return 0

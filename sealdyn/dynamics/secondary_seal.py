@@ -12,10 +12,10 @@ The loads it can hold while stuck fill the limit surface |M| / (4 R^2 F') = cos(
 
 import math
 
-from numba import njit
+from ..numerics.inner_kernel import inner_kernel
 
 
-@njit(cache=True)
+@inner_kernel()
 def sliding(v, q_x, q_y, line, radius, band, smooth, out):
     """Axial force (N) and moments (N m) on a ring that slides, into out[0:3]; returns its sliding speed (m/s).
 
@@ -42,7 +42,7 @@ def sliding(v, q_x, q_y, line, radius, band, smooth, out):
     return speed
 
 
-@njit(cache=True)
+@inner_kernel()
 def excess(force, moment_x, moment_y, line, radius):
     """How far a load (N, N m) lies outside the limit surface of a stuck ring: negative inside, 0 on it, in units of the
     largest moment (or, beyond the largest force, of that force); `line` friction (N/m), `radius` (m).

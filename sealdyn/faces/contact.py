@@ -16,6 +16,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
+from ..numerics.inner_kernel import inner_kernel
 from ..scene.contact import Contact, contact_thresholds
 from .contact_annulus import (
     AREA,
@@ -98,13 +99,13 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
     return k
 
 
-@njit(cache=True)
+@inner_kernel()
 def _mean_arm(f):
     """The mean radius where the tilt is taken there, else 0."""
     return 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else 0.0
 
 
-@njit(cache=True)
+@inner_kernel()
 def _face(k, f, s, complete):
     """Write the contact slots.  `complete` asks for friction, area, energy and wear too."""
     s[CONTACT_FORCE] = s[CONTACT_X] = s[CONTACT_Y] = 0.0

@@ -7,8 +7,7 @@ points converge exponentially however narrow the arc.
 
 import math
 
-from numba import njit
-
+from ..numerics.inner_kernel import inner_kernel
 from .roughness import BEYOND, SERIES_SIZE
 
 # Layout of the contact block: then the series, then nodes and weights on [0, 1] of the radius and of a panel of the
@@ -19,7 +18,7 @@ ENERGY = AREA + SERIES_SIZE
 NODES = ENERGY + SERIES_SIZE
 
 
-@njit(cache=True)
+@inner_kernel()
 def pressed(k, series, u, head):
     """A law at u: `head` (u^4 or u^5) times its series in v = 2u - 1, or what continues it beyond u = 1; in the unit of
     the series (LOAD Pa, AREA 1, ENERGY J/m^2), whose first slot in the block `k` is `series`."""
@@ -34,7 +33,7 @@ def pressed(k, series, u, head):
     return head * value
 
 
-@njit(cache=True)
+@inner_kernel()
 def _part(k, r_i, r_a, r_b, u_a, u_b, complete):
     """Integrals over a smooth part of a radius: of p r, p r^2; and, if `complete`, of area r, area r^2, energy r,
     p r^2 (r - r_i)."""
@@ -57,7 +56,7 @@ def _part(k, r_i, r_a, r_b, u_a, u_b, complete):
     return load, arm, area, area_arm, energy, outwards
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel(error_model="numpy")
 def _radius(k, r_i, r_o, u_i, u_o, complete):
     """As `_part`, over all of a radius that touches; u is linear between u_i and u_o."""
     # From the less to the more pressed end; going inwards the integrals change sign.
@@ -76,7 +75,7 @@ def _radius(k, r_i, r_o, u_i, u_o, complete):
     return turn * (a + a1), turn * (b + b1), turn * (c + c1), turn * (d + d1), turn * (e + e1), turn * (g + g1)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _crossing(low, swing, level):
     """Angle from the thinnest place where low + swing (1 - cos beta) passes `level`; 0 or pi if it never does."""
     if level <= low:
@@ -86,7 +85,7 @@ def _crossing(low, swing, level):
     return 2.0 * math.asin(math.sqrt((level - low) / (2.0 * swing)))
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel(error_model="numpy")
 def annulus(k, r_i, r_o, r_m, tilt, low_i, low_o, complete):
     """Load (N), its integral with the radius (N m), its moment along the tilt (N m); and, if `complete`, touching area
     (m^2), its integral with the radius (m^3), stored energy (J), and the load's integral with r (r - r_i) (N m^2).

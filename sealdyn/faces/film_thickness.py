@@ -8,6 +8,7 @@ import math
 
 from numba import njit
 
+from ..numerics.inner_kernel import inner_kernel
 from .geometry import (
     CLEARANCE,
     CONING,
@@ -30,13 +31,13 @@ from .thinnest import thinnest_of_waves
 from .waviness import waves, waves_rate
 
 
-@njit(cache=True)
+@inner_kernel()
 def _arm(f, r):
     """Arm (m) of the tilt at radius r."""
     return 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else r
 
 
-@njit(cache=True)
+@inner_kernel()
 def _depth(f, r):
     """Depth (m) of the profile at radius r, 0 without one; beyond its ends as there."""
     count = int(f[PROFILE])
@@ -50,14 +51,14 @@ def _depth(f, r):
     return f[PROFILE_DEPTHS + count - 1]
 
 
-@njit(cache=True)
+@inner_kernel()
 def film_thickness(f, s, r, theta):
     """Film thickness (m) at radius r (m) and angle theta (rad, from the x axis)."""
     aligned = f[CLEARANCE] + s[DZ] + f[CONING] * (r - f[INNER_RADIUS]) + _depth(f, r)
     return aligned + _arm(f, r) * (s[GX] * math.sin(theta) - s[GY] * math.cos(theta)) + waves(f, s, theta)
 
 
-@njit(cache=True)
+@inner_kernel()
 def film_thickness_rate(f, s, r, theta):
     """Rate of the film thickness (m/s) at a fixed radius r (m) and angle theta (rad): the rings' own rates, and the
     waves that pass with them."""

@@ -16,6 +16,7 @@ value are in faces/film_thickness.py.
 import numpy as np
 from numba import njit
 
+from ..numerics.inner_kernel import inner_kernel
 from ..scene.film import MOST_NODES
 from ..scene.waviness import MOST_WAVES
 
@@ -86,7 +87,7 @@ def edge_gaps(f, dz, tilt):
     return inner, outer
 
 
-@njit(cache=True)
+@inner_kernel()
 def node_gap(f, node, dz, tilt):
     """As `edge_gaps`, one film thickness (m), at the radius `node` of the profile (counted from 0); between them it is
     linear in r."""
@@ -112,7 +113,7 @@ def smallest_gap(f, dz, tilt):
     return least, f[PROFILE_RADII + at]
 
 
-@njit(cache=True)
+@inner_kernel()
 def regularised_thickness(h, floor):
     """Film thickness (m) as the film laws see it: h (m) itself above the `floor` (m), below it a positive continuation
     with the same slope, so that a solver's trial state never meets 1/h**3 of h <= 0."""

@@ -15,6 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
+from ..numerics.inner_kernel import inner_kernel
 from .geometry import (
     CLEARANCE,
     DZ,
@@ -37,7 +38,7 @@ POINTS, EQUAL = 12, 1e-13
 NEWTON = 40
 
 
-@njit(cache=True)
+@inner_kernel()
 def _at(theta, orders, a, b, arm):
     """Value and two derivatives of the sum of a cos(n theta) + b sin(n theta), the first (the tilt) times `arm`."""
     value = first = second = 0.0
@@ -51,7 +52,7 @@ def _at(theta, orders, a, b, arm):
     return value, first, second
 
 
-@njit(cache=True)
+@inner_kernel()
 def _newton(low, high, start, orders, a, b, arm):
     """Place of the minimum in a cell over which the second derivative is positive, from `start`, and its value."""
     x, near = start, 1e-8 * (high - low)
@@ -69,7 +70,7 @@ def _newton(low, high, start, orders, a, b, arm):
     return x, value
 
 
-@njit(cache=True)
+@inner_kernel()
 def _lowest_in(low, high, orders, a, b, arm, third, best, at, slack, stack):
     """The lower of `best` (at `at`) and the minimum over a cell; `third` bounds the third derivative."""
     stack[0, 0], stack[0, 1], size = low, high, 1
@@ -100,7 +101,7 @@ def _lowest_in(low, high, orders, a, b, arm, third, best, at, slack, stack):
     return best, at
 
 
-@njit(cache=True)
+@inner_kernel()
 def _radii_of(f, s, radii, bases, arms):
     """Radii (m) at one of which h is smallest, the film there without tilt and waves (m), the arm of the tilt (m)."""
     if f[PROFILE] == 0.0:
@@ -114,7 +115,7 @@ def _radii_of(f, s, radii, bases, arms):
         arms[:] = 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
 
 
-@njit(cache=True)
+@inner_kernel()
 def _scan(step, orders, a, b, tilts, others):
     """Tilt (per arm) and waves (m) at equally spaced angles, by turning each order on from point to point."""
     tilts[:], others[:] = 0.0, 0.0

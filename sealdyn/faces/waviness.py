@@ -15,6 +15,7 @@ import math
 import numpy as np
 from numba import njit
 
+from ..numerics.inner_kernel import inner_kernel
 from .geometry import (
     FACE_SIZE,
     MEAN_SPIN,
@@ -47,7 +48,7 @@ def highest_orders(f) -> tuple[int, int]:
     return tuple(int(max(rows[rows[:, SIGN] == sign, ORDER], default=0)) for sign in (1.0, -1.0))
 
 
-@njit(cache=True)
+@inner_kernel()
 def waves(f, s, theta):
     """What the waves add to the film thickness (m) at an angle (rad, from the x axis)."""
     total = 0.0
@@ -58,7 +59,7 @@ def waves(f, s, theta):
     return total
 
 
-@njit(cache=True)
+@inner_kernel()
 def waves_rate(f, s, theta):
     """Rate (m/s) of `waves` at a fixed angle (rad): each wave passes with its ring's spin."""
     total = 0.0
@@ -72,7 +73,7 @@ def waves_rate(f, s, theta):
     return total
 
 
-@njit(cache=True)
+@inner_kernel()
 def wave_parts(f, s, cosines, sines):
     """Waves of both faces together, sum of `cosines[j] cos(n theta) + sines[j] sin(n theta)` (m) over the different
     orders n of the face block, both (orders,)."""

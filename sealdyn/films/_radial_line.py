@@ -2,10 +2,10 @@
 
 import math
 
-from numba import njit
+from ..numerics.inner_kernel import inner_kernel
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel(error_model="numpy")
 def line_sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
     """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
     the same three of 1/h^3."""
@@ -35,7 +35,7 @@ def line_sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
     return p_0, p_2, p_3, e_0, e_2, e_3
 
 
-@njit(cache=True)
+@inner_kernel()
 def cubic(z_rate, tilt_rate, r_i, r_o, mean, planar):
     """Coefficients of d, d^2, d^3 in `Phi = int f r dr` (planar: `int f dr`), and the d where f changes sign
     (-1: nowhere)."""

@@ -34,6 +34,7 @@ from ..faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
+from ..numerics.inner_kernel import inner_kernel
 from ._fields import PRESSURE
 from ._radial_line import cubic, line_sums
 from ._radial_quadrature import CAVITATION, HAS_CAVITATION, RADIAL_POINTS, RULE_SIZE, RULES, points_for
@@ -43,7 +44,7 @@ FIELDS = (PRESSURE,)
 STEPS, ANGLES = 16, 48
 
 
-@njit(cache=True)
+@inner_kernel()
 def _nodes(f):
     """Radii (m) between which the film thickness is linear: both edges, or those of the profile."""
     if f[PROFILE] == 0.0:
@@ -51,7 +52,7 @@ def _nodes(f):
     return f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
 
 
-@njit(cache=True)
+@inner_kernel()
 def _steps(nodes):
     """Equal steps between each node and the next, and how many in all."""
     steps, total = np.empty(len(nodes) - 1, np.int64), 0
@@ -61,7 +62,7 @@ def _steps(nodes):
     return steps, total
 
 
-@njit(cache=True)
+@inner_kernel()
 def _radii(nodes, steps, total):
     """Radii (m) of the grid."""
     r, at = np.empty(total + 1), 0
@@ -78,7 +79,7 @@ def grid(f):
     return _radii(nodes, *_steps(nodes)), 2.0 * math.pi / ANGLES * np.arange(ANGLES)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _thicknesses(f, s, nodes, steps, theta, h):
     """Film thickness `h` (radii,) at one angle, m; below the floor as the film's force sees it."""
     at, here = 0, regularised_thickness(film_thickness(f, s, nodes[0], theta), f[FLOOR])

@@ -4,7 +4,6 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from ..faces.geometry import (
     CLEARANCE,
@@ -17,6 +16,7 @@ from ..faces.geometry import (
     VISCOSITY,
     face_parameters,
 )
+from ..numerics.inner_kernel import inner_kernel
 
 # Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
@@ -125,7 +125,7 @@ def opening_law(film, parameters, wrench):
     return force
 
 
-@njit(cache=True)
+@inner_kernel()
 def points_for(f, h_i, h_o):
     """Index of the Gauss rule that serves the film ratio between h_i and h_o (m, or any unit); `f` the film's block."""
     ratio = h_o / h_i if h_o > h_i else h_i / h_o
@@ -135,7 +135,7 @@ def points_for(f, h_i, h_o):
     return len(RADIAL_POINTS) - 1
 
 
-@njit(cache=True)
+@inner_kernel()
 def relative_clearance(h, swing):
     """Mean film `h` over its `swing` around the circle, in one unit: 1 where the faces meet, 0 for a film closed
     somewhere, 1e9 without a swing."""
@@ -144,7 +144,7 @@ def relative_clearance(h, swing):
     return h / swing if swing > 0.0 else 1e9
 
 
-@njit(cache=True)
+@inner_kernel()
 def angle_count(f, ratio):
     """Number of angles for a `ratio` of mean film to swing; `f` the film's block.  The trapezoid's error falls as
     exp(-N eta), cosh(eta) = ratio.

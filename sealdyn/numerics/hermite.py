@@ -13,6 +13,8 @@ import math
 import numpy as np
 from numba import njit
 
+from .inner_kernel import inner_kernel
+
 NODES = 6
 SHORTEST, LONGEST = 0.3, 4.0
 # Six steps of a motion add terms that fall by more than this from each step to the next.
@@ -21,7 +23,7 @@ FALLS = 0.25
 GAUSS = math.sqrt(0.6)
 
 
-@njit(cache=True)
+@inner_kernel()
 def window(t, k, count):
     """First and one-past-last step (int, int) that the interpolant of the interval [t[k], t[k+1]] uses; `t` (s) the
     times of the `count` steps."""
@@ -75,7 +77,7 @@ def fit(t, q, q_rate, k, count, table, nodes):
     return size
 
 
-@njit(cache=True)
+@inner_kernel()
 def _drop_noise(middle, table, nodes, size):
     """Zero what each further step adds in the middle of the interval, from where it is more than the step before did:
     the motion's terms shrink, those of the steps' errors grow.  Terms that were small by chance are followed by ones

@@ -89,7 +89,8 @@ def integrate(alike: list[LoopedRun]):
     PATIENCE."""
     # Compiled and linked with the libraries as it is imported.
     from ..dynamics import batch_loop as loop
-    from ..solvers.sundials_direct import cvode_for, words_for
+    from ..solvers.sundials_direct import cvode_for
+    from ..solvers.sundials_objects import words_for
 
     first = alike[0]
     runs, touching, output = _stacked(alike, loop)

@@ -1,5 +1,5 @@
-"""CVODE and IDA: by the compiled loop (sundials_direct.py) where a segment has equations for C and the libraries are as
-known, else through scikit-sundae (sundials_python.py)."""
+"""CVODE and IDA: by compiled loops (sundials_direct.py, sundials_ida.py) where a segment has equations for C and the
+libraries are as known, else through scikit-sundae (sundials_python.py)."""
 
 import os
 
@@ -46,8 +46,10 @@ def _back_end(segment, counts, form):
     if counts.slow or not getattr(native, form, 0):
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
-    # Its compiled code needs the libraries open.
-    from . import sundials_direct
-
     counts.back_end = f"SUNDIALS {libraries().version}, compiled loop"
-    return sundials_direct
+    # Their compiled code needs the libraries open, and is made ready by the import.
+    if form == "residual":
+        from . import sundials_ida as back_end
+    else:
+        from . import sundials_direct as back_end
+    return back_end

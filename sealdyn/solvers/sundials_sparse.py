@@ -11,13 +11,12 @@ import numpy as np
 from numba import carray, cfunc, float64, int32, types
 
 from ..numerics.addresses import ADDRESS, call_derivatives, integers, short_integers
-from .sundials_direct import CALLS, CARRIED, COLUMNS, DATA, JACOBIANS, SPARSE
+from .sundials_objects import CALLS, CARRIED, COLUMNS, DATA, JACOBIANS, SPARSE, values_of
 
 # Words that SUNDIALS carries: address of the derivatives, then addresses of the pattern's row numbers and of its
 # columns' starts, and how many halves of a word (int32) each has; whether there has been a Jacobian.
 DERIVATIVES, ROWS, ROW_HALVES, STARTS, START_HALVES, FACTORED = range(SPARSE, SPARSE + 6)
 
-_pointer = types.ExternalFunction("N_VGetArrayPointer_Serial", ADDRESS(ADDRESS))
 _values = types.ExternalFunction("SUNSparseMatrix_Data", ADDRESS(ADDRESS))
 _rows = types.ExternalFunction("SUNSparseMatrix_IndexValues", ADDRESS(ADDRESS))
 _starts = types.ExternalFunction("SUNSparseMatrix_IndexPointers", ADDRESS(ADDRESS))
@@ -32,7 +31,7 @@ def _jacobian(tau, alpha, y, yp, res, matrix, carried, spare, another, third):
     carried[JACOBIANS] += 1
     carried[CALLS] += carried[COLUMNS] + 1
     values = _values(matrix)
-    status = call_derivatives(carried[DERIVATIVES], tau, alpha, _pointer(y), _pointer(yp), values, carried[DATA])
+    status = call_derivatives(carried[DERIVATIVES], tau, alpha, values_of(y), values_of(yp), values, carried[DATA])
     carried[FACTORED] |= status == 0
     return status
 

@@ -41,6 +41,7 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
+from ...numerics.inner_kernel import inner_kernel
 from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES
 from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, nodes_of, phi, pieces_of, plain_ratios, sums
@@ -76,7 +77,7 @@ def opening_law(film):
     return _radial_quadrature.opening_law(film, parameters, wrench)
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel(error_model="numpy")
 def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too."""
     r_i, r_o, mean, planar = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0

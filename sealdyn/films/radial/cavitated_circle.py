@@ -10,7 +10,6 @@ Sommerfeld's (1904) substitution, in which 1/h^3 is a polynomial of cosines what
 import math
 
 import numpy as np
-from numba import njit
 
 from ...faces.geometry import (
     CAVITATED,
@@ -36,6 +35,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
+from ...numerics.inner_kernel import inner_kernel
 from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, points_for
 from .cavitated_line import HAS_DRY, HAS_WET, cavitated_line, line_state
 
@@ -68,7 +68,7 @@ SUMS, PANEL_SIZE = DEFECT + 3, DEFECT + 8
 LOAD, ALONG, ACROSS, SLOPE, WET = range(5)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _edges(f, s):
     """Constants of the circle in the tilt's own frame: see `_line_at`."""
     r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
@@ -91,7 +91,7 @@ def _edges(f, s):
     return tilt, c_a, s_a, (thin_i, thin_o, swing_i, swing_o, along, across, spread), RULES + RULE_SIZE * rule
 
 
-@njit(cache=True)
+@inner_kernel()
 def _line_at(gamma, turn, floor):
     """cos and sin of beta, d beta/d gamma, films at both edges and the tilt rate seen at one angle."""
     thin_i, thin_o, swing_i, swing_o, along, across, spread = turn
@@ -105,7 +105,7 @@ def _line_at(gamma, turn, floor):
     return cos_b, sin_b, spread * per, h_i, h_o, -(along * cos_b + across * sin_b)
 
 
-@njit(cache=True)
+@inner_kernel()
 def _state_at(gamma, turn, f, s, x_k, w_k):
     _, _, _, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
     return line_state(
@@ -114,7 +114,7 @@ def _state_at(gamma, turn, f, s, x_k, w_k):
     )  # fmt: skip
 
 
-@njit(cache=True)
+@inner_kernel()
 def _scan(turn, f, s, x_k, w_k):
     """Angles in order around the circle and the state of their lines.  Where an indicator comes near to a change
     of sign between two of them, an angle is moved to where a parabola sees its extreme."""
@@ -153,7 +153,7 @@ def _scan(turn, f, s, x_k, w_k):
     return gammas, states
 
 
-@njit(cache=True)
+@inner_kernel()
 def _change(low, high, state, turn, f, s, x_k, w_k):
     """First angle after `low` (of that state) where the state is another, and which: regula falsi on the indicator
     that changes sign, kept off the ends so that both close in, and halving where that fails."""
@@ -174,7 +174,7 @@ def _change(low, high, state, turn, f, s, x_k, w_k):
     return high, beyond
 
 
-@njit(cache=True)
+@inner_kernel()
 def _kinks(gammas, states, turn, f, s, x_k, w_k):
     """Angles where the state changes, and the state after each."""
     kinks, after, count = np.empty(4 * SCANNED), np.empty(4 * SCANNED, np.int64), 0
@@ -190,7 +190,7 @@ def _kinks(gammas, states, turn, f, s, x_k, w_k):
     return kinks[:count], after[:count]
 
 
-@njit(cache=True)
+@inner_kernel()
 def _integrate(panel, turn, f, s, x_k, w_k):
     """Fill a panel's integrals and by how much its two rules differ in load and moments."""
     middle, half = 0.5 * (panel[BEGIN] + panel[END]), 0.5 * (panel[END] - panel[BEGIN])
@@ -222,7 +222,7 @@ def _integrate(panel, turn, f, s, x_k, w_k):
         defect[ACROSS] -= (full - part) * sin_b * moment
 
 
-@njit(cache=True)
+@inner_kernel()
 def _panels(kinks, after, first_state, panels):
     """Panels between the kinks (wholly dry ones left out): how many."""
     count, pieces = 0, max(len(kinks), 1)
@@ -246,7 +246,7 @@ def _panels(kinks, after, first_state, panels):
     return count
 
 
-@njit(cache=True)
+@inner_kernel()
 def _refine(panels, count, turn, f, s, x_k, w_k):
     """Halve the worst panel until the sum of errors is what was asked for; returns how many panels there are."""
     r_o = f[OUTER_RADIUS]
@@ -278,7 +278,7 @@ def _refine(panels, count, turn, f, s, x_k, w_k):
         _integrate(new, turn, f, s, x_k, w_k)
 
 
-@njit(cache=True)
+@inner_kernel()
 def cavitated_circle(f, s):
     """Force (N) and moments (N m) with the pressure floored at the cavitation pressure after solving (half-Sommerfeld,
     or Guembel, condition), into the gap state; returns whether anything is dry, and the torque (N m) of the pressure on

@@ -9,6 +9,7 @@ import math
 
 from numba import njit
 
+from ...numerics.inner_kernel import inner_kernel
 from .._radial_line import cubic, line_sums
 
 # A line's state: bits.
@@ -17,7 +18,7 @@ INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8
 CLOSE = 1e-9
 
 
-@njit(cache=True)
+@inner_kernel()
 def _zero(q0, q, low, high, rising):
     """The d in [low, high] where the cubic changes sign: Newton held inside the bracket."""
     d = 0.5 * (low + high)
@@ -36,7 +37,7 @@ def _zero(q0, q, low, high, rising):
     return d
 
 
-@njit(cache=True)
+@inner_kernel()
 def _turns(q0, q, turn, width):
     """Where the pressure turns: how many places, and the places d (m)."""
     q_o = q0 + width * (q[0] + width * (q[1] + width * q[2]))
@@ -54,7 +55,7 @@ def _turns(q0, q, turn, width):
     return 0, width, width
 
 
-@njit(cache=True)
+@inner_kernel()
 def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav):
     """What of a line is dry (bits), and three numbers that change sign where that changes: at the inner edge, at the
     outer, and the least pressure above the floor (Pa).  Arguments as `cavitated_line`."""
@@ -92,7 +93,7 @@ def line_state(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu
     return state, at_inner if p_i == p_cav else 1.0, at_outer if p_o == p_cav else 1.0, least
 
 
-@njit(cache=True)
+@inner_kernel()
 def _crossing(q0, q, line, a, b, p_a, p_b, wet_from, x_k, w_k):
     """The d in [a, b] where the pressure (above the floor: p_a at a, p_b at b, of different sign) is zero, and
     the integrals of p', r^2 p', r^3 p' over the wet side of it, which begins at `wet_from` = a or b."""

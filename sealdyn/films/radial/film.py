@@ -51,6 +51,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
+from ...numerics.inner_kernel import inner_kernel
 from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import (
     COSINES,
@@ -99,7 +100,7 @@ def opening_law(film):
     return _radial_quadrature.opening_law(film, parameters, wrench)
 
 
-@njit(cache=True)
+@inner_kernel()
 def angles_for(f, h_i, h_o, swing_i, swing_o):
     """Number of angles for the edge that is nearer to touching: mean films `h_i`, `h_o` (m) and their swings around the
     circle (m)."""
