@@ -48,17 +48,21 @@ class Runs(NamedTuple):
     displacements.
 
     `stretches` (m + 1,): run i has the stretches from stretches[i] to stretches[i + 1]; `whole` (l, 4) and `real` (l,
-    5) of each, see above; `tolerance` (m,), `slack` (m, 2) of extremes (m, rad); `windows` (m, WINDOWS, 2) (s) and
-    `records` (m, WINDOWS, RECORD) of dynamics/extrema.py; `scales` (m, size); `y` (m, size) the start, then the end;
-    `rate_places` (n,); `status` (m,); `counts` (m, 5): steps, evaluations, Jacobians, steps refused by error test and
-    nonlinear solver; `orders` (m, MOST_ORDERS).
+    5) of each, see above, and `swing` (l, SWING) of dynamics/step_bounds.py; `tolerance` (m,); whether extremes are
+    `asked` for, their `slack` (m, 2) (m, rad), `level` (m,) (m), `windows` (m, WINDOWS, 2) (s) and `records` (m,
+    WINDOWS, RECORD) of dynamics/extrema.py; `scales` (m, size); `y` (m, size) the start, then the end; `rate_places`
+    (n,); `status` (m,); `counts` (m, 5): steps, evaluations, Jacobians, steps refused by error test and nonlinear
+    solver; `orders` (m, MOST_ORDERS).
     """
 
     stretches: np.ndarray
     whole: np.ndarray
     real: np.ndarray
+    swing: np.ndarray
     tolerance: np.ndarray
+    asked: bool
     slack: np.ndarray
+    level: np.ndarray
     windows: np.ndarray
     records: np.ndarray
     scales: np.ndarray
@@ -160,8 +164,9 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
                 for j in range(n):
                     q[k, j], q_rate[k, j] = ys[k, j], ys[k, runs.rate_places[j]]
             fallen = track_extremes(
-                t, q, q_rate, count, watched, upto, p, thinnest, f, scratch, rates, w, s, windows, whole[INDEX],
-                runs.records[i], runs.slack[i], real[PACE], real[FASTEST], reach,
+                t, q, q_rate, count, watched, upto, p, thinnest, f, scratch, rates, w, s, runs.swing[stretch], windows,
+                whole[INDEX], runs.records[i], runs.asked, runs.level[i], runs.slack[i], real[PACE], real[FASTEST],
+                reach,
             )  # fmt: skip
             if fallen >= 0.0:
                 return ALONE

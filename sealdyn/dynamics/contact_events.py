@@ -13,8 +13,9 @@ from numba import njit
 from ..faces.geometry import TOUCH
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.inner_kernel import inner_kernel
-from .extrema import MOST_SCAN, PER_RADIAN, SCAN, THICKNESS, crossing_time, gap_and_tilt, locate_minimum, scan_step
+from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, gap_and_tilt, locate_minimum, scan_step
 from .function_values import thinnest_value
+from .step_bounds import THICKNESS
 
 # One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film
 # thickness (m), angle (rad) and radius (m) there; impulse (N s).
@@ -119,7 +120,7 @@ def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, 
         if state[OPEN] == 0.0 and reach[k] > level + error:
             state[SINKING] = 0.0
             continue
-        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, 0)
+        scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, 0, scan)
         size = fit(t, q_all, q_rate_all, k, count, table, nodes)
         step = (high - low) / scan
         points = 0

@@ -1,8 +1,9 @@
 """The gap watched between steps: where it is smallest, where the tilt is largest, and whether it closes.
 
 Every step's two ends carry positions and rates, so the motion inside is a polynomial (numerics/hermite.py) and the
-imposed motion is exact.  Each interval is scanned on a cubic; a candidate that could beat the record is
-then located on the full interpolant.  No event function, no sample: the step size does not matter.
+imposed motion is exact.  An interval whose bounds (step_bounds.py) do not settle the question is scanned on a cubic; a
+candidate that could beat the record is then located on the full interpolant.  No event function, no sample: the step
+size does not matter.
 """
 
 import math
@@ -10,13 +11,25 @@ import math
 import numpy as np
 from numba import njit
 
-from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS
+from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS, TOUCH, WAVES, smallest_gap
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.inner_kernel import inner_kernel
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 from .function_values import thinnest_value
+from .step_bounds import (
+    FROM,
+    MINUS_TILT,
+    THICKNESS,
+    TILT,
+    add_imposed,
+    bound_measures,
+    floating_motion,
+    imposed_gap,
+    lowest_possible,
+    tilt_at,
+)
 
 # One record per window: value, segment time, angle, radius of h_min; value and time of the largest and of the
 # smallest relative misalignment.  Windows: the whole run, the last forcing period, the one before.
@@ -27,8 +40,6 @@ WINDOWS = 3
 SCAN, PER_RADIAN, MOST_SCAN = 6, 3.0, 4096
 # In a step of less than this (rad) of the fastest motion of interest, on which all that moves is nearly a parabola.
 SHORT, SHORT_SCAN = 0.5, 3
-# What is made small: the film thickness, minus the squared tilt, the squared tilt (smooth through zero).
-THICKNESS, MINUS_TILT, TILT = range(3)
 
 
 def empty_records() -> np.ndarray:
@@ -117,18 +128,21 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
 
 
 @inner_kernel()
-def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first):
-    """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, from the `first` of them on, on
-    the cubic between its two ends."""
+def scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first, last):
+    """The measures `seen` (scan + 1, 3) at scan + 1 times in [low, high] (s) of step k, from the `first` of them to the
+    `last`, on the cubic between its two ends."""
     a, b = t[k], t[k + 1]
     span = b - a
-    for i in range(first, scan + 1):
+    for i in range(first, last + 1):
         x = (low + (high - low) * i / scan - a) / span
+        # The end of a step is the start of the next, to the bit.
+        ended = i == scan and high == b
         for j in range(len(q)):
             q0, q1 = q_all[k, j], q_all[k + 1, j]
             v0, v1 = span * q_rate_all[k, j], span * q_rate_all[k + 1, j]
-            q[j] = q0 + x * (v0 + x * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + x * (2.0 * (q0 - q1) + v0 + v1)))
-        gap_and_tilt(a + x * span, q, y, yp, p, thinnest, f, w, s, out)
+            inside = q0 + x * (v0 + x * (3.0 * (q1 - q0) - 2.0 * v0 - v1 + x * (2.0 * (q0 - q1) + v0 + v1)))
+            q[j] = q1 if ended else inside
+        gap_and_tilt(b if ended else a + x * span, q, y, yp, p, thinnest, f, w, s, out)
         for j in range(3):
             seen[i, j] = out[j]
 
@@ -174,47 +188,87 @@ def store(record, kind, out, at, theta, radius, index):
 
 
 @njit(cache=True)
+def nothing_to_find(record, lower, tolerance):
+    """Whether no measure that is nowhere less than `lower` (3,) improves the record."""
+    found = False
+    for kind in range(3):
+        # Nothing is known where a bound is not a number.
+        found = found or not lower[kind] >= current_record(record, kind, tolerance)[0]
+    return not found
+
+
+@njit(cache=True)
 def track_extremes(
-    t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, windows, index, records, tolerance, pace,
-    fastest, reach,
+    t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, swing, windows, index, records, asked, level,
+    tolerance, pace, fastest, reach,
 ):  # fmt: skip
     """Update the records over steps [begin, end]; returns the segment time of collapse (film at the floor), or -1.
 
-    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `windows` (WINDOWS, 2) in segment time;
-    `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not worth locating; `pace` the
-    fastest imposed motion (rad/s), `fastest` of any motion of interest.  `reach` (count,) is filled: no film in the
-    step is thinner than that (m).
+    `t` (count,), `q_all`, `q_rate_all` (count, n) the accepted steps; `swing` (SWING,) of step_bounds.py; `windows`
+    (WINDOWS, 2) in segment time; unless extremes are `asked` for, only collapse is looked for; `level` (m) above which
+    a film tells nothing but extremes; `tolerance` (2,) improvements of film thickness (m) and tilt (rad) that are not
+    worth locating; `pace` the fastest imposed motion (rad/s), `fastest` of any motion of interest.  `reach` (count,)
+    is filled: no film in the step is thinner than that (m).
     """
     n = q_all.shape[1]
     table, nodes = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES)
     q, q_rate, out, seen = np.zeros(n), np.zeros(n), np.zeros(3), np.zeros((MOST_SCAN + 1, 3))
-    ended_at, ended = -np.inf, np.zeros(3)
+    motion, imposed, ends = np.zeros((4, 3)), np.zeros((2, 6)), np.zeros((2, 3))
+    films, lower, wavy = np.zeros(2), np.zeros(3), f[WAVES] != 0.0
+    # A step begins where the one before ended: of which steps the imposed motion and the measures are known there.
+    placed = seen_end = -1
     for k in range(begin, end):
-        size, reach[k] = 0, -np.inf
-        for window in range(WINDOWS):
+        floating_motion(t, q_all, q_rate_all, k, p, motion)
+        if not asked:
+            reach[k] = lowest_possible(f, swing, motion)
+            if reach[k] > level:
+                continue
+        size, span = 0, t[k + 1] - t[k]
+        for j in range(3):
+            imposed[0, j], imposed[0, 3 + j], ends[0, j] = imposed[1, j], imposed[1, 3 + j], ends[1, j]
+        if placed != k:
+            imposed_gap(t[k], p, imposed[0])
+        imposed_gap(t[k + 1], p, imposed[1])
+        add_imposed(motion, imposed, span)
+        begins, ended, placed = seen_end == k, False, k + 1
+        if wavy:
+            for at in range(1 if begins else 0, 2):
+                gap_and_tilt(t[k + at], q_all[k + at], y, yp, p, thinnest, f, w, s, ends[at])
+            films[0], films[1] = ends[0, THICKNESS], ends[1, THICKNESS]
+            begins, ended, seen_end = True, True, k + 1
+        else:
+            for at in range(2):
+                films[at], _ = smallest_gap(f, motion[FROM + at, 0], tilt_at(motion, FROM + at))
+        bound_measures(f, swing, span, pace * t[k + 1], motion, films, lower)
+        reach[k] = lower[THICKNESS]
+        for window in range(WINDOWS if asked else 1):
             low, high = max(t[k], windows[window, 0]), min(t[k + 1], windows[window, 1])
             if high <= low:
                 continue
-            short = (t[k + 1] - t[k]) * fastest < SHORT
+            if lower[THICKNESS] > level and (not asked or nothing_to_find(records[window], lower, tolerance)):
+                continue
+            short = span * fastest < SHORT
             scan = min(max(SHORT_SCAN if short else SCAN, int(PER_RADIAN * pace * (high - low))), MOST_SCAN)
-            # A step begins where the one before ended.
-            known = window == 0 and low == ended_at
-            if known:
+            first, last = 0, scan
+            if begins and low == t[k]:
+                first = 1
                 for j in range(3):
-                    seen[0, j] = ended[j]
-            first = 1 if known else 0
-            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first)
-            record = records[window]
+                    seen[0, j] = ends[0, j]
+            if ended and high == t[k + 1]:
+                last = scan - 1
+                for j in range(3):
+                    seen[scan, j] = ends[1, j]
+            scan_step(t, q_all, q_rate_all, k, low, high, y, yp, p, thinnest, f, w, s, q, out, seen, scan, first, last)
+            if high == t[k + 1]:
+                seen_end, ended = k + 1, True
+                for j in range(3):
+                    ends[1, j] = seen[scan, j]
             if window == 0:
-                ended_at = high
-                for j in range(3):
-                    ended[j] = seen[scan, j]
                 least, most = np.inf, -np.inf
                 for i in range(scan + 1):
                     least, most = min(least, seen[i, THICKNESS]), max(most, seen[i, THICKNESS])
-                # Between the points it may sink by no more than it varies over the step.
                 reach[k] = least - (most - least)
-            for kind in range(3):
+            for kind in range(3 if asked else 1):
                 for best in range(scan + 1):
                     # Every dip of the scan, however many a long step holds.
                     left, right = max(best - 1, 0), min(best + 1, scan)
@@ -223,7 +277,7 @@ def track_extremes(
                     # How far it may sink between the points: at most the rise to the farther neighbour.
                     far_left, far_right = min(left, scan - 2), max(right, 2)
                     dip = max(seen[far_left, kind], seen[far_right, kind]) - seen[best, kind]
-                    held, slack = current_record(record, kind, tolerance)
+                    held, slack = current_record(records[window], kind, tolerance) if asked else (-np.inf, 0.0)
                     sinks = kind == THICKNESS and seen[best, kind] - dip < f[COLLAPSE]
                     # Of a parabola at most an eighth of that rise.
                     likely = 0.5 * dip if short else dip
@@ -250,17 +304,23 @@ def track_extremes(
                         theta, radius = gap_and_tilt(fallen, q, y, yp, p, thinnest, f, w, s, out)
                         for other in range(3):
                             # The tilt's extremes up to the last instant, which belongs to the run.
-                            if other == THICKNESS or out[other] < current_record(record, other, tolerance)[0]:
-                                store(record, other, out, fallen, theta, radius, index)
+                            if other == THICKNESS or out[other] < current_record(records[window], other, tolerance)[0]:
+                                store(records[window], other, out, fallen, theta, radius, index)
                         return fallen
                     if out[kind] < held:
-                        store(record, kind, out, at, theta, radius, index)
+                        store(records[window], kind, out, at, theta, radius, index)
     return -1.0
 
 
 def slack(model) -> np.ndarray:
     """Improvements (2,) of film thickness (m) and tilt (rad) that are not worth locating."""
     return 0.02 * model.accuracy * np.array([model.clearance, model.clearance / model.face[OUTER_RADIUS]])
+
+
+def watched_level(model) -> float:
+    """Film thickness (m) above which nothing ends a run and no faces come near each other."""
+    face = model.face
+    return float(face[COLLAPSE] if model.contact is None else max(face[COLLAPSE], face[TOUCH] + model.gap_error()))
 
 
 class ExtremaTracker:
@@ -289,8 +349,9 @@ class ExtremaTracker:
         self.reach = np.empty(len(block.t))
         fallen = track_extremes(
             block.t, q, q_rate, len(block.t), block.begin, block.end, segment.p, thinnest, model.f,
-            np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, windows, segment.index, self.records,
-            slack(model), segment.pace, 2 * math.pi / segment.shortest_period, self.reach,
+            np.zeros(segment.size), np.zeros(segment.size), segment.w, segment.s, segment.swing, windows,
+            segment.index, self.records, True, watched_level(model), slack(model), segment.pace,
+            2 * math.pi / segment.shortest_period, self.reach,
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 

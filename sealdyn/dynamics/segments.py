@@ -14,6 +14,7 @@ from .extrema import longest_scan, scan_pace
 from .imposed_motion import harmonics_of_segment
 from .intervals import Interval, constant_and_slope, modulo_turn
 from .modes import common_period
+from .step_bounds import largest_swing
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -67,6 +68,12 @@ class Segment:
         speeds = (constant_and_slope(ring, self.interval) for ring in self._speeds())
         spins = [[w, w + slope * self.length] for w, slope in speeds]
         return scan_pace(self.model.face, self.imposed_pace, 2 * math.pi / self.shortest_period, spins)
+
+    @cached_property
+    def swing(self) -> np.ndarray:
+        """How far and how sharply the imposed motion can move the gap (step_bounds.py)."""
+        spins = [constant_and_slope(ring, self.interval) for ring in self._speeds()]
+        return largest_swing(self.model.face, self.rows, self.model.unknowns.floats, spins, self.length)
 
     def _speeds(self):
         """Speeds (rad/s) of stator and rotor."""

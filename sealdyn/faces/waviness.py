@@ -42,9 +42,14 @@ def lay_waves(f, stator, rotor) -> None:
     f[WAVE_ROWS:FACE_SIZE][: WAVE_ROW * len(rows)] = np.array(rows).ravel()
 
 
+def wave_rows(f) -> np.ndarray:
+    """Rows (waves, WAVE_ROW) of a face block."""
+    return f[WAVE_ROWS : WAVE_ROWS + WAVE_ROW * int(f[WAVES])].reshape(-1, WAVE_ROW)
+
+
 def highest_orders(f) -> tuple[int, int]:
     """Highest order (waves to the circle) on the stator's and on the rotor's face of a block, 0 without waves."""
-    rows = f[WAVE_ROWS : WAVE_ROWS + WAVE_ROW * int(f[WAVES])].reshape(-1, WAVE_ROW)
+    rows = wave_rows(f)
     return tuple(int(max(rows[rows[:, SIGN] == sign, ORDER], default=0)) for sign in (1.0, -1.0))
 
 

@@ -28,9 +28,9 @@ def simulate_many(
     """Many runs of a scenario in memory, as an `xarray.Dataset` over the dimension `run`.
 
     `sets`: of each run {dotted key: value}, values as for `with_values` (scenario/settings.py); `outputs`: dotted keys
-    of the run's summary, of which those made of samples ("leakage.mean") cost more; `workers` processes (None: all
-    cores); `progress(done, all)`.  Variables are the outputs, the end state (end.state.*, SI), `status` and `message`;
-    a run that cannot be has the status "not possible" and its reason as message.
+    of the run's summary, of which those made of samples ("leakage.mean") cost most, none the least; `workers`
+    processes (None: all cores); `progress(done, all)`.  Variables are the outputs, the end state (end.state.*, SI),
+    `status` and `message`; a run that cannot be has the status "not possible" and its reason as message.
     **Valid** runs with the same unknowns.
     Raises ScenarioError if no run can be read, SceneError if the first that can be read cannot be run.
     """

@@ -5,7 +5,7 @@ from threading import Event, Thread
 import numpy as np
 
 from ..dynamics.contact_events import ROW
-from ..dynamics.extrema import slack
+from ..dynamics.extrema import slack, watched_level
 from ..dynamics.function_values import thinnest_value
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, Status, tolerance_for
 from ..solvers.integrate import Outcome
@@ -22,6 +22,8 @@ SAMPLED = (
     "leakage", "friction", "relative_misalignment.mean", "contact.force", "contact.share_of_closing", "contact.torque",
     "contact.max_area_fraction", "contact.max_pressure", "contact.wear_rate", "film.max_cavitated_fraction", "warnings",
 )  # fmt: skip
+# Those that are extremes between steps.
+EXTREMES = ("h_min", "relative_misalignment")
 OWN = ("energy_residual", "counts.back_end")
 
 
@@ -34,7 +36,8 @@ class LoopedRun:
         self.run, self.method, self.why, interval, count, _ = prepare_run(scenario)
         run, unknowns = self.run, self.run.model.unknowns
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)
-        self.structure, self.sampled = None, any(key.startswith(SAMPLED) for key in outputs)
+        self.structure = None
+        self.sampled, self.watched = (any(key.startswith(asked) for key in outputs) for asked in (SAMPLED, EXTREMES))
         self.segments = [run.segment(index) for index in range(len(run.intervals))]
         alone = run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(self.segments[0])
         heavy = self.sampled and count * unknowns.n > MOST_OUTPUT
@@ -43,7 +46,8 @@ class LoopedRun:
         self.sink = TallySink(run, interval, count)
         thinnest, touching = thinnest_value(run.model.face), run.model.contact is not None
         places = tuple(unknowns.rate_places)
-        self.structure = self.method, unknowns.size, places, thinnest, touching, unknowns.impulse, self.sampled
+        kernels = thinnest, touching, unknowns.impulse
+        self.structure = self.method, unknowns.size, places, *kernels, self.sampled, self.watched
 
     def parts(self) -> dict:
         """The `parts` of its summary (summary.py), once it has ended."""
@@ -54,7 +58,7 @@ class LoopedRun:
     def ends(self, runs, i, touching, output):
         """Take what the loop has left in row `i`."""
         run, last = self.run, self.segments[-1]
-        run.extrema.records[:] = runs.records[i]
+        run.extrema.records = runs.records[i] if self.watched else Unsampled()
         if touching:
             run.contacts.open[:] = touching.open[i]
             run.contacts.waiting = list(touching.rows[i, : touching.found[i]])
@@ -74,13 +78,17 @@ class LoopedRun:
 
 
 class NotSampled(Exception):
-    """A number made of samples was asked for, and none were taken."""
+    """A number made of samples, or an extreme between steps, was asked for, and there are none."""
 
 
 class Unsampled:
-    """In place of a tally where nothing was sampled: all it has to say is NotSampled."""
+    """In place of a tally where nothing was sampled, or of records where none were kept: all it has to say is
+    NotSampled."""
 
     def __getattr__(self, name):
+        raise NotSampled
+
+    def __getitem__(self, key):
         raise NotSampled
 
 
@@ -142,8 +150,11 @@ def _stacked(alike, loop):
         stretches,
         np.array([[s.native.block.ctypes.data, s.index, ends[k], ends[k + 1]] for k, s in enumerate(segments)]),
         np.array([loop.numbers(segment) for segment in segments]),
+        np.array([segment.swing for segment in segments]),
         np.array([one.tolerance for one in alike]),
+        alike[0].watched,
         np.array([slack(model) for model in models]),
+        np.array([watched_level(model) for model in models]),
         np.array([one.run.extrema.windows for one in alike], dtype=float),
         np.array([one.run.extrema.records for one in alike]),
         np.array([model.scales for model in models]),

@@ -43,26 +43,24 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    steady, sentence = _steady(run, outcome, period, scenario.run.start == "steady")
-    record = run.extrema.records[0]
+    records = run.extrema.records
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
         "status": outcome.status,
         "message": outcome.message,
         "model": lambda: model_chosen(scenario, run, method, why),
-        "h_min": {
-            "value": record[H],
-            "time": run.end_time(int(record[H_LEG]), record[H_TAU]),
-            "theta": record[H_THETA],
-            "radius": record[H_RADIUS],
-            "of_clearance": record[H] / model.clearance,
+        "h_min": lambda: {
+            "value": records[0][H],
+            "time": run.end_time(int(records[0][H_LEG]), records[0][H_TAU]),
+            "theta": records[0][H_THETA],
+            "radius": records[0][H_RADIUS],
+            "of_clearance": records[0][H] / model.clearance,
         },
-        "relative_misalignment": {
-            "max": record[MOST],
-            "min": record[LEAST],
+        "relative_misalignment": lambda: {
+            "max": records[0][MOST],
+            "min": records[0][LEAST],
             "mean": lambda: tally.mean("relative_misalignment"),
-            **steady,
-            "steady_said": sentence,
+            **_steady(run, outcome, period, scenario.run.start == "steady"),
         },
         "leakage": lambda: _leakage(model, tally),
         "friction": lambda: {
@@ -132,15 +130,18 @@ def plain(value):
 
 
 def _steady(run, outcome, period, begun_steady):
-    """Steady extremes over the last forcing period, or None with a sentence."""
-    none = {"steady_max": None, "steady_min": None}
+    """Steady extremes over the last forcing period, or None, with a sentence."""
+
+    def none(sentence):
+        return {"steady_max": None, "steady_min": None, "steady_said": sentence}
+
     if outcome.status != Status.OK:
-        return none, f"no steady state: the run {outcome.status}"
+        return none(f"no steady state: the run {outcome.status}")
     last, before = run.extrema.records[1], run.extrema.records[2]
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):
         if period is None:
-            return none, "no steady state: forcing frequencies are incommensurate or change with time"
-        return none, "no steady state: constant conditions last less than two forcing periods"
+            return none("no steady state: forcing frequencies are incommensurate or change with time")
+        return none("no steady state: constant conditions last less than two forcing periods")
     model = run.model
     scale = model.clearance / model.scene.film.outer_radius
     change = max(
@@ -150,11 +151,12 @@ def _steady(run, outcome, period, begun_steady):
     )
     if change > model.accuracy:
         try_it = "run longer" if begun_steady else 'run longer or use run.start = "steady"'
-        return none, (
+        return none(
             f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
             f"(accuracy {model.accuracy:.0e}); {try_it}"
         )
-    return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
+    said = "steady over the last two forcing periods"
+    return {"steady_max": last[MOST], "steady_min": last[LEAST], "steady_said": said}
 
 
 def _blown_open(model, tally) -> list[Caution]:

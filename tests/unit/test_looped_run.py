@@ -60,7 +60,7 @@ def test_a_run_of_the_loop_is_the_run_by_itself(name):
     ((key, values),) = varied.items()
     base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
     scenarios = [with_values(base, {key: value}) for value in values]
-    looped = [LoopedRun(scenario, ["leakage.mean"]) for scenario in scenarios]
+    looped = [LoopedRun(scenario, ["leakage.mean", "h_min.value"]) for scenario in scenarios]
     assert len({run.structure for run in looped}) == 1 and looped[0].structure
     integrate(looped)
     for scenario, run in zip(scenarios, looped, strict=True):
@@ -137,6 +137,37 @@ def test_numbers_of_samples_are_taken_only_where_they_are_asked_for():
             output(lean.parts(), key)
         except NotSampled:
             assert key.startswith(SAMPLED)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_end_states_alone_are_those_of_a_watched_run(name):
+    file, overrides, varied = SCENES[name]
+    ((key, values),) = varied.items()
+    base = read_scenario(SCENARIOS / f"{file}.toml", overrides)
+    scenarios = [with_values(base, {key: value}) for value in values]
+    lean, watched = ([LoopedRun(s, outputs) for s in scenarios] for outputs in (["end.time"], ["h_min.value"]))
+    assert lean[0].structure != watched[0].structure
+    integrate(lean)
+    integrate(watched)
+    for one, other in zip(lean, watched, strict=True):
+        assert (one.outcome is None) == (other.outcome is None)
+        if one.outcome is None:
+            continue
+        found, expected = one.parts(), other.parts()
+        for part in ("status", "end", "counts"):
+            assert plain(found[part]) == plain(expected[part])
+        if one.run.model.contact is not None:
+            assert_same(output(found, "contact.touches"), output(expected, "contact.touches"), "contact")
+        for asked in ("h_min.value", "relative_misalignment.max", "relative_misalignment.steady_max"):
+            output(expected, asked)
+            with pytest.raises(NotSampled):
+                output(found, asked)
+
+
+def test_a_collapse_is_told_where_only_the_end_is_asked_for(by_itself):
+    falls = '{ time = ["0 s", "0.02 s"], value = ["10 urad", "20 mrad"] }'
+    good, fallen = rows("fms_reference", "rotor.runout", ["20 urad", falls], ["end.state.stator_z"], "run.turns=8")
+    assert good["status"] == "ok" and fallen["status"] == "collapsed" and len(by_itself) == 1
 
 
 def test_what_there_is_not_is_named(by_itself):
