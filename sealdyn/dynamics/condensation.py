@@ -29,11 +29,11 @@ def moved_gaps(s: np.ndarray, steps: tuple[float, float, float, float]) -> np.nd
     return moved.reshape(-1, len(s))
 
 
-def gap_slopes(values: np.ndarray, steps: tuple[float, float, float, float], weights=WEIGHTS) -> np.ndarray:
+def gap_slopes(values: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:
     """Derivatives (n, 6) of `values` (48, n) at `moved_gaps` by (dz, g_x, g_y) and their rates: central differences of
-    eighth order, or of others by their `weights`."""
+    eighth order."""
     values = values.reshape(len(OFFSETS), 6, -1)
-    return (weights[:, None, None] * values / _sizes(steps)[:, None]).sum(axis=0).T
+    return (WEIGHTS[:, None, None] * values / _sizes(steps)[:, None]).sum(axis=0).T
 
 
 def _sizes(steps):
@@ -66,7 +66,9 @@ def film_slopes(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float,
     for gap in moved:
         wrench(f, gap)
     forces = moved[:, FORCE : FORCE + 3]
-    fourth, sixth, jacobian = (gap_slopes(forces, steps, weights) for weights in (FOURTH, SIXTH, WEIGHTS))
+    # (3, 6) of each of the three orders.
+    each = np.array([FOURTH, SIXTH, WEIGHTS]) @ forces.reshape(len(OFFSETS), -1)
+    fourth, sixth, jacobian = (each.reshape(3, 6, 3) / sizes[:, None]).transpose(0, 2, 1)
     arms = np.array([1.0, steps[0] / steps[1], steps[0] / steps[1]])
     largest = np.abs(forces[:, 0]).reshape(len(OFFSETS), 6).max(axis=0)
     rounding = largest * arms[:, None] / sizes

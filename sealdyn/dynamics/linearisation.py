@@ -7,7 +7,7 @@ from ..scene.waviness import waves_of
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
-from .modes import QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
+from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .neutral_speeds import Whirl
 from .whirl_speeds import all_at_once, one_by_one
 
@@ -78,14 +78,20 @@ def whirl_over_speed(model, interval):
     return all_at_once(whirl), whirl
 
 
+# Place of the tilts among LinearScene's motions.
+TILT = MOTIONS.index("tilt")
+
+
 def _whirl(linear) -> Whirl | None:
     """The tilts of a linear scene, for any shaft speed; None where the film is not the same in all directions."""
     motions = linear.motions()
     if motions is None:
         return None
-    (_, (film_d, film_k), doubt), rings = motions["tilt"], [linear.rings[k] for k in linear.floating]
+    _, (film_d, film_k), doubt = motions
+    rings = [linear.rings[k] for k in linear.floating]
     numbers = [(r.inertia, r.polar, r.tilt_stiffness, r.tilt_damping, r.sign < 0.0) for r in rings]
-    return Whirl(numbers, film_k.real, film_d.real, doubt[:2], linear.rings[STATOR].spin)
+    bounds = doubt[0][TILT], doubt[1][TILT]
+    return Whirl(numbers, film_k[TILT].real, film_d[TILT].real, bounds, linear.rings[STATOR].spin)
 
 
 def harmonics(segment) -> list[Harmonic]:

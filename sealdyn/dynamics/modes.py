@@ -16,6 +16,7 @@ QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 # An eigenvalue whose imaginary part is below this share of it does not oscillate; how far from the same in all
 # directions, as a share, the matrices may be by rounding; how well a film that stores knows its eigenvalues, likewise.
 STILL, ISOTROPIC, STORED = 1e-9, 1e-8, 1e-8
+MOTIONS = ("axial", "tilt")
 
 
 @dataclass(frozen=True)
@@ -174,38 +175,33 @@ class LinearScene:
     @cached_property
     def _modes(self):
         motions = self.motions()
-        found = self._modes_of_matrices() if motions is None else []
-        for kind, parts in (motions or {}).items():
-            values, errors = roots(*parts)
-            for value, error in zip(values.tolist(), errors.tolist(), strict=True):
+        if motions is None:
+            return sorted(self._modes_of_matrices(), key=lambda mode: -mode.value.real)
+        found = []
+        for kind, values, errors in zip(MOTIONS, *(part.tolist() for part in roots(*motions)), strict=True):
+            for value, error in zip(values, errors, strict=True):
                 turning = abs(value.imag) > STILL * abs(value)
-                if kind == "axial":
-                    # Its roots are those of a real polynomial: each that swings has its conjugate.
-                    if turning and value.imag < 0.0:
-                        continue
-                    direction = "axial" if turning else "none"
-                else:
-                    direction = ("forward" if value.imag > 0.0 else "backward") if turning else "none"
+                # The axial roots are those of a real polynomial: each that swings has its conjugate.
+                if value != value or (kind == "axial" and turning and value.imag < 0.0):
+                    continue
+                direction = "none"
+                if turning:
+                    direction = "axial" if kind == "axial" else "forward" if value.imag > 0.0 else "backward"
                 found.append(Mode(complex(value.real, abs(value.imag) if turning else 0.0), kind, direction, error))
         return sorted(found, key=lambda mode: -mode.value.real)
 
-    def motions(self) -> dict | None:
-        """Arguments of characteristic.roots for the "axial" motion and the "tilt", tilt_x + i tilt_y; None where they
-        hang together, the film is not the same in all directions, or it stores."""
+    def motions(self) -> tuple | None:
+        """Arguments of characteristic.roots, each of shape (2,): for the axial motion, and for the tilts as
+        tilt_x + i tilt_y; None where they hang together, the film is not the same in all directions, or it stores."""
         if self.film is not None or not (_isotropic(self.film_k) and _isotropic(self.film_d)):
             return None
-        floating, k, d, doubt = [self.rings[i] for i in self.floating], self.film_k, self.film_d, self.doubt
-        axial = [(ring.mass, ring.axial_damping, ring.axial_stiffness) for ring in floating]
-        tilts = [
-            (ring.inertia, ring.tilt_damping - 1j * ring.polar * ring.spin,
-             ring.tilt_stiffness - 1j * ring.spin * ring.tilt_damping)
-            for ring in floating
-        ]  # fmt: skip
-        film_k, film_d = (0.5 * (m[1, 1] + m[2, 2]) - 0.5j * (m[1, 2] - m[2, 1]) for m in (k, d))
-        return {
-            "axial": (axial, (d[0, 0], k[0, 0]), (*doubt.axial, 0.0)),
-            "tilt": (tilts, (film_d, film_k), (*doubt.tilt, doubt.spin)),
-        }
+        k, d, doubt, rings = self.film_k, self.film_d, self.doubt, []
+        for r in (self.rings[i] for i in self.floating):
+            tilt = r.inertia, r.tilt_damping - 1j * r.polar * r.spin, r.tilt_stiffness - 1j * r.spin * r.tilt_damping
+            rings.append(tuple(np.array([(r.mass, r.axial_damping, r.axial_stiffness), tilt]).T))
+        film_d, film_k = (0.5 * (m[1, 1] + m[2, 2]) - 0.5j * (m[1, 2] - m[2, 1]) for m in (d, k))
+        film = np.array([(d[0, 0], k[0, 0]), (film_d, film_k)]).T
+        return rings, tuple(film), tuple(np.array([(*doubt.axial, 0.0), (*doubt.tilt, doubt.spin)]).T)
 
     def _modes_of_matrices(self) -> list[Mode]:
         """Modes with non-negative frequency from the eigenvectors of all unknowns together."""

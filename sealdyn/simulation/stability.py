@@ -1,6 +1,8 @@
 """Linear stability of a run, as its summary has it: with all degrees of freedom, at an interval's start."""
 
-import math
+from dataclasses import replace
+
+import numpy as np
 
 from ..dynamics import modes, whirl_speeds
 from ..dynamics.linearisation import whirl_over_speed
@@ -52,8 +54,8 @@ def thresholds(model, interval=None) -> list[float]:
     **Valid** every speed, where the film's matrices are linear in it (dynamics/neutral_speeds.py); of a film with a
     floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
     smaller of the shaft's speed and `natural_frequency` to a thousand times the larger."""
-    natural, low, high = _range(model, interval)
-    if not natural:
+    low, high = _range(model, interval)
+    if not high:
         return []
     values, whirl = whirl_over_speed(model, interval)
     neutral, points = ((), POINTS) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
@@ -76,15 +78,21 @@ def resonance_speeds(model, interval=None) -> list[float]:
     return whirl_speeds.resonance_speeds(values, 1e-2 * natural, 1e2 * natural, whirl=whirl)
 
 
-def _range(model, interval) -> tuple[float, float, float]:
-    """Natural frequency, and the smaller and the larger of it and the shaft's speed (rad/s), if that turns."""
-    natural = natural_frequency(model, interval)
-    known = [w for w in (natural, abs(model.linear_scene(interval).rings[ROTOR].spin)) if w]
-    return natural, min(known, default=0.0), max(known, default=0.0)
+def _range(model, interval) -> tuple[float, float]:
+    """The smaller and the larger of natural frequency and the shaft's speed (rad/s), without those that are zero."""
+    speed = abs(model.linear_scene(interval).rings[ROTOR].spin)
+    known = [w for w in (natural_frequency(model, interval), speed) if w]
+    return min(known, default=0.0), max(known, default=0.0)
 
 
 def natural_frequency(model, interval=None) -> float:
-    """Geometric mean (rad/s) of the tilt modes' eigenvalues, 0 if there are none: of an overdamped pair, however far
-    apart, the root of stiffness over inertia."""
-    sizes = [abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt" and mode.value]
-    return math.exp(sum(map(math.log, sizes)) / len(sizes)) if sizes else 0.0
+    """Geometric mean (rad/s) of the tilts' eigenvalues, of rings at rest where the film is linear in the speed; 0 if
+    there are none: of an overdamped pair, however far apart, the root of stiffness over inertia."""
+    _, whirl = whirl_over_speed(model, interval)
+    if whirl is not None:
+        found, _ = whirl_speeds.all_at_once(replace(whirl, stator_speed=0.0))([0.0])
+        sizes = np.abs(found[np.isfinite(found)])
+    else:
+        sizes = np.array([abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt"])
+    sizes = sizes[sizes > 0.0]
+    return float(np.exp(np.mean(np.log(sizes)))) if len(sizes) else 0.0
