@@ -159,7 +159,8 @@ def growth(seal) -> dict:
 
 def thresholds(seal, points=400, low=1e-3, high=10.0) -> list[float]:
     """Every shaft speed between `low` and `high` times `speed` at which the largest growth rate of the tilts changes
-    sign: a dense scan, in double precision where that can tell the sign, else in mpmath."""
+    sign: a dense scan, in double precision where that can tell the sign, else in mpmath; between its points too where
+    the rate comes near zero and turns back."""
     with mp.workdps(DIGITS):
         numbers = film_numbers(seal["film"])
         floats = [float(x) for x in numbers]
@@ -172,19 +173,46 @@ def thresholds(seal, points=400, low=1e-3, high=10.0) -> list[float]:
             # What is left of a root that does not move off the axis is rounding in 40 digits.
             return rate if abs(rate) > mp.mpf(10) ** (6 - DIGITS) * max(abs(root) for root in found) else mp.mpf(0)
 
-        def sign(w):
+        def rate(w):
             found = np.roots(tilt_polynomial(seal, floats, w, float, 1j))
             if len(found) and abs(max(found.real)) > 1e-11 * max(abs(found)):
-                return float(np.sign(max(found.real)))
-            return float(mp.sign(exact(w)))
+                return float(max(found.real))
+            return float(exact(w))
 
-        speeds = seal["speed"] * np.geomspace(low, high, points)
-        signs = [(w, s) for w in speeds if (s := sign(float(w)))]
+        speeds = [float(w) for w in seal["speed"] * np.geomspace(low, high, points)]
+        rates = [rate(w) for w in speeds]
+        for k in range(1, points - 1):
+            before, here, after = rates[k - 1 : k + 2]
+            turns = here * before > 0 and here * after > 0 and abs(here) < min(abs(before), abs(after))
+            if turns:
+                extra = closest(rate, speeds[k - 1], speeds[k + 1])
+                speeds.append(extra)
+                rates.append(rate(extra))
+        signs = [(w, np.sign(r)) for w, r in sorted(zip(speeds, rates, strict=True)) if r]
         found = []
         for (a, s), (b, t) in pairwise(signs):
             if s != t:
                 found.append(float(crossing(exact, mp.mpf(a), mp.mpf(b))))
         return found
+
+
+def closest(function, a, b) -> float:
+    """Where a function of one sign at a and b comes nearest to zero or beyond it: golden section."""
+    golden, side = (5**0.5 - 1) / 2, np.sign(function(a))
+    x, y = b - golden * (b - a), a + golden * (b - a)
+    f_x, f_y = side * function(x), side * function(y)
+    for _ in range(40):
+        if min(f_x, f_y) < 0.0:
+            break
+        if f_x < f_y:
+            b, y, f_y = y, x, f_x
+            x = b - golden * (b - a)
+            f_x = side * function(x)
+        else:
+            a, x, f_x = x, y, f_y
+            y = a + golden * (b - a)
+            f_y = side * function(y)
+    return x if f_x < f_y else y
 
 
 def crossing(function, a, b):
