@@ -1,7 +1,7 @@
 """What lies between the rings: the film of a scene, the asperities that may touch, and the borrowed numbers."""
 
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -120,8 +120,8 @@ class Interface:
     def _steady_wrench(self, f, s):
         self.film.wrench(f, s, self.steady(f, s))
 
-    def _rough_wrench(self, f, s):
-        self.film_wrench(f, s)
+    def _rough_wrench(self, f, s, film_wrench=None):
+        (film_wrench or self.film_wrench)(f, s)
         contact.contact_load(self.contact, f, s)
         for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
             s[film] += s[rough]
@@ -143,6 +143,26 @@ class Interface:
         lay_surfaces(f, self.scene)
         return f
 
+    def floor_is_clear(self, interval=None) -> bool:
+        """Whether the aligned film's pressure lies above its floor everywhere, or has none: small motion never meets
+        it."""
+        floor, film = self.scene.film.cavitation_pressure, self.scene.film
+        first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
+        return floor is None or floor < min(first(film.inner_pressure), first(film.outer_pressure))
+
+    def _floored_at(self, s):
+        """Function `wrench(f, s)` and block for small motion about a gap state: without a floor that it never meets."""
+        if self.scene.film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]):
+            return self._unfloored
+        return self.wrench, self._fine
+
+    @cached_property
+    def _unfloored(self):
+        plain, table = film_module(self.name), replace(self._table_used, cavitation_pressure=None)
+        f = plain.parameters(table, self.clearance, FINE)
+        lay_surfaces(f, self.scene)
+        return plain.wrench if self.contact is None else partial(self._rough_wrench, film_wrench=plain.wrench), f
+
     def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
         """Stiffness and damping matrices (3, 3) of `slopes`."""
         return self.slopes(interval, mean_spin, shift, omega, pace, film)[:2]
@@ -163,7 +183,10 @@ class Interface:
                 damping_error=film.damping_error + more.damping_error,
             )
         if self.unknowns is None:
-            return film_slopes(self.wrench, self._fine, s, steps)
+            wrench, f = (
+                (self.wrench, self._fine) if self.scene.film.cavitation_pressure is None else self._floored_at(s)
+            )
+            return film_slopes(wrench, f, s, steps)
         matrices = (film or self.linear_film(s, steps)).matrices(omega)
         return self._with_asperities_at(s, steps, *matrices, CONDENSED)
 

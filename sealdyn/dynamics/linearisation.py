@@ -17,14 +17,14 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
-    **Valid** no floor of the pressure, which the motion tried may meet, and no waves, which have a wedge of their own:
-    such a film is linearised at every speed.
+    **Valid** no floor of the pressure that small motion meets, and no waves, which have a wedge of their own: such a
+    film is linearised at every speed.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     shift = model.axial_shift(interval) if shift is None else shift
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
-    if linear_in_speed(model):
+    if linear_in_speed(model, interval):
         slopes, goes_with = model.still_film(interval, shift), spin
         stiffness = slopes.stiffness - spin * slopes.damping @ QUARTER_TURN
     else:
@@ -59,9 +59,10 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     return LinearScene(rings, stiffness, slopes.damping, film, doubt)
 
 
-def linear_in_speed(model) -> bool:
-    """Whether the matrices at any shaft speed follow from one linearisation of the film."""
-    plain = model.scene.film.cavitation_pressure is None and model.interface.unknowns is None
+def linear_in_speed(model, interval=None) -> bool:
+    """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
+    film."""
+    plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
     return plain and not waves_of(model.scene)
 
 
@@ -71,7 +72,7 @@ def whirl_over_speed(model, interval):
     speed)."""
     linear = model.linear_scene(interval)
     direction = -1.0 if linear.rings[ROTOR].spin < 0.0 else 1.0
-    whirl = _whirl(linear) if linear_in_speed(model) else None
+    whirl = _whirl(linear) if linear_in_speed(model, interval) else None
     if whirl is None:
         return one_by_one(lambda w: model.linear_scene(interval, speed=w), direction), None
     whirl = whirl if direction > 0.0 else whirl.mirrored()

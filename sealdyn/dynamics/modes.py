@@ -305,6 +305,14 @@ def growth(modes: list[Mode]) -> float:
     return 0.0 if modes and verdict(modes) == "neutral" else largest
 
 
+def uncertainty(modes: list[Mode]) -> float:
+    """By how much (1/s) the growth rate of the least damped of some modes may be wrong, another one being it among
+    what is possible; NaN of none."""
+    rate = max((mode.value.real for mode in modes), default=np.nan)
+    most, least = (max((m.value.real + s * m.error for m in modes), default=np.nan) for s in (1.0, -1.0))
+    return max(most - rate, rate - least)
+
+
 def verdict(modes: list[Mode]) -> str:
     """stable or unstable, from all modes; neutral where the bound on the error of one that decides contains zero.  A
     scene without any mode (massless, undamped) just stands: stable."""

@@ -38,7 +38,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         "whirl_ratio": whirl,
         **searched,
         "growth_rate": found[0].value.real if found else None,
-        "growth_rate_uncertainty": found[0].error if found else None,
+        "growth_rate_uncertainty": modes.uncertainty(found) if found else None,
         "speed": speed,
         "modes": [
             {"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction, "uncertainty": m.error}

@@ -138,8 +138,18 @@ def test_bounds_on_film_coefficients_hold():
         assert found[1] == 0.0 or doubt[1] <= 1e-9 * abs(found[1])
 
 
+@pytest.mark.parametrize("floor", [-1.0, -1e5])
+def test_a_floor_below_all_pressure_is_none_to_small_motion(floor):
+    """However little below, it is met by large motion only."""
+    plain_film, floored = (answer(fms(film=replace(THIN, cavitation_pressure=p), speed=5000.0)) for p in (None, floor))
+    assert floored == plain_film
+
+
 def test_verdict_is_neutral_where_the_bound_contains_zero():
     at = [modes.Mode(complex(rate, 100.0), "tilt", "forward", 2.0) for rate in (-3.0, -1.0, 1.0, 3.0)]
     assert [modes.verdict([mode]) for mode in at] == ["stable", "neutral", "neutral", "unstable"]
     assert modes.verdict([at[1], at[3]]) == "unstable" and modes.verdict([at[0], at[1]]) == "neutral"
+    # The second may be the one that grows most.
+    unsure = [modes.Mode(-1.0, "tilt", "none", 0.1), modes.Mode(-2.0, "tilt", "none", 5.0)]
+    assert modes.uncertainty(unsure) == pytest.approx(4.0) and modes.verdict(unsure) == "neutral"
     assert modes.growth([at[2], at[0]]) == 0.0 and modes.growth([at[0]]) == -3.0

@@ -184,7 +184,7 @@ def margins(scene) -> dict:
     return {
         "verdict": modes.verdict(found),
         "growth_rate": found[0].value.real,
-        "growth_rate_uncertainty": found[0].error,
+        "growth_rate_uncertainty": modes.uncertainty(found),
         "whirl_ratio": tilt[0].value.imag / speed if tilt and speed else None,
         "critical_speed": critical,
         "speed_margin": critical / abs(speed) if critical and speed else None,
