@@ -63,10 +63,8 @@ class Arrangement:
         return static, dynamic, static + dynamic
 
     def growth(self, speed: float) -> float:
-        """Growth rate (1/s) of the least damped tilt mode; 0 within rounding."""
-        values = [mode.value for mode in self.linear(speed).modes() if mode.kind == "tilt"]
-        rate = max(value.real for value in values)
-        return rate if abs(rate) > modes.NEUTRAL * max(map(abs, values)) else 0.0
+        """Growth rate (1/s) of the least damped tilt mode; 0 within its uncertainty."""
+        return modes.growth([mode for mode in self.linear(speed).modes() if mode.kind == "tilt"])
 
     def tilt_numbers(self, speed) -> dict:
         """The seven keywords of the closed forms (SI), speed (rad/s, number or array) among them; film coefficients

@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from .. import closed_form as cf
-from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.steady_extremes import steady_extremes
 from ..scene.excitation import Shaft
 from ..scene.film import Film
 from ..scene.rings import Rotor, Stator, Support
@@ -82,7 +82,7 @@ def _responses(arrangement: str, c: float) -> dict[str, tuple[float, float, floa
         run = _ready(reference_scene(arrangement, c, fixed, turning), turns=80)
         linear = run.model.linear_scene()
         answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
-        algebra.append(modes.steady_extremes(linear, answers, run.period())[0] / unit)
+        algebra.append(steady_extremes(linear, answers, run.period())[0] / unit)
         solve(run, "adams", ACCURACY, Recorder())
         time_domain.append(run.extrema.records[1, 4] / unit)
     formula.append(sum(formula))

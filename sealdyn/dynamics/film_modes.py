@@ -95,7 +95,7 @@ class ReducedFilm:
             [-self.basis.T @ self.by_gap @ gap, -self.basis.T @ self.by_gap_rate @ gap, self.pace * stored - np.eye(r)],
         ])  # fmt: skip
         right = block_diag(np.eye(n), linear.mass, stored)
-        return left, right, *_even(np.abs(left) + self.pace * np.abs(right))
+        return left, right, *even(np.abs(left) + self.pace * np.abs(right))
 
     def stored_by_unknowns(self) -> np.ndarray:
         """The basis times A (r, n), on the scaled unknowns themselves."""
@@ -103,7 +103,7 @@ class ReducedFilm:
         return (self.film.by_rate.T @ turned).T * self.film.scales
 
 
-def _even(sizes) -> tuple[np.ndarray, np.ndarray]:
+def even(sizes) -> tuple[np.ndarray, np.ndarray]:
     """Factors (N,) of rows and columns that bring the largest element of each near one.
     **Source** Ruiz (2001), RAL-TR-2001-034."""
     rows, columns = np.ones(len(sizes)), np.ones(len(sizes))

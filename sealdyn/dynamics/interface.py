@@ -1,6 +1,7 @@
 """What lies between the rings: the film of a scene, the asperities that may touch, and the borrowed numbers."""
 
 from dataclasses import replace
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -26,11 +27,21 @@ from ..faces.geometry import (
 from ..faces.surfaces import lay_surfaces
 from ..films import film_module, film_name, film_of, has_unknowns
 from ..numerics.piecewise_linear import initially
-from ..scene.film import Coefficients
+from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
-from .condensation import LinearFilm, linearise
+from .condensation import LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .intervals import constant_and_slope
+
+# Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
+FINE = 1e-13
+# How well a film with unknowns of its own knows its stiffness and damping, as a share, and a formula for them.
+CONDENSED, FORMULA = 1e-9, 1e-13
+# Pace (1/s) of the motion tried of films whose forces are linear in the rates: beside them the rounding of the static
+# force is nothing.
+FAST = 1e9
+# Steps of differences, in the thinnest film: four of them reach to either side.
+STEP = 0.01
 
 
 class Interface:
@@ -46,7 +57,8 @@ class Interface:
         force = self._borrowed().opening_law(scene.film)
         self.opening_force = self._with_asperities(force) if scene.contact else force
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
-        self.f = self.film.parameters(self._table(), self.clearance, error)
+        self._table_used = self._table()
+        self.f = self.film.parameters(self._table_used, self.clearance, error)
         self.contact = lay_surfaces(self.f, scene)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
@@ -65,8 +77,13 @@ class Interface:
         table, source = self.scene.film, self._borrowed()
         if source is self.film:
             return table
-        block = source.parameters(table, self.clearance, 1e-13)
-        k, d = linearised_film(source.wrench, block, self.scene, self.clearance)
+        block = source.parameters(table, self.clearance, FINE)
+        # A floor of the pressure is met by the scene's own motion, if at all.
+        pace, spin = (FAST, 0.0) if table.cavitation_pressure is None else (None, None)
+        self._borrowed_slopes = film_slopes(
+            source.wrench, block, *rest_state(self.scene, self.clearance, mean_spin=spin, pace=pace)
+        )
+        k, d = self._borrowed_slopes[:2]
         taken = Coefficients(
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
@@ -103,8 +120,8 @@ class Interface:
     def _steady_wrench(self, f, s):
         self.film.wrench(f, s, self.steady(f, s))
 
-    def _rough_wrench(self, f, s):
-        self.film_wrench(f, s)
+    def _rough_wrench(self, f, s, film_wrench=None):
+        (film_wrench or self.film_wrench)(f, s)
         contact.contact_load(self.contact, f, s)
         for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
             s[film] += s[rough]
@@ -117,17 +134,69 @@ class Interface:
             raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
         return x
 
+    @cached_property
+    def _fine(self) -> np.ndarray:
+        """The film's block for linearising it: of the finest quadrature."""
+        if self.name == "linear":
+            return self.f
+        f = self.film.parameters(self._table_used, self.clearance, FINE)
+        lay_surfaces(f, self.scene)
+        return f
+
+    def floor_is_clear(self, interval=None) -> bool:
+        """Whether the aligned film's pressure lies above its floor everywhere, or has none: small motion never meets
+        it."""
+        floor, film = self.scene.film.cavitation_pressure, self.scene.film
+        first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
+        return floor is None or floor < min(first(film.inner_pressure), first(film.outer_pressure))
+
+    def _floored_at(self, s):
+        """Function `wrench(f, s)` and block for small motion about a gap state: without a floor that it never meets."""
+        if self.scene.film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]):
+            return self._unfloored
+        return self.wrench, self._fine
+
+    @cached_property
+    def _unfloored(self):
+        plain, table = film_module(self.name), replace(self._table_used, cavitation_pressure=None)
+        f = plain.parameters(table, self.clearance, FINE)
+        lay_surfaces(f, self.scene)
+        return plain.wrench if self.contact is None else partial(self._rough_wrench, film_wrench=plain.wrench), f
+
     def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
-        """Stiffness and damping matrices (3, 3) of film and asperities about the aligned rest state, as
-        `linearised_film`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if given."""
-        if self.unknowns is None:
-            return linearised_film(self.wrench, self.f, self.scene, self.clearance, interval, mean_spin, shift, pace)
+        """Stiffness and damping matrices (3, 3) of `slopes`."""
+        return self.slopes(interval, mean_spin, shift, omega, pace, film)[:2]
+
+    def slopes(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None) -> Slopes:
+        """Stiffness and damping of film and asperities about the aligned rest state and how well they are known,
+        arguments as `rest_state`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if
+        given."""
         s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
-        stiffness, damping = (film or self.linear_film(s, steps)).matrices(omega)
-        if self.contact is not None:
-            rough = linearise(self._asperities_alone, self.f, s, steps)
-            stiffness, damping = stiffness + rough[0], damping + rough[1]
-        return stiffness, damping
+        if hasattr(self.film, "matrices"):
+            error = np.finfo(float).eps if isinstance(self.scene.film.coefficients, Coefficients) else FORMULA
+            film = self._with_asperities_at(s, steps, *self.film.matrices(self.f, s), error)
+            if self._borrowed() is self.film:
+                return film
+            more = self._borrowed_slopes
+            return film._replace(
+                stiffness_error=film.stiffness_error + more.stiffness_error,
+                damping_error=film.damping_error + more.damping_error,
+            )
+        if self.unknowns is None:
+            wrench, f = (
+                (self.wrench, self._fine) if self.scene.film.cavitation_pressure is None else self._floored_at(s)
+            )
+            return film_slopes(wrench, f, s, steps)
+        matrices = (film or self.linear_film(s, steps)).matrices(omega)
+        return self._with_asperities_at(s, steps, *matrices, CONDENSED)
+
+    def _with_asperities_at(self, s, steps, stiffness, damping, error) -> Slopes:
+        """A film's stiffness and damping, known to a relative `error`, and those of the asperities."""
+        film = Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
+        if self.contact is None:
+            return film
+        rough = film_slopes(self._asperities_alone, self._fine, s, steps)
+        return Slopes(*(a + b for a, b in zip(film, rough, strict=True)))
 
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
@@ -141,7 +210,7 @@ class Interface:
         """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in
         condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
-            return linearise(self.film.wrench, self.f, s, steps)
+            return linearise(self.film.wrench, self._fine, s, steps)
         return self.linear_film(s, steps).matrices(omega)
 
     def _asperities_alone(self, f, s):
@@ -162,7 +231,8 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
     s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
     s[SPIN_DIFFERENCE] = w_r - w_s
-    length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
+    length = STEP * min(h for _, h in aligned_gaps(scene.film, clearance))
+    tilt = length / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return s, (length, tilt, length * pace, tilt * pace)
 

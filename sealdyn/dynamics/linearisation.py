@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from ..scene.rings import STATOR
+from ..scene.rings import ROTOR, STATOR
+from ..scene.waviness import waves_of
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
-from .modes import QUARTER_TURN, Harmonic, LinearScene, RingNumbers
+from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
+from .neutral_speeds import Whirl
 from .whirl_speeds import all_at_once, one_by_one
 
 
@@ -15,19 +17,27 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
-    **Valid** no floor of the pressure, which the motion tried may meet: such a film is linearised at every speed.
+    **Valid** no floor of the pressure that small motion meets, and no waves, which have a wedge of their own: such a
+    film is linearised at every speed.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     shift = model.axial_shift(interval) if shift is None else shift
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
-    if speed is None or not linear_in_speed(model):
+    if linear_in_speed(model, interval):
+        slopes, goes_with = model.still_film(interval, shift), spin
+        stiffness = slopes.stiffness - spin * slopes.damping @ QUARTER_TURN
+    else:
         if interface.stores:
             film = interface.linear_film(*rest_state(model.scene, interface.clearance, interval, spin, shift))
-        stiffness, damping = interface.linearised(interval, spin, shift, film=film)
-    else:
-        still, damping = model.still_film(interval, shift)
-        stiffness = still - spin * damping @ QUARTER_TURN
+        slopes, goes_with = interface.slopes(interval, spin, shift, film=film), 0.0
+        stiffness = slopes.stiffness
+    error_k, error_d = slopes.stiffness_error, slopes.damping_error
+    tilt = max(error_k[1, 1], error_k[2, 2]), max(error_d[1, 1], error_d[2, 2])
+    if not goes_with:
+        # The wedge is as wrong as it is, whatever the damping.
+        tilt = tilt[0] + max(error_k[1, 2], error_k[2, 1]), tilt[1]
+    doubt = FilmDoubt((error_k[0, 0], error_d[0, 0]), tilt, goes_with)
     rings = []
     for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
         support = ring.support
@@ -46,23 +56,43 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
                 spin=w_s if k == STATOR else w_r,
             )
         )
-    return LinearScene(rings, stiffness, damping, film)
+    return LinearScene(rings, stiffness, slopes.damping, film, doubt)
 
 
-def linear_in_speed(model) -> bool:
-    """Whether the matrices at any shaft speed follow from one linearisation of the film."""
-    return model.scene.film.cavitation_pressure is None and model.interface.unknowns is None
+def linear_in_speed(model, interval=None) -> bool:
+    """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
+    film."""
+    plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
+    return plain and not waves_of(model.scene)
 
 
-def whirl_over_speed(model, interval, fastest: float):
-    """Eigenvalues of the whirl over shaft speed up to the `fastest` (rad/s), the rest as at an interval's start: the
-    function `values` of whirl_speeds.py."""
+def whirl_over_speed(model, interval):
+    """Eigenvalues of the whirl over the shaft's speed in its own direction, the rest as at an interval's start: the
+    function `values` of whirl_speeds.py, and the Whirl they are those of (None where the matrices are not linear in the
+    speed)."""
+    linear = model.linear_scene(interval)
+    direction = -1.0 if linear.rings[ROTOR].spin < 0.0 else 1.0
+    whirl = _whirl(linear) if linear_in_speed(model, interval) else None
+    if whirl is None:
+        return one_by_one(lambda w: model.linear_scene(interval, speed=w), direction), None
+    whirl = whirl if direction > 0.0 else whirl.mirrored()
+    return all_at_once(whirl), whirl
 
-    def at_speed(w):
-        return model.linear_scene(interval, speed=w)
 
-    found = all_at_once(at_speed, fastest) if linear_in_speed(model) else None
-    return found or one_by_one(at_speed)
+# Place of the tilts among LinearScene's motions.
+TILT = MOTIONS.index("tilt")
+
+
+def _whirl(linear) -> Whirl | None:
+    """The tilts of a linear scene, for any shaft speed; None where the film is not the same in all directions."""
+    motions = linear.motions()
+    if motions is None:
+        return None
+    _, (film_d, film_k), doubt = motions
+    rings = [linear.rings[k] for k in linear.floating]
+    numbers = [(r.inertia, r.polar, r.tilt_stiffness, r.tilt_damping, r.sign < 0.0) for r in rings]
+    bounds = doubt[0][TILT], doubt[1][TILT]
+    return Whirl(numbers, film_k[TILT].real, film_d[TILT].real, bounds, linear.rings[STATOR].spin)
 
 
 def harmonics(segment) -> list[Harmonic]:

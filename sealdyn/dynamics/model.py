@@ -9,7 +9,7 @@ from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .equilibrium import axial_shift
-from .interface import Interface
+from .interface import FAST, Interface
 from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
 from .stick_slip import FRICTION_FADE
@@ -127,11 +127,11 @@ class Model:
         return self._linear_scenes[key]
 
     def still_film(self, interval: Interval, shift: float):
-        """Stiffness and damping, each (3, 3), as `film_matrices`, at an interval's start without mean spin, the gap
-        `shift` (m) wider; not to be changed."""
+        """Slopes (condensation.py) of a film that is linear in the rates, at an interval's start without mean spin, the
+        gap `shift` (m) wider; not to be changed."""
         key = interval.start, shift
         if key not in self._still_films:
-            found = self.interface.linearised(interval, mean_spin=0.0, shift=shift, pace=self.reference_rate)
+            found = self.interface.slopes(interval, mean_spin=0.0, shift=shift, pace=FAST)
             self._still_films[key] = found
         return self._still_films[key]
 

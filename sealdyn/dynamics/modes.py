@@ -9,10 +9,14 @@ from functools import cached_property
 
 import numpy as np
 
+from .characteristic import roots
+
 # Rotation by 90 degrees in the tilt plane: multiplication by i of tilt_x + i tilt_y.
 QUARTER_TURN = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-# Below this share of the largest eigenvalue a real part is rounding: the verdict is neutral.
-NEUTRAL = 1e-9
+# An eigenvalue whose imaginary part is below this share of it does not oscillate; how far from the same in all
+# directions, as a share, the matrices may be by rounding; how well a film that stores knows its eigenvalues, likewise.
+STILL, ISOTROPIC, STORED = 1e-9, 1e-8, 1e-8
+MOTIONS = ("axial", "tilt")
 
 
 @dataclass(frozen=True)
@@ -57,11 +61,22 @@ class Harmonic:
 
 @dataclass(frozen=True)
 class Mode:
-    """An eigenvalue (1/s), what it moves ("axial" or "tilt"), and its whirl direction."""
+    """An eigenvalue (1/s), what it moves ("axial" or "tilt"), its whirl direction, and a bound on its error (1/s)."""
 
     value: complex
     kind: str
     direction: str
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class FilmDoubt:
+    """Bounds on the errors of a film's stiffness and damping: `axial` (N/m, N s/m), `tilt` (N m/rad, N m s/rad); the
+    wedge in the stiffness errs with the damping, mean `spin` (rad/s) times it, or, at spin 0, is in the first bound."""
+
+    axial: tuple[float, float] = (0.0, 0.0)
+    tilt: tuple[float, float] = (0.0, 0.0)
+    spin: float = 0.0
 
 
 def film_matrices(tilt_stiffness, tilt_damping, axial_stiffness, axial_damping, mean_spin):
@@ -76,11 +91,12 @@ class LinearScene:
 
     `film_k`, `film_d` (3, 3) of the film's slow motion, of which the matrices are made; `film` a LinearFilm
     (condensation.py) if they hang on the frequency, which responses and eigenvalues then reckon with; `gap` (3, n):
-    (dz, g_x, g_y) of the displacements.
+    (dz, g_x, g_y) of the displacements; `doubt` how well the film's matrices are known.
     """
 
-    def __init__(self, rings: list[RingNumbers], film_stiffness: np.ndarray, film_damping: np.ndarray, film=None):
+    def __init__(self, rings: list[RingNumbers], film_stiffness, film_damping, film=None, doubt=None):
         self.rings, self.film_k, self.film_d, self.film = rings, film_stiffness, film_damping, film
+        self.doubt = doubt or FilmDoubt()
         self.floating = [k for k, ring in enumerate(rings) if ring.floats]
         self.gap = np.hstack([rings[k].sign * np.eye(3) for k in self.floating])
         n = 3 * len(self.floating)
@@ -154,24 +170,81 @@ class LinearScene:
 
     def modes(self) -> list[Mode]:
         """Modes with non-negative frequency, least damped first."""
+        return list(self._modes)
+
+    @cached_property
+    def _modes(self):
+        motions = self.motions()
+        if motions is None:
+            return sorted(self._modes_of_matrices(), key=lambda mode: -mode.value.real)
+        found = []
+        for kind, values, errors in zip(MOTIONS, *(part.tolist() for part in roots(*motions)), strict=True):
+            for value, error in zip(values, errors, strict=True):
+                turning = abs(value.imag) > STILL * abs(value)
+                # The axial roots are those of a real polynomial: each that swings has its conjugate.
+                if value != value or (kind == "axial" and turning and value.imag < 0.0):
+                    continue
+                direction = "none"
+                if turning:
+                    direction = "axial" if kind == "axial" else "forward" if value.imag > 0.0 else "backward"
+                found.append(Mode(complex(value.real, abs(value.imag) if turning else 0.0), kind, direction, error))
+        return sorted(found, key=lambda mode: -mode.value.real)
+
+    def motions(self) -> tuple | None:
+        """Arguments of characteristic.roots, each of shape (2,): for the axial motion, and for the tilts as
+        tilt_x + i tilt_y; None where they hang together, the film is not the same in all directions, or it stores."""
+        if self.film is not None or not (_isotropic(self.film_k) and _isotropic(self.film_d)):
+            return None
+        k, d, doubt, rings = self.film_k, self.film_d, self.doubt, []
+        for r in (self.rings[i] for i in self.floating):
+            tilt = r.inertia, r.tilt_damping - 1j * r.polar * r.spin, r.tilt_stiffness - 1j * r.spin * r.tilt_damping
+            rings.append(tuple(np.array([(r.mass, r.axial_damping, r.axial_stiffness), tilt]).T))
+        film_d, film_k = (0.5 * (m[1, 1] + m[2, 2]) - 0.5j * (m[1, 2] - m[2, 1]) for m in (d, k))
+        film = np.array([(d[0, 0], k[0, 0]), (film_d, film_k)]).T
+        return rings, tuple(film), tuple(np.array([(*doubt.axial, 0.0), (*doubt.tilt, doubt.spin)]).T)
+
+    def _modes_of_matrices(self) -> list[Mode]:
+        """Modes with non-negative frequency from the eigenvectors of all unknowns together."""
         values, shapes = self.eigen()
         axial, x, y = shapes[0::3], shapes[1::3], shapes[2::3]
         parts = shapes, axial, x + 1j * y, x - 1j * y
         sizes = [np.sqrt(np.sum(np.abs(part) ** 2, axis=0)).tolist() for part in parts]
+        errors = self._errors(values).tolist()
         found = []
-        for value, whole, along, forward, backward in zip(values.tolist(), *sizes, strict=True):
-            if value.imag < -1e-9 * abs(value):
+        for value, error, whole, along, forward, backward in zip(values.tolist(), errors, *sizes, strict=True):
+            if value.imag < -STILL * abs(value):
                 continue
             # About the aligned film axial and angular motion decouple: a shape is one or the other.
             kind = "axial" if along > 0.02 * whole else "tilt"
-            if value.imag <= 1e-9 * abs(value):
+            if value.imag <= STILL * abs(value):
                 direction = "none"
             elif kind == "axial":
                 direction = "axial"
             else:
                 direction = "forward" if forward > backward else "backward"
-            found.append(Mode(complex(value), kind, direction))
-        return sorted(found, key=lambda mode: -mode.value.real)
+            found.append(Mode(complex(value), kind, direction, error))
+        return found
+
+    def _errors(self, values) -> np.ndarray:
+        """Bounds (m,) on the errors of `eigen`'s values (m,) (1/s): rounding of the matrix as a whole, times how much
+        each eigenvalue minds (backward error times condition number); and of a film that stores its answers' own.
+        **Source** Stewart & Sun (1990), Matrix Perturbation Theory, IV.2."""
+        if self.film is not None:
+            return STORED * np.abs(values) + 1e-15 * np.max(np.abs(values), initial=0.0)
+        from scipy.linalg import eig
+
+        from .film_modes import even
+
+        left, right = self.pencil()
+        rows, columns = even(np.abs(left) + np.abs(right))
+        left, right = (rows[:, None] * matrix * columns for matrix in (left, right))
+        own, from_left, vectors = eig(left, right, left=True, right=True)
+        minds = np.linalg.norm(from_left, axis=0) * np.linalg.norm(vectors, axis=0)
+        minds = minds / np.maximum(np.abs(np.einsum("nm,nm->m", from_left.conj(), right @ vectors)), 1e-300)
+        # Each value is the nearest one's, of those that are finite.
+        nearest = np.argmin(np.abs(np.where(np.isfinite(own), own, np.inf)[None, :] - values[:, None]), axis=1)
+        backward = len(left) * np.finfo(float).eps * (np.linalg.norm(left) + np.abs(values) * np.linalg.norm(right))
+        return backward * minds[nearest] + np.abs(own[nearest] - values)
 
     def state_matrix(self) -> np.ndarray:
         """First-order matrix (2n, 2n) on (displacements, rates).  Raises ValueError for a film that stores, whose state
@@ -218,64 +291,31 @@ class LinearScene:
         return total
 
 
+def _isotropic(matrix) -> bool:
+    """Whether a matrix (3, 3) on (dz, g_x, g_y) is the same in all directions and leaves dz alone."""
+    tilts = matrix[1:, 1:]
+    odd = abs(tilts[0, 0] - tilts[1, 1]) + abs(tilts[0, 1] + tilts[1, 0])
+    across = np.max(np.abs(matrix[0, 1:] * matrix[1:, 0]))
+    return odd <= ISOTROPIC * np.max(np.abs(tilts)) and across <= ISOTROPIC**2 * abs(matrix[0, 0] * tilts[0, 0])
+
+
+def growth(modes: list[Mode]) -> float:
+    """Growth rate (1/s) of the least damped of some modes; 0 where their verdict is neutral, NaN of none."""
+    largest = max((mode.value.real for mode in modes), default=np.nan)
+    return 0.0 if modes and verdict(modes) == "neutral" else largest
+
+
+def uncertainty(modes: list[Mode]) -> float:
+    """By how much (1/s) the growth rate of the least damped of some modes may be wrong, another one being it among
+    what is possible; NaN of none."""
+    rate = max((mode.value.real for mode in modes), default=np.nan)
+    most, least = (max((m.value.real + s * m.error for m in modes), default=np.nan) for s in (1.0, -1.0))
+    return max(most - rate, rate - least)
+
+
 def verdict(modes: list[Mode]) -> str:
-    """stable, neutral or unstable, from all modes; a scene without any (massless, undamped) just stands: stable."""
-    if not modes:
-        return "stable"
-    largest = max(abs(mode.value) for mode in modes)
-    growth = modes[0].value.real
-    if abs(growth) <= NEUTRAL * largest:
-        return "neutral"
-    return "unstable" if growth > 0 else "stable"
-
-
-def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:
-    """Largest and smallest relative misalignment (rad) and largest axial closing (m) of a linear steady state.
-
-    `answers` pairs each Harmonic with its response.  With a common `period` (s) the motion is followed over it;
-    without one the amplitudes are added: an upper bound, and 0 for the smallest.
-    """
-    relative = [(h.frequency, linear.relative(h, a)) for h, a in answers]
-    if not relative:
-        return 0.0, 0.0, 0.0
-    if period is None:
-        tilt = sum(0.5 * (abs(r[1] + 1j * r[2]) + abs(r[1] - 1j * r[2])) for _, r in relative)
-        return float(tilt), 0.0, float(sum(abs(r[0]) for _, r in relative))
-
-    frequencies, amplitudes = np.array([w for w, _ in relative]), np.array([r for _, r in relative])
-
-    def measures(t):
-        """Minus the squared tilt, the squared tilt and the axial motion at times (m,): what is made small."""
-        x = (np.exp(1j * np.multiply.outer(t, frequencies)) @ amplitudes).real
-        tilt = x[:, 1] ** 2 + x[:, 2] ** 2
-        return np.array([-tilt, tilt, x[:, 0]])
-
-    turns = np.max(np.abs(frequencies)) * period / (2 * np.pi)
-    t = np.linspace(0.0, period, 256 * max(1, round(turns)) + 1)
-    at, step, each, grid = t[np.argmin(measures(t), axis=1)], t[1] - t[0], np.arange(3), np.linspace(-1, 1, 41)
-    # Smooth extrema: close in by ever finer grids.
-    for _ in range(6):
-        near = at[:, None] + step * grid
-        found = measures(near.ravel()).reshape(3, 3, 41)[each, each]
-        at = near[each, np.argmin(found, axis=1)]
-        step /= 15
-    most, least, axial = measures(at)[each, each]
-    return float(np.sqrt(-most)), float(np.sqrt(least)), max(0.0, -float(axial))
-
-
-def common_period(frequencies, most: int = 64) -> float | None:
-    """Shortest common period (s) of angular frequencies (rad/s), None if they are incommensurate (no ratio of
-    whole numbers up to `most` within 1e-9)."""
-    from fractions import Fraction
-    from math import lcm
-
-    moving = sorted({abs(w) for w in frequencies if w != 0.0})
-    if not moving:
-        return None
-    base, multiple = moving[0], 1
-    for w in moving[1:]:
-        ratio = Fraction(w / base).limit_denominator(most)
-        if abs(ratio - Fraction(w / base)) > 1e-9 * ratio:
-            return None
-        multiple = lcm(multiple, ratio.denominator)
-    return 2 * np.pi / base * multiple
+    """stable or unstable, from all modes; neutral where the bound on the error of one that decides contains zero.  A
+    scene without any mode (massless, undamped) just stands: stable."""
+    if any(mode.value.real - mode.error > 0.0 for mode in modes):
+        return "unstable"
+    return "stable" if all(mode.value.real + mode.error < 0.0 for mode in modes) else "neutral"

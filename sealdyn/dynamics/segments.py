@@ -13,7 +13,7 @@ from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
 from .imposed_motion import harmonics_of_segment
 from .intervals import Interval, constant_and_slope, modulo_turn
-from .modes import common_period
+from .steady_extremes import common_period
 from .step_bounds import largest_swing
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.

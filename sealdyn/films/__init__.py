@@ -18,6 +18,9 @@ What every film module offers (the contract):
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
 
+`matrices(f, s)`  (optional) stiffness and damping, each (3, 3), on (dz, g_x, g_y) at a gap state; without it they
+                  are differences of the force.
+
 What it may show over the faces, kept by archives at a few instants (a film that says nothing shows nothing):
 
 `FIELDS`          tuple of Field (films/_fields.py): names, units, long names.

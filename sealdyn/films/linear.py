@@ -110,6 +110,15 @@ def opening_law(film):
     return force
 
 
+def matrices(f, s):
+    """Stiffness and damping, each (3, 3), on (dz, g_x, g_y) at a gap state: the film's own numbers, to the last bit."""
+    drop, mu = s[OUTER_PRESSURE] - s[INNER_PRESSURE], s[VISCOSITY]
+    k, d = f[TILT_K] + f[TILT_K_DP] * drop, f[TILT_D] + f[TILT_D_MU] * mu
+    wedge = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) * d * s[MEAN_SPIN]
+    stiffness = np.diag([f[AXIAL_K] + f[AXIAL_K_DP] * drop, k, k]) + wedge
+    return stiffness, np.diag([f[AXIAL_D] + f[AXIAL_D_MU] * mu, d, d])
+
+
 @njit(cache=True)
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""

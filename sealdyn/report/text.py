@@ -104,13 +104,24 @@ def _tilt_rows(summary):
 
 def _stability(stability):
     critical, whirl = stability["critical_speed"], stability["whirl_ratio"]
-    text = f"{stability['verdict']} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
+    verdict = stability["verdict"]
+    text = f"{verdict} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
+    if verdict == "neutral" and stability.get("growth_rate_uncertainty") is not None:
+        known = _n(stability["growth_rate_uncertainty"], digits=2)
+        text += f", growth rate {_n(stability['growth_rate'])} 1/s, known to +- {known} 1/s only"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
     if critical:
-        # Which side is the stable one follows from the verdict at this speed.
-        below = (stability["verdict"] == "stable") == (abs(stability["speed"]) < critical)
-        text += f", critical speed {_n(critical)} rad/s (stable {'below' if below else 'above'})"
+        text += f", critical speed {_n(critical)} rad/s"
+        every = stability.get("thresholds") or [critical]
+        tilts = [mode["re"] for mode in stability["modes"] if mode["kind"] == "tilt"]
+        if tilts and verdict != "neutral":
+            # The tilts' growth at this speed says it of the others: each threshold turns it round.
+            turned = sum(w < abs(stability["speed"]) for w in every) % 2
+            below = (max(tilts) < 0.0) != bool(turned)
+            text += f" (stable {'below' if below else 'above'})"
+        if len(every) > 1:
+            text += ", again at " + ", ".join(_n(w) for w in every[1:]) + " rad/s"
     else:
         text += ", no critical speed"
     if stability["resonance_speeds"]:

@@ -1,15 +1,23 @@
 """Linear stability of a run, as its summary has it: with all degrees of freedom, at an interval's start."""
 
-import math
+from dataclasses import replace
+
+import numpy as np
 
 from ..dynamics import modes, whirl_speeds
 from ..dynamics.linearisation import whirl_over_speed
+from ..dynamics.neutral_speeds import neutral_speeds
 from ..scene.rings import ROTOR
+
+# How far below the least and above the largest of the shaft's speed and the natural frequency thresholds are looked
+# for, and by how many speeds, where they are not known beforehand; and where they are, to see that none was missed.
+AROUND, POINTS, POINTS_KNOWN = 1e3, 160, 32
 
 
 def stability(model, interval, linear, speeds: bool) -> dict:
-    """Verdict, whirl ratio of the least damped tilt mode, growth rate (1/s), shaft speed (rad/s) and all modes of the
-    scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed` and `resonance_speeds`."""
+    """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), shaft speed (rad/s)
+    and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
+    `thresholds` and `resonance_speeds`."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     tilt = [mode for mode in found if mode.kind == "tilt"]
@@ -19,8 +27,10 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         whirl = sign * tilt[0].value.imag / speed
     searched = {}
     if speeds:
+        every = thresholds(model, interval)
         searched = {
-            "critical_speed": critical_speed(model, interval),
+            "critical_speed": min(every, default=None),
+            "thresholds": every,
             "resonance_speeds": resonance_speeds(model, interval),
         }
     return {
@@ -28,21 +38,33 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         "whirl_ratio": whirl,
         **searched,
         "growth_rate": found[0].value.real if found else None,
+        "growth_rate_uncertainty": modes.uncertainty(found) if found else None,
         "speed": speed,
-        "modes": [{"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction} for m in found],
+        "modes": [
+            {"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction, "uncertainty": m.error}
+            for m in found
+        ],
     }
 
 
-def critical_speed(model, interval=None) -> float | None:
-    """Lowest shaft speed (rad/s) at which a tilt mode of a model loses or regains its damping, the rest as at an
-    interval's start (default: the run's); None if there is none.
+def thresholds(model, interval=None) -> list[float]:
+    """Shaft speeds (rad/s, rising, without sign: in the direction in which the shaft turns) at which the tilts of a
+    model lose or regain their damping, the rest as at an interval's start (default: the run's).
 
-    **Valid** from a thousandth to a thousand times the `natural_frequency`."""
-    natural = natural_frequency(model, interval)
-    if not natural:
-        return None
-    low, high = 1e-3 * natural, 1e3 * natural
-    return whirl_speeds.critical_speed(whirl_over_speed(model, interval, high), low, high)
+    **Valid** every speed, where the film's matrices are linear in it (dynamics/neutral_speeds.py); of a film with a
+    floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
+    smaller of the shaft's speed and `natural_frequency` to a thousand times the larger."""
+    low, high = _range(model, interval)
+    if not high:
+        return []
+    values, whirl = whirl_over_speed(model, interval)
+    neutral, points = ((), POINTS) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
+    return whirl_speeds.thresholds(values, low / AROUND, high * AROUND, points, neutral)
+
+
+def critical_speed(model, interval=None) -> float | None:
+    """Lowest of the `thresholds` (rad/s); None if there is none."""
+    return min(thresholds(model, interval), default=None)
 
 
 def resonance_speeds(model, interval=None) -> list[float]:
@@ -52,12 +74,25 @@ def resonance_speeds(model, interval=None) -> list[float]:
     natural = natural_frequency(model, interval)
     if not natural:
         return []
-    low, high = 1e-2 * natural, 1e2 * natural
-    return whirl_speeds.resonance_speeds(whirl_over_speed(model, interval, high), low, high)
+    values, whirl = whirl_over_speed(model, interval)
+    return whirl_speeds.resonance_speeds(values, 1e-2 * natural, 1e2 * natural, whirl=whirl)
+
+
+def _range(model, interval) -> tuple[float, float]:
+    """The smaller and the larger of natural frequency and the shaft's speed (rad/s), without those that are zero."""
+    speed = abs(model.linear_scene(interval).rings[ROTOR].spin)
+    known = [w for w in (natural_frequency(model, interval), speed) if w]
+    return min(known, default=0.0), max(known, default=0.0)
 
 
 def natural_frequency(model, interval=None) -> float:
-    """Geometric mean (rad/s) of the tilt modes' eigenvalues, 0 if there are none: of an overdamped pair, however far
-    apart, the root of stiffness over inertia."""
-    sizes = [abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt" and mode.value]
-    return math.exp(sum(map(math.log, sizes)) / len(sizes)) if sizes else 0.0
+    """Geometric mean (rad/s) of the tilts' eigenvalues, of rings at rest where the film is linear in the speed; 0 if
+    there are none: of an overdamped pair, however far apart, the root of stiffness over inertia."""
+    _, whirl = whirl_over_speed(model, interval)
+    if whirl is not None:
+        found, _ = whirl_speeds.all_at_once(replace(whirl, stator_speed=0.0))([0.0])
+        sizes = np.abs(found[np.isfinite(found)])
+    else:
+        sizes = np.array([abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt"])
+    sizes = sizes[sizes > 0.0]
+    return float(np.exp(np.mean(np.log(sizes)))) if len(sizes) else 0.0

@@ -10,6 +10,7 @@ from ..dynamics import modes
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
+from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import TOUCH
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
@@ -18,7 +19,7 @@ from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 # What of the stability is found only where it is asked for.
-SPEEDS = ("critical_speed", "resonance_speeds")
+SPEEDS = ("critical_speed", "thresholds", "resonance_speeds")
 
 
 def model_chosen(scenario, run, method: str, why: str) -> dict:
@@ -282,7 +283,7 @@ def _linear_steady(segment, linear, period):
         frequencies = [w for w in rows[:, 7] if w]
         if frequencies and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
             return None
-    return (*modes.steady_extremes(linear, segment.steady_motion()[1], period), period)
+    return (*steady_extremes(linear, segment.steady_motion()[1], period), period)
 
 
 def _contact_margin(segment, linear, tilt):

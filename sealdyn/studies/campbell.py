@@ -9,7 +9,6 @@ from scipy.linalg import eig
 from scipy.optimize import brentq, linear_sum_assignment
 
 from ..dynamics.model import Model
-from ..dynamics.modes import NEUTRAL
 from ..scene.variants import frozen_at_start
 from ..units import Speed
 
@@ -46,6 +45,7 @@ def run(scenario, settings, tools) -> dict:
 
     begin = model.linear_scene(speed=float(speeds[0]))
     values, shapes = follow(pencil, speeds, tools.say, begin.reach)
+    values = sharpened(values, [model.linear_scene(speed=float(w)).modes() for w in speeds])
     count = len(begin.mass)
     modes = described(values, shapes[:, :, :count], speeds)
     more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
@@ -141,10 +141,19 @@ def described(values, shapes, speeds) -> list[dict]:
     return [_mode(kind, row) for kind, row in found]
 
 
+def sharpened(values, modes) -> np.ndarray:
+    """Eigenvalues (modes, speeds) as exactly as the `modes` of each speed (LinearScene.modes) have them, which do not
+    lose a slow one to the rounding of a fast one; a growth rate within its uncertainty is none."""
+    found = np.array(values)
+    for column, here in zip(found.T, modes, strict=True):
+        known = np.array([m.value if abs(m.value.real) > m.error else 1j * m.value.imag for m in here])
+        known = np.concatenate([known, known.conj()])
+        column[:] = known[np.argmin(np.abs(column[:, None] - known[None, :]), axis=1)]
+    return found
+
+
 def _mode(kind: str, row) -> dict:
     still = np.abs(row.imag) <= NOT_OSCILLATING * np.abs(row)
-    # A growth rate within rounding is none.
-    row = np.where(np.abs(row.real) <= NEUTRAL * np.max(np.abs(row)), 1j * row.imag, row)
     signed = np.where(still, 0.0, row.imag)
     with np.errstate(divide="ignore", invalid="ignore"):
         decrement = np.where(still, np.nan, -2 * np.pi * row.real / np.abs(signed))

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..analysis.shooting import NoOrbit, Shooter
-from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.steady_extremes import steady_extremes
 from ..scenario.settings import si_unit, with_values
 from ..scene import variants
 from ..status import Status
@@ -108,7 +108,7 @@ def linear_onset(scene, key: str) -> tuple[float, float]:
         model = Model(scene(value), 1e-6)
         linear = model.linear_scene()
         answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
-        most, _, closing = modes.steady_extremes(linear, answers, RunState(model, 1.0).period())
+        most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
         inner, outer = model.clearance, model.clearance + model.face[3] * (model.face[1] - model.face[0])
         inner_left = inner - closing - model.face[0] * most
         outer_left = outer - closing - model.face[1] * most

@@ -23,7 +23,7 @@ from ..analysis.whirl import (
 )
 from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
-from ..simulation.stability import critical_speed
+from ..simulation.stability import critical_speed, natural_frequency
 
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
@@ -54,7 +54,7 @@ def run(scenario, settings, tools) -> dict:
     """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
-    pace = max((abs(mode.value) for mode in model.linear_scene().modes() if mode.kind == "tilt"), default=1.0)
+    pace = natural_frequency(model) or 1.0
     eigenvalue = critical_speed(model)
     formula, why = by_formula(model)
     method = "ida" if model.unknowns.has_residual_form else settings.method

@@ -11,6 +11,7 @@ from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..dynamics.steady_extremes import steady_extremes
 from ..numerics.piecewise_linear import initially
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
@@ -55,7 +56,7 @@ def run(scenario, settings, tools) -> dict:
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)
     answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
-    most, least, _ = modes.steady_extremes(linear, answers, shooter.period)
+    most, least, _ = steady_extremes(linear, answers, shooter.period)
     rows = []
     if critical and not shooter.model.unknowns.has_residual_form:
         rows = _near_threshold(scenario, settings, critical, tools)

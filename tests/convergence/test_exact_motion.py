@@ -45,8 +45,10 @@ def ran(scene, method, accuracy, start="rest", turns=6, **options):
 @pytest.mark.parametrize("start", ["rest", "steady"])
 @pytest.mark.parametrize("name", SCENES)
 def test_between_its_steps_it_keeps_a_tenth_of_the_tolerance(name, start):
-    """Against DOP853 at 1e-13, displacements and rates at samples that are no steps; energy as sharply."""
-    exact = ran(SCENES[name], "dop853", 1e-9, start, tolerance=1e-13)
+    """Against another method at 1e-13, displacements and rates at samples that are no steps; energy as sharply."""
+    # At its limit of stability DOP853 lets a step pass now and then that is wrong by 1e-9, as the last bit decides.
+    other = "radau" if name == "stiff" else "dop853"
+    exact = ran(SCENES[name], other, 1e-9, start, tolerance=1e-13)
     for accuracy in (1e-2, 1e-4, 1e-6, 1e-9):
         found = ran(SCENES[name], "expm", accuracy, start)
         assert found[2].status == "ok" and found[2].energy_residual < 0.1 * accuracy

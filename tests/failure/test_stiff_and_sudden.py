@@ -75,8 +75,8 @@ def test_flat_ring_comes_loose_when_reynolds_says(method, part):
 
 
 # 100 000 right-hand sides carry DOP853 to 7.8 us and RK45 to 6.9 us of the 8 s (0.7 s of wall time: eight days to go).
-# BDF ends with 2066 right-hand sides, LSODA with 2633.  With fast-math in the film they took 3356
-# and 6876, on another processor 10 522: the film's noise hung on the vector unit.
+# BDF ends with 2066 right-hand sides, with fast-math in the film with 3356.  LSODA takes what the last bits decide:
+# 2338 to 10 102 at twelve tolerances that differ in their ninth digit.
 @pytest.mark.parametrize("method", ["dop853", "RK45"])
 def test_explicit_methods_stick_with_the_flat_ring(method):
     stuck, survivor = by("squeeze", method), by("squeeze", "bdf")
@@ -84,7 +84,7 @@ def test_explicit_methods_stick_with_the_flat_ring(method):
     assert stuck.times[-1] < 1e-5 * survivor.times[-1]
     # About 1e-9 s a step: the stability limit over the film's decay of 6.8e9 per second.
     assert np.diff(stuck.times)[10:].max() < 10 / (D1 / (0.01 * C) ** 3)
-    assert survivor.calls < 10_000 and by("squeeze", "LSODA").calls < 10_000
+    assert survivor.calls < 10_000 and by("squeeze", "LSODA").calls < 30_000
 
 
 # CVODE's Adams survives at the orders 1 and 2, which are stable however stiff the scene: 11 380 steps and 13 570

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...dynamics.intervals import constant_and_slope
 from ...dynamics.model import Model
-from ...dynamics.modes import steady_extremes
 from ...dynamics.run_state import RunState
+from ...dynamics.steady_extremes import steady_extremes
 from ...faces.geometry import (
     DZ,
     FLOW_INNER,

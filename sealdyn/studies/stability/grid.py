@@ -11,11 +11,10 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from scipy.linalg import eigvals
 
 from ... import closed_form as cf
+from ...dynamics.characteristic import roots
 from ...dynamics.model import Model
-from ...dynamics.modes import NEUTRAL
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
@@ -26,60 +25,19 @@ BLOCK = 100_000
 
 
 def growth_rates(masses, dampings, stiffnesses, film_damping, film_stiffness) -> np.ndarray:
-    """Largest real part (1/s) of the roots of one or two rings on one film; every argument broadcasts.
+    """Largest real part (1/s) of the roots of one or two rings on one film, 0 where its error bound contains zero; all
+    arguments broadcast.
 
     `masses`, `dampings`, `stiffnesses`: lists, one entry per floating ring, complex where the ring spins; the film's
     two act on the sum (one ring) or difference (two rings) of displacements.
     """
-    if len(masses) == 1:
-        return _quadratic(masses[0], dampings[0] + film_damping, stiffnesses[0] + film_stiffness)
-    arrays = np.broadcast_arrays(*masses, *dampings, *stiffnesses, film_damping, film_stiffness)
-    shape, flat = arrays[0].shape, [np.ravel(a) for a in arrays]
-    (m1, m2), (d1, d2), (k1, k2), (d, k) = (flat[i : i + 2] for i in (0, 2, 4, 6))
-    count = len(d)
-    damping, stiffness = np.empty((2, count, 2, 2), dtype=complex)
-    for matrix, a, b, film in ((damping, d1, d2, d), (stiffness, k1, k2, k)):
-        matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 0, 1], matrix[:, 1, 0] = a + film, b + film, -film, -film
-    mass = np.stack([m1, m2], axis=1)
-    if np.any(mass == 0):
-        found = [_pencil(np.diag(mass[i]), damping[i], stiffness[i]) for i in range(count)]
-        return np.array(found).reshape(shape)
-    state = np.zeros((count, 4, 4), dtype=complex)
-    state[:, 0, 2] = state[:, 1, 3] = 1.0
-    state[:, 2:, :2], state[:, 2:, 2:] = -stiffness / mass[:, :, None], -damping / mass[:, :, None]
-    bad = ~np.isfinite(state).all(axis=(1, 2))
-    state[bad] = 0.0
-    values = np.linalg.eigvals(state)
-    rates = _neutral(values.real.max(axis=1), np.abs(values).max(axis=1))
-    rates[bad] = np.nan
-    return rates.reshape(shape)
-
-
-def _quadratic(a, b, c):
-    """Largest real part of the roots of a s^2 + b s + c, without cancellation; a = 0 leaves one root."""
-    a, b, c = (np.asarray(x, dtype=complex) for x in (a, b, c))
-    root = np.sqrt(b * b - 4 * a * c)
-    root = np.where((b.conj() * root).real < 0, -root, root)
-    q = -0.5 * (b + root)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        # q = 0 only for b = c = 0: both roots are zero.
-        slow = np.where(q == 0, 0.0, c / q)
-        fast = np.where(a == 0, 0.0, q / a)
-    largest = np.fmax(np.abs(slow), np.abs(fast))
-    return _neutral(np.where(a == 0, slow.real, np.fmax(slow.real, fast.real)), largest)
-
-
-def _neutral(rates, largest):
-    """Growth rates with those within rounding of the largest eigenvalue set to zero."""
-    return np.where(np.abs(rates) <= NEUTRAL * largest, 0.0, rates)
-
-
-def _pencil(mass, damping, stiffness) -> float:
-    """The same for two rings of which one has no mass."""
-    zero, one = np.zeros((2, 2)), np.eye(2)
-    values = eigvals(np.block([[zero, one], [-stiffness, -damping]]), np.block([[one, zero], [zero, mass]]))
-    values = values[np.isfinite(values) & (np.abs(values) < 1e12)]
-    return float(values.real.max()) if len(values) else np.nan
+    rings = list(zip(masses, dampings, stiffnesses, strict=True))
+    values, errors = roots(rings, (film_damping, film_stiffness))
+    rates = np.where(np.isnan(values), -np.inf, values.real)
+    largest = np.max(rates, axis=-1, initial=-np.inf)
+    grows = np.max(np.where(np.isnan(values), -np.inf, rates - errors), axis=-1, initial=-np.inf) > 0.0
+    dies = np.max(np.where(np.isnan(values), -np.inf, rates + errors), axis=-1, initial=-np.inf) < 0.0
+    return np.where(np.isinf(largest), np.nan, np.where(grows | dies, largest, 0.0))
 
 
 class Grid:

@@ -169,10 +169,7 @@ def rates_of(scenario, point: dict) -> dict:
     """Growth rates (1/s) of one point of the map: `total` of all modes, `tilt` of the tilt modes."""
     keys = _scenario_keys(scenario.scene, point["values"])
     found = Model(frozen_at_start(with_values(scenario, {**keys, "run.start": "steady"}).scene)).linear_scene().modes()
-    rates = found[0].value.real, max(mode.value.real for mode in found if mode.kind == "tilt")
-    rounding = modes.NEUTRAL * max(abs(mode.value) for mode in found)
-    total, tilt = (rate if abs(rate) > rounding else 0.0 for rate in rates)
-    return {"total": total, "tilt": tilt}
+    return {"total": modes.growth(found), "tilt": modes.growth([mode for mode in found if mode.kind == "tilt"])}
 
 
 # --- at the scenario's own values ---------------------------------------------------------------------
@@ -187,6 +184,7 @@ def margins(scene) -> dict:
     return {
         "verdict": modes.verdict(found),
         "growth_rate": found[0].value.real,
+        "growth_rate_uncertainty": modes.uncertainty(found),
         "whirl_ratio": tilt[0].value.imag / speed if tilt and speed else None,
         "critical_speed": critical,
         "speed_margin": critical / abs(speed) if critical and speed else None,
@@ -276,7 +274,8 @@ def _scenario_keys(scene, values: dict) -> dict:
 
 def _verdict(answer, scenario, axes, total) -> list[str]:
     margin, limit = answer["margins"], answer["unconditional"]
-    said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g} 1/s."]
+    known = f" +- {margin['growth_rate_uncertainty']:.1g}" if margin["verdict"] == "neutral" else ""
+    said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g}{known} 1/s."]
     if margin["critical_speed"]:
         times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
         said.append(f"Critical speed {margin['critical_speed']:.5g} rad/s{times}.")

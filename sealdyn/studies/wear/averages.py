@@ -16,6 +16,7 @@ from ...analysis.continuation import FilmCollapsed, frozen_at_end, ramp_to
 from ...dynamics import equations
 from ...dynamics.equilibrium import axial_excess, crossing, support_stiffness
 from ...dynamics.model import Model
+from ...dynamics.modes import verdict
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...faces import contact
@@ -69,7 +70,7 @@ class ShortRunAverages:
         self.stiffness, self.shares = _supports(self.scene)
         self.wears = np.array([scene.contact.stator_wear_coefficient, scene.contact.rotor_wear_coefficient])
         self.difference = DIFFERENCE * rough
-        self.unstable = bool(np.max(probe.model.linear_scene().eigen()[0].real) > 0.0)
+        self.unstable = verdict(probe.model.linear_scene().modes()) == "unstable"
 
     def __call__(self, depth, motion=None) -> Average:
         motion = motion or self.first(depth)

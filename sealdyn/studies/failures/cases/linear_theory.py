@@ -6,9 +6,9 @@ from scipy.optimize import brentq
 
 from ....analysis.shooting import Shooter
 from ....analysis.validation import reference_scene
-from ....dynamics import modes
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
+from ....dynamics.steady_extremes import steady_extremes
 from ._common import integrated, row
 
 ITEM = 12
@@ -28,7 +28,7 @@ def linear_gap(misalignment: float) -> float:
     run = RunState(Model(scene(misalignment, "linear"), ACCURACY), 1.0)
     linear = run.model.linear_scene()
     answers = [(h, linear.response(h)) for h in run.segment(0).harmonics()]
-    most, _, closing = modes.steady_extremes(linear, answers, run.period())
+    most, _, closing = steady_extremes(linear, answers, run.period())
     inner, outer, coning, c = run.model.face[0], run.model.face[1], run.model.face[3], run.model.clearance
     return min(c - closing - inner * most, c + coning * (outer - inner) - closing - outer * most) / c
 

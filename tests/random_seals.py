@@ -1,0 +1,88 @@
+"""Seals drawn at random from what the program takes, as a scene and as the plain numbers of eigenvalue_scan.py."""
+
+import math
+
+import numpy as np
+
+from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.film import Coefficients, Film
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Scene
+
+FILMS = ("radial", "green", "of radial", "given")
+
+
+def drawn_seal(draw: np.random.Generator) -> Scene:
+    """FMS, FMR or FMSR, co- and counter-rotating; clearance 0.5 to 50 um, flat, converging or diverging faces, either
+    side high; light, heavy and massless rings on soft and stiff, damped and undamped supports; radial and linear
+    films, thin and stiff ones among them (squeeze modes beyond 1e7 1/s)."""
+
+    def number(low, high):
+        return float(np.exp(draw.uniform(math.log(low), math.log(high))))
+
+    clearance, outer, speed = number(0.5e-6, 50e-6), number(0.012, 0.08), number(50.0, 1e4)
+    inner = outer * draw.uniform(0.7, 0.95)
+    ratio = draw.choice([1.0, number(1.05, 6.0), number(0.15, 0.95)], p=[0.2, 0.5, 0.3])
+    high, low = number(2e4, 5e6), float(draw.choice([0.0, 1e5]))
+    sides = (high + low, low) if draw.random() < 0.7 else (low, high + low)
+    kind = draw.choice(FILMS, p=[0.6, 0.15, 0.1, 0.15])
+    coefficients = {"green": "green", "of radial": "radial", "radial": "green"}.get(kind)
+    if kind == "given":
+        damped = float(draw.random() < 0.9)
+        coefficients = Coefficients(
+            tilt_stiffness=number(10.0, 1e6), tilt_damping=damped * number(1e-2, 1e4),
+            axial_stiffness=number(1e4, 1e9), axial_damping=damped * number(1e2, 1e7),
+        )  # fmt: skip
+    film = Film(
+        model="radial" if kind == "radial" else "linear", inner_radius=inner, outer_radius=outer, clearance=clearance,
+        coning=(float(ratio) - 1.0) * clearance / (outer - inner), viscosity=number(1e-4, 5e-2),
+        outer_pressure=sides[0], inner_pressure=sides[1], coefficients=coefficients,
+        geometry=str(draw.choice(["cylindrical", "planar"], p=[0.85, 0.15])),
+        tilt_radius=str(draw.choice(["local", "mean"], p=[0.85, 0.15])),
+    )  # fmt: skip
+
+    def ring():
+        mass = number(1e-3, 10.0)
+        transverse = mass * outer**2 * draw.uniform(0.2, 1.2)
+        inert = dict(mass=mass, transverse_inertia=transverse, polar_inertia=transverse * draw.uniform(0.1, 2.0))
+        if draw.random() < 0.05:
+            inert = dict.fromkeys(inert, 0.0)
+        damped = float(draw.random() < 0.8)
+        support = Support(
+            axial_stiffness=number(1e3, 1e7), axial_damping=damped * number(1.0, 3e3),
+            radius=outer * draw.uniform(0.7, 1.2),
+        )  # fmt: skip
+        return dict(**inert, support=support)
+
+    arrangement = draw.choice(["fms", "fmr", "fmsr"])
+    turning = float(draw.choice([0.0, -number(10.0, 1e4), number(10.0, 1e4)], p=[0.7, 0.2, 0.1]))
+    stator = Stator(**(ring() if arrangement != "fmr" else {}), speed=turning)
+    rotor = Rotor(**(ring() if arrangement != "fms" else {}))
+    return Scene(shaft=Shaft(speed=speed), film=film, stator=stator, rotor=rotor)
+
+
+def plain(scene: Scene) -> dict:
+    """The numbers of a scene, as eigenvalue_scan.py takes them."""
+    film, rings = scene.film, {}
+    if isinstance(film.coefficients, Coefficients):
+        c = film.coefficients
+        numbers = {"kind": "given",
+                   "numbers": (c.tilt_stiffness, c.tilt_damping, c.axial_stiffness, c.axial_damping)}  # fmt: skip
+    else:
+        names = ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "outer_pressure",
+                 "inner_pressure")  # fmt: skip
+        green = film.model == "linear" and film.coefficients == "green"
+        numbers = {name: getattr(film, name) for name in names} | {"kind": "green" if green else "radial"}
+        numbers |= {"planar": film.geometry == "planar", "mean": film.tilt_radius == "mean"}
+    for name in ("stator", "rotor"):
+        ring = getattr(scene, name)
+        if ring.support is None:
+            continue
+        # The support is given by its circle of springs: the tilt coefficients follow as half the square of the radius.
+        tilt_stiffness, tilt_damping = ring.support.tilt()
+        rings[name] = dict(
+            mass=ring.mass, transverse=ring.transverse_inertia, polar=ring.polar_inertia,
+            axial_stiffness=ring.support.axial_stiffness, axial_damping=ring.support.axial_damping,
+            tilt_stiffness=tilt_stiffness, tilt_damping=tilt_damping,
+        )  # fmt: skip
+    return {"film": numbers, "rings": rings, "speed": scene.shaft.speed, "stator_speed": scene.stator.speed}
