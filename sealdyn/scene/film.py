@@ -107,7 +107,7 @@ class Film:
     geometry: Literal["cylindrical", "planar"] = "cylindrical"
     """Radial flow on the ring, or the narrow-seal limit without curvature."""
     tilt_radius: Literal["local", "mean"] = "local"
-    """Tilt moves the film by local radius times tilt, or everywhere as at the mean radius."""
+    """Arm of the tilt in film thickness and contact moment: the local radius, or everywhere the mean radius."""
     clearance: Length | None = None
     """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
     coning: Angle = 0.0

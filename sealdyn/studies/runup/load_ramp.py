@@ -74,8 +74,7 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
         s[slot] = constant_and_slope(q, interval)[0]
     s[SPIN_DIFFERENCE] = model.speed_at(interval)
     source.flow(f, s)
-    outside = model.closing.outer_is_high
-    leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
+    leakage = -s[FLOW_INNER] if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else s[FLOW_OUTER]
     return float(most), float(min(edge_gaps(model.face, shift - closing, most))), float(leakage)
 
 
