@@ -30,7 +30,7 @@ from ..scene.film import Coefficients
 from ..scene.scene import SceneError
 from .condensation import LinearFilm, linearise
 from .equilibrium import settle
-from .intervals import constant_and_slope
+from .intervals import constant_and_slope, spins
 
 
 class Interface:
@@ -43,7 +43,7 @@ class Interface:
         self.scene = scene
         self.film = film_of(scene, film)
         self.name = film_name(self.film)
-        force = self._borrowed().opening_law(scene.film)
+        force = self._borrowed().opening_law(scene.film, *spins(scene))
         self.opening_force = self._with_asperities(force) if scene.contact else force
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self.f = self.film.parameters(self._table(), self.clearance, error)
@@ -159,9 +159,11 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
     s[VISCOSITY] = first(scene.film.viscosity)
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
-    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
-    s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
-    s[SPIN_DIFFERENCE] = w_r - w_s
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
+    if mean_spin is not None:
+        # It is the rotor that turns otherwise.
+        s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
+        s[MEAN_SPIN] = mean_spin
     length, tilt = 0.02 * clearance, 0.02 * clearance / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return s, (length, tilt, length * pace, tilt * pace)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ..scene.rings import STATOR
+from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
@@ -15,11 +16,14 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
-    **Valid** no floor of the pressure, which the motion tried may meet: such a film is linearised at every speed.
+    **Valid** no floor of the pressure, which the motion tried may meet, and no inertia of the fluid: such a film is
+    linearised at every speed, and inertia moves the gap with it.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
-    shift = model.axial_shift(interval) if shift is None else shift
+    if shift is None:
+        moves = speed is not None and model.scene.film.inertia
+        shift = axial_shift(model, interval, speed)[0] if moves else model.axial_shift(interval)
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
     if speed is None or not linear_in_speed(model):
         if interface.stores:
@@ -51,7 +55,8 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
 def linear_in_speed(model) -> bool:
     """Whether the matrices at any shaft speed follow from one linearisation of the film."""
-    return model.scene.film.cavitation_pressure is None and model.interface.unknowns is None
+    film = model.scene.film
+    return film.cavitation_pressure is None and not film.inertia and model.interface.unknowns is None
 
 
 def whirl_over_speed(model, interval, fastest: float):

@@ -113,7 +113,9 @@ class Film:
     coning: Angle = 0.0
     """Slope of the faces: the film is thicker outwards where positive."""
     density: Density = 1000.0
-    """For mass flow and heating of the leakage only."""
+    """For mass flow, heating of the leakage, Reynolds numbers and inertia."""
+    inertia: bool = False
+    """Centrifugal inertia of the film: its pressure rises outwards by density times radius times speed squared."""
     specific_heat: SpecificHeat = 4180.0
     """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None

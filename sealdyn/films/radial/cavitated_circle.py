@@ -36,7 +36,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
-from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, points_for
+from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, centrifugal, points_for
 from .cavitated_line import HAS_DRY, HAS_WET, cavitated_line, line_state
 
 # Angles scanned, and how far apart they may be in beta where that is farther; how closely a kink is sought (rad of
@@ -114,7 +114,7 @@ def _state_at(gamma, turn, f, s, x_k, w_k):
     _, _, _, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
     return line_state(
         x_k, w_k, f[INNER_RADIUS], f[OUTER_RADIUS], h_i, h_o, s[DZ_RATE], tilt_rate, f[TILT_AT_MEAN] != 0.0,
-        f[PLANAR] != 0.0, s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION],
+        f[PLANAR] != 0.0, s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], centrifugal(f, s),
     )  # fmt: skip
 
 
@@ -216,7 +216,7 @@ def _integrate(panel, turn, f, s, x_k, w_k):
     """Fill a panel's integrals and by how much its two rules differ in load, moments and wet share."""
     middle, half = 0.5 * (panel[BEGIN] + panel[END]), 0.5 * (panel[END] - panel[BEGIN])
     x_m, x_h = 0.5 * (panel[X_BEGIN] + panel[X_END]), 0.5 * (panel[X_END] - panel[X_BEGIN])
-    r_i, r_o, mean = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0
+    r_i, r_o, mean, g = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, centrifugal(f, s)
     defect, fine = panel[DEFECT:SUMS], panel[SUMS:]
     panel[DEFECT:] = 0.0
     for k in range(21):
@@ -229,7 +229,7 @@ def _integrate(panel, turn, f, s, x_k, w_k):
         cos_b, sin_b, per, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
         load, moment, wet = cavitated_line(
             x_k, w_k, r_i, r_o, h_i, h_o, s[DZ_RATE], tilt_rate, mean, f[PLANAR] != 0.0, s[VISCOSITY],
-            s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION],
+            s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], g,
         )  # fmt: skip
         weight = stretch * per * x_h
         full, part = weight * KRONROD[node], weight * GAUSS[node // 2] if node % 2 == 1 else 0.0
