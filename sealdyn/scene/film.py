@@ -120,6 +120,8 @@ class Film:
     """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None
     """Floor of the film pressure, absolute; none without it.  Does not conserve mass."""
+    vapour_pressure: Pressure | None = None
+    """At the temperature of the film, absolute: a run that falls below it says so."""
     coefficients: Literal["green", "radial"] | Coefficients = "green"
     """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3

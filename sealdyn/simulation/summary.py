@@ -14,6 +14,7 @@ from ..faces.geometry import TOUCH
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
+from .plausibility import cautions
 from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
@@ -79,7 +80,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
         "closed_form": lambda: _closed_form(segment, linear, tilt()),
         "stability": lambda: stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
-        "warnings": lambda: [caution.sentence for caution in (*run.cautions, *_blown_open(model, tally))],
+        "warnings": lambda: [caution.sentence for caution in _cautions(scenario, run, outcome, tally)],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -155,6 +156,14 @@ def _steady(run, outcome, period, begun_steady):
             f"(accuracy {model.accuracy:.0e}); {try_it}"
         )
     return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
+
+
+def _cautions(scenario, run, outcome, tally) -> list[Caution]:
+    """All that a person should know before trusting the run."""
+    model = run.model
+    leakage, rise = _leakage(model, tally)["mean"], _temperature_rise(model, tally)
+    low = run.extrema.records[0][H]
+    return [*run.cautions, *_blown_open(model, tally), *cautions(scenario, run, outcome, leakage, rise, low)]
 
 
 def _blown_open(model, tally) -> list[Caution]:
