@@ -83,12 +83,12 @@ def _turbulence(model, leakage):
     (first, inner), (most, radius) = numbers[0], max(numbers)
     doubt = f"the film counts as laminar, which it is below some {LAMINAR:.0f}"
     if most > LAMINAR:
-        found = f"Couette Reynolds number {first:.3g} at r = {inner * 1e3:.4g} mm"
-        found += f", {most:.3g} at {radius * 1e3:.4g} mm" if radius != inner else ""
+        found = f"Couette Reynolds number {first:.0f} at r = {inner * 1e3:.4g} mm"
+        found += f", {most:.0f} at {radius * 1e3:.4g} mm" if radius != inner else ""
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
     through = poiseuille_reynolds(film.density, viscosity, leakage / (2.0 * math.pi * film.inner_radius))
     if math.isfinite(through) and through > LAMINAR:
-        found = f"Poiseuille Reynolds number {through:.3g} of the leakage"
+        found = f"Poiseuille Reynolds number {through:.0f} of the leakage"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
 
 

@@ -44,7 +44,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    steady, sentence = _steady(run, outcome, period, scenario.run.start == "steady")
+    steady, thinnest, sentence = _steady(run, outcome, period, scenario.run.start == "steady")
     record = run.extrema.records[0]
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
@@ -57,6 +57,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
             "theta": record[H_THETA],
             "radius": record[H_RADIUS],
             "of_clearance": record[H] / model.clearance,
+            "steady": thinnest,
         },
         "relative_misalignment": {
             "max": record[MOST],
@@ -133,15 +134,15 @@ def plain(value):
 
 
 def _steady(run, outcome, period, begun_steady):
-    """Steady extremes over the last forcing period, or None with a sentence."""
+    """Steady extremes, thinnest film (m) over the last forcing period, or None, and a sentence."""
     none = {"steady_max": None, "steady_min": None}
     if outcome.status != Status.OK:
-        return none, f"no steady state: the run {outcome.status}"
+        return none, None, f"no steady state: the run {outcome.status}"
     last, before = run.extrema.records[1], run.extrema.records[2]
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):
         if period is None:
-            return none, "no steady state: forcing frequencies are incommensurate or change with time"
-        return none, "no steady state: constant conditions last less than two forcing periods"
+            return none, None, "no steady state: forcing frequencies are incommensurate or change with time"
+        return none, None, "no steady state: constant conditions last less than two forcing periods"
     model = run.model
     scale = model.clearance / model.scene.film.outer_radius
     change = max(
@@ -151,11 +152,10 @@ def _steady(run, outcome, period, begun_steady):
     )
     if change > model.accuracy:
         try_it = "run longer" if begun_steady else 'run longer or use run.start = "steady"'
-        return none, (
-            f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
-            f"(accuracy {model.accuracy:.0e}); {try_it}"
-        )
-    return {"steady_max": last[MOST], "steady_min": last[LEAST]}, "steady over the last two forcing periods"
+        differ = f"the last two forcing periods differ by {change:.1e} of the clearance"
+        return none, None, f"not steady: {differ} (accuracy {model.accuracy:.0e}); {try_it}"
+    found = {"steady_max": last[MOST], "steady_min": last[LEAST]}
+    return found, last[H], "steady over the last two forcing periods"
 
 
 def _cautions(scenario, run, outcome, tally) -> list[Caution]:
@@ -293,15 +293,21 @@ def _linear_steady(segment, linear, period):
 
 
 def _contact_margin(segment, linear, tilt):
-    """Factor on the forcing at which linear theory closes the gap at either edge; unknown of wavy faces."""
-    waves = waves_of(segment.model.scene)
-    if tilt is None or waves or modes.verdict(linear.modes()) != "stable":
-        return math.nan
+    """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
+    there are any: 0 where they touch without forcing.  Unknown of wavy faces."""
     model = segment.model
-    face, (most, _, closing, _) = model.face, tilt
+    if waves_of(model.scene):
+        return math.nan
+    face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)
     outer = inner + face[3] * (face[1] - face[0])
-    reaches = [(inner, face[0] * most + closing), (outer, face[1] * most + closing)]
+    height = max(face[TOUCH], 0.0)
+    if min(inner, outer) <= height:
+        return 0.0
+    if tilt is None or modes.verdict(linear.modes()) != "stable":
+        return math.nan
+    most, _, closing, _ = tilt
+    reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
     return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
 
 
