@@ -4,9 +4,9 @@ import numpy as np
 from scipy.integrate import quad, solve_ivp
 
 
-def pressure_lines(face, state, angles, cuts=()):
-    """Reynolds' equation along the radius at every angle, `(r h^3 p')' = 12 mu r (dh/dt + wm dh/dtheta)`, by
-    shooting with DOP853: returns theta and the solution's integrals over the radius.
+def pressure_lines(face, state, angles, push=0.0):
+    """Reynolds' equation along the radius at every angle, `(r h^3 (p' - push r))' = 12 mu r (dh/dt + wm dh/dtheta)`,
+    by shooting with DOP853: returns theta and the solution's integrals over the radius.  `push` (Pa/m^2) of inertia.
 
     `face`: r_i, r_o, clearance, coning, planar, mean; `state`: dz, gx, gy, their rates, wm, mu, p_i, p_o.
     Everything in the fixed frame, angle by angle, no symmetry used.  Integrals: of p r, p r^2, and r^3/h, p' s, ...
@@ -29,7 +29,7 @@ def pressure_lines(face, state, angles, cuts=()):
         area = 1.0 if planar else r
         per = 12 * mu / (area * h**3)
         return np.concatenate(
-            [area * f, per * phi, per, p1 * r, p0 * r, p1 * r * r, p0 * r * r, r**3 / h, film(r)[2] * p1 * r,
+            [area * f, per * phi + push * r, per, p1 * r, p0 * r, p1 * r * r, p0 * r * r, r**3 / h, film(r)[2] * p1 * r,
              film(r)[2] * p0 * r]
         )  # fmt: skip
 
@@ -53,18 +53,19 @@ def pressure_lines(face, state, angles, cuts=()):
     )
 
 
-def radial_wrench(face, state, angles):
+def radial_wrench(face, state, angles, push=0.0):
     """F (N), M = M_x + i M_y (N m) on the stator, flow in +r at both radii (m^3/s), Couette integral
     int r^3/h (m^2), and int p dh/dtheta dA (N m)."""
-    theta, line = pressure_lines(face, state, angles)
+    theta, line = pressure_lines(face, state, angles, push)
     d = 2 * np.pi / angles
     moment = np.sum(line["moment"] * (np.sin(theta) - 1j * np.cos(theta))) * d
     return (np.sum(line["force"]) * d, moment, np.sum(line["inner"]) * d, np.sum(line["outer"]) * d,
             np.sum(line["drag"]) * d, np.sum(line["turned"]) * d)  # fmt: skip
 
 
-def pressure_field(face, state, angles, points):
-    """Pressure (angles, points) on a dense grid by cumulative Simpson rule, with theta, r and film (same shapes)."""
+def pressure_field(face, state, angles, points, push=0.0):
+    """Pressure (angles, points) on a dense grid by cumulative Simpson rule, with theta, r and film (same shapes);
+    `push` as in `pressure_lines`."""
     r_i, r_o, c, coning, planar, mean = face
     dz, gx, gy, dz_t, gx_t, gy_t, wm, mu, p_i, p_o = state
     theta = 2 * np.pi * np.arange(angles) / angles
@@ -79,7 +80,7 @@ def pressure_field(face, state, angles, points):
     step = r[1] - r[0]
     phi = _cumulative(area * f, step)
     per = 12 * mu / (area * h**3)
-    p1, p0 = _cumulative(per * phi, step), _cumulative(per, step)
+    p1, p0 = _cumulative(per * phi + push * r, step), _cumulative(per, step)
     p = p_i + p1 + (p_o - p_i - p1[:, -1:]) / p0[:, -1:] * p0
     return theta, r, h, p
 
@@ -97,9 +98,9 @@ def _cumulative(values, step):
     return out
 
 
-def floored_wrench(face, state, floor, angles, points):
+def floored_wrench(face, state, floor, angles, points, push=0.0):
     """F and M with max(p, floor) on the dense grid."""
-    theta, r, _, p = pressure_field(face, state, angles, points)
+    theta, r, _, p = pressure_field(face, state, angles, points, push)
     p = np.maximum(p, floor)
     d = 2 * np.pi / angles
     line, line_2 = np.trapezoid(p * r, r, axis=1), np.trapezoid(p * r * r, r, axis=1)

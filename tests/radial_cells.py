@@ -259,7 +259,7 @@ def film_of(
         f[PRESSURE], f[THINNEST] = 5e5, thinnest
         return f
 
-    def opening_law(film):
+    def opening_law(film, mean_spin=0.0, spin_difference=0.0):
         def force(clearance, inner_pressure, outer_pressure, floor=None):
             f, s, x = parameters(film, clearance), np.zeros(GAP_STATE_SIZE), np.empty(cells * angles)
             f[FLOOR] = f[FLOOR] if floor is None else floor

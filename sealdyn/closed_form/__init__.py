@@ -15,6 +15,7 @@ from .film import (
     narrow_seal_opening_force,
     radial_film_coefficients,
 )
+from .flow_regime import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from .green_1989 import GREEN_1989, GREEN_1989_ROUNDED, GREEN_1989_SEAL, Published, green_1989_tilt
 from .response import (
     contact_tilt,
@@ -47,7 +48,9 @@ __all__ = [
     "aligned_leakage",
     "aligned_opening_force",
     "axial_mode_stable",
+    "centrifugal_pressure",
     "contact_tilt",
+    "couette_reynolds",
     "critical_coning",
     "critical_forcing",
     "critical_tilt_inner",
@@ -64,6 +67,7 @@ __all__ = [
     "fms_whirl_ratio",
     "green_1989_tilt",
     "narrow_seal_opening_force",
+    "poiseuille_reynolds",
     "radial_film_coefficients",
     "superposed",
     "unconditional_inertia_ratio",

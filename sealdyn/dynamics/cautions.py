@@ -11,6 +11,13 @@ class Concern(StrEnum):
     ALIASING = "aliasing"
     NO_EQUILIBRIUM = "no equilibrium gap"
     BLOWN_OPEN = "blown open"
+    CONTACT_ARM = "arm of the contact force"
+    FLASHING = "flashing"
+    HEATING = "heating"
+    INERTIA = "inertia of the film"
+    THIN_FILM = "thin film"
+    TURBULENCE = "turbulence"
+    UNITS = "units"
 
 
 class Caution(NamedTuple):

@@ -5,11 +5,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..faces.geometry import DZ, FORCE, GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
+from ..faces.geometry import (
+    DZ,
+    FORCE,
+    GAP_STATE_SIZE,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+)
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
-from .intervals import Interval, constant_and_slope
+from .intervals import Interval, constant_and_slope, spins
 
 POINTS = 600
 STEP = 1e-3  # of a difference, in clearances
@@ -158,13 +167,18 @@ def axial_excess(model, s, closing: float):
     return excess
 
 
-def axial_shift(model, interval: Interval) -> tuple[float, bool]:
-    """How far (m) the loads at an interval's start move the aligned gap from its design clearance: opening force =
-    closing force + support springs.  (0, False) if none is found from 0.1 % to 50 times the clearance."""
+def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[float, bool]:
+    """How far (m) the loads at an interval's start, or at another shaft speed (rad/s), move the aligned gap from its
+    design clearance: opening force = closing force + support springs.  (0, False) if none is found from 0.1 % to 50
+    times the clearance."""
     film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
     s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
         constant_and_slope(q, interval)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
     )
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
+    if speed is not None:
+        w_s = s[MEAN_SPIN] - 0.5 * s[SPIN_DIFFERENCE]
+        s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (speed + w_s), speed - w_s
     closing = model.closing.over(interval, film)[0]
     excess = axial_excess(model, s, closing)
     if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):

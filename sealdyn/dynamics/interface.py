@@ -31,7 +31,7 @@ from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
 from .condensation import LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
-from .intervals import constant_and_slope
+from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
 FINE = 1e-13
@@ -54,7 +54,7 @@ class Interface:
         self.scene = scene
         self.film = film_of(scene, film)
         self.name = film_name(self.film)
-        force = self._borrowed().opening_law(scene.film)
+        force = self._borrowed().opening_law(scene.film, *spins(scene))
         self.opening_force = self._with_asperities(force) if scene.contact else force
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self._table_used = self._table()
@@ -148,11 +148,14 @@ class Interface:
         it."""
         floor, film = self.scene.film.cavitation_pressure, self.scene.film
         first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
-        return floor is None or floor < min(first(film.inner_pressure), first(film.outer_pressure))
+        # What turns the fluid draws the pressure below both edges.
+        low = min(first(film.inner_pressure), first(film.outer_pressure))
+        return floor is None or (floor < low and not film.inertia)
 
     def _floored_at(self, s):
         """Function `wrench(f, s)` and block for small motion about a gap state: without a floor that it never meets."""
-        if self.scene.film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]):
+        film = self.scene.film
+        if film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]) and not film.inertia:
             return self._unfloored
         return self.wrench, self._fine
 
@@ -228,9 +231,11 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
     s[VISCOSITY] = first(scene.film.viscosity)
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
-    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
-    s[MEAN_SPIN] = 0.5 * (w_r + w_s) if mean_spin is None else mean_spin
-    s[SPIN_DIFFERENCE] = w_r - w_s
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
+    if mean_spin is not None:
+        # It is the rotor that turns otherwise.
+        s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
+        s[MEAN_SPIN] = mean_spin
     length = STEP * min(h for _, h in aligned_gaps(scene.film, clearance))
     tilt = length / scene.film.outer_radius
     pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace

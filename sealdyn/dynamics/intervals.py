@@ -11,7 +11,7 @@ from decimal import Decimal, getcontext
 from fractions import Fraction
 from itertools import pairwise
 
-from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
 
 LONGEST = 2000  # turns; then the clock is set anew
 
@@ -52,6 +52,13 @@ def constant_and_slope(quantity, interval: Interval) -> tuple[float, float]:
     middle, early = quantity.at(inside), quantity.at(t0 + 0.25 * (t1 - t0))
     slope = (middle - early) / (0.25 * (t1 - t0))
     return middle - slope * (inside - t0), slope
+
+
+def spins(scene, interval: Interval | None = None) -> tuple[float, float]:
+    """Mean spin of both faces, and rotor's less stator's (rad/s), at an interval's start, or of a scene at its own."""
+    first = initially if interval is None else lambda q: constant_and_slope(q, interval)[0]
+    w_r, w_s = first(scene.shaft.speed), first(scene.stator.speed)
+    return 0.5 * (w_r + w_s), w_r - w_s
 
 
 def modulo_turn(angle: Fraction) -> float:

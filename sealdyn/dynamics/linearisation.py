@@ -4,6 +4,7 @@ import numpy as np
 
 from ..scene.rings import ROTOR, STATOR
 from ..scene.waviness import waves_of
+from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
@@ -17,12 +18,14 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
-    **Valid** no floor of the pressure that small motion meets, and no waves, which have a wedge of their own: such a
-    film is linearised at every speed.
+    **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and no
+    inertia of the fluid, which moves the gap with the speed: such a film is linearised at every speed.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
-    shift = model.axial_shift(interval) if shift is None else shift
+    if shift is None:
+        moves = speed is not None and model.scene.film.inertia
+        shift = axial_shift(model, interval, speed)[0] if moves else model.axial_shift(interval)
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
     if linear_in_speed(model, interval):
         slopes, goes_with = model.still_film(interval, shift), spin
@@ -63,7 +66,7 @@ def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
     plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
-    return plain and not waves_of(model.scene)
+    return plain and not model.scene.film.inertia and not waves_of(model.scene)
 
 
 def whirl_over_speed(model, interval):

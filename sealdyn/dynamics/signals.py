@@ -21,10 +21,12 @@ from ..faces.geometry import (
     GAP_STATE_SIZE,
     GX,
     GY,
+    INNER_PRESSURE,
     MOMENT_X,
     MOMENT_Y,
     ORDER_LIST,
     ORDERS,
+    OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     TORQUE,
     WEAR,
@@ -120,8 +122,8 @@ def _closing_force(at):
 
 
 def _leakage(slot):
-    # Flow in +r runs from high to low pressure when the inside is sealed.
-    return lambda at: (-1.0 if at.segment.model.closing.outer_is_high else 1.0) * at.gap[:, slot]
+    # Flow in +r runs from high to low pressure while the pressure inside is the higher one.
+    return lambda at: np.where(at.gap[:, OUTER_PRESSURE] >= at.gap[:, INNER_PRESSURE], -1.0, 1.0) * at.gap[:, slot]
 
 
 SHAFT_AND_FILM = (

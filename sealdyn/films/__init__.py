@@ -11,9 +11,10 @@ What every film module offers (the contract):
 `parameters(film, clearance, error)`
                   float64 array: the film's block of the parameter array, for a `Film` table and the design clearance
                   (m); `error` is the relative error allowed to its quadrature.  The kernels below get this block.
-`opening_law(film)`
+`opening_law(film, mean_spin, spin_difference)`
                   function `force(clearance, inner_pressure, outer_pressure, floor)`: opening force (N) of the aligned
-                  film at rest, for the equilibrium; `floor` (m) of the film thickness, without it the film's own.
+                  film, for the equilibrium; `floor` (m) of the film thickness, without it the film's own; the spins
+                  (rad/s, 0 without them) matter to a fluid with inertia.
 `wrench(f, s)`    compiled kernel: film block `f`, gap state `s` (slots named in faces/geometry.py) -> writes
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
@@ -115,7 +116,7 @@ def film_of(scene, module=None):
 
 
 def _refused(film, waves, able) -> SceneError:
-    faces = "wavy faces" if waves else "a profile"
+    faces = "wavy faces" if waves else "film.inertia" if film.inertia else "a profile"
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
         said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}

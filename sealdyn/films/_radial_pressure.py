@@ -4,8 +4,8 @@
 
     r h^3 p' = 12 mu (Phi + c),   Phi = integral of f r dr,   f = dh/dt + wm dh/dtheta
 
-(planar: no r), integrated from each radius of the grid to the next by the Gauss rule that serves the film ratio
-between them: how fine the grid is does not matter to the pressures on it.
+(planar: no r; inertia adds g r to p'), integrated from each radius of the grid to the next by the Gauss rule that
+serves the film ratio between them: how fine the grid is does not matter to the pressures on it.
 **Valid** where these films are; between faces without waves.
 """
 
@@ -37,7 +37,7 @@ from ..faces.geometry import (
 from ..numerics.inner_kernel import inner_kernel
 from ._fields import PRESSURE
 from ._radial_line import cubic, line_sums
-from ._radial_quadrature import CAVITATION, HAS_CAVITATION, RADIAL_POINTS, RULE_SIZE, RULES, points_for
+from ._radial_quadrature import CAVITATION, HAS_CAVITATION, RADIAL_POINTS, RULE_SIZE, RULES, centrifugal, points_for
 
 FIELDS = (PRESSURE,)
 # Steps over the radius, at least, and angles of the grid.
@@ -98,7 +98,7 @@ def fields(f, s, out):
     nodes = _nodes(f)
     steps, total = _steps(nodes)
     r, mean, planar = _radii(nodes, steps, total), f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
-    per, p_i, p_o = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE]
+    per, p_i, p_o, g = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], centrifugal(f, s)
     # Integrals of Phi / (r h^3) and of 1 / (r h^3) from the inner radius.
     h, driven, through = np.empty(len(r)), np.zeros(len(r)), np.zeros(len(r))
     for j in range(ANGLES):
@@ -113,7 +113,7 @@ def fields(f, s, out):
             x_k, w_k = f[first : first + points], f[first + RADIAL_POINTS[-1] : first + RADIAL_POINTS[-1] + points]
             part = line_sums(0.0, q, r[0], planar, r[k - 1] - r[0], r[k] - r[0], h[k - 1], h[k], x_k, w_k)
             driven[k], through[k] = driven[k - 1] + part[0], through[k - 1] + part[3]
-        c = ((p_o - p_i) / per - driven[-1]) / through[-1]
+        c = ((p_o - p_i - 0.5 * g * (r[-1] ** 2 - r[0] ** 2)) / per - driven[-1]) / through[-1]
         for k in range(len(r)):
-            p = p_i + per * (driven[k] + c * through[k])
+            p = p_i + per * (driven[k] + c * through[k]) + 0.5 * g * (r[k] ** 2 - r[0] ** 2)
             out[0, k, j] = max(p, f[CAVITATION]) if f[HAS_CAVITATION] != 0.0 else p

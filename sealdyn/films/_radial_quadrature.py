@@ -12,7 +12,9 @@ from ..faces.geometry import (
     FORCE,
     GAP_STATE_SIZE,
     INNER_PRESSURE,
+    MEAN_SPIN,
     OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
     VISCOSITY,
     face_parameters,
 )
@@ -29,8 +31,8 @@ HALF_CIRCLE = tuple(
     function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin)
 )
 
-# Block layout after the faces.
-CAVITATION, HAS_CAVITATION, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 5)
+# Block layout after the faces; INERTIA is the density (kg/m^3) of a film with inertia, else 0.
+CAVITATION, HAS_CAVITATION, INERTIA, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 6)
 RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
 ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
 COSINES = ANGLE_COUNTS + len(ANGLES)
@@ -98,6 +100,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     f[:FACE_SIZE] = face_parameters(film, clearance)
     if film.cavitation_pressure is not None:
         f[CAVITATION], f[HAS_CAVITATION] = film.cavitation_pressure, 1.0
+    f[INERTIA] = film.density if film.inertia else 0.0
     f[ERROR] = error = min(max(error, 1e-14), 1e-2)
     f[LOG_ERROR] = math.log(1e4 / error)
     # Of a floored line a small part may be left: a tenth of the error is asked of its radial integrals.
@@ -108,11 +111,11 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_law(film, parameters, wrench):
-    """The function `opening_law` of a radial film's contract (N, m, Pa), from the film's `parameters` and kernel
+def opening_law(film, parameters, wrench, mean_spin, spin_difference):
+    """The function `opening_law` of a radial film's contract (N, m, Pa, rad/s), from the film's `parameters` and kernel
     `wrench`."""
     s = np.zeros(GAP_STATE_SIZE)
-    s[VISCOSITY] = 1.0
+    s[VISCOSITY], s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 1.0, mean_spin, spin_difference
     # One block for all clearances: only the slots of the clearance differ.
     f = parameters(film, 1.0, 1e-13)
 
@@ -123,6 +126,19 @@ def opening_law(film, parameters, wrench):
         return float(s[FORCE])
 
     return force
+
+
+@inner_kernel()
+def centrifugal(f, s):
+    """Slope over r^2/2 (Pa/m^2) of the pressure that turns the fluid: p' of a film without inertia gains g r.
+
+    **Source** the radial momentum of Couette flow, u = r (W_s + (W_r - W_s) y) at y = z/h, pushes outwards as a flow of
+    6 int y (1 - y) rho u^2/r dy = rho r (3 W_s^2 + 4 W_s W_r + 3 W_r^2)/10 = rho r (wm^2 + (W_r - W_s)^2/20) would.
+    **Valid** laminar, small h^2 rho W / mu: squeeze and the flow's own radial momentum are left out.
+    """
+    if f[INERTIA] == 0.0:
+        return 0.0
+    return f[INERTIA] * (s[MEAN_SPIN] * s[MEAN_SPIN] + 0.05 * s[SPIN_DIFFERENCE] * s[SPIN_DIFFERENCE])
 
 
 @inner_kernel()

@@ -59,6 +59,8 @@ def accepts(film, waves=()) -> str:
     """What faces it takes, "" if it can take these: waves under the user's own numbers, if it is asked for by name."""
     if film is not None and film.profile is not None:
         return "plain cones only"
+    if film is not None and film.inertia:
+        return "a fluid without inertia"
     own = film is not None and film.model == "linear" and isinstance(film.coefficients, Coefficients)
     return "" if own or not waves else 'waves, with model = "linear" and a table film.coefficients of your own numbers'
 
@@ -98,7 +100,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_law(film):
+def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     """Opening force (N) of the aligned narrow seal at rest, `force(clearance, inner_pressure, outer_pressure, floor)`;
     pressures absolute (Pa), clearance in m; it has no use for a floor."""
     faces = dict(inner_radius=film.inner_radius, outer_radius=film.outer_radius, coning=film.coning)

@@ -28,12 +28,10 @@ def _rows(summary):
     yield from (("", reason) for reason in model["reasons"])
     if model["unused"]:
         yield "not used", ", ".join(model["unused"])
-    low, leak, friction = (summary[k] for k in ("h_min", "leakage", "friction"))
-    if low["value"] is not None:
-        yield "h_min", (f"{_n(low['value'], MICRO)} um ({_n(low['of_clearance'], 100)} % of the clearance) at t = "
-                        f"{_n(low['time'])} s, theta = {_n(low['theta'], DEGREES)} deg, r = "
-                        f"{_n(low['radius'], MILLI)} mm")  # fmt: skip
-    yield from _tilt_rows(summary)
+    leak, friction = summary["leakage"], summary["friction"]
+    yield from _settled_rows(summary)
+    yield from _whole_run_rows(summary)
+    yield from _margin_rows(summary)
     yield "leakage", (f"{_n(leak['mean'])} m^3/s = {_n(leak['mean_ml_per_h'])} ml/h = {_n(leak['mean_kg_per_h'])} kg/h "
                       "(mean)")  # fmt: skip
     yield "friction", (f"{_n(friction['power'])} W, torque {_n(friction['torque'])} N m; would heat the leakage by "
@@ -86,20 +84,54 @@ def _seal_rows(seals):
         yield "", f"stuck {seals['sticks']} times, slipped {seals['slips']} times; at the end {held}"
 
 
-def _tilt_rows(summary):
-    tilt, form, margin = (summary[k] for k in ("relative_misalignment", "closed_form", "contact_margin"))
+def _settled_rows(summary):
+    """Thinnest film and relative misalignment of the settled part of a run, or why there is none."""
+    low, tilt, form = (summary[k] for k in ("h_min", "relative_misalignment", "closed_form"))
+    if tilt["steady_max"] is None:
+        yield "steady state", tilt["steady_said"]
+        return
+    # Archives of earlier versions did not keep it.
+    if low.get("steady") is not None:
+        share = low["steady"] / low["value"] * low["of_clearance"]
+        yield "h_min", f"settled: {_n(low['steady'], MICRO)} um ({_n(share, 100)} % of the clearance)"
+    words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
+    if "relative_max" in form:
+        words += f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
+        words += f"({form['road']})"
+    yield "misalignment", words
+
+
+def _whole_run_rows(summary):
+    """The same of the whole run: its transient where it settles to something else."""
+    low, tilt = summary["h_min"], summary["relative_misalignment"]
+    settled = tilt["steady_max"] is not None
+    first, second = ("transient", "") if settled else ("h_min", "misalignment")
+    pairs = ((low["value"], low.get("steady")), (tilt["max"], tilt["steady_max"]))
+    if all(_n(whole) == _n(part) for whole, part in pairs):
+        first = "whole run"
+    if low["value"] is not None:
+        words = "h_min " if settled else ""
+        yield first, (f"{words}{_n(low['value'], MICRO)} um ({_n(low['of_clearance'], 100)} % of the clearance) at t = "
+                      f"{_n(low['time'])} s, theta = {_n(low['theta'], DEGREES)} deg, r = "
+                      f"{_n(low['radius'], MILLI)} mm")  # fmt: skip
     if tilt["max"] is not None:
-        yield "misalignment", (f"relative, urad: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
-                               f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
-    words = tilt.get("steady_said")
-    if tilt["steady_max"] is not None:
-        words = f"urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
-        if "relative_max" in form:
-            words += f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
-            words += f"({form['road']})"
-    yield "steady state", words
-    if margin is not None:
-        yield "contact", f"linear theory: forcing may grow {_n(margin)} times before the faces touch"
+        words = "misalignment, urad" if settled else "urad"
+        yield second, (f"{words}: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
+                       f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
+
+
+def _margin_rows(summary):
+    margin, contact = summary["contact_margin"], summary["contact"]
+    if margin is None:
+        return
+    if margin == 0.0:
+        words = "the asperities touch without any forcing: there is no margin"
+    elif margin < 1.0:
+        words = f"linear theory: the faces touch from {_n(margin)} times this forcing on"
+    else:
+        words = f"linear theory: forcing may grow {_n(margin)} times before the faces touch"
+        words += ", yet they touched in this run" if contact and contact["touches"] else ""
+    yield "contact", words
 
 
 def _stability(stability):

@@ -76,7 +76,8 @@ class Scenario:
 
     `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
-    `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.
+    `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
+    keys of speeds that were written without a unit.
     Scenarios that run alike are equal, wherever they came from and whatever studies are to ask of them.
     """
 
@@ -90,6 +91,7 @@ class Scenario:
     question: str = field(default="", compare=False)
     given: frozenset[str] = frozenset()
     reading: Any = None
+    bare: frozenset[str] = field(default=frozenset(), compare=False)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -125,9 +127,12 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
+    bare = frozenset(f"{table}.speed" for table in ("shaft", "stator") if _is_bare(_table(raw, table).get("speed")))
     found = read_tables(raw, name)
     name = name.removesuffix(".toml")
-    return Scenario(**found, text=text, name=name, path=path, overrides=list(overrides), question=_question(text))
+    return Scenario(
+        **found, bare=bare, text=text, name=name, path=path, overrides=list(overrides), question=_question(text)
+    )
 
 
 def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
@@ -272,6 +277,11 @@ def _check_run_and_study(raw: dict, name: str) -> None:
         run.setdefault("turns", 60)
     if "samples" not in run:
         run.setdefault("samples_per_turn", 64)
+
+
+def _is_bare(value: Any) -> bool:
+    """Whether a value other than 0, or any of a table's, is written without a unit."""
+    return any(isinstance(entry, int | float) and entry != 0 for entry in _entries(value))
 
 
 def _turns(speed) -> bool:

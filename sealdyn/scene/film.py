@@ -107,17 +107,21 @@ class Film:
     geometry: Literal["cylindrical", "planar"] = "cylindrical"
     """Radial flow on the ring, or the narrow-seal limit without curvature."""
     tilt_radius: Literal["local", "mean"] = "local"
-    """Tilt moves the film by local radius times tilt, or everywhere as at the mean radius."""
+    """Arm of the tilt in film thickness and contact moment: the local radius, or everywhere the mean radius."""
     clearance: Length | None = None
     """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
     coning: Angle = 0.0
     """Slope of the faces: the film is thicker outwards where positive."""
     density: Density = 1000.0
-    """For mass flow and heating of the leakage only."""
+    """For mass flow, heating of the leakage, Reynolds numbers and inertia."""
+    inertia: bool = False
+    """Centrifugal inertia of the film: its pressure rises outwards by density times radius times speed squared."""
     specific_heat: SpecificHeat = 4180.0
     """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None
     """Floor of the film pressure, absolute; none without it.  Does not conserve mass."""
+    vapour_pressure: Pressure | None = None
+    """At the temperature of the film, absolute: a run that falls below it says so."""
     coefficients: Literal["green", "radial"] | Coefficients = "green"
     """Of model = "linear": Green's narrow-seal ones, those of the radial film, or the numbers of a table."""
     floor: float = 1e-3

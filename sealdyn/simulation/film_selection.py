@@ -57,6 +57,8 @@ def _why_not_linear(scene, radial: RunState) -> str | None:
         return "contact or friction is no place for a linear film"
     if scene.film.cavitation_pressure is not None:
         return "the pressure has a floor"
+    if scene.film.inertia:
+        return "the fluid has inertia"
     if not unknowns.constant or unknowns.has_residual_form:
         return "conditions change, or a ring has no mass"
     # A tilt ratio t leaves errors of t^2: no estimate is needed to see that far.

@@ -15,6 +15,7 @@ from ..faces.geometry import TOUCH
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
+from .plausibility import cautions
 from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
@@ -45,6 +46,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     records = run.extrema.records
+    steady = cache(lambda: _steady(run, outcome, period, scenario.run.start == "steady"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
         "status": outcome.status,
@@ -56,12 +58,13 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
             "theta": records[0][H_THETA],
             "radius": records[0][H_RADIUS],
             "of_clearance": records[0][H] / model.clearance,
+            "steady": steady()["thinnest"],
         },
         "relative_misalignment": lambda: {
             "max": records[0][MOST],
             "min": records[0][LEAST],
             "mean": lambda: tally.mean("relative_misalignment"),
-            **_steady(run, outcome, period, scenario.run.start == "steady"),
+            **{part: found for part, found in steady().items() if part != "thinnest"},
         },
         "leakage": lambda: _leakage(model, tally),
         "friction": lambda: {
@@ -78,7 +81,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
         "closed_form": lambda: _closed_form(segment, linear, tilt()),
         "stability": lambda: stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
-        "warnings": lambda: [caution.sentence for caution in (*run.cautions, *_blown_open(model, tally))],
+        "warnings": lambda: [caution.sentence for caution in _cautions(scenario, run, outcome, tally)],
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -131,10 +134,10 @@ def plain(value):
 
 
 def _steady(run, outcome, period, begun_steady):
-    """Steady extremes over the last forcing period, or None, with a sentence."""
+    """Steady extremes over the last forcing period, and the thinnest film (m) there, or None, with a sentence."""
 
     def none(sentence):
-        return {"steady_max": None, "steady_min": None, "steady_said": sentence}
+        return {"steady_max": None, "steady_min": None, "thinnest": None, "steady_said": sentence}
 
     if outcome.status != Status.OK:
         return none(f"no steady state: the run {outcome.status}")
@@ -157,7 +160,15 @@ def _steady(run, outcome, period, begun_steady):
             f"(accuracy {model.accuracy:.0e}); {try_it}"
         )
     said = "steady over the last two forcing periods"
-    return {"steady_max": last[MOST], "steady_min": last[LEAST], "steady_said": said}
+    return {"steady_max": last[MOST], "steady_min": last[LEAST], "thinnest": last[H], "steady_said": said}
+
+
+def _cautions(scenario, run, outcome, tally) -> list[Caution]:
+    """All that a person should know before trusting the run."""
+    model = run.model
+    leakage, rise = _leakage(model, tally)["mean"], _temperature_rise(model, tally)
+    low = run.extrema.records[0][H]
+    return [*run.cautions, *_blown_open(model, tally), *cautions(scenario, run, outcome, leakage, rise, low)]
 
 
 def _blown_open(model, tally) -> list[Caution]:
@@ -287,15 +298,21 @@ def _linear_steady(segment, linear, period):
 
 
 def _contact_margin(segment, linear, tilt):
-    """Factor on the forcing at which linear theory closes the gap at either edge; unknown of wavy faces."""
-    waves = waves_of(segment.model.scene)
-    if tilt is None or waves or modes.verdict(linear.modes()) != "stable":
-        return math.nan
+    """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
+    there are any: 0 where they touch without forcing.  Unknown of wavy faces."""
     model = segment.model
-    face, (most, _, closing, _) = model.face, tilt
+    if waves_of(model.scene):
+        return math.nan
+    face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)
     outer = inner + face[3] * (face[1] - face[0])
-    reaches = [(inner, face[0] * most + closing), (outer, face[1] * most + closing)]
+    height = max(face[TOUCH], 0.0)
+    if min(inner, outer) <= height:
+        return 0.0
+    if tilt is None or modes.verdict(linear.modes()) != "stable":
+        return math.nan
+    most, _, closing, _ = tilt
+    reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
     return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
 
 

@@ -13,6 +13,7 @@ from ..dynamics.equilibrium import (
     settle,
     support_stiffness,
 )
+from ..dynamics.intervals import spins
 from ..films import film_of
 from ..numerics.piecewise_linear import initially
 from ..scene.scene import SceneError
@@ -36,7 +37,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_of(scene).opening_law(scene.film)
+    film, opening = scene.film, film_of(scene).opening_law(scene.film, *spins(scene))
     inner, outer = film.inner_pressure, film.outer_pressure
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))

@@ -23,6 +23,7 @@ FACES = {
     "planar, mean": {"geometry": "planar", "tilt_radius": "mean"},
     "diverging": {"coning": -0.1e-3},
     "floor": {"cavitation_pressure": 1e5},
+    "inertia": {"inertia": True, "density": 8000.0},
     "profile": {"model": "profiled", "coning": 0.0, "profile": Profile(RADII, DEPTHS)},
     "planar profile": {"model": "profiled", "geometry": "planar", "profile": Profile(RADII, DEPTHS)},
 }
@@ -32,7 +33,7 @@ def gap_state(share=0.2):
     """A tilt that leaves `share` of the clearance, and rates of the size of the motion."""
     s, tilt = np.zeros(geometry.GAP_STATE_SIZE), (1 - share) * CLEARANCE / R_O
     s[:6] = (0.05 * CLEARANCE, 0.8 * tilt, -0.6 * tilt, 0.03 * CLEARANCE * SPEED, 0.2 * tilt * SPEED, -tilt * SPEED)
-    s[geometry.MEAN_SPIN], s[geometry.VISCOSITY] = 0.5 * SPEED, MU
+    s[geometry.MEAN_SPIN], s[geometry.SPIN_DIFFERENCE], s[geometry.VISCOSITY] = 0.5 * SPEED, SPEED, MU
     s[geometry.INNER_PRESSURE], s[geometry.OUTER_PRESSURE] = P_I, P_O
     return s
 
@@ -54,6 +55,8 @@ def pressures(table, s, radii, angles):
         return cumulative_trapezoid(slope, r, axis=0, initial=0.0)
 
     driven, through = summed(summed(rate * weight) / (weight * h**3)), summed(1 / (weight * h**3))
+    # One face turns, the other does not: p' gains 3/10 rho r w^2.
+    driven += summed(0.3 * table.density * r * SPEED**2 / (12 * MU) + 0 * driven) if table.inertia else 0.0
     c = ((P_O - P_I) / (12 * MU) - driven[-1]) / through[-1]
     p = (P_I + 12 * MU * (driven + c * through))[::FINE]
     return p if table.cavitation_pressure is None else np.maximum(p, table.cavitation_pressure)

@@ -152,3 +152,28 @@ def test_the_tables_are_a_gauss_kronrod_pair():
         for power in range(0, degree + 1, 2):
             assert weights @ nodes**power == pytest.approx(2 / (power + 1), abs=2e-15)
         assert abs(weights @ nodes ** (degree + 3) - 2 / (degree + 4)) > 1e-15
+
+
+# Rates (m/s, rad/s) of faces that meet almost: most of the circle is then thick and lies between two angles of an even
+# scan; the share left and the mean spin (rad/s).
+ALMOST_CLOSED = {
+    "rocking in, dry where it is thick": (1.8e-3, 0.0, (0.0, 2e-4, 8e-5), (0.0, 0.0)),
+    "rocking out, wet where it is thick": (1.6e-3, 0.0, (0.0, -1.2e-4, 3.6e-5), (0.0, 0.0)),
+    "rocking and squeezed": (1.9e-3, 0.0, (-4.3e-5, 9e-4, 2.5e-5), (0.0, 0.0)),
+    "above the floor at both edges": (1.9e-3, 300.0, (0.0, -3.2e-2, -5.5e-2), (4e5, 1e5)),
+}
+
+
+@pytest.mark.parametrize("name", ALMOST_CLOSED)
+def test_almost_closed_face_against_exact_lines(name):
+    share, mean_spin, rates, (p_i, p_o) = ALMOST_CLOSED[name]
+    tilt = (1 - share) * C / R_M
+    for angle in (0.0, 0.4, 2.1, 5.0):
+        turn = complex(*rates[1:]) * complex(math.cos(angle), math.sin(angle))
+        motion = (0.0, tilt * math.cos(angle), tilt * math.sin(angle), rates[0], turn.real, turn.imag)
+        force, _, dry, _ = exact_circle(motion, mean_spin, p_i, p_o, 0.0)
+        s = gap_state(motion, mean_spin, p_i, p_o)
+        radial.flow(block(1e-7), s)
+        assert 0.05 < dry < 0.95
+        assert s[geometry.CAVITATED] == pytest.approx(dry, abs=3e-5)
+        assert s[geometry.FORCE] == pytest.approx(force, rel=1e-7)

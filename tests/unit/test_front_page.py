@@ -17,8 +17,10 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
     scenario = parse_scenario(re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1], "pump.toml")
     found = sealdyn.simulate(scenario, tmp_path / "pump.h5").summary
     for printed, value in {
-        r"h_min +([\d.]+) um": found["h_min"]["value"] * 1e6,
-        r"relative, urad: max ([\d.]+)": found["relative_misalignment"]["max"] * 1e6,
+        r"h_min +settled: ([\d.]+) um": found["h_min"]["steady"] * 1e6,
+        r"settled, urad: max ([\d.]+)": found["relative_misalignment"]["steady_max"] * 1e6,
+        r"whole run +h_min ([\d.]+) um": found["h_min"]["value"] * 1e6,
+        r"misalignment, urad: max ([\d.]+)": found["relative_misalignment"]["max"] * 1e6,
         r"may grow ([\d.]+) times": found["contact_margin"],
         r"= ([\d.]+) ml/h": found["leakage"]["mean_ml_per_h"],
         r"friction +([\d.]+) W": found["friction"]["power"],

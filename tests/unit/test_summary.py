@@ -2,12 +2,16 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from sealdyn.dynamics.signals import signals
+from sealdyn.report.text import lines
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.simulation.simulate import simulate_in_memory
+from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 
-SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SEAL = SCENARIOS / "fms_reference.toml"
 
 
 @pytest.mark.parametrize("start", ["rest", "steady"])
@@ -16,3 +20,64 @@ def test_a_run_that_is_not_steady_is_not_told_to_start_as_it_did(start):
     changes = ["run.turns=3", "run.accuracy=1e-8", "shaft.speed=6500 rad/s", f"run.start='{start}'"]
     sentence = simulate_in_memory(read_scenario(SEAL, changes))["relative_misalignment"]["steady_said"]
     assert sentence.startswith("not steady") and ("run.start" in sentence) == (start == "rest")
+
+
+@pytest.mark.parametrize("film", ["linear", "radial"])
+def test_leakage_runs_from_high_to_low_pressure_also_where_they_turn(film):
+    """Pressures that change sides halfway: as much leaks after it as before."""
+    changes = [
+        f"film.model='{film}'", "film.coning=0", "run.start='rest'", "run.duration='20 ms'", "run.samples=200",
+        "rotor.runout=0", "stator.misalignment=0", "closing.balance_ratio=0.8",
+        "film.outer_pressure={time=[0, '10 ms', '10.1 ms'], value=['3 bar', '3 bar', '1 bar']}",
+        "film.inner_pressure={time=[0, '10 ms', '10.1 ms'], value=['1 bar', '1 bar', '3 bar']}",
+    ]  # fmt: skip
+    scenario = read_scenario(SEAL, changes)
+    run, *_ = prepare_run(scenario)
+    first, last = run.segment(0), run.segment(len(run.intervals) - 1)
+    n = first.n
+    found = [float(signals(part, np.zeros(1), *np.zeros((2, 1, n)))["leakage_inner"][0]) for part in (first, last)]
+    assert found[0] > 0 and found[1] == pytest.approx(found[0], rel=0.1)
+
+
+def printed(scenario, summary):
+    """[name, words] of the lines for a person; a line that goes on has no name."""
+    whole = {**summary, "archive": "x.h5", "figure": None}
+    return [[line[:16].strip(), line[16:]] for line in lines(scenario, whole)[1:]]
+
+
+def test_the_settled_part_comes_first_and_the_transient_by_its_name():
+    scenario = read_scenario(SEAL, ["run.turns=12", "run.start='rest'", "run.accuracy=1e-4"])
+    summary = simulate_in_memory(scenario, speeds=True)
+    low, tilt = summary["h_min"], summary["relative_misalignment"]
+    # The start at rest is thinner than all that follows.
+    assert low["steady"] > 1.05 * low["value"] and tilt["steady_max"] < 0.5 * tilt["max"]
+    rows = printed(scenario, summary)
+    names = [name for name, _ in rows]
+    assert names.index("h_min") < names.index("misalignment") < names.index("transient")
+    said = dict(row for row in rows if row[0])
+    assert f"{low['steady'] * 1e6:.4g} um" in said["h_min"] and f"{low['value'] * 1e6:.4g} um" in said["transient"]
+    assert f"max {tilt['steady_max'] * 1e6:.6g}" in said["misalignment"]
+    short = simulate_in_memory(read_scenario(SEAL, ["run.turns=1.5", "run.start='rest'"]), speeds=True)
+    assert short["h_min"]["steady"] is None
+    names = [name for name, _ in printed(scenario, short)]
+    assert names.index("steady state") < names.index("h_min") and "transient" not in names
+
+
+def test_the_margin_ends_where_asperities_meet():
+    """Linear theory of the reference seal: gap over reach at an edge; asperities of 3 rms take their height away."""
+    rough = ["contact.compressive_strength='300 MPa'", "run.turns=1", "run.accuracy=1e-4", "run.start='rest'"]
+    margins = {}
+    for rms in (0.1, 1.0):
+        scenario = read_scenario(SEAL, [*rough, f"contact.roughness='{rms} um'"])
+        margins[rms] = simulate_in_memory(scenario)["contact_margin"]
+    smooth = simulate_in_memory(read_scenario(SEAL, rough[1:]))["contact_margin"]
+    assert margins[0.1] == pytest.approx(smooth * (10 - 0.3) / 10, rel=1e-6)
+    assert margins[1.0] == pytest.approx(smooth * (10 - 3.0) / 10, rel=1e-6)
+
+
+def test_asperities_that_touch_without_forcing_leave_no_margin():
+    scenario = read_scenario(SCENARIOS / "run_in.toml", ["run.turns=0.5", "run.accuracy=1e-3"])
+    summary = simulate_in_memory(scenario, speeds=True)
+    assert summary["contact"]["share_of_closing"] > 0.05 and summary["contact_margin"] == 0.0
+    (said,) = [words for name, words in printed(scenario, summary) if name == "contact"]
+    assert "times" not in said

@@ -43,7 +43,7 @@ from ...faces.geometry import (
 )
 from ...numerics.inner_kernel import inner_kernel
 from .. import _radial_pressure, _radial_quadrature
-from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES
+from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES, centrifugal
 from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, nodes_of, phi, pieces_of, plain_ratios, sums
 
 RUNG = 2
@@ -71,10 +71,11 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_law(film):
-    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
-    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
-    return _radial_quadrature.opening_law(film, parameters, wrench)
+def opening_law(film, mean_spin=0.0, spin_difference=0.0):
+    """Opening force (N) of the aligned film between still or turning faces (rad/s),
+    `force(clearance, inner_pressure, outer_pressure, floor)`: pressures absolute (Pa), clearance and floor of the film
+    thickness (without it the film's own) in m."""
+    return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
 
 
 @inner_kernel(error_model="numpy")
@@ -82,6 +83,9 @@ def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too."""
     r_i, r_o, mean, planar = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     mu, p_i, p_o, z_rate, r_m = s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], s[DZ_RATE], 0.5 * (r_i + r_o)
+    # In p - g r^2/2 the film is one without inertia.
+    g = centrifugal(f, s)
+    p_i, p_o = p_i - 0.5 * g * r_i * r_i, p_o - 0.5 * g * r_o * r_o
 
     # The frame of the tilt: beta = 0 at the thinnest place, f even part + odd part.
     tilt = math.hypot(s[GX], s[GY])
@@ -116,6 +120,7 @@ def _circle(f, s, complete):
     d_beta = 2.0 * math.pi / angles
     m_along, m_across = 4.0 * mu * d_beta * moment_even, -4.0 * mu * across * d_beta * moment_odd
     s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
+    s[FORCE] += 0.25 * math.pi * g * (r_o**4 - r_i**4)
     s[MOMENT_X], s[MOMENT_Y] = c_a * m_along - s_a * m_across, s_a * m_along + c_a * m_across
     s[CAVITATED] = 0.0
     if complete:

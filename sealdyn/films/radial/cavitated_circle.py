@@ -36,11 +36,12 @@ from ...faces.geometry import (
     regularised_thickness,
 )
 from ...numerics.inner_kernel import inner_kernel
-from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, points_for
+from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, centrifugal, points_for
 from .cavitated_line import HAS_DRY, HAS_WET, cavitated_line, line_state
 
-# Angles scanned; how closely a kink is sought (rad of gamma; it enters by the power 2 at least) and how long.
-SCANNED, CLOSE, MOST_TRIALS = 20, 1e-8, 60
+# Angles scanned, and how far apart they may be in beta where that is farther; how closely a kink is sought (rad of
+# gamma; it enters by the power 2 at least) and how long.
+SCANNED, APART, CLOSE, MOST_TRIALS = 20, 0.6, 1e-8, 60
 # Where the scan begins (rad of gamma): off the thinnest and thickest places, where a bare wedge has its kinks.
 START = -3.0
 # Panels: the most there may be, and the longest to begin with (rad of gamma).
@@ -62,9 +63,12 @@ KRONROD = np.array(
 GAUSS = np.array(
     [0.066671344308688138, 0.14945134915058059, 0.21908636251598204, 0.26926671930999636, 0.29552422471475287]
 )
-# A panel: ends in gamma, ends in x, whether x is clustered; difference of the two rules in load and moments; integrals.
+# A panel: ends in gamma, ends in x, whether x is clustered; difference of the two rules in load, moments and wet share;
+# integrals.
 BEGIN, END, X_BEGIN, X_END, CLUSTERED, DEFECT = range(6)
-SUMS, PANEL_SIZE = DEFECT + 3, DEFECT + 8
+SUMS, PANEL_SIZE = DEFECT + 4, DEFECT + 9
+# Error of the wet share (rad of beta) that weighs as much as the error asked of load and moments.
+WET_ERROR = 1e-5 * 2.0 * math.pi
 LOAD, ALONG, ACROSS, SLOPE, WET = range(5)
 
 
@@ -110,23 +114,40 @@ def _state_at(gamma, turn, f, s, x_k, w_k):
     _, _, _, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
     return line_state(
         x_k, w_k, f[INNER_RADIUS], f[OUTER_RADIUS], h_i, h_o, s[DZ_RATE], tilt_rate, f[TILT_AT_MEAN] != 0.0,
-        f[PLANAR] != 0.0, s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION],
+        f[PLANAR] != 0.0, s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], centrifugal(f, s),
     )  # fmt: skip
+
+
+@inner_kernel()
+def _angles(spread):
+    """The gamma (rad) to scan, in order around the circle, first and last the same place: evenly spread, and in between
+    evenly in beta where `spread` (Sommerfeld's k) puts most of the circle between two of them."""
+    gammas, count = np.empty(SCANNED + 1 + math.ceil(2.0 * math.pi / APART)), 0
+    for j in range(SCANNED):
+        low, high = START + 2.0 * math.pi * j / SCANNED, START + 2.0 * math.pi * (j + 1) / SCANNED
+        beta = 2.0 * math.atan2(spread * math.sin(0.5 * low), math.cos(0.5 * low))
+        gap = 2.0 * math.atan2(spread * math.sin(0.5 * high), math.cos(0.5 * high)) - beta
+        gammas[count], count, parts = low, count + 1, math.ceil(gap / APART)
+        for part in range(1, parts):
+            half = 0.5 * (beta + gap * part / parts)
+            gammas[count], count = 2.0 * math.atan2(math.sin(half), spread * math.cos(half)), count + 1
+    gammas[count] = START + 2.0 * math.pi
+    return gammas[: count + 1]
 
 
 @inner_kernel()
 def _scan(turn, f, s, x_k, w_k):
     """Angles in order around the circle and the state of their lines.  Where an indicator comes near to a change
     of sign between two of them, an angle is moved to where a parabola sees its extreme."""
-    gammas, states = np.empty(SCANNED + 1), np.empty(SCANNED + 1, np.int64)
-    marks = np.empty((3, SCANNED + 1))
-    for j in range(SCANNED):
-        gammas[j] = START + 2.0 * math.pi * j / SCANNED
+    gammas = _angles(turn[-1])
+    last = len(gammas) - 1
+    states, marks = np.empty(last + 1, np.int64), np.empty((3, last + 1))
+    for j in range(last):
         states[j], marks[0, j], marks[1, j], marks[2, j] = _state_at(gammas[j], turn, f, s, x_k, w_k)
     # The circle closes: the same state, not one that rounding made another.
-    gammas[SCANNED], states[SCANNED], marks[:, SCANNED] = START + 2.0 * math.pi, states[0], marks[:, 0]
+    states[last], marks[:, last] = states[0], marks[:, 0]
     for mark in marks:
-        for j in range(1, SCANNED):
+        for j in range(1, last):
             before, here, after = abs(mark[j - 1]), abs(mark[j]), abs(mark[j + 1])
             alike = states[j - 1] == states[j] and states[j] == states[j + 1]
             if not (alike and here < before and here <= after):
@@ -177,7 +198,7 @@ def _change(low, high, state, turn, f, s, x_k, w_k):
 @inner_kernel()
 def _kinks(gammas, states, turn, f, s, x_k, w_k):
     """Angles where the state changes, and the state after each."""
-    kinks, after, count = np.empty(4 * SCANNED), np.empty(4 * SCANNED, np.int64), 0
+    kinks, after, count = np.empty(4 * len(gammas)), np.empty(4 * len(gammas), np.int64), 0
     for j in range(len(gammas) - 1):
         low, state = gammas[j], states[j]
         # More than one thing may change inside: each in turn.
@@ -192,10 +213,10 @@ def _kinks(gammas, states, turn, f, s, x_k, w_k):
 
 @inner_kernel()
 def _integrate(panel, turn, f, s, x_k, w_k):
-    """Fill a panel's integrals and by how much its two rules differ in load and moments."""
+    """Fill a panel's integrals and by how much its two rules differ in load, moments and wet share."""
     middle, half = 0.5 * (panel[BEGIN] + panel[END]), 0.5 * (panel[END] - panel[BEGIN])
     x_m, x_h = 0.5 * (panel[X_BEGIN] + panel[X_END]), 0.5 * (panel[X_END] - panel[X_BEGIN])
-    r_i, r_o, mean = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0
+    r_i, r_o, mean, g = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, centrifugal(f, s)
     defect, fine = panel[DEFECT:SUMS], panel[SUMS:]
     panel[DEFECT:] = 0.0
     for k in range(21):
@@ -208,7 +229,7 @@ def _integrate(panel, turn, f, s, x_k, w_k):
         cos_b, sin_b, per, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
         load, moment, wet = cavitated_line(
             x_k, w_k, r_i, r_o, h_i, h_o, s[DZ_RATE], tilt_rate, mean, f[PLANAR] != 0.0, s[VISCOSITY],
-            s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION],
+            s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], g,
         )  # fmt: skip
         weight = stretch * per * x_h
         full, part = weight * KRONROD[node], weight * GAUSS[node // 2] if node % 2 == 1 else 0.0
@@ -220,6 +241,7 @@ def _integrate(panel, turn, f, s, x_k, w_k):
         defect[LOAD] += (full - part) * load
         defect[ALONG] -= (full - part) * cos_b * moment
         defect[ACROSS] -= (full - part) * sin_b * moment
+        defect[3] += (full - part) * wet
 
 
 @inner_kernel()
@@ -259,10 +281,11 @@ def _refine(panels, count, turn, f, s, x_k, w_k):
         # A moment that nearly vanishes need not be better than a small share of the load's own.
         moment = max(math.hypot(along, across), 1e-3 * r_o * load, 1e-300)
         load = max(load, 1e-300)
-        total, worst, worst_error = 0.0, 0, 0.0
+        total, worst, worst_error, wet_weight = 0.0, 0, 0.0, f[ERROR] / WET_ERROR
         for k in range(count):
             panel = panels[k]
             defect = max(abs(panel[DEFECT]) / load, math.hypot(panel[DEFECT + 1], panel[DEFECT + 2]) / moment)
+            defect = max(defect, abs(panel[DEFECT + 3]) * wet_weight)
             # The difference is the 10-point rule's error; that of 21 points is some three fifths more digits away.
             error = min(defect, 100.0 * defect * math.sqrt(defect))
             total += error

@@ -5,8 +5,9 @@
     r h^3 p' = 12 mu (Phi + c),   Phi = integral of f r dr,   f = dh/dt + wm dh/dtheta
     int p r dr   = [p r^2 / 2] - 1/2 int r^2 p' dr,      int p r^2 dr = [p r^3 / 3] - 1/3 int r^3 p' dr
 
-(the planar, narrow-seal variant drops r in the first line).  Force, moments and leakage need only
-single integrals of powers of r over h^3; the trapezoidal rule around the circle is spectrally accurate.
+(the planar, narrow-seal variant drops r in the first line; inertia adds g r to p', `centrifugal`).  Force, moments and
+leakage need only single integrals of powers of r over h^3; the trapezoidal rule around the circle is spectrally
+accurate.
 **Valid** narrow and moderately wide faces, incompressible, laminar; no pressure flow around the circle.
 
 Two choices make it cheap.  The circle starts at the thinnest place, so that h is even in beta, the
@@ -61,6 +62,7 @@ from .._radial_quadrature import (
     RULES,
     SINES,
     angle_count,
+    centrifugal,
     points_for,
     relative_clearance,
 )
@@ -94,10 +96,11 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return _radial_quadrature.parameters(film, clearance, error)
 
 
-def opening_law(film):
-    """Opening force (N) of the aligned film at rest, `force(clearance, inner_pressure, outer_pressure, floor)`:
-    pressures absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m."""
-    return _radial_quadrature.opening_law(film, parameters, wrench)
+def opening_law(film, mean_spin=0.0, spin_difference=0.0):
+    """Opening force (N) of the aligned film between still or turning faces (rad/s),
+    `force(clearance, inner_pressure, outer_pressure, floor)`: pressures absolute (Pa), clearance and floor of the film
+    thickness (without it the film's own) in m."""
+    return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
 
 
 @inner_kernel()
@@ -169,6 +172,9 @@ def circle(f, s, complete):
     mean, planar = f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     width, r_m = r_o - r_i, 0.5 * (r_i + r_o)
     mu, p_i, p_o = s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE]
+    # In p - g r^2/2 the film is one without inertia.
+    g = centrifugal(f, s)
+    p_i, p_o = p_i - 0.5 * g * r_i * r_i, p_o - 0.5 * g * r_o * r_o
 
     # Turn to the frame of the tilt: beta = 0 at the thinnest place, f even part + odd part.
     tilt = math.hypot(s[GX], s[GY])
@@ -231,6 +237,7 @@ def circle(f, s, complete):
     m_along = 4.0 * mu * d_beta * moment_even
     m_across = -4.0 * mu * across * d_beta * moment_odd
     s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
+    s[FORCE] += 0.25 * math.pi * g * (r_o**4 - r_i**4)
     s[MOMENT_X] = c_a * m_along - s_a * m_across
     s[MOMENT_Y] = s_a * m_along + c_a * m_across
     s[CAVITATED] = 0.0

@@ -11,9 +11,9 @@ from .film import FIELDS, RUNG, accepts, circle, fields, grid
 __all__ = ["FIELDS", "RUNG", "accepts", "fields", "flow", "grid", "opening_law", "parameters", "wrench"]
 
 
-def opening_law(film):
-    """Opening force (N) of the aligned film at rest, as that of film.py."""
-    return _radial_quadrature.opening_law(film, parameters, wrench)
+def opening_law(film, mean_spin=0.0, spin_difference=0.0):
+    """Opening force (N) of the aligned film, as that of film.py."""
+    return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
 
 
 @njit(cache=True)

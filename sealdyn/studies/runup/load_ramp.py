@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...dynamics.intervals import constant_and_slope
+from ...dynamics.intervals import constant_and_slope, spins
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.steady_extremes import steady_extremes
@@ -16,6 +16,7 @@ from ...faces.geometry import (
     FLOW_OUTER,
     GAP_STATE_SIZE,
     INNER_PRESSURE,
+    MEAN_SPIN,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     VISCOSITY,
@@ -72,10 +73,9 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
     for slot, q in ((VISCOSITY, film.viscosity), *pressures):
         s[slot] = constant_and_slope(q, interval)[0]
-    s[SPIN_DIFFERENCE] = model.speed_at(interval)
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
     source.flow(f, s)
-    outside = model.closing.outer_is_high
-    leakage = -s[FLOW_INNER] if outside else s[FLOW_OUTER]
+    leakage = -s[FLOW_INNER] if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else s[FLOW_OUTER]
     return float(most), float(min(edge_gaps(model.face, shift - closing, most))), float(leakage)
 
 

@@ -121,6 +121,8 @@ class Grid:
         touching = [key for key in self.axes if key.startswith(("film.", "closing."))]
         if "shaft.speed" in self.axes and self._follows_speed():
             touching.append("shaft.speed")
+        if "stator.speed" in self.axes and self.scene.film.inertia:
+            touching.append("stator.speed")
         shape = [len(v) if key in touching else 1 for key, v in self.axes.items()]
         table = np.full((4, *shape), np.nan)
         for place in product(*map(range, shape)):

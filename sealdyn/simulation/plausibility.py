@@ -1,0 +1,130 @@
+"""Where a run leaves what its film is valid for, or the numbers look like a slip of units: cautions, in words."""
+
+import math
+from itertools import product
+
+import numpy as np
+
+from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
+from ..dynamics.cautions import Caution, Concern
+from ..dynamics.signals import fields, fields_of, samples
+from ..scene.checks import points
+from ..scene.film import Coefficients, aligned_gaps
+
+# Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
+LAMINAR, WARM = 1000.0, 10.0
+# Films (m) that are thinner than lapped faces are rough, and than a liquid is a continuum; widest clearance (m) of a
+# seal's faces.
+SMOOTH, CONTINUUM, WIDE = 1e-7, 1e-8, 1e-3
+# Share of the sealed pressure from which the fluid's inertia matters.
+HEAVY = 0.05
+
+
+def cautions(scenario, run, outcome, leakage, temperature_rise, h_min) -> list[Caution]:
+    """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `temperature_rise` (K) if all friction heats
+    it, thinnest film `h_min` (m)."""
+    scene, model = scenario.scene, run.model
+    found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(temperature_rise)]
+    found += _flash(run, outcome)
+    if not isinstance(scene.film.coefficients, Coefficients) or model.interface.name != "linear":
+        found += [*_turbulence(model, leakage), *_inertia(scene)]
+    return found
+
+
+def _units(scenario, model):
+    """Bare numbers where a unit is usual, faces a millimetre apart."""
+    for ring, speed in (("shaft", scenario.scene.shaft.speed), ("stator", scenario.scene.stator.speed)):
+        if f"{ring}.speed" in scenario.bare:
+            fastest = max(points(speed), key=abs)
+            read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
+            yield Caution(Concern.UNITS, f"{ring}.speed without a unit is read as {read}")
+    if model.clearance > WIDE:
+        apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
+        sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
+        yield Caution(Concern.UNITS, sentence)
+
+
+def _thin(scene, h_min):
+    """Films thinner than the roughness, and of nanometres."""
+    rough = SMOOTH if scene.contact is None else scene.contact.roughness
+    if not math.isfinite(h_min) or h_min >= max(rough, CONTINUUM):
+        return
+    if h_min < CONTINUUM:
+        why = "a liquid is no continuum there"
+    elif scene.contact is None:
+        why = "lapped faces are rougher, which a table [contact] counts"
+    else:
+        why = f"below the roughness of {rough * 1e9:.4g} nm its pressure is that of smooth faces"
+    yield Caution(Concern.THIN_FILM, f"the film thins to {h_min * 1e9:.4g} nm: {why}")
+
+
+def _arm(scene):
+    film = scene.film
+    if scene.contact is not None and film.tilt_radius == "mean":
+        off = (film.outer_radius - film.inner_radius) / (film.outer_radius + film.inner_radius)
+        why = f"at an edge its moment is wrong by {100 * off:.3g} %"
+        sentence = f'film.tilt_radius = "mean" puts the contact force at the mean radius: {why}'
+        yield Caution(Concern.CONTACT_ARM, sentence)
+
+
+def _heat(rise):
+    if math.isfinite(rise) and rise > WARM:
+        heat = f"friction would heat the leakage by {rise:.4g} K"
+        yield Caution(Concern.HEATING, f"not isothermal: {heat}, and the film has one viscosity")
+
+
+def _turbulence(model, leakage):
+    """Reynolds numbers of the aligned film at the fastest sliding and the least viscosity."""
+    film, scene = model.scene.film, model.scene
+    viscosity = min(points(film.viscosity))
+    sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
+    gaps = [gap for gap in aligned_gaps(film, model.clearance) if gap[1] > 0.0]
+    numbers = [(couette_reynolds(film.density, viscosity, sliding * r, h), r) for r, h in gaps]
+    (first, inner), (most, radius) = numbers[0], max(numbers)
+    doubt = f"the film counts as laminar, which it is below some {LAMINAR:.0f}"
+    if most > LAMINAR:
+        found = f"Couette Reynolds number {first:.0f} at r = {inner * 1e3:.4g} mm"
+        found += f", {most:.0f} at {radius * 1e3:.4g} mm" if radius != inner else ""
+        yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
+    through = poiseuille_reynolds(film.density, viscosity, leakage / (2.0 * math.pi * film.inner_radius))
+    if math.isfinite(through) and through > LAMINAR:
+        found = f"Poiseuille Reynolds number {through:.0f} of the leakage"
+        yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
+
+
+def _inertia(scene):
+    """Centrifugal inertia that is left out and matters."""
+    film = scene.film
+    if film.inertia:
+        return
+    drop = max(abs(o - i) for o, i in product(points(film.outer_pressure), points(film.inner_pressure)))
+    speeds = product(points(scene.stator.speed), points(scene.shaft.speed))
+    most = max(centrifugal_pressure(film.density, s, r, film.inner_radius, film.outer_radius) for s, r in speeds)
+    if most > HEAVY * drop:
+        share = f", {100 * most / drop:.3g} % of the sealed pressure" if drop else ""
+        sentence = (
+            f"centrifugal inertia of the film is left out: {most / 1e3:.3g} kPa{share}; film.inertia = true adds it"
+        )
+        yield Caution(Concern.INERTIA, sentence)
+
+
+def _flash(run, outcome):
+    """Pressures below the vapour pressure: at the edges at any time, and in the film as the run ended."""
+    film = run.model.scene.film
+    if film.vapour_pressure is None:
+        return
+    least = min(*points(film.outer_pressure), *points(film.inner_pressure))
+    if fields_of(run.model):
+        least = min(least, _least_pressure(run.segment(outcome.segment), outcome.tau, outcome.y))
+    if least < film.vapour_pressure:
+        vapour = f"below the vapour pressure of {film.vapour_pressure / 1e3:.4g} kPa"
+        sentence = f"the film falls to {least / 1e3:.4g} kPa, {vapour}: it boils there, which no film here knows"
+        yield Caution(Concern.FLASHING, sentence)
+
+
+def _least_pressure(segment, tau, y) -> float:
+    """Least pressure (Pa) of the film at segment time `tau` (s)."""
+    rates = np.where(segment.rate_places >= 0, y[segment.rate_places], 0.0)
+    x = y[None, segment.film] if segment.model.unknowns.film_unknowns is not None else None
+    at = samples(segment, np.array([tau]), y[None, : segment.n], rates[None, :], x)
+    return float(np.min(fields(at, [0], x)["pressure"]))

@@ -1,0 +1,115 @@
+"""Cautions of runs that leave what their film is valid for, beside runs that do not, and the numbers in them."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sealdyn.dynamics.cautions import Concern
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.settings import with_values
+from sealdyn.simulation import plausibility, simulate
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SEAL = SCENARIOS / "fms_reference.toml"
+# So slow and thin a fluid that nothing is left to say of the reference seal.
+TAME = ["shaft.speed=100 rad/s", "film.viscosity=5 mPa*s", "run.turns=1", "run.accuracy=1e-3"]
+OWN = "{ tilt_stiffness = 5790, tilt_damping = 4.08, axial_stiffness = 6.1e6, axial_damping = 5200 }"
+
+
+def cautions(*overrides, path=SEAL, change=None):
+    """{concern: sentences} of a short run, whose `warnings` hold the same."""
+    scenario = read_scenario(path, [*TAME, *overrides])
+    scenario = with_values(scenario, change) if change else scenario
+    found, kept = {}, plausibility.cautions
+
+    def listening(*anything):
+        told = kept(*anything)
+        for caution in told:
+            found.setdefault(caution.concern, []).append(caution.sentence)
+        return told
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("sealdyn.simulation.summary.cautions", listening)
+        summary = simulate.simulate_in_memory(scenario)
+    assert all(sentence in summary["warnings"] for told in found.values() for sentence in told)
+    return found
+
+
+def numbers(sentence):
+    return [float(x) for x in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]?\d+)?", sentence)]
+
+
+def test_a_tame_seal_has_none():
+    assert cautions() == {}
+
+
+def test_reynolds_numbers_and_inertia_of_the_reference_seal():
+    """rho W r h / mu: 640 where h = C = 10 um, 2800 at the outer edge; 3/20 rho w^2 (r_o^2 - r_i^2) = 86 kPa, 17 %."""
+    found = cautions("shaft.speed=1000 rad/s", "film.viscosity=0.5 mPa*s")
+    assert set(found) == {Concern.TURBULENCE, Concern.INERTIA}
+    assert numbers(found[Concern.TURBULENCE][0])[:4] == [640, 32, 2800, 40]
+    assert numbers(found[Concern.INERTIA][0])[:2] == [86.4, 17.3]
+    counted = cautions("shaft.speed=1000 rad/s", "film.viscosity=0.5 mPa*s", "film.inertia=true")
+    assert set(counted) == {Concern.TURBULENCE}
+    own = cautions("shaft.speed=1000 rad/s", 'film.model="linear"', f"film.coefficients={OWN}")
+    assert not {Concern.TURBULENCE, Concern.INERTIA} & set(own)
+
+
+def test_poiseuille_reynolds_number_of_the_leakage():
+    """Q / (2 pi r nu) of the aligned narrow film, pressed through 30 um of water."""
+    found = cautions("film.clearance=30 um", "film.viscosity=0.5 mPa*s", "film.coning=0", "film.outer_pressure=30 bar",
+                     "stator.misalignment=0", "rotor.runout=0")  # fmt: skip
+    flow = (30e-6) ** 3 * 3e6 / (12 * 0.5e-3 * 0.032 * np.log(40 / 32)) / 5e-7
+    (sentence,) = found[Concern.TURBULENCE]
+    assert numbers(sentence)[0] == pytest.approx(flow, rel=0.01)
+
+
+def test_friction_that_heats_the_leakage():
+    found = cautions("film.clearance=1 um", "film.coning=0.3 mrad", "shaft.speed=800 rad/s")
+    (sentence,) = found[Concern.HEATING]
+    assert numbers(sentence)[0] > 10
+
+
+def test_films_of_nanometres():
+    """Half a nanometre short of contact counts as closed; above it stands the roughness, told or not."""
+    thin = ["film.coning=0", "film.viscosity=1e-5 Pa*s", "rotor.runout=0", "stator.misalignment=0"]
+    for clearance, word in (("5 nm", "continuum"), ("50 nm", "[contact]")):
+        (sentence,) = cautions(*thin, f"film.clearance={clearance}")[Concern.THIN_FILM]
+        assert word in sentence and numbers(sentence)[0] == float(clearance.split()[0])
+    assert Concern.THIN_FILM not in cautions(*thin, "film.clearance=1 um")
+    rough = [*thin, "contact.roughness=1 um", "contact.compressive_strength=300 MPa"]
+    (sentence,) = cautions(*rough, "film.clearance=0.9 um")[Concern.THIN_FILM]
+    assert numbers(sentence) == [900, 1000]
+
+
+def test_the_arm_of_contact():
+    rough = ["contact.roughness=0.1 um", "contact.compressive_strength=300 MPa"]
+    assert Concern.CONTACT_ARM not in cautions(*rough)
+    (sentence,) = cautions(*rough, 'film.tilt_radius="mean"')[Concern.CONTACT_ARM]
+    assert numbers(sentence) == [pytest.approx(100 * 4 / 36, abs=0.1)]
+
+
+def test_a_film_below_its_vapour_pressure():
+    assert Concern.FLASHING not in cautions("film.inner_pressure=1 bar", "film.vapour_pressure=0.9 bar")
+    (sentence,) = cautions("film.vapour_pressure=2.3 kPa")[Concern.FLASHING]
+    assert numbers(sentence) == [0, 2.3]
+    # Both edges above it, and the wedge below it.
+    wedge = ["film.coning=0", "film.outer_pressure=1 bar", "film.inner_pressure=1 bar", "shaft.speed=3000 rad/s",
+             "closing.balance_ratio=0.8", "film.vapour_pressure=0.9 bar"]  # fmt: skip
+    assert Concern.FLASHING not in cautions(*wedge, "stator.misalignment=0", "rotor.runout=0")
+    tilted = cautions(*wedge, "stator.misalignment=0.1 mrad", "stator.support.axial_stiffness=5e8 N/m")
+    assert numbers(tilted[Concern.FLASHING][0])[0] < 90
+
+
+def test_numbers_without_units():
+    (sentence,) = cautions("shaft.speed=100")[Concern.UNITS]
+    assert numbers(sentence)[:2] == [100, pytest.approx(954.93)]
+    assert cautions("shaft.speed=100", change={"shaft.speed": 50.0})[Concern.UNITS] == [
+        sentence.replace("100 ", "50 ").replace("954.93", "477.465")
+    ]
+    # A sweep gives SI numbers: nobody wrote these.
+    assert cautions(change={"shaft.speed": 50.0}) == {}
+    far = cautions("film.clearance=1", "film.coning=0", "film.outer_pressure=0.001 Pa", "film.viscosity=1e6 Pa*s")
+    assert any("metres" in sentence for sentence in far[Concern.UNITS])
