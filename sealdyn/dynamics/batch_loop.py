@@ -12,7 +12,7 @@ import numpy as np
 from numba import carray, njit
 
 from ..numerics.addresses import call_rates, integers
-from ..numerics.hermite import sample
+from ..numerics.hermite import sample, sample_doubtful
 from ..solvers.block import OVERLAP
 from ..solvers.sundials_direct import (
     BLOCK,
@@ -211,5 +211,5 @@ def _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, begin, end, done, ou
             accelerations[k, j] = slopes[runs.rate_places[j]]
     times = output.due[done:last]
     sample(t, q, q_rate, count, begin, end, times, output.q[done:last], unused)
-    sample(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last], unused)
+    sample_doubtful(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last])
     return last
