@@ -175,13 +175,14 @@ def _plain(t, q, k, count, nodes, table, own):
 
 @njit(cache=True)
 def _newton(table, nodes, count, i, at):
-    """Value of row `i` at the time `at`, and the size of the last of its terms there."""
-    total, product, term = 0.0, 1.0, 0.0
+    """Value of row `i` at the time `at`, and what its terms there leave open: the larger of the last two, since one may
+    be small by chance."""
+    total, product, term, before = 0.0, 1.0, 0.0, 0.0
     for m in range(count):
-        term = table[i, m] * product
+        before, term = term, table[i, m] * product
         total += term
         product *= at - nodes[m]
-    return total, abs(term)
+    return total, max(abs(term), abs(before)) if count > 2 else abs(term)
 
 
 @njit(cache=True)
