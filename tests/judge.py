@@ -5,7 +5,6 @@ so that nothing is interpolated.  Dry friction needs the events of `solve`: ther
 and Radau.
 """
 
-
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
@@ -50,7 +49,7 @@ def landed(run, scales, times, kind, tolerance):
     """Columns at the times by a solver class of SciPy, from instant to instant; fewer rows where the film closes or the
     solver gives up."""
     y, columns, step = run.y0.copy(), [], None
-    for k, interval in enumerate(run.intervals):
+    for k in range(len(run.intervals)):
         segment, last = run.segment(k), k + 1 == len(run.intervals)
         absolute, tau = absolute_tolerances(segment, tolerance), 0.0
         end = np.inf if last else segment.time + segment.length

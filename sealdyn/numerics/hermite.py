@@ -131,7 +131,8 @@ def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
 def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
     """As `sample`, without the rates, of `q` whose rates may be inexact: in a stiff scene those magnify an error of `q`
     by the fastest decay.  Between two steps where the rates move the interpolant by more than the values alone leave
-    open, they are left out."""
+    open, they are left out.
+    **Valid** steps that are short beside the motion, as those of a multistep method."""
     n = q.shape[1]
     table, nodes, unused = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES), np.empty(n)
     plain, own, there = np.zeros((n, NODES)), np.zeros(NODES), np.empty(n)
@@ -175,14 +176,13 @@ def _plain(t, q, k, count, nodes, table, own):
 
 @njit(cache=True)
 def _newton(table, nodes, count, i, at):
-    """Value of row `i` at the time `at`, and what its terms there leave open: the larger of the last two, since one may
-    be small by chance."""
-    total, product, term, before = 0.0, 1.0, 0.0, 0.0
+    """Value of row `i` at the time `at`, and the size of the last of its terms there."""
+    total, product, term = 0.0, 1.0, 0.0
     for m in range(count):
-        before, term = term, table[i, m] * product
+        term = table[i, m] * product
         total += term
         product *= at - nodes[m]
-    return total, max(abs(term), abs(before)) if count > 2 else abs(term)
+    return total, abs(term)
 
 
 @njit(cache=True)

@@ -1,10 +1,11 @@
 """What a user looks at, and the scales by which its errors are told: what `run.accuracy` is about.
 
-Displacements: the clearance C, of tilts C over the outer radius r_o.  Rates: these times the reference rate, the largest
-of shaft speed, relative spin and housing frequencies.  Film force: F, the largest closing force over the run less the
-lower pressure on the face (if there is none, the largest film force less the same).  Film moment: F r_o.  Leakage: the
-larger of its peak and that of the aligned film at C under the largest pressure difference.  Torque: the larger of its
-peak and that of the aligned film at C.
+Displacements: the clearance C, of tilts C over the outer radius r_o.  Rates: these times the reference rate, the
+largest of shaft speed, relative spin and housing frequencies, or the rate itself at that instant where it is larger (a
+squeezed film lets go a million times faster than anything turns).  Film force: F, the largest closing force over the
+run less the lower pressure on the face (if there is none, the largest film force less the same).  Film moment: F r_o.
+Leakage: the larger of its peak and that of the aligned film at C under the largest pressure difference.  Torque: the
+larger of its peak and that of the aligned film at C.
 """
 
 import math
@@ -58,8 +59,9 @@ class LookedAt:
         force, leakage, torque = self.force, max(self.leakage, peaks[-2]), max(self.torque, peaks[-1])
         force = force if force > 0.0 else peaks[2 * n]
         moment = np.hypot(gap[:, 2 * n + 1], gap[:, 2 * n + 2])
+        fast = np.maximum(np.abs(other[:, n : 2 * n]).max(axis=1), 1.0)
         over = [gap[:, 2 * n] / force, moment / (force * self.outer_radius), gap[:, -2] / leakage, gap[:, -1] / torque]
-        return np.column_stack([gap[:, :n].max(axis=1), gap[:, n : 2 * n].max(axis=1), *over])
+        return np.column_stack([gap[:, :n].max(axis=1), gap[:, n : 2 * n].max(axis=1) / fast, *over])
 
 
 def reference_rate(model) -> float:

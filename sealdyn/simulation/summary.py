@@ -134,7 +134,7 @@ def plain(value):
 def _steady(run, outcome, period, begun_steady):
     """Steady extremes over the last forcing period, or None with a sentence."""
     none = {"steady_max": None, "steady_min": None}
-    if outcome.status != Status.OK:
+    if outcome.status not in (Status.OK, Status.INACCURATE):
         return none, f"no steady state: the run {outcome.status}"
     last, before = run.extrema.records[1], run.extrema.records[2]
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):

@@ -15,7 +15,8 @@ OVERLAP = 4
 class Block:
     """Accepted steps of a segment: times `t` (m,) (s, of the segment), unknowns `ys` (m, size), derivatives `yps` (m,
     size; zero where the segment has a right-hand side).  New are the intervals between the steps `begin` and `end`, up
-    to `until` (s) if the run ends before the last of them does; the other steps are neighbours."""
+    to `until` (s) if the run ends before the last of them does; the other steps are neighbours.  `stiff`: by a method
+    whose rates are only as exact as its tolerance where the scene's fastest decay magnifies that."""
 
     segment: object
     t: np.ndarray
@@ -24,6 +25,7 @@ class Block:
     begin: int
     end: int
     until: float | None = None
+    stiff: bool = False
 
     @cached_property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
@@ -71,8 +73,10 @@ class Block:
         (values, slopes), more = self.motion, self.accelerations
         out, slope = np.empty((2, len(times), values.shape[1]))
         sample(t, values[first:last], slopes[first:last], count, begin, end, times, out, slope)
-        if more is not None:
+        if more is not None and self.stiff:
             sample_doubtful(t, slopes[first:last], more[first:last], count, begin, end, times, slope)
+        elif more is not None:
+            sample(t, slopes[first:last], more[first:last], count, begin, end, times, slope, np.empty_like(slope))
         return out, slope
 
     def film_at(self, times) -> tuple:
