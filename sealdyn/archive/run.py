@@ -37,7 +37,7 @@ from .fields import (
 
 # Archives of the first format have no fields.
 FORMAT, OLDER = "sealdyn archive 2", ("sealdyn archive 1",)
-STATUSES = (Status.OK, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
+STATUSES = (Status.OK, Status.INACCURATE, Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED)
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
 # Of its room a finished archive fills at least this.

@@ -12,7 +12,7 @@ import numpy as np
 from numba import carray, njit
 
 from ..numerics.addresses import call_rates, integers
-from ..numerics.hermite import sample
+from ..numerics.hermite import sample, sample_doubtful
 from ..numerics.inner_kernel import inner_kernel
 from ..solvers.block import OVERLAP
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
@@ -85,11 +85,13 @@ class Touching(NamedTuple):
 
 
 class Output(NamedTuple):
-    """Segment times `due` (k,) (s) of all stretches, one after the other, and displacements and rates (k, n) there."""
+    """Segment times `due` (k,) (s) of all stretches, one after the other, and displacements and rates (k, n) there;
+    `stiff` as of a Block."""
 
     due: np.ndarray
     q: np.ndarray
     q_rate: np.ndarray
+    stiff: bool
 
 
 def numbers(segment) -> list[float]:
@@ -208,5 +210,8 @@ def _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, begin, end, done, ou
             accelerations[k, j] = slopes[runs.rate_places[j]]
     times = output.due[done:last]
     sample(t, q, q_rate, count, begin, end, times, output.q[done:last], unused)
-    sample(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last], unused)
+    if output.stiff:
+        sample_doubtful(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last])
+    else:
+        sample(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last], unused)
     return last

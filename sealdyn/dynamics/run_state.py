@@ -47,6 +47,13 @@ class RunState:
             self._segment = self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
         return self._segment
 
+    def anew(self) -> "RunState":
+        """The same run before its start, with observers of its own."""
+        other = RunState(self.model, self.duration)
+        other.y0, other.reasons, other.cautions = self.y0.copy(), list(self.reasons), list(self.cautions)
+        other.extrema.windows[1:] = self.extrema.windows[1:]
+        return other
+
     @cached_property
     def memory(self) -> float:
         """Number of shortest periods for which the linearised scene remembers an error, at most those of the run."""

@@ -130,6 +130,64 @@ def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
 
 
 @njit(cache=True)
+def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
+    """As `sample`, without the rates, of `q` whose rates may be inexact: in a stiff scene those magnify an error of `q`
+    by the fastest decay.  Between two steps where the rates move the interpolant by more than the values alone leave
+    open, they are left out.
+    **Valid** steps that are short beside the motion, as those of a multistep method."""
+    n = q.shape[1]
+    table, nodes, unused = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES), np.empty(n)
+    plain, own, there = np.zeros((n, NODES)), np.zeros(NODES), np.empty(n)
+    trusted = np.ones(n, dtype=np.bool_)
+    k, size = begin, 0
+    for j in range(len(times)):
+        moved = size == 0
+        while k < end - 1 and times[j] > t[k + 1]:
+            k += 1
+            moved = True
+        if moved:
+            size = fit(t, q, q_rate, k, count, table, nodes)
+            _plain(t, q, k, size // 2, nodes, plain, own)
+            middle = 0.5 * (t[k] + t[k + 1])
+            value(table, nodes, size, middle, there, unused)
+            for i in range(n):
+                found, last = _newton(plain, own, size // 2, i, middle)
+                trusted[i] = abs(there[i] - found) <= last
+        value(table, nodes, size, times[j], out[j], unused)
+        for i in range(n):
+            if not trusted[i]:
+                out[j, i], _ = _newton(plain, own, size // 2, i, times[j])
+
+
+@njit(cache=True)
+def _plain(t, q, k, count, nodes, table, own):
+    """Divided differences (n, count) of the values alone at the steps around interval `k` that `nodes` names twice
+    each, in their order."""
+    for m in range(count):
+        own[m] = nodes[2 * m]
+        row = max(0, k + 2 - NODES)
+        while t[row] != own[m]:
+            row += 1
+        for i in range(q.shape[1]):
+            table[i, m] = q[row, i]
+    for i in range(q.shape[1]):
+        for order in range(1, count):
+            for m in range(count - 1, order - 1, -1):
+                table[i, m] = (table[i, m] - table[i, m - 1]) / (own[m] - own[m - order])
+
+
+@njit(cache=True)
+def _newton(table, nodes, count, i, at):
+    """Value of row `i` at the time `at`, and the size of the last of its terms there."""
+    total, product, term = 0.0, 1.0, 0.0
+    for m in range(count):
+        term = table[i, m] * product
+        total += term
+        product *= at - nodes[m]
+    return total, abs(term)
+
+
+@njit(cache=True)
 def integrals(t, rates, begin, end):
     """Integrals (end - begin, n) of `rates` (m, n) at the times `t` (m,) over each step of [begin, end]: of the
     polynomial through the steps around it.

@@ -2,8 +2,8 @@
 
 A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial with
 a loose tolerance: if that errs little enough the run goes on from there, else it starts again with a tolerance sharper
-in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and a stretch of it is done again
-thirty times sharper; what the two differ by grows over the periods that the scene remembers.
+in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and is done once more, sharper
+(second_run.py); where the two differ by too much it starts again.
 **Valid** estimates, not bounds.
 """
 
@@ -14,22 +14,19 @@ import numpy as np
 
 from ..dynamics.run_state import RunState
 from ..solvers.block import Block
-from ..solvers.contract import TIGHTEST, Counts, SolverFailure, Status, attainable, tolerance_for
+from ..solvers.contract import Counts, SolverFailure, tolerance_for
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.global_error import GlobalErrorEstimate
-from ..solvers.integrate import solve
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
-from ..solvers.recorder import Recorder
 from .film_error import model_error
+from .looked_at import LookedAt
 
-# The stretch (fastest periods); done twice, by how much sharper the second time.
-TRIAL_PERIODS, SHARPER, PER_PERIOD = 3.0, 30.0, 32
-# What a stretch shows, times this, is what a run has: of a stretch done twice (at least a third of the error,
-# tests/unit), and of one that is followed (what passes ERROR_SHARE nevertheless is sharpened).
-STRETCH_SAFETY, TRIAL_SAFETY = 6.0, 8.0
-# Steps grow after the stretch: what a run may err by at least, in tolerances (measured: 0.05 to 3.3 where damped).
-ERROR_FLOOR = 3.0
+# The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
+# is sharpened).
+TRIAL_PERIODS, TRIAL_SAFETY = 3.0, 8.0
+# How far a run is from a sharper one, times this, is its error.
+MEASURED = 2.0
 # First try of a tolerance over the cautious one; the share of the accuracy its error may take, and what the energy
 # audit may show of the stretch, in accuracies.
 LOOSER, SHARE, ENERGY = 30.0, 0.5, 2.5
@@ -40,8 +37,6 @@ GROWN = 5.0
 # What to try where the solver errs too much: of a stiff scene, which BDF is chosen for, no explicit method.
 CURE = {"adams": 'run.solver = "dop853" or a sharper run.accuracy',
         "bdf": 'run.solver = "radau" or a sharper run.accuracy'}  # fmt: skip
-# Another method where the same one cannot be any sharper.
-OTHER = {"adams": "bdf", "bdf": "ida", "ida": "ida", "dop853": "radau", "radau": "dop853"}
 
 
 @dataclass(frozen=True)
@@ -54,6 +49,11 @@ class TrialRun:
     times: np.ndarray
     unknowns: np.ndarray
     counts: Counts
+
+    @classmethod
+    def without_steps(cls, tolerance: float, said: str) -> "TrialRun":
+        """Of a tolerance that needs no trial."""
+        return cls(tolerance, said, np.empty(0), np.empty(0), Counts())
 
     def steps(self, segment, tau, y, method, tolerance, counts) -> Iterator:
         """Steps of the method over a segment, with the contract of solvers/contract.py: from the start those of the
@@ -68,19 +68,27 @@ class TrialRun:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Estimated errors relative to the scales of `accuracy`: of the solver, of the film against the next higher film
-    model (each None where it cannot be estimated, or there is no higher one), both together, and a sentence."""
+    """Estimated errors of all that is looked at (looked_at.py), relative to the scales of `accuracy`: of the solver, of
+    the film against the next higher film model (each None where it cannot be estimated, or there is no higher one),
+    both together, and a sentence; `horizon` (s): the time up to which a run that is measured is as exact as asked, None
+    where it is to its end."""
 
     asked: float
     solver: float | None
     model: float | None
     said: str
+    horizon: float | None = None
 
     @property
     def estimated(self) -> float | None:
         """Both errors together; None if neither is known."""
         known = [error for error in (self.solver, self.model) if error is not None]
         return sum(known) if known else None
+
+    @property
+    def solved(self) -> bool:
+        """Whether the solver's error is within what was asked, as far as it is known."""
+        return self.solver is None or self.solver <= self.asked
 
 
 def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
@@ -93,7 +101,7 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
         return None
     asked = model.accuracy
     segment, least = run.segment(0), tolerance_for(method, asked, run.memory)
-    errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least)
+    errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least, LookedAt(run))
     if not errors.sound:
         return None
     growth = float(np.max(errors.motion.values.real))
@@ -145,44 +153,38 @@ def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun 
     return TrialRun(tolerance, reason.format(tolerance), t[:0], ys[:0], counts)
 
 
-def solver_error(run: RunState, method: str) -> float | None:
-    """Estimated error of displacements over a run with the cautious tolerance, relative to their scales, from a stretch
-    of it done twice.  None if the stretch does not end well.
-    **Valid** as the module; of the matrix exponential the interpolation error, which the tolerance bounds."""
-    model, memory = run.model, run.memory
-    tolerance = tolerance_for(method, model.accuracy, memory)
+def solver_error(method: str, tolerance: float, apart: np.ndarray | None) -> float | None:
+    """Estimated error of a run that is not followed, by this method with this `tolerance`, from how far it is `apart`
+    (m,) from a sharper one (second_run.py); None if there is none."""
     if method == "expm":
         # Exact at the steps, and between them as good as the tolerance wants it (tests/convergence).
         return BETWEEN * tolerance
-    stretch = min(run.intervals[0].length, TRIAL_PERIODS * model.shortest_period)
-    pairs = [(method, tolerance), (method, tolerance / SHARPER)]
-    if tolerance < SHARPER * TIGHTEST:
-        other = OTHER[method]
-        sharp = max(model.accuracy / SHARPER, 2 * attainable(other, memory))
-        pairs[1] = other, tolerance_for(other, sharp, memory)
-    parts = []
-    for name, sharp in pairs:
-        short = RunState(model, stretch)
-        short.y0, sink = run.y0.copy(), Recorder(stretch / max(8, round(TRIAL_PERIODS * PER_PERIOD)))
-        if solve(short, name, model.accuracy, sink, tolerance=sharp).status != Status.OK:
-            return None
-        parts.append(sink.arrays()[1])
-    count = min(len(part) for part in parts)
-    difference = np.abs(parts[0][:count] - parts[1][:count]) / model.scales[: model.unknowns.n]
-    remembered = min(memory, run.duration / model.shortest_period)
-    estimate = STRETCH_SAFETY * float(difference.max()) * max(1.0, remembered * model.shortest_period / stretch)
-    return max(estimate, ERROR_FLOOR * tolerance)
+    return None if apart is None else max(MEASURED * float(np.nanmax(apart)), tolerance)
+
+
+def horizon(times, apart, asked: float) -> float | None:
+    """The time (s) up to which a run is within what was `asked`, from the times (m,) (s) and how far (m,) it is apart
+    from a sharper one; None if it always is."""
+    over = np.flatnonzero(MEASURED * apart > asked)
+    return float(times[over[0]]) if len(over) else None
 
 
 def certify(
-    run: RunState, method: str, errors: GlobalErrorEstimate | None = None, by_model: float | None = None
+    run: RunState,
+    method: str,
+    tolerance: float,
+    errors: GlobalErrorEstimate | None = None,
+    by_model: float | None = None,
+    measured: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> Certificate:
-    """Certificate of a finished run by this method, with the errors of its steps (`errors`) and of its film
-    (`by_model`, relative) as far as they have been followed."""
-    by_solver = errors.worst if errors else solver_error(run, method)
+    """Certificate of a finished run by this method with this `tolerance`, with the errors of its steps (`errors`) and
+    of its film (`by_model`, relative) as far as they have been followed; `measured`: instants (m,) (s) and how
+    far (m,) it is from a sharper run there."""
+    by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_model is None and run.model.interface.name == "linear":
         by_model = model_error(run)
-    parts = [f"solver {by_solver:.1e}" if by_solver is not None else "solver not estimated"]
+    said = ", against a sharper run" if measured else ""
+    parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
     if by_model is not None:
         parts.append(f"model {by_model:.1e} against the radial film")
     elif run.model.interface.name == "linear":
@@ -192,7 +194,11 @@ def certify(
     known = [error for error in (by_solver, by_model) if error is not None]
     asked = run.model.accuracy
     sentence = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
+    until = horizon(*measured, asked) if measured else None
     if known and sum(known) > asked:
         coarse = by_model and by_model > 0.5 * sum(known)
-        sentence += f"; NOT met: try {'a higher film rung' if coarse else CURE.get(method, 'a sharper run.accuracy')}"
-    return Certificate(asked, by_solver, by_model, sentence)
+        since = f" from {until:.4g} s on" if until is not None else ""
+        sentence += (
+            f"; NOT met{since}: try {'a higher film rung' if coarse else CURE.get(method, 'a sharper run.accuracy')}"
+        )
+    return Certificate(asked, by_solver, by_model, sentence, until)

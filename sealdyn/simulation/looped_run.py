@@ -8,7 +8,7 @@ from ..dynamics.contact_events import ROW
 from ..dynamics.extrema import slack, watched_level
 from ..dynamics.function_values import thinnest_value
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, Status, tolerance_for
-from ..solvers.integrate import Outcome
+from ..solvers.integrate import STIFF, Outcome
 from ..solvers.sundials import looped
 from .outputs import with_speeds
 from .simulate import prepare_run
@@ -175,5 +175,5 @@ def _stacked(alike, loop):
         )
     if alike[0].sampled:
         q, q_rate = np.empty((2, ends[-1], models[0].unknowns.n))
-        output = loop.Output(np.concatenate(due), q, q_rate)
+        output = loop.Output(np.concatenate(due), q, q_rate, alike[0].method in STIFF)
     return runs, touching, output

@@ -6,7 +6,7 @@ import os
 import platform
 import time as clock
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -21,12 +21,14 @@ from ..dynamics.intervals import largest_value
 from ..dynamics.signals import PARTS
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..solvers.contract import Counts, Status, attainable
+from ..solvers.contract import Cause, Counts, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
-from ..solvers.integrate import solve
+from ..solvers.integrate import Outcome, solve
+from .attempts import Try, judged, next_try
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
+from .second_run import Comparison
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
 from .summary import parts, plain, summarise
 
@@ -76,33 +78,48 @@ def simulate(
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
     run, method, why, interval, count, by_model = prepare_run(scenario)
     series, fields = what_is_kept(run.model)
-    writer = ArchiveWriter(
-        out,
-        scenario_text=scenario.text,
-        resolved=scenario.resolved(),
-        meta=_meta(scenario, method),
-        series=series,
-        fields=fields,
-        resume=resume,
-        expected_rows=count,
-    )
-    sink = ArchiveSink(run, writer, interval, count, Tally(), progress, stop)
-    audit = EnergyAudit()
-    sink.audit = audit
-    restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
-    trial, sink.errors = choose_tolerance(run, method)
-    if restart and sink.errors and writer.state.get("errors"):
-        sink.errors.restore(writer.state["errors"])
-    outcome = solve(
-        run, method, run.model.accuracy, sink, audit=audit, errors=sink.errors, resume=restart, **_found(trial)
-    )
+    one = Try(method, None, why)
+    tries = []
+    while True:
+        writer = ArchiveWriter(
+            out,
+            scenario_text=scenario.text,
+            resolved=scenario.resolved(),
+            meta=_meta(scenario, one.method),
+            series=series,
+            fields=fields,
+            resume=resume,
+            expected_rows=count,
+        )
+        sink = ArchiveSink(run, writer, interval, count, Tally(), progress, stop)
+        audit = EnergyAudit()
+        sink.audit = audit
+        restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
+        trial, sink.errors = one.start(run)
+        if restart and sink.errors and writer.state.get("errors"):
+            sink.errors.restore(writer.state["errors"])
+        seen = Comparison(run) if sink.errors is None and one.method != "expm" else None
+        outcome = solve(
+            run, one.method, run.model.accuracy, sink, audit=audit, errors=sink.errors, seen=seen, resume=restart,
+            **_found(trial),
+        )  # fmt: skip
+        found, outcome = certificate(run, one.method, outcome, sink.errors, by_model, seen, progress, stop)
+        again = None if restart else next_try(run, scenario.run.solver, one, outcome, found, tries)
+        if again is None:
+            break
+        tries.append((one, outcome.tolerance, found))
+        writer.close()
+        run, one, resume = run.anew(), again, False
     sink.flush(outcome.segment, outcome.tau, outcome.y)
     if outcome.status != Status.INTERRUPTED:
         # What an interrupted run has not written yet it will meet again.
         run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
         sink.write_events()
-    summary = summarise(scenario, run, outcome, sink.tally, method, _reasons(why, trial, outcome.counts))
-    summary["certificate"] = certificate(run, method, outcome, sink.errors, by_model)
+    found, outcome = judged(found, outcome, tries)
+    summary = summarise(scenario, run, outcome, sink.tally, one.method, _reasons(one.why, trial, outcome.counts))
+    summary["certificate"] = found
+    if found["said"] and not found["met"]:
+        summary["warnings"].append(f"accuracy {found['said']}")
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == Status.INTERRUPTED else out
     summary["archive"] = str(path)
@@ -123,15 +140,27 @@ def _reasons(why: str, trial: TrialRun | None, counts: Counts) -> str:
     return "; ".join([*parts, *([counts.slow] if counts.slow else [])])
 
 
-def certificate(run, method, outcome, errors, by_model) -> dict:
+def certificate(run, method, outcome, errors, by_model, seen, progress=None, stop=None) -> tuple[dict, Outcome]:
     """How wrong the run is estimated to be (simulation/certificate.py), as part of the summary: `asked`, `estimated`,
-    `solver`, `model` (relative errors, None where not estimated) and `said`, a sentence."""
+    `solver`, `model` (relative errors, None where not estimated), `met`, `horizon` (s) and `said`, a sentence; and the
+    outcome, interrupted if the measuring was."""
+    none = {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None, "met": None, "horizon": None}
     if outcome.status != Status.OK:
-        return {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None,
-                "said": f"no certificate: the run {outcome.status}"}  # fmt: skip
-    found = certify(run, method, errors, by_model)
+        return {**none, "said": f"no certificate: the run {outcome.status}"}, outcome
+    measured = None
+    if seen:
+        try:
+            apart = seen.error_over_time(progress, stop, method=method, tolerance=outcome.tolerance)
+        except KeyboardInterrupt:
+            said = "no certificate: interrupted while the run was done once more"
+            return {**none, "said": said}, replace(
+                outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED, message=str(Cause.INTERRUPTED)
+            )
+        measured = None if apart is None else (seen.times, apart)
+    found = certify(run, method, outcome.tolerance, errors, by_model, measured)
+    met = None if found.estimated is None else found.estimated <= found.asked
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
-            "said": found.said}  # fmt: skip
+            "met": met, "horizon": found.horizon, "said": found.said}, outcome  # fmt: skip
 
 
 def simulate_in_memory(scenario, speeds: bool = False) -> dict:

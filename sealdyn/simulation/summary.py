@@ -139,7 +139,7 @@ def _steady(run, outcome, period, begun_steady):
     def none(sentence):
         return {"steady_max": None, "steady_min": None, "thinnest": None, "steady_said": sentence}
 
-    if outcome.status != Status.OK:
+    if outcome.status not in (Status.OK, Status.INACCURATE):
         return none(f"no steady state: the run {outcome.status}")
     last, before = run.extrema.records[1], run.extrema.records[2]
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..numerics.hermite import integrals, sample
+from ..numerics.hermite import integrals, sample, sample_doubtful
 
 # Steps kept to the left of what is worked on, and left for later on the right: neighbours for dense output.
 OVERLAP = 4
@@ -15,7 +15,8 @@ OVERLAP = 4
 class Block:
     """Accepted steps of a segment: times `t` (m,) (s, of the segment), unknowns `ys` (m, size), derivatives `yps` (m,
     size; zero where the segment has a right-hand side).  New are the intervals between the steps `begin` and `end`, up
-    to `until` (s) if the run ends before the last of them does; the other steps are neighbours."""
+    to `until` (s) if the run ends before the last of them does; the other steps are neighbours.  `stiff`: by a method
+    whose rates are only as exact as its tolerance where the scene's fastest decay magnifies that."""
 
     segment: object
     t: np.ndarray
@@ -24,6 +25,7 @@ class Block:
     begin: int
     end: int
     until: float | None = None
+    stiff: bool = False
 
     @cached_property
     def motion(self) -> tuple[np.ndarray, np.ndarray]:
@@ -63,18 +65,19 @@ class Block:
     def at(self, times) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and rates, each (k, n), at `times` (k,) (s, of the segment) inside the new steps.
 
-        Rates are interpolated with the accelerations at the steps: the slope of the displacements' interpolant would
-        magnify their error by one over the step.
+        Rates are interpolated with the accelerations at the steps, as far as these can be trusted: the slope of the
+        displacements' interpolant would magnify their error by one over the step.
         """
         first, last = max(0, self.begin - OVERLAP), min(len(self.t), self.end + OVERLAP + 1)
-        begin, end, count = self.begin - first, self.end - first, last - first
+        begin, end, count, t = self.begin - first, self.end - first, last - first, self.t[first:last]
         (values, slopes), more = self.motion, self.accelerations
-        n = values.shape[1]
-        if more is not None:
-            values, slopes = np.hstack([values, slopes]), np.hstack([slopes, more])
         out, slope = np.empty((2, len(times), values.shape[1]))
-        sample(self.t[first:last], values[first:last], slopes[first:last], count, begin, end, times, out, slope)
-        return (out, slope) if more is None else (out[:, :n], out[:, n:])
+        sample(t, values[first:last], slopes[first:last], count, begin, end, times, out, slope)
+        if more is not None and self.stiff:
+            sample_doubtful(t, slopes[first:last], more[first:last], count, begin, end, times, slope)
+        elif more is not None:
+            sample(t, slopes[first:last], more[first:last], count, begin, end, times, slope, np.empty_like(slope))
+        return out, slope
 
     def film_at(self, times) -> tuple:
         """The film's unknowns (k, n) at `times` (k,) (s), in a tuple; an empty one where it has none."""

@@ -15,21 +15,31 @@ from .contract import Retry
 
 # By how much a tolerance is sharpened when errors grow too large.
 SHARPER = 10.0
+# Steps of a block at which its errors are added to the motion.
+LOOKS = 8
+# They are looked at again where the errors of the motion exceed what they were by this.
+NOTABLE = 1.2
 
 
 class GlobalErrorEstimate:
-    """An observer of the error of the displacements so far, carried along a run of constant conditions; every ring has
-    mass.  `worst` is the largest of any displacement at any step, relative to its scale; beyond `allowed` a run had
-    better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the eigenvectors nearly
-    coincide, and nothing is estimated."""
+    """An observer of the error so far, carried along a run of constant conditions; every ring has mass.  `worst` is the
+    largest of any displacement at any step, relative to its scale, and of what else is `looked_at` (an object as
+    LookedAt of simulation/looked_at.py, or None), rates at any step, loads at a few where these are largest; beyond
+    `allowed` a run had better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the
+    eigenvectors nearly coincide, and nothing is estimated."""
 
-    def __init__(self, segment, allowed: float = math.inf, least: float = 0.0):
+    def __init__(self, segment, allowed: float = math.inf, least: float = 0.0, looked_at=None):
         self.segment, self.motion, self.allowed, self.least = segment, segment.exact_motion(), allowed, least
+        self.looked_at = looked_at
         self.tolerance = least
-        self.worst, self.modal = 0.0, np.zeros(len(self.motion.values), dtype=complex)
+        self.worst, self.moved, self.modal = 0.0, 0.0, np.zeros(len(self.motion.values), dtype=complex)
         self.sound = self.motion.sound
         if self.sound:
-            self.shapes = self.motion.vectors[: segment.n] / segment.scales[: segment.n, None]
+            lengths = segment.scales[: segment.n, None]
+            self.shapes = self.motion.vectors[: segment.n] / lengths
+            if looked_at is not None:
+                rates = self.motion.vectors[segment.rate_places] / (lengths * looked_at.rate)
+                self.shapes = np.vstack([self.shapes, rates])
 
     def begin(self, segment, tau, y):
         """Nothing to do: errors go on over a segment's start."""
@@ -44,20 +54,42 @@ class GlobalErrorEstimate:
         defects = np.diff(ys[begin : end + 1, :n], axis=0) - block.increments[:, :n]
         errors = np.empty((end - begin, len(self.modal)), dtype=complex)
         _answer(self.motion.values, np.diff(t[begin : end + 1]), defects @ self.motion.inverse.T, self.modal, errors)
-        self.worst = max(self.worst, float(np.max(np.abs((errors @ self.shapes.T).real))))
+        sizes = np.max(np.abs((errors @ self.shapes.T).real), axis=1)
+        moved = float(sizes.max())
+        if self.looked_at is not None and moved > NOTABLE * self.moved:
+            self.worst = max(self.worst, self._loads(block, errors, int(sizes.argmax())))
+        self.worst, self.moved = max(self.worst, moved), max(self.moved, moved)
         if self.worst > self.allowed and self.tolerance > self.least:
             self.restore(before)
             self.tolerance = max(self.tolerance / SHARPER, self.least)
             return Retry(self.tolerance)
         return None
 
+    def _loads(self, block, errors, largest) -> float:
+        """The largest error of what is looked at, at the step with the `largest` of the `errors` (m, modes) and at a
+        few others, where these are added to the motion."""
+        picked = np.unique([largest, *np.linspace(0, len(errors) - 1, LOOKS).round().astype(int)])
+        ys = block.ys[block.begin + 1 + picked]
+        moved = ys.copy()
+        moved[:, : self.segment.n_mechanical] += (errors[picked] @ self.motion.vectors.T).real
+        taus = block.t[block.begin + 1 + picked]
+        here, there = (self.looked_at.of(self.segment, taus, *self.segment.motion(y, y)) for y in (ys, moved))
+        return float(self.looked_at.errors(there, here).max())
+
     def state(self) -> dict:
-        """What a continued run needs: `worst`, and the modal errors (modes,) as real and imaginary parts."""
-        return {"worst": self.worst, "real": self.modal.real.tolist(), "imag": self.modal.imag.tolist()}
+        """What a continued run needs: `worst`, of displacements and rates `moved`, modal errors (modes,) as real and
+        imaginary parts."""
+        return {
+            "worst": self.worst,
+            "moved": self.moved,
+            "real": self.modal.real.tolist(),
+            "imag": self.modal.imag.tolist(),
+        }
 
     def restore(self, state: dict):
         """Go on from `state`."""
-        self.worst, self.modal = state["worst"], np.array(state["real"]) + 1j * np.array(state["imag"])
+        self.worst, self.moved = state["worst"], state["moved"]
+        self.modal = np.array(state["real"]) + 1j * np.array(state["imag"])
 
 
 @njit(cache=True)

@@ -17,6 +17,8 @@ from .methods import METHODS
 
 # A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
+# Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
+STIFF = ("bdf", "ida")
 
 
 @dataclass
@@ -37,12 +39,14 @@ class Outcome:
 
 
 def solve(
-    run, method: str, accuracy: float, sink, *, audit=None, errors=None, resume=None, steps=None, tolerance=None
-) -> Outcome:
+    run, method: str, accuracy: float, sink, *, audit=None, errors=None, seen=None, resume=None, steps=None,
+    tolerance=None,
+) -> Outcome:  # fmt: skip
     """Integrate a run segment by segment, chunk by chunk, into a sink.
 
     `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with; `errors`
-    a GlobalErrorEstimate that is shown every step, or None; `resume` = (segment index, tau (s), y (size,)) continues.
+    a GlobalErrorEstimate that is shown every step, or None, `seen` another observer, or None; `resume` = (segment
+    index, tau (s), y (size,)) continues.
     Another method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own
     `tolerance`.
     The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
@@ -52,7 +56,7 @@ def solve(
     """
     begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()
     steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, run.memory)
-    observers = [*([errors] if errors else []), run.extrema, run.contacts, audit]
+    observers = [*([errors] if errors else []), run.extrema, run.contacts, audit, *([seen] if seen else [])]
     audit.from_powers = errors is not None
     if errors:
         errors.tolerance = tolerance
@@ -114,7 +118,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
         if sticking:
             # It cuts the steps before anybody else sees them.
             transition = sticking.accept(
-                Block(segment, t, ys, yps, looked, len(t) - 1),
+                Block(segment, t, ys, yps, looked, len(t) - 1, stiff=method in STIFF),
                 lambda tau, y, until: _advanced(method_over, segment, tau, y, until),
             )
             if transition:
@@ -127,7 +131,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
         # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
         upto = count - 1 if last_block else count - 1 - OVERLAP
         if upto > watched:
-            block, stop = Block(segment, t, ys, yps, watched, upto), None
+            block, stop = Block(segment, t, ys, yps, watched, upto, stiff=method in STIFF), None
             for observer in observers:
                 found = observer.accept(block)
                 if isinstance(found, Retry):

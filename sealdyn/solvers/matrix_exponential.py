@@ -18,7 +18,10 @@ def expm(segment, tau, y, method, tolerance, counts):
     points, weights = np.polynomial.legendre.leggauss(POINTS)
     while tau < segment.length:
         free = y[:n] - motion.forced([tau])[0]
-        step, count = _exact_step(*motion.parts(free, segment.scales[:n]), tolerance)
+        exponents, sizes = motion.parts(free, segment.scales[:n])
+        # What is small as a displacement may be large as a rate.
+        sizes = sizes * np.maximum(np.abs(exponents) / segment.reference_rate, 1.0)
+        step, count = _exact_step(exponents, sizes, tolerance)
         step = min(step, segment.longest_step())
         widths = _widths(segment.length - tau, step, AT_ENDS if fresh else count, fresh)
         times, fresh = tau + np.cumsum(widths), False

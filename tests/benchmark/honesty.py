@@ -30,6 +30,7 @@ from sealdyn.scene.scene import Scene
 from sealdyn.simulation.certificate import certify, choose_tolerance
 from sealdyn.simulation.film_selection import select_film
 from sealdyn.simulation.method_selection import choose_method
+from sealdyn.solvers.contract import tolerance_for
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -121,9 +122,10 @@ def automatic(made, duration, accuracy, start, interval):
     trial, errors = choose_tolerance(ready, method)
     chosen = time.perf_counter() - begun
     options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
+    tolerance = trial.tolerance if trial else tolerance_for(method, accuracy, ready.memory)
     found, wall = looked_at(ready, method, accuracy, interval, errors=errors, **options)
     begun = time.perf_counter()
-    certificate = certify(ready, method, errors, by_model)
+    certificate = certify(ready, method, tolerance, errors, by_model)
     return chosen, wall, time.perf_counter() - begun, ready, method, found, certificate
 
 

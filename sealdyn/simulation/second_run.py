@@ -1,0 +1,109 @@
+"""How wrong a run is, measured: the run once more, sharper or by another method, and how far the two are apart in
+everything that is looked at."""
+
+import numpy as np
+
+from ..dynamics.run_state import RunState
+from ..solvers.contract import TIGHTEST, Status, attainable, tolerance_for
+from ..solvers.integrate import solve
+from .looked_at import LookedAt
+
+# Instants at which two runs are compared: per fastest period and at most, and after each start of a stretch, where fast
+# parts die away, by decades of its length.
+PER_PERIOD, MOST, AFTER, DECADES = 12, 3000, 12, 7
+GOLDEN = 0.6180339887498949
+# By how much sharper the second run is, and at least.
+SHARPER, LEAST_SHARPER = 30.0, 3.0
+# Another method where the same one cannot be any sharper.
+OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853"}
+
+
+class Comparison:
+    """An observer that keeps what is looked at of a run at instants `times` (m,) (s): columns of LookedAt, NaN where
+    the run has not been."""
+
+    def __init__(self, run: RunState):
+        self.scales, self.run, self.times = LookedAt(run), run, instants(run)
+        self.columns = None
+
+    def begin(self, segment, tau, y):
+        """Nothing to do: instants are of the whole run."""
+
+    def accept(self, block):
+        """Take in the instants in a block's new steps."""
+        begun = block.segment.time
+        until = block.t[block.end] if block.until is None else block.until
+        first, last = np.searchsorted(self.times, (begun + block.t[block.begin], begun + until))
+        if last > first:
+            taus = self.times[first:last] - begun
+            found = self.scales.of(block.segment, taus, *block.at(taus), *block.film_at(taus))
+            if self.columns is None:
+                self.columns = np.full((len(self.times), found.shape[1]), np.nan)
+            self.columns[first:last] = found
+
+    def error_over_time(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+        """How far (m,) this run, done by `method` with `tolerance`, is from a sharper one at each instant, the largest
+        over all quantities, relative to its scale; NaN where the two cannot be compared, infinite where the other has
+        ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`, which raises
+        KeyboardInterrupt."""
+        again = self.run.anew()
+        other = Comparison(again)
+        pair = sharper(method, tolerance, self.run)
+        outcome = solve(
+            again, pair[0], self.run.model.accuracy, Nothing(again, progress, stop), tolerance=pair[1], seen=other
+        )
+        if outcome.status == Status.INTERRUPTED:
+            raise KeyboardInterrupt
+        if self.columns is None or other.columns is None:
+            return None
+        both = ~(np.isnan(self.columns) | np.isnan(other.columns)).any(axis=1)
+        found = np.full(len(self.times), np.nan)
+        if both.any():
+            found[both] = self.scales.errors(self.columns[both], other.columns[both]).max(axis=1)
+        if outcome.status != Status.OK:
+            # One run ends well, the other does not: from there on nothing is right.
+            found[self.times > again.end_time(outcome.segment, outcome.tau)] = np.inf
+        return found
+
+
+class Nothing:
+    """A sink that keeps nothing, tells how far it is, and can be stopped."""
+
+    def __init__(self, run, progress=None, stop=None):
+        self.run, self.progress, self.stop = run, progress, stop
+
+    def due(self, segment):
+        """No output."""
+        return np.empty(0)
+
+    def take(self, *anything):
+        """Nothing is kept."""
+
+    def event(self, *anything):
+        """Nothing is kept."""
+
+    def state(self, segment, tau, y):
+        """Raises KeyboardInterrupt where `stop` asks for it."""
+        if self.progress:
+            self.progress(segment.time + tau, self.run.duration)
+        if self.stop and self.stop():
+            raise KeyboardInterrupt
+
+
+def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
+    """A method and a tolerance sharper than these, or another method where this one has no more to give."""
+    if tolerance >= LEAST_SHARPER * TIGHTEST:
+        return method, max(tolerance / SHARPER, TIGHTEST)
+    other = OTHER[method]
+    return other, tolerance_for(other, max(run.model.accuracy / SHARPER, 2 * attainable(other, run.memory)), run.memory)
+
+
+def instants(run) -> np.ndarray:
+    """Times (m,) (s) at which runs are compared: evenly over the run, but in step with nothing, and closer after the
+    starts of its stretches."""
+    count = int(min(max(PER_PERIOD * run.duration / run.model.shortest_period, 100), MOST))
+    evenly = np.mod(GOLDEN * np.arange(1, count + 1), 1.0) * run.duration
+    stretches = run.intervals[:: max(1, len(run.intervals) // 30)]
+    decades = 10.0 ** -np.linspace(0.3, DECADES, AFTER)
+    after = [interval.time + interval.length * decades for interval in stretches]
+    return np.unique(np.concatenate([evenly, *after]))

@@ -1,0 +1,113 @@
+"""Random scenes from everything that the program accepts, for benchmarks and tests of what it promises."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
+from sealdyn.scene.film import Film
+from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
+from sealdyn.scene.scene import Scene
+from sealdyn.scene.secondary_seal import SecondarySeal
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A scene with its run: `duration` (s), asked `accuracy`, `start` ("rest" or "steady"), and `words` for what makes
+    it special."""
+
+    scene: Scene
+    duration: float
+    accuracy: float
+    start: str
+    words: tuple[str, ...]
+
+    @property
+    def smooth(self) -> bool:
+        """Whether nothing touches or slides dry."""
+        return not {"contact", "o-ring"} & set(self.words)
+
+
+def wide(random) -> Drawn:
+    """One scene of all the families: arrangements, light and stiff rings, thin and thick, flat, converging and
+    diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, O-rings."""
+
+    def log(low, high):
+        return float(np.exp(random.uniform(math.log(low), math.log(high))))
+
+    def chance(share, word):
+        taken = random.random() < share
+        words.extend([word] if taken else [])
+        return taken
+
+    words = [str(random.choice(["fms", "fmr", "fmsr"]))]
+    arrangement, clearance, outer = words[0], log(5e-7, 5e-5), log(0.015, 0.08)
+    inner, speed, turns = outer * random.uniform(0.7, 0.95), log(50.0, 2500.0), random.integers(2, 25)
+    duration, tilt = float(turns) * 2 * math.pi / speed, clearance / outer
+
+    def varying(value, share, word, low, high):
+        """A number, or now and then a table that carries it to a multiple of itself."""
+        if not chance(share, word):
+            return value
+        a, b = np.sort(random.uniform(0.1, 0.9, 2)) * duration
+        return PiecewiseLinear((0.0, a, b), (value, value, value * random.uniform(low, high)))
+
+    high, low_side = log(1e5, 5e6), float(random.choice([0.0, 1e5]))
+    outside = random.random() < 0.6
+    shape = str(random.choice(["flat", "cone", "cone", "cone"]))
+    cone = 0.0 if shape == "flat" else clearance / (outer - inner) * log(0.1, 4.0)
+    # Mostly a film that narrows in the direction of flow, which is the stable one.
+    cone *= (1 if outside else -0.2) * (1 if random.random() < 0.85 else -0.2)
+    words.append(shape if cone >= 0 else "negative cone")
+    high_side = varying(high, 0.12, "pressure table", 0.3, 2.0)
+    film = Film(
+        model="auto" if random.random() < 0.3 else "radial", inner_radius=inner, outer_radius=outer, coning=cone,
+        clearance=clearance, viscosity=varying(log(1e-4, 1e-2), 0.08, "viscosity table", 0.3, 3.0),
+        outer_pressure=high_side if outside else low_side, inner_pressure=low_side if outside else high_side,
+    )  # fmt: skip
+
+    def ring():
+        mass = log(0.02, 3.0)
+        inertia = mass * outer**2 * random.uniform(0.4, 1.2)
+        support = Support(axial_stiffness=log(1e4, 2e6), axial_damping=log(1.0, 1000.0), radius=outer)
+        seal = None
+        if chance(0.06, "o-ring"):
+            law = dict(law="regularised", width=log(1e-5, 1e-3)) if random.random() < 0.4 else {}
+            seal = SecondarySeal(radius=outer, friction_force=log(0.1, 20.0), **law)
+        return dict(mass=mass, transverse_inertia=inertia, polar_inertia=inertia * random.uniform(0.3, 2.0),
+                    support=support, secondary_seal=seal,
+                    misalignment=varying(tilt * log(1e-3, 0.5), 0.05, "misalignment table", 0.2, 1.6))  # fmt: skip
+
+    housing, whirl, axial = Housing(), [], []
+    if chance(0.15, "angular tone"):
+        frequency = speed / (2 * math.pi) * random.uniform(0.3, 4.0)
+        housing.angular.append(AngularVibration(frequency=frequency, displacement=tilt * log(0.01, 0.2)))
+    if chance(0.15, "axial tone"):
+        frequency = speed / (2 * math.pi) * random.uniform(0.3, 4.0)
+        housing.axial.append(AxialVibration(frequency=frequency, displacement=clearance * log(0.01, 0.3)))
+    if chance(0.1, "whirl"):
+        whirl.append(Whirl(ratio=random.uniform(-1.5, 1.5), angle=tilt * log(0.01, 0.2)))
+    if chance(0.15, "axial runout"):
+        axial.append(AxialRunout(order=float(random.integers(1, 4)), amplitude=clearance * log(0.01, 0.2)))
+    shaft = Shaft(speed=varying(speed, 0.15, "speed table", 0.3, 2.0), whirl=whirl)
+    fixed = varying(tilt * log(1e-3, 0.5), 0.08, "misalignment table", 0.2, 1.6)
+    stator_speed = -speed * random.uniform(0.2, 1.0) if chance(0.08, "counter-rotating") else 0.0
+    rotor = Rotor(**ring(), axial_runout=axial) if "r" in arrangement[2:] else Rotor(runout=fixed, axial_runout=axial)
+    stator = (
+        Stator(**ring(), speed=stator_speed)
+        if "s" in arrangement[2:]
+        else Stator(misalignment=fixed, speed=stator_speed)
+    )
+    contact = None
+    if chance(0.12, "contact"):
+        roughness = clearance * log(0.03, 0.3)
+        christensen = dict(compressive_strength=log(1e7, 1e9))
+        gaussian = dict(law="greenwood-williamson", asperity_density=log(1e10, 1e11), asperity_radius=log(1e-6, 2e-5),
+                        modulus=log(1e9, 5e10))  # fmt: skip
+        contact = Contact(roughness=roughness, **(christensen if random.random() < 0.6 else gaussian))
+    made = Scene(shaft=shaft, film=film, housing=housing, rotor=rotor, stator=stator, contact=contact)
+    start = str(random.choice(["rest", "steady"]))
+    return Drawn(made, duration, log(1e-7, 1e-2), start, (*words, f"film {film.model}", start))
