@@ -8,12 +8,11 @@ then located on the full interpolant.  No event function, no sample: the step si
 import math
 
 import numpy as np
-from numba import njit
 
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 from .function_values import thinnest_value
@@ -173,7 +172,7 @@ def store(record, kind, out, at, theta, radius, index):
         record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, index
 
 
-@njit(cache=True)
+@outer_kernel()
 def track_extremes(
     t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, windows, index, records, tolerance, pace,
     fastest, reach,
