@@ -9,11 +9,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import carray, njit
+from numba import carray
 
 from ..numerics.addresses import call_rates, integers
 from ..numerics.hermite import sample, sample_doubtful
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from ..solvers.block import OVERLAP
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_objects import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
@@ -100,7 +100,7 @@ def numbers(segment) -> list[float]:
     return [segment.length, longest_step(segment), segment.time, segment.pace, fastest]
 
 
-@njit(cache=True, nogil=True)
+@outer_kernel(nogil=True)
 def integrate_many(cvode, runs, thinnest, touching, output, told):
     """Integrate the runs one after the other; `thinnest` a function value, `touching` and `output` None where there is
     no contact or nothing is due.  `told` (2,): the loop stops at once where the first is not zero; the second counts

@@ -8,11 +8,10 @@ be decided.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from ..faces.geometry import TOUCH
 from ..numerics.hermite import NODES, fit, value
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, gap_and_tilt, locate_minimum, scan_step
 from .function_values import thinnest_value
 from .step_bounds import THICKNESS
@@ -95,7 +94,7 @@ def _close(state, lifted, impulse, level, error, rows, count):
     return count + 1
 
 
-@njit(cache=True)
+@outer_kernel()
 def locate_contacts(t, q_all, q_rate_all, impulse, count, begin, end, reach, p, thinnest, f, y, yp, w, s, start, pace,
                     error, state, rows):  # fmt: skip
     """Contacts in steps [begin, end] of a segment that starts at `start` (s), into `rows` (k, ROW); returns how many

@@ -4,11 +4,11 @@ native.py has the equations of rings alone."""
 import math
 
 import numpy as np
-from numba import carray, cfunc, float64, int32, njit
+from numba import carray, float64, int32
 
 from ..faces.geometry import FORCE, MOMENT_X, MOMENT_Y, OUTER_RADIUS
 from ..numerics.addresses import ADDRESS, call_film_residual, call_load, floats, integers
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import c_function, inner_kernel, outer_kernel
 from . import equations
 from .film_derivatives import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
 from .function_values import load_value
@@ -68,14 +68,14 @@ def loads(tau, y, yp, block):
     call_load(block[LOAD], array(block, CONTACT), f, s)
 
 
-@njit(cache=True)
+@outer_kernel()
 def ring_rates(tau, y, yp, block):
     """Rates `yp` (size,) of the rings and works at given unknowns of the film, whose own stay as they are."""
     loads(tau, y, yp, block)
     equations.rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
 
 
-@njit(cache=True)
+@outer_kernel()
 def ring_rates_along(taus, ys, yps, block):
     """The same at segment times `taus` (m,) (s) and unknowns `ys` (m, size), into `yps` (m, size)."""
     for i in range(len(taus)):
@@ -89,7 +89,7 @@ def rows_of_rings(tau, y, yp, res, block):
     equations.residual(tau, y, yp, p, w, s, array(block, WORK), res)
 
 
-@njit(cache=True)
+@outer_kernel()
 def residual(tau, y, yp, res, block):
     """The residual `res` (size,); returns the film's code, which the block keeps with the time."""
     loads(tau, y, yp, block)
@@ -116,7 +116,7 @@ def _verdict(code, values, tau, block):
     return code
 
 
-@njit(cache=True)
+@outer_kernel()
 def derivatives(tau, alpha, by_y, y, yp, data, block):
     """`by_y` d res / d y + `alpha` d res / d y', `by_y` 0 or 1, into the values `data` (nnz,) of the segment's pattern;
     returns the film's code.  The rings' columns are differences of the whole residual; the film's are its own, and its
@@ -202,7 +202,7 @@ def _rows_by_force(tau, y, yp, columns, block):
         s[FORCE + k] = held
 
 
-@cfunc(OF_RESIDUAL, cache=True)
+@c_function(OF_RESIDUAL)
 def residual_at(tau, y_at, yp_at, res_at, data):
     """The residual; FAILED where the film has no solution."""
     block = carray(integers(data), BLOCK)
@@ -210,7 +210,7 @@ def residual_at(tau, y_at, yp_at, res_at, data):
     return FAILED if residual(tau, y, yp, carray(floats(res_at), block[SIZE]), block) != 0 else 0
 
 
-@cfunc(OF_DERIVATIVES, cache=True)
+@c_function(OF_DERIVATIVES)
 def derivatives_at(tau, alpha, y_at, yp_at, values_at, data):
     """d res / d y + alpha d res / d y', the values of the segment's pattern; FAILED where the film has no solution."""
     block = carray(integers(data), BLOCK)

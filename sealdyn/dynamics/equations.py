@@ -16,8 +16,6 @@ rings, the index of the works, whether there are two more of them, then the impo
 (dynamics/imposed_motion.py).
 """
 
-from numba import njit
-
 from ..faces.contact import contact_load
 from ..faces.geometry import (
     CONTACT_FORCE,
@@ -40,7 +38,7 @@ from ..faces.geometry import (
     STATOR_ANGLE,
     VISCOSITY,
 )
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from .imposed_motion import (
     CLOSING_AT,
     INNER_AT,
@@ -93,7 +91,7 @@ WORKS = ("support_damper", "film", "closing", "carrier", "gyroscopic", "contact"
 PLAIN = 5
 
 
-@njit(cache=True)
+@outer_kernel()
 def kinematics(tau, y, yp, p, w, s):
     """Imposed motion, ring states and the gap state `s` (GAP_STATE_SIZE,) at segment time tau (s) and unknowns `y`
     (size,); `p` the parameters, `w` (SCRATCH,) scratch, which it fills.  `yp` is read only for the rates of a massless
@@ -235,7 +233,7 @@ def _works(tau, p, w, s, yp, at):
     yp[at + count] = exchanged
 
 
-@njit(cache=True)
+@outer_kernel()
 def rates(tau, y, p, w, s, yp):
     """Right-hand side: y' from the states and net forces (kinematics and film already evaluated)."""
     at = int(p[WORKS_AT])
@@ -258,14 +256,14 @@ def rates(tau, y, p, w, s, yp):
                 yp[tilt_rate + 1] = w[SEALS + PER_SEAL * k + FOLLOWING + 2]
 
 
-@njit(cache=True)
+@outer_kernel()
 def touching_rates(tau, y, p, w, s, yp, k, f):
     """As `rates`, with contact: `k` the contact's block, `f` the film's.  One call, since each costs 0.3 us."""
     contact_load(k, f, s)
     rates(tau, y, p, w, s, yp)
 
 
-@njit(cache=True)
+@outer_kernel()
 def residual(tau, y, yp, p, w, s, work, res):
     """Residual form of the same equations, for IDA: a massless ring's row is its force balance.
     `work` is scratch of the size of y."""
@@ -291,7 +289,7 @@ def residual(tau, y, yp, p, w, s, work, res):
             res[tilt], res[tilt + 1] = w[net + 1], w[net + 2]
 
 
-@njit(cache=True)
+@outer_kernel()
 def energies(taus, ys, yp, p, w, s, out):
     """Energy (J) at several steps, `taus` (m,) (s) and `ys` (m, unknowns), into `out` (m,)."""
     for k in range(len(taus)):

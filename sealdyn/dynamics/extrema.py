@@ -9,12 +9,11 @@ size does not matter.
 import math
 
 import numpy as np
-from numba import njit
 
 from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS, TOUCH, WAVES, smallest_gap
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from ..solvers.contract import Cause, Stop
 from .equations import kinematics
 from .function_values import thinnest_value
@@ -187,7 +186,7 @@ def store(record, kind, out, at, theta, radius, index):
         record[LEAST], record[LEAST_TAU], record[LEAST_LEG] = math.sqrt(out[TILT]), at, index
 
 
-@njit(cache=True)
+@inner_kernel()
 def nothing_to_find(record, lower, tolerance):
     """Whether no measure that is nowhere less than `lower` (3,) improves the record."""
     found = False
@@ -197,7 +196,7 @@ def nothing_to_find(record, lower, tolerance):
     return not found
 
 
-@njit(cache=True)
+@outer_kernel()
 def track_extremes(
     t, q_all, q_rate_all, count, begin, end, p, thinnest, f, y, yp, w, s, swing, windows, index, records, asked, level,
     tolerance, pace, fastest, reach,

@@ -2,7 +2,7 @@
 them, else by central differences."""
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, int64, types
 from scipy.sparse import csc_array
 
 from ..faces.geometry import FORCE
@@ -15,6 +15,7 @@ from ..numerics.addresses import (
     call_load,
     call_wrench_jacobian,
 )
+from ..numerics.kernel import outer_kernel
 from .function_values import LOAD, Value
 
 # Addresses of a film's kernels, int64; 0 where it has none.
@@ -35,7 +36,7 @@ def kernels_of(film) -> np.ndarray:
     return np.array([Value(kernel, kind).address if kernel else 0 for kernel, kind in kernels])
 
 
-@njit(cache=True)
+@outer_kernel()
 def residual_by_unknowns(kernels, f, s, x, x_rate, alpha, scales, indptr, indices, colours, data):
     """d residual / d x + alpha d residual / d x_rate into `data` (nnz,), the values of the pattern `indptr` (n + 1,),
     `indices` (nnz,); `scales` and `colours` (n,) as in FilmUnknowns.  Returns a code of the film."""
@@ -61,7 +62,7 @@ def residual_by_unknowns(kernels, f, s, x, x_rate, alpha, scales, indptr, indice
     return 0
 
 
-@njit(cache=True)
+@outer_kernel()
 def wrench_by_unknowns(kernels, f, s, x, scales, rows):
     """d (force, moments) / d x into `rows` (3, n); force and moments in `s` stay as they are."""
     if kernels[WRENCH_JACOBIAN] != 0:

@@ -22,6 +22,8 @@ class Value(types.WrapperAddressProtocol):
     def __init__(self, kernel, kind=FILM):
         found = kernel.get_compile_result(kind.signature)
         self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
+        if not self.address:
+            raise TypeError(f"{kernel.__name__} is no value_kernel (numerics/kernel.py): it has no address")
         # What numba looks for first: without it the type is made anew at every call.
         self._numba_type_ = kind
 

@@ -9,8 +9,8 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numba import njit
 
+from ..numerics.kernel import outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 
@@ -72,7 +72,7 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
     return np.array(rows, dtype=np.float64).reshape(-1, ROW)
 
 
-@njit(cache=True)
+@outer_kernel()
 def imposed_state(tau, p, c):
     """Fill the imposed state `c` (2 x PER_RING: stator, rotor; m, rad, their rates and accelerations) at segment time
     tau (s) from the block `p` (the layout above)."""

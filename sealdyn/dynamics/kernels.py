@@ -5,21 +5,20 @@ kernel on disk serves all, and none compiles what its scene has not.
 """
 
 import numpy as np
-from numba import boolean, njit, types
+from numba import boolean, types
 
+from ..numerics.addresses import ADDRESS, call_rates
+from ..numerics.kernel import outer_kernel
 from .equations import kinematics, rates
 from .function_values import FILM, LOAD, MATRIX, THINNEST, VECTOR
 
 
-@njit(types.void(FILM, VECTOR, LOAD, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX), cache=True)
-def rates_along(wrench, f, contact, block, p, w, s, taus, ys, yps):
-    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) (s) and unknowns `ys` (m, unknowns): film block `f`,
-    load of `contact` and its `block`, parameters `p`, scratch `w` and `s` as in dynamics/equations.py."""
+@outer_kernel(types.void(ADDRESS, ADDRESS, VECTOR, MATRIX, MATRIX))
+def rates_along(function, block, taus, ys, yps):
+    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) (s) and unknowns `ys` (m, unknowns), by addresses of
+    the `function` for C and of its `block` (dynamics/native.py)."""
     for i in range(len(taus)):
-        kinematics(taus[i], ys[i], yps[i], p, w, s)
-        wrench(f, s)
-        contact(block, f, s)
-        rates(taus[i], ys[i], p, w, s, yps[i])
+        call_rates(function, taus[i], ys[i].ctypes.data, yps[i].ctypes.data, block)
 
 
 STATES = types.void(
@@ -28,7 +27,7 @@ STATES = types.void(
 )  # fmt: skip
 
 
-@njit(STATES, cache=True)
+@outer_kernel(STATES)
 def states_along(flow, f, contact, block, seals, p, w, s, taus, ys, yps, thinnest, face, gaps, scratch, low):
     """Gap states `gaps` (m, GAP_STATE_SIZE), scratch states `scratch` (m, SCRATCH) and `low` (m, 3), the thinnest film
     of the `face` (m) as `thinnest` finds it, its angle (rad) and radius (m), at segment times `taus` (m,) (s) and
@@ -49,7 +48,7 @@ def states_along(flow, f, contact, block, seals, p, w, s, taus, ys, yps, thinnes
         low[i, 0], low[i, 1], low[i, 2] = thinnest(face, s)
 
 
-@njit(types.void(FILM, VECTOR, MATRIX), cache=True)
+@outer_kernel(types.void(FILM, VECTOR, MATRIX))
 def at_each(kernel, f, gaps):
     """A film's kernel on every gap state of `gaps` (m, GAP_STATE_SIZE)."""
     for i in range(len(gaps)):

@@ -7,10 +7,10 @@ The kernels of film and contact come as addresses in the block: one function on 
 from dataclasses import dataclass
 
 import numpy as np
-from numba import carray, cfunc, float64, int32
+from numba import carray, float64, int32
 
 from ..numerics.addresses import ADDRESS, call_film, call_load, floats, integers
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import c_function, inner_kernel
 from .equations import kinematics, rates
 from .function_values import Value, load_value
 
@@ -73,7 +73,7 @@ def loads(tau, y, yp, block):
     call_load(block[LOAD], array(block, CONTACT), f, s)
 
 
-@cfunc(RATES, cache=True)
+@c_function(RATES)
 def rates_at(tau, y_at, yp_at, data):
     """The right-hand side."""
     block = carray(integers(data), BLOCK)

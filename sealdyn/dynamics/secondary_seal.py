@@ -12,7 +12,7 @@ The loads it can hold while stuck fill the limit surface |M| / (4 R^2 F') = cos(
 
 import math
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 
 
 @inner_kernel()

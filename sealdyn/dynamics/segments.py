@@ -211,12 +211,10 @@ class Segment:
     def derivatives(self, taus, ys) -> np.ndarray:
         """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
         # A kernel of fixed signature is made ready by its import.
-        from .function_values import Value, load_value
         from .kernels import rates_along
 
-        model, out = self.model, np.zeros((len(taus), self.size))
-        film = Value(model.interface.film.wrench), model.f
-        rates_along(*film, *load_value(model.contact), self.p, self.w, self.s, taus, ys, out)
+        out = np.zeros((len(taus), self.size))
+        rates_along(self.native.rates, self.native.block.ctypes.data, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:

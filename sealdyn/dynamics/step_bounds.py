@@ -17,7 +17,7 @@ import numpy as np
 
 from ..faces.geometry import CLEARANCE, OUTER_RADIUS, smallest_gap
 from ..faces.waviness import wave_rows
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
 from .imposed_motion import AXIAL, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, TURNING
 

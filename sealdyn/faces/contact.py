@@ -14,9 +14,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ..scene.contact import Contact, contact_thresholds
 from .contact_annulus import (
     AREA,
@@ -150,19 +149,19 @@ def _face(k, f, s, complete):
         s[WEAR] = k[WEAR_PER_LOAD] * abs(spin) * arm / k[FACE_AREA]
 
 
-@njit(cache=True)
+@value_kernel()
 def no_load(k, f, s):
     """In place of `contact_load` where there is no contact: leaves the gap state as it is."""
 
 
-@njit(cache=True)
+@value_kernel()
 def contact_load(k, f, s):
     """Contact force (N, opening) and moments (N m) on the stator, into the gap state: minus the derivatives of
     CONTACT_ENERGY by gap and tilt."""
     _face(k, f, s, False)
 
 
-@njit(cache=True)
+@value_kernel()
 def contact_load_and_friction(k, f, s):
     """As `contact_load`; also the friction torque the shaft supplies (N m, sign of SPIN_DIFFERENCE), share of the face
     in contact, largest contact pressure (Pa), stored energy (J), and mean depth rate of wear of both faces (m/s), into
@@ -174,7 +173,7 @@ def contact_load_and_friction(k, f, s):
     _face(k, f, s, True)
 
 
-@njit(cache=True)
+@outer_kernel()
 def wear_rates(k, f, s, out):
     """Where the load of faces with a profile rubs: `out[j] = int p_c r phi_j dA` (N m) for each of its radii, phi_j the
     hat function of radius j (1 there, 0 at the others, linear between), shape (radii,).

@@ -7,7 +7,7 @@ points converge exponentially however narrow the arc.
 
 import math
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 from .roughness import BEYOND, SERIES_SIZE
 
 # Layout of the contact block: then the series, then nodes and weights on [0, 1] of the radius and of a panel of the
@@ -56,7 +56,7 @@ def _part(k, r_i, r_a, r_b, u_a, u_b, complete):
     return load, arm, area, area_arm, energy, outwards
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def _radius(k, r_i, r_o, u_i, u_o, complete):
     """As `_part`, over all of a radius that touches; u is linear between u_i and u_o."""
     # From the less to the more pressed end; going inwards the integrals change sign.
@@ -85,7 +85,7 @@ def _crossing(low, swing, level):
     return 2.0 * math.asin(math.sqrt((level - low) / (2.0 * swing)))
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def annulus(k, r_i, r_o, r_m, tilt, low_i, low_o, complete):
     """Load (N), its integral with the radius (N m), its moment along the tilt (N m); and, if `complete`, touching area
     (m^2), its integral with the radius (m^3), stored energy (J), and the load's integral with r (r - r_i) (N m^2).

@@ -6,9 +6,7 @@ Axes and signs: faces/geometry.py.  `f` is a face block (the leading slots of an
 
 import math
 
-from numba import njit
-
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, value_kernel
 from .geometry import (
     CLEARANCE,
     CONING,
@@ -76,7 +74,7 @@ def h_min_of(f):
     return thinnest_of_waves if f[WAVES] != 0.0 else thinnest_of_cones
 
 
-@njit(cache=True)
+@value_kernel()
 def thinnest_of_cones(f, s):
     """As `h_min`, of faces without waves."""
     # h = C + dz + ... - r G cos(beta): beta counts from the thinnest place (faces/geometry.py).

@@ -14,9 +14,8 @@ value are in faces/film_thickness.py.
 """
 
 import numpy as np
-from numba import njit
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 from ..scene.film import MOST_NODES
 from ..scene.waviness import MOST_WAVES
 
@@ -68,7 +67,7 @@ def face_parameters(film, clearance: float) -> np.ndarray:
     return f
 
 
-@njit(cache=True)
+@inner_kernel()
 def edge_gaps(f, dz, tilt):
     """Smallest film thickness (m) over the circle at the inner and at the outer edge.
 
@@ -96,7 +95,7 @@ def node_gap(f, node, dz, tilt):
     return f[CLEARANCE] + dz + f[CONING] * (r - r_i) - arm * tilt + f[PROFILE_DEPTHS + node]
 
 
-@njit(cache=True)
+@inner_kernel()
 def smallest_gap(f, dz, tilt):
     """Smallest film thickness over a face without waves (m), and its radius (m); arguments as `edge_gaps`."""
     if f[PROFILE] == 0.0:

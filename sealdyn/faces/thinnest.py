@@ -13,9 +13,8 @@ Analysis, 12.
 import math
 
 import numpy as np
-from numba import njit
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, value_kernel
 from .geometry import (
     CLEARANCE,
     DZ,
@@ -127,7 +126,7 @@ def _scan(step, orders, a, b, tilts, others):
             x, y = x * cos + y * sin, y * cos - x * sin
 
 
-@njit(cache=True)
+@value_kernel()
 def thinnest_of_waves(f, s):
     """Smallest film thickness over wavy faces (m), its angle (rad, from the x axis, within half a turn) and radius (m);
     NaN at a gap state that is not finite.  `f` a face block, `s` a gap state."""

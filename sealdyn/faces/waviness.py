@@ -13,9 +13,8 @@ different orders it has.  `s` is a gap state (faces/geometry.py).
 import math
 
 import numpy as np
-from numba import njit
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from .geometry import (
     FACE_SIZE,
     MEAN_SPIN,
@@ -91,7 +90,7 @@ def wave_parts(f, s, cosines, sines):
         sines[at] -= f[row + SIGN] * f[row + AMPLITUDE] * math.sin(angle)
 
 
-@njit(cache=True)
+@outer_kernel()
 def wave_parts_along(f, gaps):
     """`wave_parts` at gap states `gaps` (m, GAP_STATE_SIZE): cosine and sine parts (m), shape (m, orders, 2)."""
     parts = np.empty((len(gaps), int(f[ORDERS]), 2))

@@ -2,10 +2,10 @@
 
 import math
 
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def line_sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
     """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
     the same three of 1/h^3."""

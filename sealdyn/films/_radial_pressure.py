@@ -12,7 +12,6 @@ serves the film ratio between them: how fine the grid is does not matter to the 
 import math
 
 import numpy as np
-from numba import njit
 
 from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
@@ -34,7 +33,7 @@ from ..faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from ._fields import PRESSURE
 from ._radial_line import cubic, line_sums
 from ._radial_quadrature import CAVITATION, HAS_CAVITATION, RADIAL_POINTS, RULE_SIZE, RULES, centrifugal, points_for
@@ -91,7 +90,7 @@ def _thicknesses(f, s, nodes, steps, theta, h):
     h[at] = here
 
 
-@njit(cache=True)
+@outer_kernel()
 def fields(f, s, out):
     """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
     has one."""

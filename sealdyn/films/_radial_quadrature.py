@@ -18,7 +18,7 @@ from ..faces.geometry import (
     VISCOSITY,
     face_parameters,
 )
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import inner_kernel
 
 # Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)

@@ -14,7 +14,6 @@ what the pressure does on the slope of a wave.
 import math
 
 import numpy as np
-from numba import njit
 
 from ..closed_form import film_coefficients, narrow_seal_opening_force
 from ..faces.film_thickness import film_thickness
@@ -50,6 +49,7 @@ from ..faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
+from ..numerics.kernel import value_kernel
 from ..scene.film import Coefficients
 
 RUNG = 1
@@ -121,7 +121,7 @@ def matrices(f, s):
     return stiffness, np.diag([f[AXIAL_D] + f[AXIAL_D_MU] * mu, d, d])
 
 
-@njit(cache=True)
+@value_kernel()
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
     drop, mu = s[OUTER_PRESSURE] - s[INNER_PRESSURE], s[VISCOSITY]
@@ -134,7 +134,7 @@ def wrench(f, s):
     s[CAVITATED] = 0.0
 
 
-@njit(cache=True)
+@value_kernel()
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) and friction torque on the rotor (N m) of the narrow seal at
     this gap: `h^3` conductance and `mu r/h` drag integrated over the face width in closed form."""

@@ -11,9 +11,8 @@ each start of a solver: up to 26 times).  At worst the two ends of the interval 
 import math
 
 import numpy as np
-from numba import njit
 
-from .inner_kernel import inner_kernel
+from .kernel import inner_kernel, outer_kernel
 
 NODES = 6
 SHORTEST, LONGEST = 0.3, 4.0
@@ -41,7 +40,7 @@ def window(t, k, count):
     return first, last
 
 
-@njit(cache=True)
+@outer_kernel()
 def fit(t, q, q_rate, k, count, table, nodes):
     """Divided differences (confluent, Newton form) of every displacement for interval k.
 
@@ -100,7 +99,7 @@ def _drop_noise(middle, table, nodes, size):
                     break
 
 
-@njit(cache=True)
+@outer_kernel()
 def value(table, nodes, size, at, q, q_rate):
     """Displacements and rates (n,) at the time `at` from the differences of `fit` (Horner), into `q` and `q_rate`;
     `size` conditions."""
@@ -112,7 +111,7 @@ def value(table, nodes, size, at, q, q_rate):
         q[i], q_rate[i] = p, dp
 
 
-@njit(cache=True)
+@outer_kernel()
 def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
     """Displacements and rates at increasing `times` (m,), all inside steps [begin, end] of the `count`, into `out` and
     `out_rate` (m, n); `t` (count,), `q`, `q_rate` (count, n)."""
@@ -129,7 +128,7 @@ def sample(t, q, q_rate, count, begin, end, times, out, out_rate):
         value(table, nodes, size, times[j], out[j], out_rate[j])
 
 
-@njit(cache=True)
+@outer_kernel()
 def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
     """As `sample`, without the rates, of `q` whose rates may be inexact: in a stiff scene those magnify an error of `q`
     by the fastest decay.  Between two steps where the rates move the interpolant by more than the values alone leave
@@ -159,7 +158,7 @@ def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
                 out[j, i], _ = _newton(plain, own, size // 2, i, times[j])
 
 
-@njit(cache=True)
+@inner_kernel()
 def _plain(t, q, k, count, nodes, table, own):
     """Divided differences (n, count) of the values alone at the steps around interval `k` that `nodes` names twice
     each, in their order."""
@@ -176,7 +175,7 @@ def _plain(t, q, k, count, nodes, table, own):
                 table[i, m] = (table[i, m] - table[i, m - 1]) / (own[m] - own[m - order])
 
 
-@njit(cache=True)
+@inner_kernel()
 def _newton(table, nodes, count, i, at):
     """Value of row `i` at the time `at`, and the size of the last of its terms there."""
     total, product, term = 0.0, 1.0, 0.0
@@ -187,7 +186,7 @@ def _newton(table, nodes, count, i, at):
     return total, abs(term)
 
 
-@njit(cache=True)
+@outer_kernel()
 def integrals(t, rates, begin, end):
     """Integrals (end - begin, n) of `rates` (m, n) at the times `t` (m,) over each step of [begin, end]: of the
     polynomial through the steps around it.

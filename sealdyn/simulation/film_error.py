@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
 from ..films import film_module
+from ..numerics.kernel import outer_kernel
 from ..scene.waviness import waves_of
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
@@ -89,7 +89,7 @@ def _transient_error(run, linear, comparison, answers, matrix, step, count, wors
     return worst
 
 
-@njit(cache=True)
+@outer_kernel()
 def _propagate(matrix, start, pushes):
     """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
     count, n = pushes.shape

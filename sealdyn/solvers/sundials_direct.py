@@ -8,10 +8,10 @@ import ctypes
 from contextlib import contextmanager
 
 import numpy as np
-from numba import carray, cfunc, float64, int32, int64, njit, types
+from numba import carray, float64, int32, int64, types
 
 from ..numerics.addresses import ADDRESS, call_rates, floats, integers
-from ..numerics.inner_kernel import inner_kernel
+from ..numerics.kernel import c_function, inner_kernel, outer_kernel
 from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
 from .sundials_libraries import libraries
 from .sundials_objects import (
@@ -46,14 +46,14 @@ _newton_fails = types.ExternalFunction("CVodeGetNumNonlinSolvConvFails", int32(A
 _cvode_order = types.ExternalFunction("CVodeGetLastOrder", int32(ADDRESS, ADDRESS))
 
 
-@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS), cache=True)
+@c_function(int32(float64, ADDRESS, ADDRESS, ADDRESS))
 def _rates(tau, y, yp, carried):
     carried = carray(integers(carried), CARRIED)
     carried[CALLS] += 1
     return call_rates(carried[FUNCTION], tau, values_of(y), values_of(yp), carried[DATA])
 
 
-@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS), cache=True)
+@c_function(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS))
 def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
     """d y'/d y by forward differences, column by column; works feed nothing back."""
     carried = carray(integers(carried), CARRIED)
@@ -82,7 +82,7 @@ def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
     return 0
 
 
-@njit(int32(ADDRESS, ADDRESS, ADDRESS, float64, float64, float64, float64), cache=True, nogil=True)
+@outer_kernel(int32(ADDRESS, ADDRESS, ADDRESS, float64, float64, float64, float64), nogil=True)
 def restart_cvode(memory, vector, absolute, tau, tolerance, end, longest):
     """Make CVODE ready to step from the values of its N_Vector at `tau` (s) to `end` (s), no step longer than `longest`
     (s, 0: any), at a relative `tolerance` and the N_Vector `absolute`; negative where a setting is refused."""
@@ -104,8 +104,12 @@ def add_refused(memory, refused):
     refused[1] += number[0]
 
 
-@njit(types.Tuple((int64, int32))(ADDRESS, ADDRESS, float64[::1], float64[::1], float64, int64[::1], float64[::1],
-                                  float64[:, ::1]), cache=True, nogil=True)  # fmt: skip
+STEPS = types.Tuple((int64, int32))(
+    ADDRESS, ADDRESS, float64[::1], float64[::1], float64, int64[::1], float64[::1], float64[:, ::1]
+)
+
+
+@outer_kernel(STEPS, nogil=True)
 def step_cvode(memory, vector, y, reached, end, orders, ts, ys):
     """Steps of CVODE until `end` (s) or `ts` (m,), `ys` (m, size) are full: how many, and the flag of the last; `y`
     (size,) are the values of the N_Vector, `reached` (1,) is the time (s); `orders` (MOST_ORDERS,) counts."""

@@ -4,9 +4,10 @@ compiles none of it."""
 import ctypes
 
 import numpy as np
-from numba import carray, cfunc, float64, int32, int64, njit, types
+from numba import carray, float64, int32, int64, types
 
 from ..numerics.addresses import ADDRESS, call_residual, integers
+from ..numerics.kernel import c_function, outer_kernel
 from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
 from .sundials_objects import (
     BLOCK,
@@ -27,16 +28,20 @@ _ida_order = types.ExternalFunction("IDAGetLastOrder", int32(ADDRESS, ADDRESS))
 _ida = types.ExternalFunction("IDASolve", int32(ADDRESS, float64, ADDRESS, ADDRESS, ADDRESS, int32))
 
 
-@cfunc(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS), cache=True)
+@c_function(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS))
 def _residual(tau, y, yp, res, carried):
     carried = carray(integers(carried), CARRIED)
     carried[CALLS] += 1
     return call_residual(carried[FUNCTION], tau, values_of(y), values_of(yp), values_of(res), carried[DATA])
 
 
-@njit(types.Tuple((int64, int32))(ADDRESS, ADDRESS, ADDRESS, float64[::1], float64[::1], float64[::1], float64,
-                                  int64[::1], float64[::1], float64[:, ::1], float64[:, ::1]),
-      cache=True, nogil=True)  # fmt: skip
+STEPS = types.Tuple((int64, int32))(
+    ADDRESS, ADDRESS, ADDRESS, float64[::1], float64[::1], float64[::1], float64,
+    int64[::1], float64[::1], float64[:, ::1], float64[:, ::1],
+)  # fmt: skip
+
+
+@outer_kernel(STEPS, nogil=True)
 def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
     """As `step_cvode` (sundials_direct.py), with the derivatives `yp` (size,) in `yps` (m, size)."""
     order = np.zeros(1, dtype=np.int32)

@@ -8,9 +8,10 @@ pattern is written each time too.
 import ctypes
 
 import numpy as np
-from numba import carray, cfunc, float64, int32, types
+from numba import carray, float64, int32, types
 
 from ..numerics.addresses import ADDRESS, call_derivatives, integers, short_integers
+from ..numerics.kernel import c_function
 from .sundials_objects import CALLS, CARRIED, COLUMNS, DATA, JACOBIANS, SPARSE, values_of
 
 # Words that SUNDIALS carries: address of the derivatives, then addresses of the pattern's row numbers and of its
@@ -22,7 +23,7 @@ _rows = types.ExternalFunction("SUNSparseMatrix_IndexValues", ADDRESS(ADDRESS))
 _starts = types.ExternalFunction("SUNSparseMatrix_IndexPointers", ADDRESS(ADDRESS))
 
 
-@cfunc(int32(float64, float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS), cache=True)
+@c_function(int32(float64, float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS))
 def _jacobian(tau, alpha, y, yp, res, matrix, carried, spare, another, third):
     """d res / d y + alpha d res / d y'."""
     carried = carray(integers(carried), CARRIED)

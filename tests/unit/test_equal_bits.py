@@ -9,8 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from sealdyn.numerics import kernel
+
 ROOT = Path(__file__).parents[2]
 SCENARIOS = ROOT / "scenarios"
+DECORATORS = {"njit", "cfunc", "partial", *(name for name in vars(kernel) if name.endswith(("_kernel", "c_function")))}
 # Scene -> what shortens it.
 SCENES = {
     "fms_reference": "run.turns=3",
@@ -69,6 +72,12 @@ def test_no_kernel_leaves_its_rounding_to_the_compiler():
     a kernel compiled beside its callees and one that finds them on disk."""
     for path in (ROOT / "sealdyn").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "njit":
-                wild = {word.arg for word in node.keywords} - {"cache", "error_model", "inline", "nogil"}
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in DECORATORS:
+                wild = {word.arg for word in node.keywords} - {"inline", "nogil"}
+                if path.name == "kernel.py":
+                    # None: OPTIONS, looked at below.
+                    wild -= {None, "no_cfunc_wrapper"}
                 assert not wild, f"{path.name}, line {node.lineno}: {wild}"
+                # What kernels have in common stands in one place; what is laid into its caller is no kernel.
+                assert node.func.id not in ("njit", "cfunc") or node.keywords[0].arg == "inline", path
+    assert kernel.OPTIONS == {"cache": True, "error_model": "numpy"}

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from numba import njit
 
 import sealdyn.kernel_cache
 
@@ -109,7 +110,25 @@ def test_sources_of_this_package_reach_their_constants():
     assert not {"cli.py", "summary.py", "recorder.py"} & found
 
 
-def test_functions_for_c_are_kernels(tmp_path):
-    texts = {tmp_path / "a.py": b"from .b import WIDTH\n\n\n@cfunc(SIGNATURE)\ndef a(x):\n    return WIDTH\n",
-             tmp_path / "b.py": b"WIDTH = 1.0\n", tmp_path / "c.py": b"OTHER = 1.0\n"}  # fmt: skip
+DECORATORS = ["njit", "cfunc", "outer_kernel", "value_kernel", "inner_kernel", "c_function"]
+
+
+@pytest.mark.parametrize("decorator", DECORATORS)
+def test_all_that_is_compiled_is_a_kernel(tmp_path, decorator):
+    text = f"from .b import WIDTH\n\n\n@{decorator}()\ndef a(x):\n    return WIDTH\n".encode()
+    texts = {tmp_path / "a.py": text, tmp_path / "b.py": b"WIDTH = 1.0\n", tmp_path / "c.py": b"OTHER = 1.0\n"}
     assert [path.name for path in sealdyn.kernel_cache.kernel_sources(texts)] == ["a.py", "b.py"]
+
+
+def test_only_what_has_an_address_is_a_function_value():
+    """Called by the address 0 the process would end."""
+    from sealdyn.dynamics.function_values import Value
+    from sealdyn.films.radial.film import wrench
+
+    @njit(no_cfunc_wrapper=True)
+    def without(f, s):
+        s[0] = f[0]
+
+    assert Value(wrench).address != 0
+    with pytest.raises(TypeError, match="without"):
+        Value(without)

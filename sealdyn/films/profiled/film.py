@@ -13,7 +13,6 @@ shape is the same all around; no cavitation.
 import math
 
 import numpy as np
-from numba import njit
 
 from ...faces.geometry import (
     CAVITATED,
@@ -41,7 +40,7 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
-from ...numerics.inner_kernel import inner_kernel
+from ...numerics.kernel import inner_kernel, value_kernel
 from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import COSINES, ERROR, MOST_ANGLES, SINES, centrifugal
 from .quadrature import BLOCK_SIZE, PLAIN, TABLE, at_angle, drag, lay_in_r, nodes_of, phi, pieces_of, plain_ratios, sums
@@ -78,7 +77,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too."""
     r_i, r_o, mean, planar = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
@@ -132,13 +131,13 @@ def _circle(f, s, complete):
         s[TORQUE] = mu * s[SPIN_DIFFERENCE] * d_beta * couette + tilt * pressure_part
 
 
-@njit(cache=True)
+@value_kernel()
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
     _circle(f, s, False)
 
 
-@njit(cache=True)
+@value_kernel()
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
     `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""

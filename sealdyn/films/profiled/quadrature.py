@@ -24,7 +24,7 @@ from ...faces.geometry import (
     TILT_AT_MEAN,
     regularised_thickness,
 )
-from ...numerics.inner_kernel import inner_kernel
+from ...numerics.kernel import inner_kernel
 from .._radial_quadrature import BLOCK_SIZE as RADIAL_BLOCK
 from .._radial_quadrature import (
     RADIAL_POINTS,
@@ -121,7 +121,7 @@ def rule_at(f, rule):
     return f[slot + 2 : slot + 2 + points], f[weights : weights + points]
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def phi(d, r_i, r_m, mean, planar):
     """Integrals of 1 and of the tilt's arm from r_i to r_i + d (m), over r dr (m^2, m^3; planar: over dr, m, m^2);
     `mean`: the arm is r_m everywhere."""
@@ -132,7 +132,7 @@ def phi(d, r_i, r_m, mean, planar):
     return phi_0, r_m * phi_0 if mean else phi_1
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def lay_in_r(f, nodes, pieces, table):
     """Fill the rows of `table` (TABLE, points) that do not depend on the angle, for the pieces with points in r; the
     others get a film of 1."""
@@ -152,7 +152,7 @@ def lay_in_r(f, nodes, pieces, table):
             table[UNIT, k] = 0.5 * w[i] * width / (1.0 if planar != 0.0 else r_i + d)
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
     """The points of one piece at one angle, in the radial film's rational rule."""
     h_g = math.sqrt(h_a * h_b)
@@ -171,7 +171,7 @@ def _rational(table, first, d_a, width, h_a, h_b, r_i, r_m, mean, planar, x, w):
         table[PHI_0, k], table[PHI_1, k] = phi(d, r_i, r_m, mean, planar)
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def _films(table, tilt_cos):
     for k in range(table.shape[1]):
         h = table[POINT_ALIGNED, k] - table[POINT_ARM, k] * tilt_cos
@@ -179,7 +179,7 @@ def _films(table, tilt_cos):
         table[H, k], table[A, k] = h, table[UNIT, k] * (per * per * per)
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def at_angle(f, nodes, pieces, table, tilt_cos, low):
     """Film (m) and weight over its cube at every point of `table` (TABLE, points), at one angle: `tilt_cos` (rad) the
     tilt times cos(beta); `low`: some films are below the floor."""
@@ -200,7 +200,7 @@ def at_angle(f, nodes, pieces, table, tilt_cos, low):
             _rational(table, first, nodes[D, n], width, h_a, h_b, r_i, r_m, mean != 0.0, planar != 0.0, x, w)
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def sums(table, z_rate, even):
     """Nine integrals over a radius, of weight over h^3: times 1, Phi's even and Phi's odd part; the three with r^2;
     with r^3.  `z_rate` (m/s) and `even` (rad/s) make Phi's even part."""
@@ -222,7 +222,7 @@ def sums(table, z_rate, even):
     return a0, ae, a1, b0, be, b1, c0, ce, c1
 
 
-@inner_kernel(error_model="numpy")
+@inner_kernel()
 def drag(table, planar):
     """Integral of r^3 / h (m^3) over a radius."""
     total = 0.0

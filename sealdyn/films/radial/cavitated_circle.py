@@ -35,7 +35,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
-from ...numerics.inner_kernel import inner_kernel
+from ...numerics.kernel import inner_kernel
 from .._radial_quadrature import CAVITATION, ERROR, RADIAL_POINTS, RULE_SIZE, RULES, centrifugal, points_for
 from .cavitated_line import HAS_DRY, HAS_WET, cavitated_line, line_state
 

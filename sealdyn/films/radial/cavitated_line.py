@@ -9,9 +9,8 @@ F = Q + g r^2 h^3 / (12 mu) is zero (planar: r h^3), and there may be more piece
 import math
 
 import numpy as np
-from numba import njit
 
-from ...numerics.inner_kernel import inner_kernel
+from ...numerics.kernel import inner_kernel, outer_kernel
 from .._radial_line import cubic, line_sums
 
 # A line's state: bits.
@@ -227,7 +226,7 @@ def _crossing(q0, q, line, a, b, p_a, p_b, wet_from, x_k, w_k):
     return d, per * s_0 + own_0, per * s_2 + own_2, per * s_3 + own_3
 
 
-@njit(cache=True)
+@outer_kernel()
 def cavitated_line(x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, planar, mu, p_i, p_o, p_cav, g):
     """Load `int max(p - p_cav, 0) r dr` (N/rad), moment `int max(p - p_cav, 0) r^2 dr` (N m/rad) and the share of the
     face width that is wet, for one angle.  Thickness linear from h_i to h_o (m), thickening rate `z_rate + tilt_rate r`

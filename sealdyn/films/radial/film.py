@@ -52,7 +52,7 @@ from ...faces.geometry import (
     VISCOSITY,
     regularised_thickness,
 )
-from ...numerics.inner_kernel import inner_kernel
+from ...numerics.kernel import inner_kernel, value_kernel
 from .. import _radial_pressure, _radial_quadrature
 from .._radial_quadrature import (
     COSINES,
@@ -164,7 +164,7 @@ def _lines(at, lanes, width):
         at[REACH, j] = 0.5 * (1.0 - t) * share
 
 
-@njit(cache=True, error_model="numpy")
+@inner_kernel()
 def circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too; returns the torque's part that
     the pressure has on the slope of the film."""
@@ -218,7 +218,11 @@ def circle(f, s, complete):
                 h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
             at[EVEN, j], at[U_I, j], at[H_G, j] = along * cos_b, h_i, h_o
         _lines(at, lanes, width)
-        _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, complete)
+        # Laid in twice, each without the other's questions, so that the rest is compiled once.
+        if complete:
+            _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, True)
+        else:
+            _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, False)
         for j in range(count):
             n = first + j
             cos_b, sin_b = f[COSINES + n * stride], f[SINES + n * stride]
@@ -252,13 +256,13 @@ def circle(f, s, complete):
     return 0.0
 
 
-@njit(cache=True)
+@value_kernel()
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
     circle(f, s, False)
 
 
-@njit(cache=True)
+@value_kernel()
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
     `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""

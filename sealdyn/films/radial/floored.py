@@ -1,8 +1,7 @@
 """The radial film (film.py) with its pressure floored at the cavitation pressure (cavitated_circle.py)."""
 
-from numba import njit
-
 from ...faces.geometry import TORQUE
+from ...numerics.kernel import value_kernel
 from .. import _radial_quadrature
 from .._radial_quadrature import parameters
 from .cavitated_circle import cavitated_circle
@@ -16,14 +15,14 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
 
 
-@njit(cache=True)
+@value_kernel()
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
     if not cavitated_circle(f, s)[0]:
         circle(f, s, False)
 
 
-@njit(cache=True)
+@value_kernel()
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m).  The leakage of a
     floored film is that of the film not floored."""
