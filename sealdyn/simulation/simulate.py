@@ -118,7 +118,7 @@ def simulate(
     found, outcome = judged(found, outcome, tries)
     summary = summarise(scenario, run, outcome, sink.tally, one.method, _reasons(one.why, trial, outcome.counts))
     summary["certificate"] = found
-    if found["said"] and not found["met"]:
+    if found["met"] is False:
         summary["warnings"].append(f"accuracy {found['said']}")
     summary["wall_time"] = clock.perf_counter() - begun
     path = partial_path(out) if outcome.status == Status.INTERRUPTED else out
