@@ -1,7 +1,7 @@
 """What lies between the rings: the film of a scene, the asperities that may touch, and the borrowed numbers."""
 
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -164,7 +164,7 @@ class Interface:
         plain, table = film_module(self.name), replace(self._table_used, cavitation_pressure=None)
         f = plain.parameters(table, self.clearance, FINE)
         lay_surfaces(f, self.scene)
-        return plain.wrench if self.contact is None else partial(self._rough_wrench, film_wrench=plain.wrench), f
+        return plain.wrench if self.contact is None else lambda f, s: self._rough_wrench(f, s, plain.wrench), f
 
     def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
         """Stiffness and damping matrices (3, 3) of `slopes`."""

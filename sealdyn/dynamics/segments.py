@@ -210,11 +210,18 @@ class Segment:
 
     def derivatives(self, taus, ys) -> np.ndarray:
         """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
-        # A kernel of fixed signature is made ready by its import.
-        from .kernels import rates_along
-
+        # Kernels of fixed signature are made ready by their import.
         out = np.zeros((len(taus), self.size))
-        rates_along(self.native.rates, self.native.block.ctypes.data, taus, ys, out)
+        if self.native is None:
+            from .function_values import Value, load_value
+            from .kernels_by_parts import rates_by_parts
+
+            film = Value(self.model.interface.film.wrench), self.model.f
+            rates_by_parts(*film, *load_value(self.model.contact), self.p, self.w, self.s, taus, ys, out)
+        else:
+            from .kernels import rates_along
+
+            rates_along(self.native.rates, self.native.block.ctypes.data, taus, ys, out)
         return out
 
     def impulses(self, ys) -> np.ndarray:

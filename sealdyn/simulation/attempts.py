@@ -9,7 +9,7 @@ from .certificate import TrialRun, choose_tolerance
 from .second_run import LEAST_SHARPER, OTHER
 
 # Tries in all; the share of the accuracy aimed at, and by how much a tolerance is sharpened at least and at most.
-MOST, AIM, LEAST, SHARPEST = 4, 0.3, 0.1, 3e-4
+MOST, AIM, LEAST, SHARPEST = 4, 0.3, 0.1, 1e-3
 # A sharper try that leaves more than this of the error has not helped.
 HELPED = 0.5
 # An error of the size of the motion itself that sharper tolerances do not touch: chaos, and no method helps.
@@ -45,7 +45,8 @@ def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> T
     if one.method == "expm" or one.last or outcome.counts.steps > LONG:
         return None
     stuck = bool(tries) and found["solver"] > HELPED * tries[-1][2]["solver"]
-    share = float(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST))
+    # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
+    share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
     sharp = max(outcome.tolerance * share, LEAST_SHARPER * TIGHTEST)
     why = f"{one.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"
     if len(tries) + 1 < MOST and not stuck and sharp < HELPED * outcome.tolerance:

@@ -60,6 +60,8 @@ class LookedAt:
         force = force if force > 0.0 else peaks[2 * n]
         moment = np.hypot(gap[:, 2 * n + 1], gap[:, 2 * n + 2])
         fast = np.maximum(np.abs(other[:, n : 2 * n]).max(axis=1), 1.0)
+        # What is nothing throughout has no scale, and no error.
+        force, leakage, torque = (scale or 1.0 for scale in (force, leakage, torque))
         over = [gap[:, 2 * n] / force, moment / (force * self.outer_radius), gap[:, -2] / leakage, gap[:, -1] / torque]
         return np.column_stack([gap[:, :n].max(axis=1), gap[:, n : 2 * n].max(axis=1) / fast, *over])
 

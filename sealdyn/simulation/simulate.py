@@ -104,7 +104,7 @@ def simulate(
             **_found(trial),
         )  # fmt: skip
         found, outcome = certificate(run, one.method, outcome, sink.errors, by_model, seen, progress, stop)
-        again = None if restart else next_try(run, scenario.run.solver, one, outcome, found, tries)
+        again = next_try(run, scenario.run.solver, one, outcome, found, tries)
         if again is None:
             break
         tries.append((one, outcome.tolerance, found))

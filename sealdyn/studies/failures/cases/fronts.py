@@ -36,7 +36,7 @@ def by_trapezoid(angles: int) -> float:
         h_i, h_o = (film.clearance - r * s[GY] * math.cos(theta) for r in (film.inner_radius, film.outer_radius))
         rate = s[MEAN_SPIN] * s[GY] * math.sin(theta)
         total += cavitated_line(x, w, film.inner_radius, film.outer_radius, h_i, h_o, s[3], rate, False, False,
-                              s[VISCOSITY], 0.0, 0.0, 0.0)[0]  # fmt: skip
+                              s[VISCOSITY], 0.0, 0.0, 0.0, 0.0)[0]  # fmt: skip
     return total * 2 * math.pi / angles
 
 
