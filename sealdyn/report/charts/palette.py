@@ -22,8 +22,8 @@ THICKNESS, PRESSURE = "cividis", "viridis"
 # One meaning, one colour, in every chart.
 FILM, TILT, LEAK, CONTACT, THEORY, MARK = BLUE, GREEN, SKY, VERMILLION, ORANGE, BLACK
 RING = {"stator": PURPLE, "rotor": BLUE}
-STATUS = {Status.OK: GREEN, Status.COLLAPSED: VERMILLION, Status.FAILED: VERMILLION, Status.INTERRUPTED: ORANGE,
-          Status.RUNNING: BLUE}  # fmt: skip
+STATUS = {Status.OK: GREEN, Status.INACCURATE: ORANGE, Status.COLLAPSED: VERMILLION, Status.FAILED: VERMILLION,
+          Status.INTERRUPTED: ORANGE, Status.RUNNING: BLUE}  # fmt: skip
 
 # Colours of lines that have no meaning of their own, in order.
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
