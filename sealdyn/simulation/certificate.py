@@ -169,6 +169,12 @@ def horizon(times, apart, asked: float) -> float | None:
     return float(times[over[0]]) if len(over) else None
 
 
+def _since(times, apart) -> str:
+    """From when on two runs were compared, in words: one that was continued is not seen before."""
+    seen = np.flatnonzero(~np.isnan(apart))
+    return "" if not len(seen) or seen[0] == 0 else f" from {times[seen[0]]:.4g} s on"
+
+
 def certify(
     run: RunState,
     method: str,
@@ -183,7 +189,7 @@ def certify(
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_model is None and run.model.interface.name == "linear":
         by_model = model_error(run)
-    said = ", against a sharper run" if measured else ""
+    said = f", against a sharper run{_since(*measured)}" if measured else ""
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
     if by_model is not None:
         parts.append(f"model {by_model:.1e} against the radial film")

@@ -25,6 +25,11 @@ def test_continued_as_if_never_stopped(tmp_path, stop_at):
     assert first.status == "interrupted"
     again = simulate(scenario, tmp_path / "part.h5", resume=True)
     assert again.status == "ok"
+    # What was done before the stop is in no comparison, unless the run was done again as a whole.
+    said = again.summary["certificate"]["said"]
+    assert "against a sharper run" in said and (" s on" in said) != any(
+        "again, sharper" in reason for reason in again.summary["model"]["reasons"]
+    )
     assert again.summary["contact"]["touches"] == whole.summary["contact"]["touches"] > 3
     assert again.summary["secondary_seal"]["sticks"] == whole.summary["secondary_seal"]["sticks"] >= 1
     kinds = [[event["kind"] for event in read_info(path)["events"]] for path in (again.archive, whole.archive)]
