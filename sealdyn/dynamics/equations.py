@@ -38,6 +38,7 @@ from ..faces.geometry import (
     STATOR_ANGLE,
     VISCOSITY,
 )
+from ..numerics.addresses import call_seal
 from ..numerics.kernel import inner_kernel, outer_kernel
 from .imposed_motion import (
     CLOSING_AT,
@@ -53,25 +54,22 @@ from .imposed_motion import (
     STATOR_ANGLE_AT,
     STATOR_SPEED,
     TILT_X,
-    TILT_X_ACCELERATION,
     TILT_X_RATE,
     TILT_Y,
-    TILT_Y_ACCELERATION,
     TILT_Y_RATE,
     VISCOSITY_AT,
-    Z_ACCELERATION,
     Z_RATE,
     Z,
     imposed_state,
 )
-from .secondary_seal import excess, sliding
 
 # Slots of one ring in the parameter block: it floats?, inertia, support, where its unknowns are in `y`
 # (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself); its secondary seal:
-# friction per length, radius, sliding speed below which it fades, a smooth law?, and whether it sticks now.
+# friction per length, radius, sliding speed below which it fades, a smooth law?, whether it sticks now, and the address
+# of its kernel (dynamics/secondary_seal.py), so that only scenes with a seal compile it.
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
-SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK = range(12, 17)
-RING = 17
+SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, SEAL_KERNEL = range(12, 18)
+RING = 18
 WORKS_AT = 2 * RING
 EXTENDED = WORKS_AT + 1
 LEG_AT = WORKS_AT + 2
@@ -164,43 +162,8 @@ def _net(tau, k, p, w, s, power):
     if len(power) > PLAIN:
         power[5] += sign * (s[CONTACT_FORCE] * v + s[CONTACT_X] * v_x + s[CONTACT_Y] * v_y)
         if p[ring + SEAL_LINE] > 0.0:
-            power[6] += _secondary_seal(k, spin, leg[spin_at + 1], p, w)
+            power[6] += call_seal(int(p[ring + SEAL_KERNEL]), k, spin, leg[spin_at + 1], p, w)
     return spring * v + spring_x * v_x + spring_y * v_y
-
-
-@inner_kernel()
-def _secondary_seal(k, spin, spin_rate, p, w):
-    """Friction of ring k's secondary seal onto its net load; returns the power of that friction."""
-    ring, c, x, net, seal = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k, SEALS + PER_SEAL * k
-    line, radius = p[ring + SEAL_LINE], p[ring + SEAL_RADIUS]
-    v, v_x, v_y = w[x + Z_RATE], w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
-    d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
-    dv_x, dv_y = v_x - w[c + TILT_X_RATE], v_y - w[c + TILT_Y_RATE]
-
-    # What it would take to carry the ring along with its carrier.
-    follow = w[seal + FOLLOWING : seal + FOLLOWING + 3]
-    follow[0] = w[c + Z_ACCELERATION]
-    follow[1] = w[c + TILT_X_ACCELERATION] - spin * dv_y - spin_rate * d_y
-    follow[2] = w[c + TILT_Y_ACCELERATION] + spin * dv_x + spin_rate * d_x
-    force = p[ring + MASS] * follow[0] - w[net] if p[ring + AT_Z] >= 0.0 else 0.0
-    moment_x = moment_y = 0.0
-    if p[ring + AT_TILT] >= 0.0:
-        moment_x = p[ring + INERTIA] * follow[1] - w[net + 1]
-        moment_y = p[ring + INERTIA] * follow[2] - w[net + 2]
-    w[seal + SEAL_EXCESS] = excess(force, moment_x, moment_y, line, radius)
-
-    friction = w[seal : seal + 3]
-    if p[ring + STUCK] != 0.0:
-        friction[0], friction[1], friction[2] = force, moment_x, moment_y
-        w[seal + SEAL_SPEED] = 0.0
-    else:
-        w[seal + SEAL_SPEED] = sliding(
-            v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x,
-            line, radius, p[ring + SEAL_BAND], p[ring + SEAL_SMOOTH] != 0.0, friction,
-        )  # fmt: skip
-    for i in range(3):
-        w[net + i] += friction[i]
-    return friction[0] * v + friction[1] * v_x + friction[2] * v_y
 
 
 @inner_kernel()

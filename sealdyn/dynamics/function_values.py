@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
-from numba import float64, types
+from numba import float64, int64, types
 
 from ..faces.contact import contact_load, contact_load_and_friction, no_load
 from ..faces.film_thickness import h_min_of
@@ -12,6 +12,8 @@ VECTOR, MATRIX = float64[::1], float64[:, ::1]
 # A film's kernel on its block and a gap state; the load of contact on its block, a film's and a gap state; the thinnest
 # place of a face block at a gap state.
 FILM, LOAD = types.FunctionType(types.void(VECTOR, VECTOR)), types.FunctionType(types.void(VECTOR, VECTOR, VECTOR))
+# Friction of the secondary seal of a ring (int64) whose carrier spins, on the parameters and the scratch.
+SEAL = types.FunctionType(float64(int64, float64, float64, VECTOR, VECTOR))
 THINNEST = types.FunctionType(types.UniTuple(float64, 3)(VECTOR, VECTOR))
 
 

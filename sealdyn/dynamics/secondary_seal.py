@@ -12,7 +12,37 @@ The loads it can hold while stuck fill the limit surface |M| / (4 R^2 F') = cos(
 
 import math
 
-from ..numerics.kernel import inner_kernel
+from ..numerics.kernel import inner_kernel, value_kernel
+from .equations import (
+    AT_TILT,
+    AT_Z,
+    FOLLOWING,
+    INERTIA,
+    MASS,
+    NET,
+    OWN_STATE,
+    PER_SEAL,
+    RING,
+    SEAL_BAND,
+    SEAL_EXCESS,
+    SEAL_LINE,
+    SEAL_RADIUS,
+    SEAL_SMOOTH,
+    SEAL_SPEED,
+    SEALS,
+    STUCK,
+)
+from .imposed_motion import (
+    PER_RING,
+    TILT_X,
+    TILT_X_ACCELERATION,
+    TILT_X_RATE,
+    TILT_Y,
+    TILT_Y_ACCELERATION,
+    TILT_Y_RATE,
+    Z_ACCELERATION,
+    Z_RATE,
+)
 
 
 @inner_kernel()
@@ -53,3 +83,38 @@ def excess(force, moment_x, moment_y, line, radius):
         return 1.0
     f, m = abs(force) / held, math.hypot(moment_x, moment_y) / most
     return m - math.cos(0.5 * math.pi * min(f, 1.0)) + max(f - 1.0, 0.0)
+
+
+@value_kernel()
+def friction_on_ring(k, spin, spin_rate, p, w):
+    """Friction of ring k's secondary seal onto its net load; returns the power of that friction."""
+    ring, c, x, net, seal = k * RING, k * PER_RING, OWN_STATE + 6 * k, NET + 3 * k, SEALS + PER_SEAL * k
+    line, radius = p[ring + SEAL_LINE], p[ring + SEAL_RADIUS]
+    v, v_x, v_y = w[x + Z_RATE], w[x + TILT_X_RATE], w[x + TILT_Y_RATE]
+    d_x, d_y = w[x + TILT_X] - w[c + TILT_X], w[x + TILT_Y] - w[c + TILT_Y]
+    dv_x, dv_y = v_x - w[c + TILT_X_RATE], v_y - w[c + TILT_Y_RATE]
+
+    # What it would take to carry the ring along with its carrier.
+    follow = w[seal + FOLLOWING : seal + FOLLOWING + 3]
+    follow[0] = w[c + Z_ACCELERATION]
+    follow[1] = w[c + TILT_X_ACCELERATION] - spin * dv_y - spin_rate * d_y
+    follow[2] = w[c + TILT_Y_ACCELERATION] + spin * dv_x + spin_rate * d_x
+    force = p[ring + MASS] * follow[0] - w[net] if p[ring + AT_Z] >= 0.0 else 0.0
+    moment_x = moment_y = 0.0
+    if p[ring + AT_TILT] >= 0.0:
+        moment_x = p[ring + INERTIA] * follow[1] - w[net + 1]
+        moment_y = p[ring + INERTIA] * follow[2] - w[net + 2]
+    w[seal + SEAL_EXCESS] = excess(force, moment_x, moment_y, line, radius)
+
+    friction = w[seal : seal + 3]
+    if p[ring + STUCK] != 0.0:
+        friction[0], friction[1], friction[2] = force, moment_x, moment_y
+        w[seal + SEAL_SPEED] = 0.0
+    else:
+        w[seal + SEAL_SPEED] = sliding(
+            v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x,
+            line, radius, p[ring + SEAL_BAND], p[ring + SEAL_SMOOTH] != 0.0, friction,
+        )  # fmt: skip
+    for i in range(3):
+        w[net + i] += friction[i]
+    return friction[0] * v + friction[1] * v_x + friction[2] * v_y

@@ -61,6 +61,12 @@ def call_load(context, kernel, k, f, s):
 
 
 @intrinsic
+def call_seal(context, kernel, k, spin, spin_rate, p, w):
+    """Call the kernel float64(k, spin, spin_rate, p, w) at an address, an int64, two numbers and two arrays."""
+    return _call(float64(ADDRESS, int64, float64, float64, VECTOR, VECTOR))
+
+
+@intrinsic
 def call_film_residual(context, kernel, f, s, x, x_rate, res):
     """Call the kernel int64(f, s, x, x_rate, res) at an address, five arrays; returns its code."""
     return _call(int64(ADDRESS, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR))
