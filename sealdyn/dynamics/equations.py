@@ -176,7 +176,8 @@ def _works(tau, p, w, s, yp, at):
     if p[EXTENDED] != 0.0:
         count, yp[at - 1] = PLAIN + 2, s[CONTACT_FORCE]
     power = yp[at : at + count]
-    power[:] = 0.0
+    for i in range(len(power)):
+        power[i] = 0.0
     springs = 0.0
     for k in range(2):
         if p[k * RING + FLOATS] != 0.0:

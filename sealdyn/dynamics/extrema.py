@@ -81,6 +81,13 @@ def gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out):
 
 
 @inner_kernel()
+def measures_at(tau, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
+    """As `gap_and_tilt`, on the full interpolant (`table`, `nodes`, `size` of numerics/hermite.py)."""
+    value(table, nodes, size, tau, q, q_rate)
+    return gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out)
+
+
+@inner_kernel()
 def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out):
     """Time (s) in [low, high] where one measure (`kind`) is smallest on the full interpolant (`table`, `nodes`, `size`
     of numerics/hermite.py): three rounds of five points, then the vertex of a parabola."""
@@ -89,23 +96,20 @@ def locate_minimum(kind, low, high, table, nodes, size, q, q_rate, y, yp, p, thi
         width = 0.25 * (high - low)
         for i in range(5):
             tau = low + i * width
-            value(table, nodes, size, tau, q, q_rate)
-            gap_and_tilt(tau, q, y, yp, p, thinnest, f, w, s, out)
+            measures_at(tau, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
             if out[kind] < best:
                 best, best_at = out[kind], tau
         low, high = max(low, best_at - width), min(high, best_at + width)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     points = np.zeros(3)
     for i in range(3):
-        value(table, nodes, size, middle + (i - 1) * half, q, q_rate)
-        gap_and_tilt(middle + (i - 1) * half, q, y, yp, p, thinnest, f, w, s, out)
+        measures_at(middle + (i - 1) * half, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
         points[i] = out[kind]
     bend = points[0] - 2.0 * points[1] + points[2]
     if bend > 0.0:
         vertex = middle + 0.5 * half * (points[0] - points[2]) / bend
         vertex = min(max(vertex, low), high)
-        value(table, nodes, size, vertex, q, q_rate)
-        gap_and_tilt(vertex, q, y, yp, p, thinnest, f, w, s, out)
+        measures_at(vertex, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
         if out[kind] <= best:
             return vertex
     return best_at
@@ -117,8 +121,7 @@ def crossing_time(above, below, level, table, nodes, size, q, q_rate, y, yp, p, 
     one `below` when it is below, whichever is earlier; the film is below there."""
     for _ in range(60):
         middle = 0.5 * (above + below)
-        value(table, nodes, size, middle, q, q_rate)
-        gap_and_tilt(middle, q, y, yp, p, thinnest, f, w, s, out)
+        measures_at(middle, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
         if out[THICKNESS] < level:
             below = middle
         else:
@@ -293,14 +296,14 @@ def track_extremes(
                             kind, low + left * step, low + right * step,
                             table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out,
                         )  # fmt: skip
-                    value(table, nodes, size, at, q, q_rate)
-                    theta, radius = gap_and_tilt(at, q, y, yp, p, thinnest, f, w, s, out)
+                    theta, radius = measures_at(at, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out)
                     if kind == THICKNESS and window == 0 and out[kind] < f[COLLAPSE]:
                         fallen = crossing_time(
                             t[k], at, f[COLLAPSE], table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
                         )
-                        value(table, nodes, size, fallen, q, q_rate)
-                        theta, radius = gap_and_tilt(fallen, q, y, yp, p, thinnest, f, w, s, out)
+                        theta, radius = measures_at(
+                            fallen, table, nodes, size, q, q_rate, y, yp, p, thinnest, f, w, s, out
+                        )
                         for other in range(3):
                             # The tilt's extremes up to the last instant, which belongs to the run.
                             if other == THICKNESS or out[other] < current_record(records[window], other, tolerance)[0]:

@@ -76,7 +76,8 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
 def imposed_state(tau, p, c):
     """Fill the imposed state `c` (2 x PER_RING: stator, rotor; m, rad, their rates and accelerations) at segment time
     tau (s) from the block `p` (the layout above)."""
-    c[:] = 0.0
+    for i in range(len(c)):
+        c[i] = 0.0
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k
         base = PER_RING * int(p[row])
@@ -87,27 +88,26 @@ def imposed_state(tau, p, c):
         cos, sin = math.cos(phase), math.sin(phase)
         # Second derivative of a exp(i phase): (a'' = 0, phase'' = 2 a2) along and across.
         along, across = -a * w * w, 2.0 * (a_rate * w + a * p[row + 8])
+        x, x_rate, x_acceleration = a * cos, a_rate * cos - a * w * sin, along * cos - across * sin
         if kind == AXIAL:
-            c[base + Z] += a * cos
-            c[base + Z_RATE] += a_rate * cos - a * w * sin
-            c[base + Z_ACCELERATION] += along * cos - across * sin
-        elif kind == TURNING:
-            c[base + TILT_X_ACCELERATION] += along * cos - across * sin
-            c[base + TILT_Y_ACCELERATION] += along * sin + across * cos
-            c[base + TILT_X] += a * cos
-            c[base + TILT_Y] += a * sin
-            c[base + TILT_X_RATE] += a_rate * cos - a * w * sin
-            c[base + TILT_Y_RATE] += a_rate * sin + a * w * cos
-        elif kind == FIXED_AXIS:
-            rate, acceleration = a_rate * cos - a * w * sin, along * cos - across * sin
-            c[base + TILT_X_ACCELERATION] += acceleration * p[row + 4]
-            c[base + TILT_Y_ACCELERATION] += acceleration * p[row + 5]
-            c[base + TILT_X] += a * cos * p[row + 4]
-            c[base + TILT_Y] += a * cos * p[row + 5]
-            c[base + TILT_X_RATE] += rate * p[row + 4]
-            c[base + TILT_Y_RATE] += rate * p[row + 5]
+            c[base + Z] += x
+            c[base + Z_RATE] += x_rate
+            c[base + Z_ACCELERATION] += x_acceleration
+            continue
+        if kind == FIXED_AXIS:
+            y, y_rate, y_acceleration = x * p[row + 5], x_rate * p[row + 5], x_acceleration * p[row + 5]
+            x, x_rate, x_acceleration = x * p[row + 4], x_rate * p[row + 4], x_acceleration * p[row + 4]
         else:
-            c[base + OWN_X] += a * cos
-            c[base + OWN_Y] += a * sin
-            c[base + OWN_X_RATE] += a_rate * cos - a * w * sin
-            c[base + OWN_Y_RATE] += a_rate * sin + a * w * cos
+            y, y_rate, y_acceleration = a * sin, a_rate * sin + a * w * cos, along * sin + across * cos
+        if kind == OWN:
+            c[base + OWN_X] += x
+            c[base + OWN_Y] += y
+            c[base + OWN_X_RATE] += x_rate
+            c[base + OWN_Y_RATE] += y_rate
+        else:
+            c[base + TILT_X] += x
+            c[base + TILT_Y] += y
+            c[base + TILT_X_RATE] += x_rate
+            c[base + TILT_Y_RATE] += y_rate
+            c[base + TILT_X_ACCELERATION] += x_acceleration
+            c[base + TILT_Y_ACCELERATION] += y_acceleration

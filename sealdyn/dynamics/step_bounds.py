@@ -64,7 +64,9 @@ def _fastest(w, slope, length):
 def floating_motion(t, q_all, q_rate_all, k, p, motion):
     """The `motion` (4, 3) over step k of the rings that float alone; arguments as of `track_extremes` (extrema.py)."""
     span = t[k + 1] - t[k]
-    motion[:] = 0.0
+    for i in range(4):
+        for j in range(3):
+            motion[i, j] = 0.0
     for ring in range(2):
         sign, block = 1.0 - 2.0 * ring, RING * ring
         if p[block + FLOATS] == 0.0:
@@ -84,7 +86,8 @@ def floating_motion(t, q_all, q_rate_all, k, p, motion):
 def imposed_gap(tau, p, at):
     """What the rings that do not float add to the gap at segment time tau (s): axial (m) and tilt (rad, rad), then
     their rates, into `at` (6,); imposed_state of imposed_motion.py gives the same to each ring."""
-    at[:] = 0.0
+    for i in range(len(at)):
+        at[i] = 0.0
     for k in range(int(p[LEG_AT + OSCILLATOR_COUNT])):
         row = LEG_AT + OSCILLATORS + ROW * k
         ring, kind = int(p[row]), int(p[row + 1])

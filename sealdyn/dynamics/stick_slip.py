@@ -7,7 +7,7 @@ when that load reaches the surface.
 
 import numpy as np
 
-from ..numerics.hermite import NODES, fit, value
+from ..numerics.hermite import NODES, sample
 from ..scene.rings import RING_NAMES
 from ..solvers.contract import Change, Transition
 from .equations import (
@@ -159,13 +159,11 @@ class StickSlip:
         segment = self.segment
         first, last = max(0, step - NODES), min(len(t), step + NODES + 2)
         q, q_rate = segment.motion(ys[first:last], None)
-        table, nodes = np.zeros((segment.n, 2 * NODES)), np.zeros(2 * NODES)
-        size = fit(t[first:last], q, q_rate, step - first, last - first, table, nodes)
-        here, rate = np.empty(segment.n), np.empty(segment.n)
+        t, k, here, rate = t[first:last], step - first, np.empty((1, segment.n)), np.empty((1, segment.n))
 
         def at(tau):
-            value(table, nodes, size, tau, here, rate)
-            return self.model.vector(here, rate)
+            sample(t, q, q_rate, len(t), k, k + 1, np.array([tau]), here, rate)
+            return self.model.vector(here[0], rate[0])
 
         return at
 

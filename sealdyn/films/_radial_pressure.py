@@ -43,7 +43,6 @@ FIELDS = (PRESSURE,)
 STEPS, ANGLES = 16, 48
 
 
-@inner_kernel()
 def _nodes(f):
     """Radii (m) between which the film thickness is linear: both edges, or those of the profile."""
     if f[PROFILE] == 0.0:
@@ -51,7 +50,6 @@ def _nodes(f):
     return f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
 
 
-@inner_kernel()
 def _steps(nodes):
     """Equal steps between each node and the next, and how many in all."""
     steps, total = np.empty(len(nodes) - 1, np.int64), 0
@@ -61,7 +59,6 @@ def _steps(nodes):
     return steps, total
 
 
-@inner_kernel()
 def _radii(nodes, steps, total):
     """Radii (m) of the grid."""
     r, at = np.empty(total + 1), 0
@@ -81,22 +78,27 @@ def grid(f):
 @inner_kernel()
 def _thicknesses(f, s, nodes, steps, theta, h):
     """Film thickness `h` (radii,) at one angle, m; below the floor as the film's force sees it."""
-    at, here = 0, regularised_thickness(film_thickness(f, s, nodes[0], theta), f[FLOOR])
-    for n in range(len(steps)):
-        there = regularised_thickness(film_thickness(f, s, nodes[n + 1], theta), f[FLOOR])
-        for i in range(steps[n]):
-            h[at], at = here + (there - here) * i / steps[n], at + 1
+    at, here = 0, 0.0
+    for n in range(len(nodes)):
+        there = regularised_thickness(film_thickness(f, s, nodes[n], theta), f[FLOOR])
+        for i in range(steps[n - 1] if n > 0 else 0):
+            h[at], at = here + (there - here) * i / steps[n - 1], at + 1
         here = there
     h[at] = here
 
 
-@outer_kernel()
 def fields(f, s, out):
     """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
     has one."""
     nodes = _nodes(f)
     steps, total = _steps(nodes)
-    r, mean, planar = _radii(nodes, steps, total), f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
+    _pressure(f, s, nodes, steps, _radii(nodes, steps, total), out[0])
+
+
+@outer_kernel()
+def _pressure(f, s, nodes, steps, r, out):
+    """As `fields`, `out` (radii, angles), at the radii `r` (m): `steps` of them from one of the `nodes` to the next."""
+    mean, planar = f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     per, p_i, p_o, g = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], centrifugal(f, s)
     # Integrals of Phi / (r h^3) and of 1 / (r h^3) from the inner radius.
     h, driven, through = np.empty(len(r)), np.zeros(len(r)), np.zeros(len(r))
@@ -115,4 +117,4 @@ def fields(f, s, out):
         c = ((p_o - p_i - 0.5 * g * (r[-1] ** 2 - r[0] ** 2)) / per - driven[-1]) / through[-1]
         for k in range(len(r)):
             p = p_i + per * (driven[k] + c * through[k]) + 0.5 * g * (r[k] ** 2 - r[0] ** 2)
-            out[0, k, j] = max(p, f[CAVITATION]) if f[HAS_CAVITATION] != 0.0 else p
+            out[k, j] = max(p, f[CAVITATION]) if f[HAS_CAVITATION] != 0.0 else p

@@ -40,7 +40,7 @@ def window(t, k, count):
     return first, last
 
 
-@outer_kernel()
+@inner_kernel()
 def fit(t, q, q_rate, k, count, table, nodes):
     """Divided differences (confluent, Newton form) of every displacement for interval k.
 
@@ -50,20 +50,17 @@ def fit(t, q, q_rate, k, count, table, nodes):
     first, last = window(t, k, count)
     size = 2 * (last - first)
     # Order the steps by distance from the interval: the leading terms are then the cubic.
-    left, right, filled = k, k + 1, 0
-    while filled < size:
-        if right < last:
-            nodes[filled] = nodes[filled + 1] = t[right]
-            for i in range(q.shape[1]):
-                table[i, filled], table[i, filled + 1] = q[right, i], q_rate[right, i]
-            filled += 2
+    left, right, near = k, k + 1, k + 1
+    for m in range(0, size, 2):
+        nodes[m] = nodes[m + 1] = t[near]
+        for i in range(q.shape[1]):
+            table[i, m], table[i, m + 1] = q[near, i], q_rate[near, i]
+        if near == right:
             right += 1
-        if left >= first and filled < size:
-            nodes[filled] = nodes[filled + 1] = t[left]
-            for i in range(q.shape[1]):
-                table[i, filled], table[i, filled + 1] = q[left, i], q_rate[left, i]
-            filled += 2
+            near = left if left >= first else right
+        else:
             left -= 1
+            near = right if right < last else left
     for i in range(q.shape[1]):
         row = table[i]
         # In its second place each step holds its rate: the first difference there.
@@ -95,11 +92,12 @@ def _drop_noise(middle, table, nodes, size):
                 for later in range(j + 1, steps):
                     falls = falls and pairs[later] < FALLS * pairs[later - 1]
                 if not falls:
-                    table[i, 2 * j : size] = 0.0
+                    for m in range(2 * j, size):
+                        table[i, m] = 0.0
                     break
 
 
-@outer_kernel()
+@inner_kernel()
 def value(table, nodes, size, at, q, q_rate):
     """Displacements and rates (n,) at the time `at` from the differences of `fit` (Horner), into `q` and `q_rate`;
     `size` conditions."""

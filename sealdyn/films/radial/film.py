@@ -115,7 +115,9 @@ def _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, complete):
     """Add up the radial integrals of `lanes` angles side by side.  Inlined, the sizes of `at` are known and the inner
     loop fills vector registers; every angle's sum keeps the order of its points, so the result has the same bits with
     any vector unit (what fast-math would not keep)."""
-    at[A0:, :lanes] = 0.0
+    for i in range(A0, ROWS):
+        for j in range(lanes):
+            at[i, j] = 0.0
     for k in range(len(x_k)):
         x, w = x_k[k], w_k[k]
         for j in range(lanes):
