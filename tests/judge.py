@@ -1,22 +1,34 @@
-"""The truth of a scene by other methods than the program's own, and how far a run is from it.
+"""The truth of a scene by other methods than the program's own choice, and how far a run is from it.
 
-Smooth scenes: SciPy's Radau or DOP853 on the scene's right-hand side, started anew at every instant that is compared,
-so that nothing is interpolated.  Dry friction needs the events of `solve`: there the references are its runs by DOP853
-and Radau.
+Two references, and the truth as far as they agree.  The first, of smooth scenes: SciPy's Radau or DOP853 on the
+scene's right-hand side, started anew at every instant that is compared, so that nothing is interpolated.  The second:
+a run of `solve` by the method that the program chooses, far sharper; where the first takes too long, or dry friction
+needs the events of `solve`, also one by another method.
 """
+
+import math
+import time
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import DOP853, Radau
 
+from sealdyn.faces.film_thickness import h_min_of
+from sealdyn.faces.geometry import COLLAPSE
 from sealdyn.solvers.contract import absolute_tolerances
 from sealdyn.solvers.integrate import solve
 
 
-class Instants:
-    """A sink for the columns of LookedAt at given times (m,) (s, of the run)."""
+class TooLong(Exception):
+    """A reference took longer than it may."""
 
-    def __init__(self, scales, times):
-        self.scales, self.times, self.columns, self.reached = scales, times, [], 0
+
+class Instants:
+    """A sink for the columns of LookedAt at given times (m,) (s, of the run); raises TooLong after `deadline` (s, of
+    time.process_time)."""
+
+    def __init__(self, scales, times, deadline=math.inf):
+        self.scales, self.times, self.deadline, self.columns = scales, times, deadline, []
 
     def due(self, segment):
         end = np.inf if segment.last else segment.time + segment.length
@@ -29,9 +41,11 @@ class Instants:
         self.columns.append(self.scales.of(segment, taus[kept], q[kept], q_rate[kept]))
 
     def state(self, *anything):
-        pass
+        if time.process_time() > self.deadline:
+            raise TooLong
 
-    event = state
+    def event(self, *anything):
+        pass
 
     def all(self):
         return np.concatenate(self.columns)
@@ -45,9 +59,9 @@ def instants(random, run, count=240):
     return np.unique(np.clip(np.concatenate([anywhere, after.ravel()]), 0.0, run.duration * (1 - 1e-9)))
 
 
-def landed(run, scales, times, kind, tolerance):
+def landed(run, scales, times, kind, tolerance, deadline=math.inf):
     """Columns at the times by a solver class of SciPy, from instant to instant; fewer rows where the film closes or the
-    solver gives up."""
+    solver gives up.  Raises TooLong."""
     y, columns, step = run.y0.copy(), [], None
     for k in range(len(run.intervals)):
         segment, last = run.segment(k), k + 1 == len(run.intervals)
@@ -57,7 +71,7 @@ def landed(run, scales, times, kind, tolerance):
         for stop in [*stops, *([] if last else [segment.length])]:
             stop = min(max(stop, 0.0), segment.length)
             if stop > tau:
-                y, step = _carried(segment, kind, tau, y, stop, tolerance, absolute, step)
+                y, step = _carried(segment, kind, tau, y, stop, tolerance, absolute, step, deadline)
                 if y is None:
                     return np.concatenate(columns) if columns else np.empty((0, 0))
                 tau = stop
@@ -67,7 +81,7 @@ def landed(run, scales, times, kind, tolerance):
     return np.concatenate(columns)
 
 
-def _carried(segment, kind, tau, y, stop, tolerance, absolute, step):
+def _carried(segment, kind, tau, y, stop, tolerance, absolute, step, deadline):
     def rates(t, y):
         yp = np.empty_like(y)
         segment.rhs(t, y, yp)
@@ -78,44 +92,109 @@ def _carried(segment, kind, tau, y, stop, tolerance, absolute, step):
         segment.jacobian(t, np.array(y), None, matrix)
         return matrix
 
+    face = segment.model.face
+    thinnest = h_min_of(face)
     options = {"jac": jacobian} if kind is Radau else {}
     first = min(step, stop - tau) if step else None
     solver = kind(rates, tau, y, stop, rtol=max(tolerance, 1e-13), atol=absolute, first_step=first, **options)
     while solver.status == "running":
         with np.errstate(all="ignore"):
             solver.step()
+        if time.process_time() > deadline:
+            raise TooLong
         if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
+            return None, None
+        if thinnest(face, segment.gap_state(solver.t, solver.y))[0] < face[COLLAPSE]:
             return None, None
         # The last step before a stop is cut short: no measure of the next.
         step = solver.h_abs if solver.status == "running" else max(solver.h_abs, step or 0.0)
     return solver.y, step
 
 
-def by_events(run, scales, times, method, tolerance):
-    """Columns at the times by `solve`, with its events."""
-    sink = Instants(scales, times)
+def by_steps(run, scales, times, method, tolerance, deadline=math.inf):
+    """Columns at the times by `solve`, and its contacts (events as in an archive).  Raises TooLong."""
+    sink = Instants(scales, times, deadline)
     outcome = solve(run, method, run.model.accuracy, sink, tolerance=tolerance)
-    return sink.all() if outcome.status in ("ok", "collapsed") else np.empty((0, 0))
+    found = sink.all() if outcome.status in ("ok", "collapsed") and sink.columns else np.empty((0, 0))
+    return found, all_contacts(run, outcome)
 
 
-def truth(make, scales, times, accuracy, stiff):
-    """Columns at the times, and how far (rows) two references agree within accuracy/100: the horizon.  `make()` a run
-    with its start."""
-    run, tolerance = make(), max(accuracy * 1e-4, 1e-12)
-    if run.stick_slip:
-        found = [
-            by_events(make(), scales, times, method, tol)
-            for method, tol in (("radau", tolerance / 10), ("dop853" if not stiff else "bdf", tolerance))
-        ]
-    else:
-        kinds = (Radau, Radau) if stiff else (DOP853, DOP853)
-        found = [
-            landed(make(), scales, times, kind, tol)
-            for kind, tol in zip(kinds, (tolerance / 10, tolerance), strict=True)
-        ]
-    rows = min(map(len, found))
-    if rows == 0:
-        return found[0], 0
-    apart = scales.errors(found[0][:rows], found[1][:rows]).max(axis=1)
+def all_contacts(run, outcome) -> list[dict]:
+    """Contacts and grazes of a run that has been solved, as events of an archive."""
+    events = []
+    run.contacts.tell(events.extend, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
+    return events
+
+
+def contact_errors(found, true, until, run, rate):
+    """Contacts of a run against the true ones up to the time `until` (s): how many are missed or too many, and the
+    largest error of their depth over the clearance and of touch and lift-off times the reference `rate` (rad/s).  Those
+    shallower than the accuracy do not count, and times only of contacts that are one in both."""
+    least, clearance = 2 * max(run.model.accuracy * run.model.clearance, run.model.gap_error()), run.model.clearance
+
+    def meet(one, other):
+        ends = [event["lift_off"] if np.isfinite(event["lift_off"]) else math.inf for event in (one, other)]
+        return one["time"] <= ends[1] + slack and other["time"] <= ends[0] + slack
+
+    slack, wrong, depth, time_error = 1e-3 / rate, 0, 0.0, 0.0
+    for ours, theirs in ((found, true), (true, found)):
+        for event in ours:
+            if event["depth"] <= least or event["deepest"] >= until:
+                continue
+            met = [other for other in theirs if meet(event, other)]
+            wrong += not met
+            if met:
+                depth = max(depth, min(abs(event["depth"] - other["depth"]) for other in met) / clearance)
+            if len(met) == 1 and sum(meet(met[0], other) for other in ours) == 1:
+                time_error = max(time_error, abs(event["time"] - met[0]["time"]) * rate)
+                if max(event["lift_off"], met[0]["lift_off"]) < until:
+                    time_error = max(time_error, abs(event["lift_off"] - met[0]["lift_off"]) * rate)
+    return wrong, depth, time_error
+
+
+@dataclass
+class Truth:
+    """Columns (m, ...) at the instants, of which the first `rows` are known to accuracy/100; contacts (events); and how
+    it was found."""
+
+    columns: np.ndarray
+    rows: int
+    contacts: list[dict]
+    found_by: str
+
+
+def truth(make, scales, times, accuracy, chosen, budget=30.0) -> Truth | None:
+    """The truth of a run that `make()` gives, with its start; `chosen` the method that the program takes, `budget` (s)
+    of processor time of each reference.  None if fewer than two references are found."""
+    tolerance = max(accuracy * 1e-4, 1e-12)
+    kind = Radau if chosen == "bdf" else DOP853
+    methods = (
+        (f"{chosen}, sharper", chosen, tolerance / 10),
+        ("dop853", "dop853", tolerance),
+        ("radau", "radau", tolerance),
+    )
+    plans = [
+        (name, lambda until, method=method, sharp=sharp: by_steps(make(), scales, times, method, sharp, until))
+        for name, method, sharp in methods
+    ]
+    if not make().stick_slip:
+        plans.insert(
+            0, (kind.__name__, lambda until: (landed(make(), scales, times, kind, tolerance / 10, until), None))
+        )
+    found = []
+    for name, plan in plans:
+        try:
+            columns, contacts = plan(time.process_time() + budget)
+        except TooLong:
+            continue
+        if len(columns):
+            found.append((name, columns, contacts))
+        if len(found) == 2:
+            break
+    if len(found) < 2:
+        return None
+    (one, columns, _), (two, others, contacts) = found
+    rows = min(len(columns), len(others))
+    apart = scales.errors(columns[:rows], others[:rows]).max(axis=1)
     bad = np.flatnonzero(apart > accuracy / 100)
-    return found[0], int(bad[0]) if len(bad) else rows
+    return Truth(columns, int(bad[0]) if len(bad) else rows, contacts, f"{one} and {two}")

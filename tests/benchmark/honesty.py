@@ -1,227 +1,214 @@
-"""How honest is the automatic choice, and what does it cost?
+"""How honest are runs and their certificates on any scene, and what do they cost?
 
-    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [turns]
+    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes]
 
 A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
-Random scenes (seeded): arrangement, seal, speed, forcing, start, run and asked accuracy.  The truth of each is the
-radial film by DOP853 at 1e-12.  Honest: what a user looks at (thinnest film over the clearance, relative misalignment
-over clearance / outer radius, leakage over its largest value, at every sample) is wrong by less than what was asked.
-Cost: wall time of choosing, running and certifying, over that of the cheapest film, method and tolerance that would
-have done, known only in hindsight; the least of three times each.
+Random scenes (tests/families.py, seeded) of all that the program accepts; the truth of each by two other references
+(tests/judge.py), up to the time where they agree within accuracy/100.  Scenes of which less than a turn is known are
+drawn anew.  A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it
+is not exact enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
+within the asked accuracy, or the run says that it is not.
+Cost: processor time of all that, over that of the cheapest method and tolerance that would have done, known only in
+hindsight; smooth scenes; the least of three times each.
 """
 
 import json
 import math
 import sys
 import time
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from scenes import started
+from families import wide
+from judge import Instants, TooLong, all_contacts, contact_errors, instants, truth
+from scenes import prepared
 
-from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
-from sealdyn.scene.excitation import AngularVibration, Housing, Shaft
-from sealdyn.scene.film import Film
-from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.scene.scene import Scene
-from sealdyn.simulation.certificate import certify, choose_tolerance
+from sealdyn.simulation.attempts import Try, judged, next_try
 from sealdyn.simulation.film_selection import select_film
+from sealdyn.simulation.looked_at import QUANTITIES, LookedAt
 from sealdyn.simulation.method_selection import choose_method
-from sealdyn.solvers.contract import tolerance_for
+from sealdyn.simulation.second_run import Comparison
+from sealdyn.simulation.simulate import certificate
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
-SEED, SAMPLES, TIMES = 20_26, 32, 3
-METHODS, EXACT = ("adams", "bdf", "dop853"), "expm"
+SEED, TIMES = 20_26, 3
+ALL = (*QUANTITIES, "contact depth", "contact time")
 # Accuracies tried in hindsight, in units of the asked one, from the cheapest; the first that does is taken.
-KNOBS = (1000.0, 300.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.3)
-DEARER = 4.0
+KNOBS = (1000.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.3)
+DEARER, LONGEST = 4.0, 20.0
 
 
-def scene(random, turns=None):
-    """One random scene, its duration (s; 15 to 45 turns, or so many), accuracy and start."""
-    kind = random.choice(["fms", "fmr", "fmsr"])
-    log = lambda low, high: float(np.exp(random.uniform(math.log(low), math.log(high))))  # noqa: E731
-    clearance, outer = log(4e-6, 2e-5), log(0.02, 0.08)
-    inner = outer * random.uniform(0.75, 0.95)
-    speed = log(100.0, 2000.0)
-    film = Film(model="auto", inner_radius=inner, outer_radius=outer, clearance=clearance,
-                coning=random.uniform(0.5, 3.0) * clearance / (outer - inner), viscosity=log(2e-4, 2e-3),
-                outer_pressure=log(2e5, 2e6), inner_pressure=random.choice([0.0, 1e5]))  # fmt: skip
-    tilt = clearance / outer
+def begin(drawn):
+    """What sets a run's unknowns."""
 
-    def ring():
-        mass = log(0.1, 3.0)
-        inertia = mass * outer**2 * random.uniform(0.4, 1.2)
-        support = Support(axial_stiffness=log(1e4, 1e6), axial_damping=log(30.0, 1000.0), radius=outer)
-        return dict(mass=mass, transverse_inertia=inertia, polar_inertia=inertia * random.uniform(0.3, 2.0),
-                    support=support, misalignment=tilt * log(1e-3, 0.5))  # fmt: skip
-
-    housing = Housing()
-    if random.random() < 0.25:
-        housing = Housing(angular=[AngularVibration(frequency=speed / (2 * math.pi) * random.choice([2.0, 3.5]),
-                                                    displacement=0.05 * tilt)])  # fmt: skip
-    parts = dict(
-        fms=dict(stator=Stator(**ring()), rotor=Rotor(runout=tilt * log(1e-3, 0.5))),
-        fmr=dict(stator=Stator(misalignment=tilt * log(1e-3, 0.5)), rotor=Rotor(**ring())),
-        fmsr=dict(stator=Stator(**ring()), rotor=Rotor(**ring())),
-    )[kind]
-    made = Scene(shaft=Shaft(speed=speed), film=film, housing=housing, **parts)
-    drawn = random.integers(15, 46)
-    turns = turns or drawn
-    start = random.choice(["rest", "steady"])
-    return made, turns * 2 * math.pi / speed, log(1e-7, 1e-2), start
-
-
-def begin(start):
-    """What sets a ready's unknowns."""
-
-    def set_start(ready):
-        if start == "steady":
-            ready.y0 = ready.steady_start()
-        ready.check_start()
+    def set_start(run):
+        if drawn.start == "steady":
+            run.y0 = run.steady_start()
+        run.check_start()
 
     return set_start
 
 
-def looked_at(ready, method, accuracy, interval, **options):
-    """Observables (m, 3) of a run, scaled, or None if it did not end well; and its wall time (s)."""
-    begun = time.perf_counter()
-    sink = Recorder(interval)
-    outcome = solve(ready, method, accuracy, sink, **options)
-    wall = time.perf_counter() - begun
-    if outcome.status != "ok":
-        return None, wall
-    parts = []
-    for t, q, rate in sink.parts:
-        segment = ready.segment(max(k for k, part in enumerate(ready.intervals) if part.time <= t[0] + 1e-12))
-        seen = signals(segment, t - segment.time, q, rate)
-        parts.append(np.stack([seen["h_min"] / ready.model.clearance,
-                               seen["relative_misalignment"] * ready.model.face[1] / ready.model.clearance,
-                               seen["leakage_inner"]], 1))  # fmt: skip
-    return np.concatenate(parts), wall
+def automatic(drawn, times):
+    """A run as `simulate` does it: the run, its certificate, outcome, columns at the times, contacts, and what it took
+    (s)."""
+    begun = time.process_time()
+    run, by_model = select_film(drawn.scene, Run(duration=drawn.duration, accuracy=drawn.accuracy), begin(drawn))
+    method, why = choose_method(run)
+    one, tries = Try(method, None, why), []
+    while True:
+        sink = Instants(LookedAt(run), times)
+        trial, errors = one.start(run)
+        options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
+        seen = Comparison(run) if errors is None and one.method != "expm" else None
+        outcome = solve(run, one.method, drawn.accuracy, sink, errors=errors, seen=seen, **options)
+        found, outcome = certificate(run, one.method, outcome, errors, by_model, seen)
+        again = next_try(run, "auto", one, outcome, found, tries)
+        if again is None:
+            break
+        tries.append((one, outcome.tolerance, found))
+        run, one = run.anew(), again
+    found, outcome = judged(found, outcome, tries)
+    spent = time.process_time() - begun
+    return run, one.method, found, outcome, sink.all(), all_contacts(run, outcome), spent
 
 
-def apart(found, truth):
-    """Largest error over all samples and observables; leakage relative to its largest value."""
-    if found is None:
-        return math.inf
-    count = min(len(found), len(truth))
-    scale = np.array([1.0, 1.0, np.max(np.abs(truth[:, 2]))])
-    return float(np.max(np.abs(found[:count] - truth[:count]) / scale))
+def in_order(model, reference, columns):
+    """Columns of the reference run with unknowns in the order of another model's."""
+    names = [reference.unknowns.names.index(name) for name in model.unknowns.names]
+    n = reference.unknowns.n
+    return columns[:, [*names, *(n + k for k in names), *range(2 * n, columns.shape[1])]]
 
 
-def automatic(made, duration, accuracy, start, interval):
-    """Wall times (s) of choosing, running and certifying; ready, method, what was found, certificate."""
-    begun = time.perf_counter()
-    ready, by_model = select_film(made, Run(duration=duration, accuracy=accuracy), begin(start))
-    method, _ = choose_method(ready)
-    trial, errors = choose_tolerance(ready, method)
-    chosen = time.perf_counter() - begun
-    options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
-    tolerance = trial.tolerance if trial else tolerance_for(method, accuracy, ready.memory)
-    found, wall = looked_at(ready, method, accuracy, interval, errors=errors, **options)
-    begun = time.perf_counter()
-    certificate = certify(ready, method, tolerance, errors, by_model)
-    return chosen, wall, time.perf_counter() - begun, ready, method, found, certificate
+def hindsight(make, drawn, times, scales, true, rows):
+    """Processor time (s) of the cheapest method and tolerance that keep the accuracy; infinite if none does."""
+    best = math.inf
+    for method in ("adams", "bdf", "dop853"):
+        for knob in KNOBS:
+            spent, accuracy = math.inf, min(drawn.accuracy * knob, 0.05)
+            try:
+                for _ in range(TIMES):
+                    begun = time.process_time()
+                    run, sink = make(accuracy), Instants(scales, times, begun + min(DEARER * best, LONGEST))
+                    outcome = solve(run, method, accuracy, sink)
+                    spent = min(spent, time.process_time() - begun)
+            except TooLong:
+                # A sharper one costs more still.
+                break
+            if outcome.status == "ok" and np.all(scales.errors(sink.all()[:rows], true[:rows]) <= drawn.accuracy):
+                best = min(best, spent)
+                break
+    return best
 
 
-def hindsight(film_scene, name, accuracy, problem_of, observed, interval):
-    """What a run by this film, method and accuracy finds, and its wall time with making it ready (s)."""
-    begun = time.perf_counter()
-    tried = problem_of(film_scene, accuracy)
-    if tried.model.interface.name == "linear":
-        tried.model.observed = observed
-    ready = time.perf_counter() - begun
-    seen, wall = looked_at(tried, name, accuracy, interval)
-    return seen, ready + wall
+def judge(number):
+    """What one scene shows: a dict, with `why` where it is no scene or cannot be judged."""
+    random = np.random.default_rng([SEED, number])
+    drawn = wide(random)
+    row = {"number": number, "words": drawn.words, "accuracy": drawn.accuracy, "smooth": drawn.smooth}
+    radial = replace(drawn.scene, film=replace(drawn.scene.film, model="radial"))
 
-
-def judge(made, duration, accuracy, start):
-    """What the automatic choice did, and the cheapest that would have done; None if the scene is no scene."""
-    interval = duration / (SAMPLES * max(1, round(duration * made.shaft.speed / (2 * math.pi))))
-    radial = replace(made, film=replace(made.film, model="radial"))
-
-    def problem_of(film_scene, knob):
-        ready = started(film_scene, duration, knob)
-        begin(start)(ready)
-        return ready
+    def make(accuracy=drawn.accuracy / 100):
+        return prepared(radial, drawn.duration, accuracy, drawn.start)
 
     try:
-        exact = problem_of(radial, 1e-9)
+        reference = make()
+        reference.check_start()
     except ValueError:
-        return None
-    truth, _ = looked_at(exact, "dop853", 6e-11, interval)
-    if truth is None or truth[:, 0].min() < 0.05:
-        return None
-    tries = [automatic(made, duration, accuracy, start, interval) for _ in range(TIMES)]
-    chosen, wall, certified = (min(one[k] for one in tries) for k in range(3))
-    ready, method, found, certificate = tries[0][3:]
+        return {**row, "why": "no scene"}
+    scales, times = LookedAt(reference), instants(random, reference)
+    known = truth(make, scales, times, drawn.accuracy, choose_method(reference)[0])
+    if known is None:
+        return {**row, "why": "not judged"}
+    turn = 2 * math.pi / scales.rate
+    if known.rows == 0 or times[known.rows - 1] < min(turn, 0.99 * drawn.duration):
+        return {**row, "why": "known for less than a turn"}
+    run, method, found, outcome, columns, contacts, spent = automatic(drawn, times)
+    rows = min(known.rows, len(columns))
+    if found["horizon"]:
+        rows = min(rows, int(np.searchsorted(times, found["horizon"])))
+    true = in_order(run.model, reference.model, known.columns)
+    errors = LookedAt(run).errors(columns[:rows], true[:rows]).max(axis=0, initial=0.0)
+    until = times[rows - 1] if rows < len(times) else drawn.duration
+    wrong, depth, instant = contact_errors(contacts, known.contacts or [], until, run, scales.rate)
     best = math.inf
-    linear = replace(made, film=replace(made.film, model="linear", coefficients="radial"))
-    for film_scene in (linear, radial):
-        for name in (*METHODS, EXACT) if film_scene is linear else METHODS:
-            for knob in KNOBS:
-                asked = min(accuracy * knob, 0.05)
-                seen, cost = hindsight(film_scene, name, asked, problem_of, exact.model.observed, interval)
-                if apart(seen, truth) <= accuracy:
-                    again = [
-                        hindsight(film_scene, name, asked, problem_of, exact.model.observed, interval)[1]
-                        for _ in range(TIMES - 1)
-                    ]
-                    best = min(best, cost, *again)
-                    break
-                if cost > DEARER * best:
-                    # A tighter one costs more still.
-                    break
-    error, estimated = apart(found, truth), certificate.estimated
-    return {"accuracy": accuracy, "error": error, "estimated": estimated, "film": ready.model.interface.name,
-            "method": method, "cost": chosen + wall + certified, "solving": chosen + wall, "running": wall,
-            "best": best}  # fmt: skip
+    if drawn.smooth and outcome.status == "ok":
+        spent = min(spent, *(automatic(drawn, times)[-1] for _ in range(TIMES - 1)))
+        best = hindsight(make, drawn, times, scales, known.columns, rows)
+    return {**row, "errors": [*errors.tolist(), depth, instant], "contacts_wrong": wrong, "contacts": len(contacts),
+            "estimated": found["estimated"], "met": found["met"], "status": str(outcome.status), "method": method,
+            "film": run.model.interface.name, "known": times[known.rows - 1] / drawn.duration, "by": known.found_by,
+            "cost": spent, "best": best}  # fmt: skip
+
+
+def told(row):
+    """The largest error over the accuracy, and whether the run said that it is not within it."""
+    most = max(row["errors"][: len(QUANTITIES)]) / row["accuracy"]
+    spoken = row["status"] != "ok" or row["met"] is not True
+    return most, spoken
+
+
+def said(row) -> str:
+    """One line about a scene."""
+    most, spoken = told(row)
+    estimated = (row["estimated"] or math.nan) / row["accuracy"]
+    parts = " ".join(f"{error / row['accuracy']:.2g}" for error in row["errors"])
+    verdict = "" if most <= 1.0 and not row["contacts_wrong"] else "SAID " if spoken else "WRONG "
+    low = "LOW " if not spoken and most > 0.01 and estimated < 0.3 * most else ""
+    return (f"{row['number']} {verdict}{low}asked {row['accuracy']:.1e} estimated {estimated:.2g} errors {parts} "
+            f"contacts {row['contacts']}-{row['contacts_wrong']} cost {row['cost']:.2g}/{row['best']:.2g} "
+            f"{row['status']} {row['film']} {row['method']} by {row['by']} {','.join(row['words'])}")  # fmt: skip
 
 
 def main():
-    wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 100
-    turns = int(sys.argv[3]) if len(sys.argv) > 3 else None
-    random, rows, number = np.random.default_rng(SEED), [], 0
-    # Kernels are compiled before anything is timed.
-    judge(*scene(np.random.default_rng(1)))
-    while len(rows) < wanted:
-        number += 1
-        row = judge(*scene(random, turns))
-        if row is None:
-            continue
-        rows.append({**row, "number": number})
-        if len(rows) % 20 == 0:
-            print(f"  {len(rows)} scenes", flush=True)
-        if row["error"] > row["accuracy"]:
-            print(f"  scene {number}: asked {row['accuracy']:.1e}, wrong by {row['error']:.1e}, estimated "
-                  f"{row['estimated'] or math.nan:.1e} ({row['film']}, {row['method']})", flush=True)  # fmt: skip
-    honest = sum(row["error"] <= row["accuracy"] for row in rows)
-    spoken = sum(row["error"] > row["accuracy"] and (row["estimated"] or 0) > row["accuracy"] for row in rows)
-    ratios = np.array([row["cost"] / row["best"] for row in rows if math.isfinite(row["best"])])
-    solving = np.array([row["solving"] / row["best"] for row in rows if math.isfinite(row["best"])])
-    running = np.array([row["running"] / row["best"] for row in rows if math.isfinite(row["best"])])
-    films = {name: sum(row["film"] == name for row in rows) for name in ("linear", "radial")}
-    print(f"{honest} of {len(rows)} honest ({spoken} of the others said so); films {films}; of {number} scenes drawn")
-    print(f"cost over hindsight: median {np.median(ratios):.2f}, quartiles {np.quantile(ratios, 0.25):.2f} "
-          f"{np.quantile(ratios, 0.75):.2f}; without the certificate {np.median(solving):.2f}, "
-          f"the run alone {np.median(running):.2f}")  # fmt: skip
+    wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    processes = int(sys.argv[3]) if len(sys.argv) > 3 else 2
+    rows, dropped, number = [], Counter(), 0
+    with ProcessPoolExecutor(processes) as pool:
+        while len(rows) < wanted:
+            count = max(4 * processes, wanted - len(rows))
+            for row in pool.map(judge, range(number, number + count)):
+                if "why" in row:
+                    dropped[row["why"]] += 1
+                    print(row["number"], row["why"], ",".join(row["words"]), flush=True)
+                elif len(rows) < wanted:
+                    rows.append(row)
+                    print(said(row), flush=True)
+            number += count
+    verdicts = [told(row) for row in rows]
+    honest = sum(most <= 1.0 and not row["contacts_wrong"] for row, (most, _) in zip(rows, verdicts, strict=True))
+    spoken = sum(
+        (most > 1.0 or row["contacts_wrong"] > 0) and said for row, (most, said) in zip(rows, verdicts, strict=True)
+    )
+    claimed = [
+        row["estimated"] / (most * row["accuracy"])
+        for row, (most, said) in zip(rows, verdicts, strict=True)
+        if not said and most > 0.01
+    ]
+    costs = np.array([row["cost"] / row["best"] for row in rows if math.isfinite(row["best"])])
+    numbers = {
+        "seed": SEED,
+        "scenes": len(rows),
+        "honest": honest,
+        "spoken": spoken,
+        "wrong": len(rows) - honest - spoken,
+        "over_asked": sum(said for _, said in verdicts),
+        "dropped": dict(dropped),
+        "estimate_over_error": [min(claimed), *np.quantile(claimed, [0.1, 0.5, 0.9]).tolist()],
+        "asked": [min(row["accuracy"] for row in rows), max(row["accuracy"] for row in rows)],
+        "median_cost": float(np.median(costs)),
+        "smooth": len(costs),
+        "contacts": sum(row["contacts"] for row in rows),
+        "contacts_wrong": sum(row["contacts_wrong"] for row in rows),
+    }
+    print(json.dumps(numbers, indent=1))
     if len(sys.argv) > 2 and sys.argv[2] != "-":
-        asked = [row["accuracy"] for row in rows]
         draw(rows, Path(sys.argv[2]))
-        numbers = {
-            "seed": SEED,
-            "scenes": len(rows),
-            "honest": honest,
-            "linear": films["linear"],
-            "asked": [min(asked), max(asked)],
-            "median_cost": float(np.median(ratios)),
-            "median_cost_running": float(np.median(running)),
-        }
         Path(sys.argv[2]).with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n")
 
 
@@ -232,29 +219,30 @@ def draw(rows, path):
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 4.6), layout="constrained")
-    for film, colour, marker in (("linear", palette.ORANGE, "s"), ("radial", palette.BLUE, "o")):
-        these = [row for row in rows if row["film"] == film]
+    for smooth, colour, marker, label in (
+        (True, palette.BLUE, "o", "smooth"),
+        (False, palette.ORANGE, "s", "contact or dry friction"),
+    ):
+        these = [row for row in rows if row["smooth"] == smooth]
         asked = [row["accuracy"] for row in these]
-        left.loglog(asked, [row["error"] for row in these], marker, color=colour, label=f"{film} film chosen")
-        left.loglog(
-            asked, [row["estimated"] or math.nan for row in these], marker, mfc="none", color=colour, ms=4, alpha=0.6
-        )
-        right.loglog(asked, [row["cost"] / row["best"] for row in these], marker, color=colour)
+        worst = [max(row["errors"][: len(QUANTITIES)]) for row in these]
+        left.loglog(asked, worst, marker, color=colour, ms=4, label=label)
+        left.loglog(asked, [row["estimated"] or math.nan for row in these], marker, mfc="none", color=colour, ms=3,
+                    alpha=0.5)  # fmt: skip
+        dear = [(row["accuracy"], row["cost"] / row["best"]) for row in these if math.isfinite(row["best"])]
+        if dear:
+            right.loglog(*zip(*dear, strict=True), marker, color=colour, ms=4)
     ends = np.array([min(row["accuracy"] for row in rows), max(row["accuracy"] for row in rows)])
     left.loglog(ends, ends, color=palette.BLACK, lw=1)
     left.annotate("error = accuracy asked", (ends[0], ends[0]), xytext=(4, 10), textcoords="offset points", rotation=28,
                   fontsize=8)  # fmt: skip
-    left.set(
-        xlabel="accuracy asked",
-        ylabel="largest error of what is looked at",
-        title="Filled: true error; hollow: certificate",
-    )
+    left.set(xlabel="accuracy asked", ylabel="largest error of all quantities",
+             title="Filled: true error; hollow: certificate")  # fmt: skip
     left.legend(fontsize=8)
-    right.axhline(2.0, color=palette.GREY, ls="--", lw=1)
+    right.axhline(2.5, color=palette.GREY, ls="--", lw=1)
     right.axhline(1.0, color=palette.BLACK, lw=1)
-    right.set(
-        xlabel="accuracy asked", ylabel="cost over the cheapest in hindsight", title="Choosing, running and certifying"
-    )
+    right.set(xlabel="accuracy asked", ylabel="cost over the cheapest in hindsight",
+              title="Choosing, running and certifying, smooth scenes")  # fmt: skip
     for axes in (left, right):
         axes.grid(True, alpha=0.3)
     figure.savefig(path, dpi=110)
