@@ -24,7 +24,7 @@ class FilmClosed(SceneError):
 class RunState:
     """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`, `stick_slip`
     or None), `reasons` (sentences) and `cautions`, and `last`: the segment's index, time in it (s) and unknowns (size,)
-    reached so far."""
+    reached so far; `start` where it starts and why (simulation/start_selection.py), None if nobody chose."""
 
     def __init__(self, model: Model, duration: float):
         self.model, self.duration = model, duration
@@ -34,7 +34,7 @@ class RunState:
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         self.reasons, self.cautions = list(model.unknowns.reasons), []
-        self.last = (0, 0.0, self.y0)
+        self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
@@ -51,7 +51,7 @@ class RunState:
         """The same run before its start, with observers of its own."""
         other = RunState(self.model, self.duration)
         other.y0, other.reasons, other.cautions = self.y0.copy(), list(self.reasons), list(self.cautions)
-        other.extrema.windows[1:] = self.extrema.windows[1:]
+        other.extrema.windows[1:], other.start = self.extrema.windows[1:], self.start
         return other
 
     @cached_property
@@ -98,20 +98,20 @@ class RunState:
         places = self.model.unknowns.among_three()
         return self.model.vector(q[places], rate[places])
 
-    def start_film(self) -> float:
-        """Thinnest film (m) at the start."""
-        s = self.segment(0).gap_state(0.0, self.y0)
+    def start_film(self, y=None) -> float:
+        """Thinnest film (m) at the start, or if it were with unknowns `y` (size,)."""
+        s = self.segment(0).gap_state(0.0, self.y0 if y is None else y)
         return float(h_min(self.model.face, s)[0])
 
     def check_start(self):
         """Raises SceneError if the film is closed at the start."""
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
+            other = "" if self.start and self.start.taken == "steady" else ', or run.start = "steady"'
             raise FilmClosed(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
-                f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance, or "
-                'run.start = "steady"',
+                f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance{other}",
             )
 
     def check_loads(self):

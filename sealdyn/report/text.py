@@ -106,8 +106,7 @@ def _whole_run_rows(summary):
     low, tilt = summary["h_min"], summary["relative_misalignment"]
     settled = tilt["steady_max"] is not None
     first, second = ("transient", "") if settled else ("h_min", "misalignment")
-    pairs = ((low["value"], low.get("steady")), (tilt["max"], tilt["steady_max"]))
-    if all(_n(whole) == _n(part) for whole, part in pairs):
+    if settled and _all_is_settled(summary):
         first = "whole run"
     if low["value"] is not None:
         words = "h_min " if settled else ""
@@ -118,6 +117,16 @@ def _whole_run_rows(summary):
         words = "misalignment, urad" if settled else "urad"
         yield second, (f"{words}: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
                        f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
+
+
+def _all_is_settled(summary) -> bool:
+    """Whether film and misalignment are nowhere further out than where settled, by what is printed or is accurate."""
+    low, tilt, clearance = summary["h_min"], summary["relative_misalignment"], summary["film"]["clearance"]
+    if low.get("steady") is None:
+        return False
+    near = summary["accuracy"] * clearance
+    pairs = ((low["value"], low["steady"], near), (tilt["max"], tilt["steady_max"], near / low["radius"]))
+    return all(_n(whole) == _n(part) or abs(whole - part) <= apart for whole, part, apart in pairs)
 
 
 def _margin_rows(summary):

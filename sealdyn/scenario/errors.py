@@ -131,7 +131,7 @@ def _expected_here(path: list[str], holds: Any, error: dict) -> str:
     if path[-1].isdigit():
         return f"a table [[{key}]]"
     if error["type"] == "string_pattern_mismatch":
-        return '"rest", "steady" or an archive "file.h5"'
+        return '"auto", "rest", "steady" or an archive "file.h5"'
     signs = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
     limit = "".join(f" {signs[k]} {v:g}" for k, v in error.get("ctx", {}).items() if k in signs)
     return expected_of(key, holds) + limit

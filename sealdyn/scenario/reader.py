@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 
-STARTS = r"^(rest|steady|.+\.h5)$"
+STARTS = r"^(auto|rest|steady|.+\.h5)$"
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,8 @@ class Run:
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
     `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
-    all) or `samples` in all.
+    all) or `samples` in all.  `start` "auto": on the linear steady response where that is stable and leaves the film
+    open; at rest with `[initial]`, contact, a secondary seal, a film with unknowns of its own, or tables.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -54,8 +55,8 @@ class Run:
     """Asked error of displacements, relative to clearance, and of tilts, to clearance / outer radius."""
     solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
     """Method; "auto" chooses by stiffness and inertia."""
-    start: Annotated[str, Field(pattern=STARTS)] = "rest"
-    """From the untilted equilibrium ("rest"), the linear steady response ("steady") or the end of an archive."""
+    start: Annotated[str, Field(pattern=STARTS)] = "auto"
+    """Untilted ("rest"), linear steady response ("steady"), end of an archive; "auto": steady if stable, else rest."""
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def check_scene(scene, run) -> None:
         )
     _vibrations(scene.housing)
     _run(scene.shaft, run)
-    if run.start == "rest":
+    if run.start == "rest" or (run.start == "auto" and scene.initial.given):
         _open_at_start(scene)
 
 
@@ -191,7 +191,7 @@ def _open_at_start(scene) -> None:
     lowest = _lowest(scene)
     if not thinnest > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"
-        if (scene.rotor.support and scene.stator.support) or _given(scene.initial):
+        if (scene.rotor.support and scene.stator.support) or scene.initial.given:
             blame = "initial"
         where = {film.inner_radius: "the inner radius", film.outer_radius: "the outer radius"}
         raise SceneError(
@@ -205,10 +205,6 @@ def _open_at_start(scene) -> None:
 
 def _start(ring) -> tuple[float, complex]:
     return ring.z or 0.0, complex(ring.tilt_x or 0.0, ring.tilt_y or 0.0)
-
-
-def _given(initial) -> bool:
-    return any(value is not None for ring in (initial.rotor, initial.stator) for value in vars(ring).values())
 
 
 def points(value) -> tuple[float, ...]:

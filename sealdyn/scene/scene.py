@@ -54,6 +54,11 @@ class Initial:
     stator: RingStart = field(default_factory=RingStart)
     """Start of a floating stator."""
 
+    @property
+    def given(self) -> bool:
+        """Whether it gives anything."""
+        return any(value is not None for ring in (self.rotor, self.stator) for value in vars(ring).values())
+
 
 @dataclass(frozen=True)
 class Scene:

@@ -30,6 +30,7 @@ from .film_selection import select_film
 from .method_selection import check_method, choose_method
 from .second_run import Comparison
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
+from .start_selection import Start, choose_start
 from .summary import parts, plain, summarise
 
 
@@ -95,6 +96,9 @@ def simulate(
         audit = EnergyAudit()
         sink.audit = audit
         restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
+        if restart and "start" in writer.state:
+            # A run begun is not begun elsewhere, whatever would be chosen now.
+            _start(run, scenario, Start(**writer.state["start"]))
         trial, sink.errors = one.start(run)
         if restart and sink.errors and writer.state.get("errors"):
             sink.errors.restore(writer.state["errors"])
@@ -185,7 +189,15 @@ def prepare_run(scenario):
     number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""
     settings = scenario.run
-    run, by_model = select_film(scenario.scene, settings, lambda run: _start(run, scenario))
+    chosen = []
+
+    def begin(run):
+        # Once for the scene, by the film it asks for: a simpler film tried for it starts where that one does.
+        if not chosen:
+            chosen.append(choose_start(run, settings.start))
+        _start(run, scenario, chosen[0])
+
+    run, by_model = select_film(scenario.scene, settings, begin)
     interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
     run.check_loads()
     method, why = settings.solver, "asked for"
@@ -209,20 +221,21 @@ def prepare_run(scenario):
     return run, method, why, interval, count, by_model
 
 
-def _start(run, scenario):
+def _start(run, scenario, begun: Start):
     """Initial unknowns: rest, the linear steady state, an archive's last state, and what [initial] gives."""
-    unknowns = run.model.unknowns
-    if scenario.run.start == "steady":
+    unknowns, start = run.model.unknowns, begun.taken
+    run.start, run.y0 = begun, np.zeros(unknowns.size)
+    if start == "steady":
         run.y0 = run.steady_start()
-    elif scenario.run.start != "rest":
-        state = archive.last_state(scenario.run.start)
+    elif start != "rest":
+        state = archive.last_state(start)
         if not state:
-            raise archive.ArchiveError(f"{scenario.run.start}: holds no last state to start from")
+            raise archive.ArchiveError(f"{start}: holds no last state to start from")
         rates = unknowns.n + np.arange(unknowns.n_mechanical - unknowns.n)
         if list(state["names"]) != unknowns.names or len(state["y"]) != unknowns.size:
             raise SceneError(
                 "run.start",
-                f"{scenario.run.start} with unknowns {', '.join(state['names'])}",
+                f"{start} with unknowns {', '.join(state['names'])}",
                 f"an archive with the unknowns {', '.join(unknowns.names)}",
             )
         run.y0[: unknowns.n] = state["y"][: unknowns.n]

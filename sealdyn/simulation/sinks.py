@@ -150,6 +150,7 @@ class ArchiveSink:
             "audit": self.audit.state(),
             "errors": self.errors and self.errors.state(),
             "modes": run.modes() | {"logged": self.logged},
+            "start": vars(run.start),
             "names": run.model.unknowns.names,
         }
         self.writer.append(self.waiting, state, self.waiting_fields)

@@ -24,13 +24,15 @@ SPEEDS = ("critical_speed", "thresholds", "resonance_speeds")
 
 
 def model_chosen(scenario, run, method: str, why: str) -> dict:
-    """What the scene chose: `film`, names of the `unknowns`, `solver`, `reasons` (sentences), and `unused` keys it does
-    not use."""
+    """What the scene chose: `film`, names of the `unknowns`, `solver`, `start` ("rest", "steady" or an archive),
+    `reasons` (sentences), and `unused` keys it does not use."""
+    begun = [f"start: {run.start.why}"] if run.start.why else []
     return {
         "film": run.model.interface.name,
         "unknowns": run.model.unknowns.names,
         "solver": method,
-        "reasons": [*run.reasons, f"solver: {why}", run.model.interface.message],
+        "start": run.start.taken,
+        "reasons": [*run.reasons, *begun, f"solver: {why}", run.model.interface.message],
         "unused": scenario.unused(),
     }
 
@@ -46,7 +48,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     records = run.extrema.records
-    steady = cache(lambda: _steady(run, outcome, period, scenario.run.start == "steady"))
+    steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
         "status": outcome.status,
@@ -133,7 +135,7 @@ def plain(value):
     return value
 
 
-def _steady(run, outcome, period, begun_steady):
+def _steady(run, outcome, period, begun_well):
     """Steady extremes over the last forcing period, and the thinnest film (m) there, or None, with a sentence."""
 
     def none(sentence):
@@ -154,7 +156,7 @@ def _steady(run, outcome, period, begun_steady):
         abs(last[H] - before[H]) / model.clearance,
     )
     if change > model.accuracy:
-        try_it = "run longer" if begun_steady else 'run longer or use run.start = "steady"'
+        try_it = "run longer" if begun_well else 'run longer or use run.start = "steady"'
         return none(
             f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
             f"(accuracy {model.accuracy:.0e}); {try_it}"

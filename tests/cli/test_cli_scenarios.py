@@ -16,7 +16,7 @@ SHIPPED = [
     for path in sorted(SCENARIOS.glob("*.toml"))
 ]
 CONTRACT = {
-    "model": {"film", "unknowns", "solver", "reasons", "unused"},
+    "model": {"film", "unknowns", "solver", "start", "reasons", "unused"},
     "h_min": {"value", "time", "theta", "radius", "of_clearance"},
     "relative_misalignment": {"max", "min", "mean", "steady_max", "steady_min"},
     "leakage": {"mean", "max", "mean_ml_per_h"},

@@ -108,7 +108,7 @@ BROKEN = [
     (("accuracy = 1e-6", "accuracy = 1"), ["[run] accuracy", "<= 0.1"]),
     (("accuracy = 1e-6", "accuracy = 1e-13"), ["[run] accuracy", "> 1e-13"]),
     (("accuracy = 1e-6", 'solver = "admas"'), ["[run] solver", "nearest 'adams'"]),
-    (("accuracy = 1e-6", 'start = "stedy"'), ["[run] start", '"steady"']),
+    (('start = "rest"', 'start = "stedy"'), ["[run] start", '"steady"']),
     (('"cylindrical"', '"cylinder"'), ["[film] geometry", "nearest 'cylindrical'"]),
     (('"radial"', '"radail"'), ["[film] model", "nearest 'radial'"]),
     (('"radial"', '"_cavity"'), ["[film] model"]),

@@ -22,6 +22,18 @@ def test_a_run_that_is_not_steady_is_not_told_to_start_as_it_did(start):
     assert sentence.startswith("not steady") and ("run.start" in sentence) == (start == "rest")
 
 
+def test_a_run_that_begins_settled_has_no_transient():
+    """Nonlinear motion leaves the linear start by less than the accuracy, though the printed digits differ."""
+    scenario = read_scenario(
+        SCENARIOS / "fmr_reference.toml", ["run.turns=12", "run.start='auto'", "run.accuracy=1e-4"]
+    )
+    summary = simulate_in_memory(scenario, speeds=True)
+    assert summary["model"]["start"] == "steady"
+    assert summary["relative_misalignment"]["max"] != summary["relative_misalignment"]["steady_max"]
+    names = [name for name, _ in printed(scenario, summary)]
+    assert "whole run" in names and "transient" not in names
+
+
 @pytest.mark.parametrize("film", ["linear", "radial"])
 def test_leakage_runs_from_high_to_low_pressure_also_where_they_turn(film):
     """Pressures that change sides halfway: as much leaks after it as before."""

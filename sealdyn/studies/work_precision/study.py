@@ -64,6 +64,9 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Methods, their judge, models, and who is fastest at which accuracy."""
     run = ready(scenario)
+    if scenario.run.start == "auto":
+        # All methods and films begin alike.
+        scenario = with_values(scenario, {"run.start": run.start.taken})
     chosen = [m for m in (*FAST, *SLOW) if not settings.methods or m in settings.methods]
     chosen = [m for m in chosen if m != "expm" or (run.model.unknowns.linear and run.model.unknowns.constant)]
     exact, band, judges = reference(scenario, settings.samples, settings.judging)
