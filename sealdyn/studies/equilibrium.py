@@ -151,8 +151,8 @@ def _verdict(answer) -> list[str]:
     stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
     opening = "Film with asperities" if any(answer["curve"]["contact_force"]) else "Film"
     said = [
-        f"{opening} and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} um; "
-        f"stable: {', '.join(stable) or 'none'}.",
+        f"{opening} and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} "
+        f"um; stable: {', '.join(stable) or 'none'}.",
         f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
         f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
     ]
@@ -162,9 +162,7 @@ def _verdict(answer) -> list[str]:
             said.append(f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N.")
         if "held" in root:
             low, high = map(_um, root["held"])
-            said.append(
-                f"The secondary seal's friction ({answer['friction']:.4g} N) holds from {low} to {high} as well."
-            )
+            said.append(f"The secondary seal's friction, {answer['friction']:.4g} N, holds from {low} to {high} too.")
     if not roots:
         curve = answer["curve"]["opening_force"]
         said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
