@@ -54,23 +54,22 @@ class Interface:
         self.scene = scene
         self.film = film_of(scene, film)
         self.name = film_name(self.film)
-        force = self._borrowed().opening_law(scene.film, *spins(scene))
-        self.opening_force = self._with_asperities(force) if scene.contact else force
+        self.opening_force = opening_law(scene, self.film)
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self._table_used = self._table()
         self.f = self.film.parameters(self._table_used, self.clearance, error)
         self.contact = lay_surfaces(self.f, scene)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
+            force = self._borrowed().opening_law(scene.film, *spins(scene))
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
         self.observed = self.film, self.f
 
     def _borrowed(self):
-        """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
-        borrows = self.name == "linear" and self.scene.film.coefficients == "radial"
-        return film_module("radial", self.scene.film) if borrows else self.film
+        """The film whose numbers the scene's film has."""
+        return _lender(self.scene, self.film)
 
     def _table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
@@ -88,19 +87,6 @@ class Interface:
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
         return replace(table, coefficients=taken)
-
-    def _with_asperities(self, film_force):
-        """`film_force` with the floor of rough faces, and the force of the asperities that touch."""
-        s = np.zeros(GAP_STATE_SIZE)
-        face = face_parameters(self.scene.film, 1.0)
-        asperities = lay_surfaces(face, self.scene)
-
-        def force(clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-            face[CLEARANCE] = clearance
-            contact.contact_load(asperities, face, s)
-            return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]) + s[CONTACT_FORCE]
-
-        return force
 
     @property
     def stores(self) -> bool:
@@ -209,16 +195,46 @@ class Interface:
         derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
         return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
 
-    def film_about(self, s, steps, omega=0.0):
-        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in
+    def about(self, s, steps, omega=0.0):
+        """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in
         condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
-            return linearise(self.film.wrench, self._fine, s, steps)
-        return self.linear_film(s, steps).matrices(omega)
+            return linearise(self.wrench, self._fine, s, steps)
+        return self._with_asperities_at(s, steps, *self.linear_film(s, steps).matrices(omega), CONDENSED)[:2]
 
     def _asperities_alone(self, f, s):
         contact.contact_load(self.contact, f, s)
         s[FORCE : FORCE + 3] = s[CONTACT_FORCE : CONTACT_FORCE + 3]
+
+
+def _lender(scene, film):
+    """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
+    borrows = film_name(film) == "linear" and scene.film.coefficients == "radial"
+    return film_module("radial", scene.film) if borrows else film
+
+
+def opening_law(scene, film=None):
+    """Function `force(clearance, p_i, p_o)` (N): film and asperities together of a scene's aligned faces at rest."""
+    parts = opening_parts(scene, film)
+    return lambda clearance, inner, outer: sum(parts(clearance, inner, outer))
+
+
+def opening_parts(scene, film=None):
+    """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
+    the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
+    film, unless a `film` is given."""
+    film_force = _lender(scene, film_of(scene, film)).opening_law(scene.film, *spins(scene))
+    if not scene.contact:
+        return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
+    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(scene.film, 1.0)
+    asperities = lay_surfaces(face, scene)
+
+    def forces(clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
+        face[CLEARANCE] = clearance
+        contact.contact_load(asperities, face, s)
+        return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]), float(s[CONTACT_FORCE])
+
+    return forces
 
 
 def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):

@@ -94,7 +94,7 @@ class Grid:
     def _closed_form(self):
         film, name = self.scene.film, self.model.interface.name
         own = film.coefficients if name == "linear" else "radial"
-        if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local":
+        if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local" or self.scene.contact:
             return None
         formula, more = (cf.film_coefficients, {}) if own == "green" else (
             cf.radial_film_coefficients, {"geometry": film.geometry})  # fmt: skip
@@ -118,7 +118,7 @@ class Grid:
 
     def _rebuilt(self):
         """Linearise the film once for every value of the axes that touch it."""
-        touching = [key for key in self.axes if key.startswith(("film.", "closing."))]
+        touching = [key for key in self.axes if key.startswith(("film.", "closing.", "contact."))]
         if "shaft.speed" in self.axes and self._follows_speed():
             touching.append("shaft.speed")
         if "stator.speed" in self.axes and self.scene.film.inertia:
