@@ -17,6 +17,7 @@ from ...dynamics.characteristic import roots
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
+from ...scene.contact import HALF_HEIGHT
 from ...scene.scene import SceneError
 from ...scene.variants import frozen_at_start
 
@@ -190,7 +191,9 @@ def _open(given, clearance):
     gap = given("film.clearance")
     gap = clearance if gap is None else gap
     outer = gap + given("film.coning") * np.subtract(r_o, r_i)
-    return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > np.multiply(floor, gap)))
+    # Rough faces are closed where all their asperities are flat.
+    lowest = np.multiply(-HALF_HEIGHT, given("contact.roughness")) if given.scene.contact else np.multiply(floor, gap)
+    return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > lowest))
 
 
 def _possible(given, clearance) -> np.ndarray:
