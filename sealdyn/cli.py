@@ -350,6 +350,9 @@ def study(
     workers: Annotated[int | None, typer.Option(help="processes (default: all cores)")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Dask scheduler in their place, tcp://host:port")] = None,
     results: Annotated[Path | None, typer.Option(help="folder that keeps finished points for other studies")] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(help="contact (the film alone, no secondary seals either) or secondary-seal")
+    ] = None,
     as_json: AsJson = False,
 ):
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
@@ -372,7 +375,7 @@ def study(
         try:
             answer = run_study(
                 name, scenario, out, flags=_flags(context.args), workers=workers, scheduler=scheduler, results=results,
-                progress=lambda t, end: bar(t, end),
+                progress=lambda t, end: bar(t, end), leave_out=without or (),
             )  # fmt: skip
         except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "

@@ -32,22 +32,57 @@ def gauss(points=30) -> list:
 def film_numbers(film: dict) -> tuple:
     """Tilt stiffness and damping, axial stiffness and damping of the aligned film, as mpmath numbers: `kind` "given"
     (`numbers`), "green" (the narrow seal's formulas) or "radial" (Reynolds' equation along the radius, to first order
-    in a small motion of the gap)."""
+    in a small motion of the gap); with `rough` (half height in m, strength in Pa) of Christensen's asperities too,
+    below 0.6 of which the radial film has the edges H = f^2 / (2 f - h)."""
+    found = _smooth_numbers(film)
+    if "rough" not in film:
+        return found
+    tilt, axial = asperity_stiffness(film)
+    return found[0] + tilt, found[1], found[2] + axial, found[3]
+
+
+def asperity_stiffness(film: dict) -> tuple:
+    """Tilt (N m/rad) and axial (N/m) stiffness of the asperities of aligned faces: the slope of their pressure,
+    strength 35 (c^2 - h^2)^3 / 32 c^7, summed over the face where h < c."""
+    r_i, r_o, clearance, coning, c, strength = (
+        mp.mpf(x) for x in (*(film[n] for n in ("inner_radius", "outer_radius", "clearance", "coning")), *film["rough"])
+    )
+    ends = [r_i, r_o]
+    if coning and r_i < r_i + (c - clearance) / coning < r_o:
+        # Exact for polynomials: the asperities meet on one side of this radius only.
+        ends.insert(1, r_i + (c - clearance) / coning)
+    total = [mp.mpf(0), mp.mpf(0)]
+    for a, b in pairwise(ends):
+        for x, w in gauss():
+            r = (a + b) / 2 + (b - a) / 2 * x
+            h = clearance + coning * (r - r_i)
+            if h < c:
+                slope = (b - a) / 2 * w * strength * 35 * (c * c - h * h) ** 3 / (32 * c**7)
+                arm = (r_i + r_o) / 2 if film["mean"] else r
+                total = [total[0] + slope * mp.pi * r * arm**2, total[1] + slope * 2 * mp.pi * r]
+    return tuple(total)
+
+
+def _smooth_numbers(film: dict) -> tuple:
     if film["kind"] == "given":
         return tuple(mp.mpf(x) for x in film["numbers"])
     names = ("inner_radius", "outer_radius", "clearance", "coning", "viscosity")
     r_i, r_o, clearance, coning, mu = (mp.mpf(film[name]) for name in names)
     drop, width, r_m = mp.mpf(film["outer_pressure"]) - mp.mpf(film["inner_pressure"]), r_o - r_i, (r_i + r_o) / 2
+    edges = clearance, clearance + coning * width
     if film["kind"] == "green":
-        h_o = clearance + coning * width
-        both, y = clearance + h_o, (h_o - clearance) / (h_o + clearance)
+        both, y = edges[0] + edges[1], (edges[1] - edges[0]) / (edges[0] + edges[1])
         squeeze = (mp.atanh(y) - y) / y**3 if y else mp.mpf(1) / 3
         tilt_k = mp.pi * drop * (coning * r_i - clearance) * (r_m * width / both) ** 2
         tilt_d = 24 * mp.pi * mu * r_m**3 * (width / both) ** 3 * squeeze
-        return tilt_k, tilt_d, 2 * mp.pi * r_m * width * drop * (h_o - clearance) / both**2, 2 * tilt_d / r_m**2
+        return tilt_k, tilt_d, 2 * mp.pi * r_m * width * drop * (edges[1] - edges[0]) / both**2, 2 * tilt_d / r_m**2
+    # What the edges of the film do when those of the gap move by 1.
+    floor = mp.mpf("0.6") * film["rough"][0] if "rough" in film else 0
+    gain = [mp.mpf(1) if h >= floor else (floor / (2 * floor - h)) ** 2 for h in edges]
+    edges = [h if h >= floor else floor**2 / (2 * floor - h) for h in edges]
 
     def h(r):
-        return clearance + coning * (r - r_i)
+        return edges[0] + (edges[1] - edges[0]) * (r - r_i) / width
 
     def integral(power, of_h):
         panels, x = width / 4, [(r_i + (k + 0.5 + node / 2) * width / 4, w) for k in range(4) for node, w in gauss()]
@@ -58,19 +93,22 @@ def film_numbers(film: dict) -> tuple:
     line = integral(-a, 3)
     flow = drop / line
 
-    def motion(reach, power, arm):
-        """Minus what the pressure does to `-int r^power p' / power dr` when the gap widens by 1 or the arm, and when
-        it does so at unit rate; the gap widens by `reach` r^`arm`."""
-        level = integral(power - a, 3) / line
-        stiffness = -3 * flow * reach * (integral(power - a + arm, 4) - level * integral(arm - a, 4))
-        # Phi' = a m, with m the widening.
-        grown = a + arm + 1
-        damping = 12 * mu * reach / grown * (integral(power - a + grown, 3) - level * integral(grown - a, 3))
-        return stiffness / power, damping / power
+    def stiffness(at_i, at_o, power):
+        """Minus what the pressure does to `-int r^power p' / power dr` when the edges widen by `at_i` and `at_o`."""
+        level, slope = integral(power - a, 3) / line, (at_o - at_i) / width
+        parts = [integral(power - a + n, 4) - level * integral(n - a, 4) for n in (0, 1)]
+        return -3 * flow * ((at_i - slope * r_i) * parts[0] + slope * parts[1]) / power
 
-    axial = [2 * mp.pi * x for x in motion(mp.mpf(1), 2, 0)]
-    tilt = [mp.pi * x for x in (motion(r_m, 3, 0) if film["mean"] else motion(mp.mpf(1), 3, 1))]
-    return tuple(tilt + axial)
+    def damping(reach, power, arm):
+        """The same when the gap widens at a unit rate by `reach` r^`arm`: Phi' = a m, with m the widening."""
+        level, grown = integral(power - a, 3) / line, a + arm + 1
+        part = integral(power - a + grown, 3) - level * integral(grown - a, 3)
+        return 12 * mu * reach / grown * part / power
+
+    arms = (r_m, r_m) if film["mean"] else (r_i, r_o)
+    tilt_k = mp.pi * stiffness(gain[0] * arms[0], gain[1] * arms[1], 3)
+    tilt_d = mp.pi * (damping(r_m, 3, 0) if film["mean"] else damping(mp.mpf(1), 3, 1))
+    return tilt_k, tilt_d, 2 * mp.pi * stiffness(*gain, 2), 2 * mp.pi * damping(mp.mpf(1), 2, 0)
 
 
 def product(p, q):

@@ -1,11 +1,13 @@
 """Seals drawn at random from what the program takes, as a scene and as the plain numbers of eigenvalue_scan.py."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
+from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
-from sealdyn.scene.film import Coefficients, Film
+from sealdyn.scene.film import Coefficients, Film, aligned_gaps
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
 
@@ -61,19 +63,33 @@ def drawn_seal(draw: np.random.Generator) -> Scene:
     return Scene(shaft=Shaft(speed=speed), film=film, stator=stator, rotor=rotor)
 
 
+def rough_seal(draw: np.random.Generator) -> Scene:
+    """A drawn seal whose faces ride on Christensen's asperities: these meet somewhere on it, the thinnest film from a
+    fifth of their height to just below it, in a third of them within 1e-1 to 1e-12 of where their laws change."""
+    scene = drawn_seal(draw)
+    thinnest = min(h for _, h in aligned_gaps(scene.film, scene.film.clearance))
+    share = draw.uniform(0.2, 1.0)
+    if draw.random() < 1 / 3:
+        share = float(draw.choice([0.6, 1.0])) * (1.0 + draw.choice([-1.0, 1.0]) * 10.0 ** -draw.uniform(1.0, 12.0))
+    strength = math.exp(draw.uniform(math.log(1e6), math.log(1e9)))
+    return replace(scene, contact=Contact(roughness=thinnest / share / 3.0, compressive_strength=strength))
+
+
 def plain(scene: Scene) -> dict:
     """The numbers of a scene, as eigenvalue_scan.py takes them."""
     film, rings = scene.film, {}
+    names = ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "outer_pressure", "inner_pressure")
+    numbers = {name: getattr(film, name) for name in names}
+    numbers |= {"planar": film.geometry == "planar", "mean": film.tilt_radius == "mean"}
     if isinstance(film.coefficients, Coefficients):
         c = film.coefficients
-        numbers = {"kind": "given",
-                   "numbers": (c.tilt_stiffness, c.tilt_damping, c.axial_stiffness, c.axial_damping)}  # fmt: skip
+        numbers |= {"kind": "given",
+                    "numbers": (c.tilt_stiffness, c.tilt_damping, c.axial_stiffness, c.axial_damping)}  # fmt: skip
     else:
-        names = ("inner_radius", "outer_radius", "clearance", "coning", "viscosity", "outer_pressure",
-                 "inner_pressure")  # fmt: skip
         green = film.model == "linear" and film.coefficients == "green"
-        numbers = {name: getattr(film, name) for name in names} | {"kind": "green" if green else "radial"}
-        numbers |= {"planar": film.geometry == "planar", "mean": film.tilt_radius == "mean"}
+        numbers["kind"] = "green" if green else "radial"
+    if scene.contact:
+        numbers["rough"] = 3.0 * scene.contact.roughness, scene.contact.compressive_strength
     for name in ("stator", "rotor"):
         ring = getattr(scene, name)
         if ring.support is None:

@@ -54,7 +54,8 @@ class Orbit:
 
 class Shooter:
     """The period map of a scene, over `turns` periods of its forcing, integrated at the tolerance `tight`; `size` n of
-    its points: the mechanical unknowns, of a massless ring the displacements, and their `scales` (n,).
+    its points: the mechanical unknowns, of a massless ring the displacements, and their `scales` (n,); `flows`, `work`:
+    periods and right-hand sides so far.
     Raises NoOrbit if the forcing has no common period, a ring sticks or the film stores."""
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
@@ -75,7 +76,7 @@ class Shooter:
         unknowns = self.model.unknowns
         n = unknowns.n if unknowns.massless else unknowns.n_mechanical
         self.size, self.scales = n, self.model.scales[:n]
-        self.flows = 0
+        self.flows = self.work = 0
 
     def flow(self, start: np.ndarray) -> np.ndarray:
         """The unknowns (n,) one period later.  Raises NoOrbit where the map crawls, SolverFailure."""
@@ -85,10 +86,13 @@ class Shooter:
         self.flows += 1
         tolerance = self.tight if self.method != "ida" else max(self.tight, 1e-11)
         counts = Counts()
-        for _, block, _ in METHODS[self.method](segment, 0.0, y, self.method, tolerance, counts):
-            last = block[-1]
-            if counts.rhs > CRAWLING * max(1.0, self.period / segment.shortest_period):
-                raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
+        try:
+            for _, block, _ in METHODS[self.method](segment, 0.0, y, self.method, tolerance, counts):
+                last = block[-1]
+                if counts.rhs > CRAWLING * max(1.0, self.period / segment.shortest_period):
+                    raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
+        finally:
+            self.work += counts.rhs
         return last[: self.size].copy()
 
     def monodromy(self, start: np.ndarray) -> np.ndarray:

@@ -27,9 +27,10 @@ from ..faces.geometry import (
 from ..faces.surfaces import lay_surfaces
 from ..films import film_module, film_name, film_of, has_unknowns
 from ..numerics.piecewise_linear import initially
+from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
-from .condensation import LinearFilm, Slopes, film_slopes, linearise
+from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .intervals import constant_and_slope, spins
 
@@ -40,8 +41,10 @@ CONDENSED, FORMULA = 1e-9, 1e-13
 # Pace (1/s) of the motion tried of films whose forces are linear in the rates: beside them the rounding of the static
 # force is nothing.
 FAST = 1e9
-# Steps of differences, in the thinnest film: four of them reach to either side.
-STEP = 0.01
+# Rounding of a gap, as a share of the clearance, and how far beyond their estimate errors of rough faces may be.
+GAP_NOISE, SURE = 4e-16, 3.0
+# Steps of differences, in the thinnest film: four of them reach to either side; the least, as a share of them.
+STEP, NEAREST = 0.01, 4e-6
 
 
 class Interface:
@@ -54,23 +57,22 @@ class Interface:
         self.scene = scene
         self.film = film_of(scene, film)
         self.name = film_name(self.film)
-        force = self._borrowed().opening_law(scene.film, *spins(scene))
-        self.opening_force = self._with_asperities(force) if scene.contact else force
+        self.opening_force = opening_law(scene, self.film)
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self._table_used = self._table()
         self.f = self.film.parameters(self._table_used, self.clearance, error)
         self.contact = lay_surfaces(self.f, scene)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
+            force = self._borrowed().opening_law(scene.film, *spins(scene))
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
-                self.f[slot] = force(self.clearance, *ends)
+                self.f[slot] = force(self.clearance, *ends, self.f[FLOOR] if scene.contact else None)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
         self.observed = self.film, self.f
 
     def _borrowed(self):
-        """The film whose numbers the scene's film has: its own, or the radial film's in a linear film that says so."""
-        borrows = self.name == "linear" and self.scene.film.coefficients == "radial"
-        return film_module("radial", self.scene.film) if borrows else self.film
+        """The film whose numbers the scene's film has."""
+        return _lender(self.scene, self.film)
 
     def _table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
@@ -78,6 +80,7 @@ class Interface:
         if source is self.film:
             return table
         block = source.parameters(table, self.clearance, FINE)
+        lay_surfaces(block, self.scene)
         # A floor of the pressure is met by the scene's own motion, if at all.
         pace, spin = (FAST, 0.0) if table.cavitation_pressure is None else (None, None)
         self._borrowed_slopes = film_slopes(
@@ -88,19 +91,6 @@ class Interface:
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
         return replace(table, coefficients=taken)
-
-    def _with_asperities(self, film_force):
-        """`film_force` with the floor of rough faces, and the force of the asperities that touch."""
-        s = np.zeros(GAP_STATE_SIZE)
-        face = face_parameters(self.scene.film, 1.0)
-        asperities = lay_surfaces(face, self.scene)
-
-        def force(clearance: float, inner_pressure: float, outer_pressure: float) -> float:
-            face[CLEARANCE] = clearance
-            contact.contact_load(asperities, face, s)
-            return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]) + s[CONTACT_FORCE]
-
-        return force
 
     @property
     def stores(self) -> bool:
@@ -175,6 +165,15 @@ class Interface:
         arguments as `rest_state`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if
         given."""
         s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
+        found = self._slopes_at(s, steps, omega, film)
+        if self.contact is None:
+            return found
+        # Asperities are steep, so that the gap's own rounding shows in the force, and their differences converge more
+        # slowly than a film's.
+        rounding = GAP_NOISE * self.clearance / steps[0] * np.abs(found.stiffness)
+        return found._replace(stiffness_error=SURE * found.stiffness_error + rounding)
+
+    def _slopes_at(self, s, steps, omega, film) -> Slopes:
         if hasattr(self.film, "matrices"):
             error = np.finfo(float).eps if isinstance(self.scene.film.coefficients, Coefficients) else FORMULA
             film = self._with_asperities_at(s, steps, *self.film.matrices(self.f, s), error)
@@ -191,7 +190,7 @@ class Interface:
             )
             return film_slopes(wrench, f, s, steps)
         matrices = (film or self.linear_film(s, steps)).matrices(omega)
-        return self._with_asperities_at(s, steps, *matrices, CONDENSED)
+        return self._with_asperities_at(s, steps, *matrices, CONDENSED + NOISE * self.clearance / steps[0])
 
     def _with_asperities_at(self, s, steps, stiffness, damping, error) -> Slopes:
         """A film's stiffness and damping, known to a relative `error`, and those of the asperities."""
@@ -209,16 +208,46 @@ class Interface:
         derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
         return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
 
-    def film_about(self, s, steps, omega=0.0):
-        """Stiffness and damping matrices (3, 3) of the film alone about a gap state, `steps` as in
+    def about(self, s, steps, omega=0.0):
+        """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in
         condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
-            return linearise(self.film.wrench, self._fine, s, steps)
-        return self.linear_film(s, steps).matrices(omega)
+            return linearise(self.wrench, self._fine, s, steps)
+        return self._with_asperities_at(s, steps, *self.linear_film(s, steps).matrices(omega), CONDENSED)[:2]
 
     def _asperities_alone(self, f, s):
         contact.contact_load(self.contact, f, s)
         s[FORCE : FORCE + 3] = s[CONTACT_FORCE : CONTACT_FORCE + 3]
+
+
+def _lender(scene, film):
+    """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
+    borrows = film_name(film) == "linear" and scene.film.coefficients == "radial"
+    return film_module("radial", scene.film) if borrows else film
+
+
+def opening_law(scene, film=None):
+    """Function `force(clearance, p_i, p_o)` (N): film and asperities together of a scene's aligned faces at rest."""
+    parts = opening_parts(scene, film)
+    return lambda clearance, inner, outer: sum(parts(clearance, inner, outer))
+
+
+def opening_parts(scene, film=None):
+    """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
+    the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
+    film, unless a `film` is given."""
+    film_force = _lender(scene, film_of(scene, film)).opening_law(scene.film, *spins(scene))
+    if not scene.contact:
+        return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
+    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(scene.film, 1.0)
+    asperities = lay_surfaces(face, scene)
+
+    def forces(clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
+        face[CLEARANCE] = clearance
+        contact.contact_load(asperities, face, s)
+        return film_force(clearance, inner_pressure, outer_pressure, face[FLOOR]), float(s[CONTACT_FORCE])
+
+    return forces
 
 
 def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):
@@ -236,10 +265,22 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
         # It is the rotor that turns otherwise.
         s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
         s[MEAN_SPIN] = mean_spin
-    length = STEP * min(h for _, h in aligned_gaps(scene.film, clearance))
-    tilt = length / scene.film.outer_radius
-    pace = max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
-    return s, (length, tilt, length * pace, tilt * pace)
+    widest, length = (STEP * gap for gap in _analytic(scene, clearance))
+    radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
+    return s, (length, length / radius, widest * pace, widest / radius * pace)
+
+
+def _analytic(scene, clearance) -> tuple[float, float]:
+    """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where the
+    laws of rough faces change at an edge nearby: the four steps of differences do not reach half as far, unless it is
+    so near that the rounding of the force says more than the change."""
+    gaps = [h for _, h in aligned_gaps(scene.film, clearance)]
+    if not scene.contact:
+        return min(gaps), min(gaps)
+    floor, touch, _ = contact_thresholds(scene.contact)
+    thinnest = max(min(gaps), floor)
+    nearest = min(abs(h - change) for h in gaps for change in (floor, touch))
+    return thinnest, min(thinnest, max(0.1 / STEP * nearest, NEAREST * thinnest))
 
 
 def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=None):

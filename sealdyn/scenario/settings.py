@@ -106,13 +106,16 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
 
 
-def without_contact(scenario: Scenario) -> tuple[Scenario, list[str]]:
-    """The scenario without contact and secondary seals, for questions about the film alone, and the names of the
-    tables that were left out.  Raises ScenarioError if no scene can be so."""
-    names = variants.not_smooth(scenario.scene)
+def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:
+    """The scenario without `what`, names of variants.LEFT_OUT ("contact" leaves the film alone), and the names of the
+    tables that were left out.  Raises ScenarioError for another name, and if no scene can be so."""
+    for word in what:
+        if word not in variants.LEFT_OUT:
+            raise ScenarioError(scenario.name, "--without", f'"{word}"', " or ".join(variants.LEFT_OUT))
+    names = variants.tables_of(scenario.scene, what)
     if not names:
         return scenario, []
-    scene = variants.without_contact(scenario.scene)
+    scene = variants.without(scenario.scene, what)
     try:
         check_scene(scene, scenario.run)
     except SceneError as error:

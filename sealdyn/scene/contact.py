@@ -82,3 +82,8 @@ def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
     """
     c = HALF_HEIGHT * contact.roughness
     return 0.6 * c, c if contact.law == "christensen" else REACH * contact.roughness, -c
+
+
+def touch_height(scene) -> float:
+    """Film thickness h (m) at which the first asperities of a scene's faces meet; 0 for smooth faces."""
+    return contact_thresholds(scene.contact)[1] if scene.contact else 0.0

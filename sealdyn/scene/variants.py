@@ -26,9 +26,13 @@ ALTERNATIVES = {
     "tilt_stiffness": ("radius",),
     "tilt_damping": ("radius",),
 }
-# Tables that may hold functions of time; tables of what is not smooth.
+# Tables that may hold functions of time.
 VARYING = ("shaft", "film", "rotor", "stator", "closing")
-NOT_SMOOTH = ("contact", "stator.secondary_seal", "rotor.secondary_seal")
+# What a study may be asked to leave out, and the tables that hold it: without contact it is one of the film alone.
+LEFT_OUT = {
+    "contact": ("contact", "stator.secondary_seal", "rotor.secondary_seal"),
+    "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
+}
 CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support",
            "secondary_seal")  # fmt: skip
 
@@ -72,14 +76,20 @@ def _with_value(table, path: list[str], value, key: str):
 # --- without what is not smooth -----------------------------------------------------------------------
 
 
-def not_smooth(scene: Scene) -> list[str]:
-    """Dotted names of the tables of contact and secondary seals that the scene has."""
-    return [name for name in NOT_SMOOTH if part(scene, name)]
+def tables_of(scene: Scene, what) -> list[str]:
+    """Dotted names of the tables that the scene has of `what`, names of LEFT_OUT."""
+    names = dict.fromkeys(name for word in what for name in LEFT_OUT[word])
+    return [name for name in names if part(scene, name)]
 
 
-def without_contact(scene: Scene) -> Scene:
-    """The scene without contact and secondary seals, for questions about the film alone."""
-    return with_values(scene, dict.fromkeys(not_smooth(scene)))
+def seals_that_stick(scene: Scene) -> list[str]:
+    """Dotted names of the secondary seals on which floating rings of the scene slide."""
+    return [name for name in tables_of(scene, ["secondary-seal"]) if part(scene, name.split(".")[0]).support]
+
+
+def without(scene: Scene, what) -> Scene:
+    """The scene without `what`, names of LEFT_OUT: without "contact" that of the film alone."""
+    return with_values(scene, dict.fromkeys(tables_of(scene, what)))
 
 
 # --- constant in time, and free of forcing ------------------------------------------------------------

@@ -9,18 +9,25 @@ BETWEEN, BY, WORST, CONDITIONS, MOST_RADIANS = 0.1, 1e-7, 30.0, 12, 1.5
 # Steps at once: while their length changes fast, and as long as it would not change by much; at the ends; points of the
 # quadrature in each.
 CHANGING, LASTING, AT_ENDS, POINTS = 8, (256, 128, 64, 32, 16), 4, 5
+# Share of a decaying part below which its decay, and not what is found of it, says how large it is.
+ROUNDED = 1e-3
 
 
 def expm(segment, tau, y, method, tolerance, counts):
     """Exact steps of a linear scene, with the contract of contract.py, as long as what moves in it allows; the works by
     Gauss quadrature on them.  **Valid** linear film, constant conditions, rings with mass."""
-    motion, n, fresh = segment.exact_motion(), segment.n_mechanical, True
+    motion, n, fresh, before = segment.exact_motion(), segment.n_mechanical, True, None
     points, weights = np.polynomial.legendre.leggauss(POINTS)
     while tau < segment.length:
         free = y[:n] - motion.forced([tau])[0]
         exponents, sizes = motion.parts(free, segment.scales[:n])
         # What is small as a displacement may be large as a rate.
         sizes = sizes * np.maximum(np.abs(exponents) / segment.reference_rate, 1.0)
+        if before is not None and motion.sound:
+            # What is left far beyond its decay is rounding of the rest, which no step need follow.
+            due = before[1] * np.exp(np.minimum(exponents.real * (tau - before[0]), 0.0))
+            sizes = np.where(due < ROUNDED * sizes, due, sizes)
+        before = tau, sizes
         step, count = _exact_step(exponents, sizes, tolerance)
         step = min(step, segment.longest_step())
         widths = _widths(segment.length - tau, step, AT_ENDS if fresh else count, fresh)

@@ -15,8 +15,8 @@ What every study module offers (the contract):
             `tools.alone()` does so one point after the other, here, for rows that measure time.
             `tools.say(fraction)` reports progress of anything else, `tools.tell(words)` says a line before a long wait.
 `tables(answer)`  pairs of rows and columns printed below the verdict (report.text.study_lines), if there are any.
-`WITH_CONTACT`  True if the study reckons with contact and secondary seals; else it is handed the scenario without
-            them, and its verdict says so.
+`REFUSES`   of "contact" and "secondary-seal" what the study cannot reckon with: a scenario that has it is refused, and
+            --without leaves it out.  A study of small motion refuses secondary seals: their rings stick in it.
 `WITH_WAVES`    True if the study reckons with wavy faces, or does not ask how thin the film is; else it refuses them.
 `units`     dict: result key (dotted) -> units, for the archive.
 

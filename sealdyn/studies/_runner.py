@@ -14,7 +14,8 @@ from .. import __version__, studies
 from ..archive import write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
-from ..scenario.settings import study_settings, without_contact
+from ..scenario.settings import study_settings, without
+from ..scene import variants
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..status import Status
@@ -73,14 +74,15 @@ class StudyContext:
 
 
 def run_study(
-    name: str, scenario, out=None, *, flags=None, workers=None, scheduler=None, results=None, progress=None
-) -> dict:
+    name: str, scenario, out=None, *, flags=None, workers=None, scheduler=None, results=None, progress=None,
+    leave_out=(),
+) -> dict:  # fmt: skip
     """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.
     Points are evaluated by `workers` processes (None: all cores), or by the workers of a Dask `scheduler`: its address
     "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
-    and for those of other machines.
+    and for those of other machines.  `leave_out`: "contact" for the film alone, or "secondary-seal".
     Raises ScenarioError, SceneError, ClusterError (numerics.cluster).
     """
     name = name.replace("-", "_")
@@ -88,13 +90,14 @@ def run_study(
     if waves_of(scenario.scene) and not getattr(module, "WITH_WAVES", False):
         key = "rotor.waviness" if scenario.scene.rotor.waviness else "stator.waviness"
         raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
+    studied, left_out = without(scenario, leave_out)
+    _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
     plain = json.loads(json.dumps(asdict(settings), default=str))
-    identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain], sort_keys=True)
+    identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain, left_out], sort_keys=True)
     journal = Checkpoint(out.with_suffix(".partial.jsonl"), identity)
     kept = _folder(results) if results else None
-    studied, left_out = (scenario, []) if getattr(module, "WITH_CONTACT", False) else without_contact(scenario)
     with _crew(workers, scheduler) as crew:
         tools = StudyContext(journal, crew, progress, kept)
         answer = module.run(studied, settings, tools)
@@ -103,8 +106,9 @@ def run_study(
     if failures and failures[0] not in " ".join(verdict):
         verdict.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
     if left_out:
-        verdict.append(f"A study of the film alone: {', '.join(f'[{name}]' for name in left_out)} left out.")
-    answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, **answer, "verdict": verdict}
+        verdict.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
+    answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, "left_out": left_out, **answer,
+              "verdict": verdict}  # fmt: skip
     libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
         "python": platform.python_version()
     }
@@ -120,6 +124,17 @@ def run_study(
     write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
     journal.done()
     return {**answer, "archive": str(out)}
+
+
+def _refuse(name: str, scene, refused):
+    """Raises SceneError for what the study `name` cannot reckon with."""
+    study, way = name.replace("_", "-"), "{} left out (--without {})"
+    if "secondary-seal" in refused and (seals := variants.seals_that_stick(scene)):
+        found = f"a ring that its secondary seal holds in small motion, of which {study} asks"
+        raise SceneError(seals[0], found, way.format("the seal", "secondary-seal"))
+    if "contact" in refused and scene.contact:
+        raise SceneError("contact", f"faces that may touch, with which {study} does not reckon",
+                         way.format("contact", "contact"))  # fmt: skip
 
 
 def _crew(workers: int | None, scheduler):

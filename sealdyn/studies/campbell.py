@@ -13,6 +13,7 @@ from ..scene.variants import frozen_at_start
 from ..units import Speed
 
 WITH_WAVES = True
+REFUSES = ("secondary-seal",)
 units = {"speed": "rad/s", "modes/frequency": "rad/s"}
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7

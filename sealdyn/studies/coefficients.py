@@ -1,5 +1,5 @@
-"""Stiffness and damping of the film, 3 x 3 on (dz, tilt about x, tilt about y): aligned, tilted, over speed and
-clearance."""
+"""Stiffness and damping of the film and of asperities that touch, 3 x 3 on (dz, tilt about x, tilt about y): aligned,
+tilted, over speed and clearance."""
 
 import cmath
 import math
@@ -10,7 +10,9 @@ import numpy as np
 from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.model import Model
 from ..faces.geometry import (
+    COLLAPSE,
     DZ,
+    FLOOR,
     GAP_STATE_SIZE,
     GX,
     GX_RATE,
@@ -25,7 +27,7 @@ from ..faces.geometry import (
 )
 from ..scene.film import aligned_gaps
 from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.variants import frozen_at_start, seals_that_stick
 from ..units import Angle, Length, Speed
 
 # Rows and columns of the matrices.
@@ -91,18 +93,18 @@ def run(scenario, settings, tools) -> dict:
 def matrices(
     model: Model, state: State, speed: float | None = None, omega: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping (3, 3) of the film about a state: what the opening force and the moments on the stator
-    lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to a film
-    that stores only.  Raises ValueError where the faces touch."""
+    """Stiffness and damping (3, 3) of film and asperities about a state: what the opening force and the moments on the
+    stator lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to
+    a film that stores only.  Raises ValueError where the faces touch."""
     s = gap_state(model, state, speed)
     thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
-    if thinnest <= model.face[4]:
+    if thinnest <= model.face[COLLAPSE]:
         raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
-    # Eight differences reach four steps to either side: stay clear of the other face.
-    length = STEP * min(model.clearance, thinnest)
+    # Eight differences reach four steps to either side: stay clear of the other face, which rough ones may pass.
+    length = STEP * min(model.clearance, max(thinnest, model.face[FLOOR]))
     tilt = length / model.face[1]
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return model.interface.film_about(s, (length, tilt, length * pace, tilt * pace), omega)
+    return model.interface.about(s, (length, tilt, length * pace, tilt * pace), omega)
 
 
 def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
@@ -122,8 +124,9 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
     excess = axial_excess(model, gap_state(model, State(0.0, tilt, whirl)), model.closing_force())
     thinnest = smallest_gap(model.face, 0.0, abs(tilt))[0]
-    # From faces that all but touch upwards.
-    low, reach = 1.01 * model.face[4] - thinnest, model.clearance
+    # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
+    closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
+    low, reach = closed - thinnest, model.clearance
     high = max(low, 0.0)
     while excess(high) > 0 and high < 100 * reach:
         low, high = high, high + 0.25 * reach
@@ -134,6 +137,8 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
 
 def steady_tilt(model: Model) -> tuple[complex, float, str]:
     """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
+    if seals_that_stick(model.scene):
+        return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
     linear = model.linear_scene()
     parts: dict[float, complex] = {}
     for harmonic in model.segment().harmonics():

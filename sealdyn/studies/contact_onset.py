@@ -7,21 +7,29 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ..analysis.shooting import NoOrbit, Shooter
+from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.steady_extremes import steady_extremes
 from ..scenario.settings import si_unit, with_values
 from ..scene import variants
+from ..scene.contact import touch_height
+from ..scene.film import aligned_gaps
 from ..status import Status
 
+REFUSES = ("secondary-seal",)
+# Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
+MOST_WORK = 1_200_000
 units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
 
 
 @dataclass(frozen=True)
 class Settings:
     """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
-    `margin`: touch is h_min = margin x clearance; `over` and `values`: the onset as a curve over another key;
-    `floor`: also with the pressure floored at the lower boundary pressure, along the curve too (slower)."""
+    `margin`: touch is h_min = margin x clearance, of rough faces where their asperities meet; `over` and `values`: the
+    onset as a curve over another key; `floor`: also with the pressure floored at the lower boundary pressure, along the
+    curve too (slower); `most`: an onset that linear theory sees beyond so many times the scenario's own value of the
+    key is not followed."""
 
     key: str | None = None
     margin: float = 1e-3
@@ -29,12 +37,13 @@ class Settings:
     values: tuple[float | str, ...] = ()
     floor: bool = False
     tolerance: float = 1e-6
+    most: float = 1000.0
 
 
 def run(scenario, settings, tools) -> dict:
     """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
     key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
-    base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance}
+    base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance, "most": settings.most}
     # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
     floors = [False, True] if settings.floor else [False]
     sets = [{}, *({settings.over: value} for value in settings.values if settings.over)]
@@ -58,33 +67,41 @@ def brief(row: dict) -> dict:
 
 
 def onset(scenario, point: dict) -> dict:
-    """Linear and nonlinear onset of one scenario; `path` the orbits on the way."""
+    """Linear and nonlinear onset of one scenario; `path` the orbits on the way.  Without a nonlinear onset it says why:
+    `failed`."""
     scenario = with_values(scenario, point["set"])
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
-    key = point["key"]
+    key, rough = point["key"], touch_height(scenario.scene)
+    aligned = touching_when_aligned(scenario.scene, rough)
+    if aligned:
+        return {"key": key, "formula": 0.0, "nonlinear": 0.0, "margin": point["margin"], **aligned}
 
     def scene(value):
-        return with_values(scenario, {key: value, "film.floor": floor, "run.start": "steady"}).scene
+        # Until asperities meet the film is alone.
+        given = with_values(scenario, {key: value, "film.floor": floor, "run.start": "steady"}).scene
+        return variants.with_values(given, {"contact": None})
 
-    formula, touching = linear_onset(scene, key)
-    follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7))
-    value = follower.follow(formula, point["tolerance"])
+    formula, touching = linear_onset(scene, key, rough)
+    result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
+              "times_own": times_own(scenario.scene, key, formula)}  # fmt: skip
+    if (result["times_own"] or 0.0) > point["most"]:
+        return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
+    follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
+    try:
+        value = follower.follow(formula, point["tolerance"])
+    except NoOrbit as reason:
+        return {**result, **follower.told(), "failed": str(reason)}
     clearance = follower.path[-1]["clearance"]
     # The path's chord iterations keep one monodromy; the verdict at the onset needs its own.
     monodromy = Shooter(scene(value), 1e-7, tight=1e-10).monodromy(follower.start)
-    result = {
-        "key": key,
-        "formula": formula,
-        "linear_radius": touching,
+    result |= {
         "nonlinear": value,
         "ratio": value / formula,
         "radius": follower.path[-1]["radius"],
-        "margin": point["margin"],
-        "clearance": clearance,
         "start": [float(x) for x in follower.start],
         "axial_opening": follower.path[-1]["axial"] / clearance,
         "multiplier": float(np.max(np.abs(np.linalg.eigvals(monodromy)))),
-        "path": {name: [p[name] for p in follower.path] for name in ("forcing", "h_min", "tilt", "axial")},
+        **follower.told(),
     }
     if point["floor"]:
         film = scenario.scene.film
@@ -93,16 +110,37 @@ def onset(scenario, point: dict) -> dict:
         def floored(value):
             return variants.with_values(scene(value), {"film.cavitation_pressure": lowest})
 
-        with_floor = Follower(floored, point["margin"], 1e-4, follower.monodromy, follower.start)
+        with_floor = Follower(floored, point["margin"], 1e-4, follower.monodromy, follower.start, rough)
         result["nonlinear"] = with_floor.close(value, 1e-4)
         result["ratio"] = result["nonlinear"] / formula
         result["cavitation_pressure"] = lowest
     return result
 
 
-def linear_onset(scene, key: str) -> tuple[float, float]:
-    """Value of the key at which the linear steady state closes the gap, and the radius (m) where it does.
-    Raises NoOrbit if the linear response does not depend on the key."""
+def touching_when_aligned(scene, rough: float) -> dict | None:
+    """Where rough faces, whose asperities meet at the film thickness `rough` (m), touch without any forcing: radius (m)
+    and what asperities carry (N); None if they do not."""
+    if not rough:
+        return None
+    scene = variants.frozen_at_start(scene)
+    model, film = Model(scene), scene.film
+    thinnest, radius = min((h, r) for r, h in aligned_gaps(film, model.clearance))
+    if thinnest >= rough:
+        return None
+    carried = opening_parts(scene)(model.clearance, film.inner_pressure, film.outer_pressure)
+    return {"radius": float(radius), "touch": rough, "clearance": model.clearance, "contact_force": float(carried[1]),
+            "closing_force": model.closing_force()}  # fmt: skip
+
+
+def times_own(scene, key: str, value: float) -> float | None:
+    """The value of a key over the scene's own; None where that is zero, or no number."""
+    own = variants.part(variants.frozen_at_start(scene), key)
+    return abs(value / own) if isinstance(own, int | float) and own else None
+
+
+def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
+    """Value of the key at which the linear steady state closes the gap down to `rough` (m), and the radius (m) where it
+    does.  Raises NoOrbit if the linear response does not depend on the key, or touches at any of its values."""
 
     def excess(value):
         model = Model(scene(value), 1e-6)
@@ -112,8 +150,10 @@ def linear_onset(scene, key: str) -> tuple[float, float]:
         inner, outer = model.clearance, model.clearance + model.face[3] * (model.face[1] - model.face[0])
         inner_left = inner - closing - model.face[0] * most
         outer_left = outer - closing - model.face[1] * most
-        return min(inner_left, outer_left) / model.clearance, model.face[0 if inner_left <= outer_left else 1]
+        return (min(inner_left, outer_left) - rough) / model.clearance, model.face[0 if inner_left <= outer_left else 1]
 
+    if excess(0.0)[0] <= 0.0:
+        raise NoOrbit(f"linear theory touches without any {key}")
     high = 1e-6
     while excess(high)[0] > 0:
         high *= 2
@@ -123,29 +163,43 @@ def linear_onset(scene, key: str) -> tuple[float, float]:
     return float(value), float(excess(value)[1])
 
 
-class Follower:
-    """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin."""
+class TooMuchWork(NoOrbit):
+    """The path of orbits costs more than it may."""
 
-    def __init__(self, scene, margin: float, accuracy: float, monodromy=None, start=None):
-        self.scene, self.margin, self.accuracy = scene, margin, accuracy
+
+class Follower:
+    """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin, or `touch` (m)."""
+
+    def __init__(self, scene, margin: float, accuracy: float, monodromy=None, start=None, touch: float = 0.0):
+        self.scene, self.margin, self.accuracy, self.touch = scene, margin, accuracy, touch
         self.monodromy, self.start, self.path = monodromy, start, []
-        self.known = []
+        self.known, self.work = [], 0
+
+    def told(self) -> dict:
+        """The path of orbits followed, and their clearance (m), if there is any."""
+        names = ("forcing", "h_min", "tilt", "axial")
+        path = {name: [p[name] for p in self.path] for name in names}
+        return {"path": path, "clearance": self.path[-1]["clearance"]} if self.path else {}
 
     def excess(self, value: float) -> float:
         """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
+        if self.work > MOST_WORK:
+            raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits")
         scene = self.scene(value)
         # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
         tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
         shooter = Shooter(scene, self.accuracy, tight=tight)
-        guess = self._guess(value, shooter)
-        orbit = shooter.find(guess, self.monodromy, target=target, most=25)
+        try:
+            orbit = shooter.find(self._guess(value, shooter), self.monodromy, target=target, most=25)
+        finally:
+            self.work += shooter.work
         self.monodromy, self.start = orbit.monodromy, orbit.start
         self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
         low, model = orbit.extremes["h_min"], shooter.model
         tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
         self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
                           "clearance": model.clearance, "axial": axial})  # fmt: skip
-        return low["value"] / model.clearance - self.margin
+        return low["value"] / model.clearance - (self.touch / model.clearance or self.margin)
 
     def _guess(self, value, shooter):
         """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
@@ -173,11 +227,14 @@ class Follower:
     def follow(self, linear: float, tolerance: float) -> float:
         """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
         closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch."""
-        low, low_left, step = 0.0, 1.0 - self.margin, 0.4 * linear
+        clearance = Model(self.scene(0.0), 1e-6).clearance if self.touch else 1.0
+        low, low_left, step = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear
         for _ in range(80):
             value = low + step
             try:
                 left = self.excess(value)
+            except TooMuchWork:
+                raise
             except NoOrbit:
                 step *= 0.5
                 if abs(step) < 1e-6 * linear:
@@ -215,7 +272,10 @@ def tables(answer) -> list:
 
 def _verdict(answer, unit) -> list[str]:
     if "failed" in answer:
-        return [answer["failed"]]
+        return _undecided(answer, unit)
+    if answer["nonlinear"] == 0.0:
+        return [f"The asperities touch without any {answer['key']}, at r = {answer['radius'] * 1e3:.4g} mm: at rest "
+                f"they carry {answer['contact_force']:.4g} N of {answer['closing_force']:.5g} N."]  # fmt: skip
     lines = [
         f"The faces first touch at {answer['key']} = {answer['nonlinear']:.6g} {unit}, at r = "
         f"{answer['radius'] * 1e3:.4g} mm; linear theory has {answer['formula']:.6g}: "
@@ -232,3 +292,13 @@ def _verdict(answer, unit) -> list[str]:
             f"{floored['nonlinear']:.6g} {unit}, {change:+.2f} %."
         )
     return lines
+
+
+def _undecided(answer, unit) -> list[str]:
+    """What linear theory says, and why the nonlinear film does not."""
+    if answer["formula"] is None:
+        return [answer["failed"]]
+    margin = f", {answer['times_own']:.4g} times the scenario's own" if answer.get("times_own") else ""
+    reached = f"; orbits followed to {max(answer['path']['forcing']):.4g} {unit}" if answer.get("path") else ""
+    return [f"Linear theory touches at {answer['key']} = {answer['formula']:.4g} {unit}{margin}.",
+            f"Undecided for the nonlinear film: {answer['failed']}{reached}."]  # fmt: skip

@@ -25,6 +25,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
 from ..simulation.stability import critical_speed, natural_frequency
 
+REFUSES = ("secondary-seal",)
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
     "nonlinear/branch/speed": "rad/s", "nonlinear/branch/amplitude": "rad", "nonlinear/branch/frequency": "rad/s",
@@ -177,6 +178,9 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
         return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
     if threshold is None:
         return {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+    if scene.contact:
+        verdict = "Beyond linear: asperities bound the whirl (study rub); without contact the film's own whirls."
+        return {"verdict": verdict, "tipping": []}
     if model.unknowns.film_unknowns:
         return {"verdict": "a film with unknowns of its own: its whirls beyond linear are not followed", "tipping": []}
     at_threshold = free_model(scene, threshold)

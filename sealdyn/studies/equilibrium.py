@@ -1,4 +1,4 @@
-"""Equilibria: every clearance at which the film carries the closing force, with stiffness and stability."""
+"""Equilibria: every clearance at which film and asperities carry the closing force, with stiffness and stability."""
 
 import math
 from dataclasses import dataclass
@@ -7,21 +7,24 @@ import numpy as np
 
 from ..dynamics.equilibrium import (
     ClosingForce,
+    crossing,
     equilibria,
     extent,
     film_stiffness,
     settle,
     support_stiffness,
 )
-from ..dynamics.intervals import spins
-from ..films import film_of
+from ..dynamics.interface import opening_parts
 from ..numerics.piecewise_linear import initially
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length
 
 WITH_WAVES = True
-units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/stiffness": "N/m"}
+# From clearance to clearance in looking for where friction gives way.
+STRIDE = 1.05
+units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/contact_force": "N", "curve/stiffness": "N/m"}
 
 
 @dataclass(frozen=True)
@@ -37,15 +40,20 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, opening = scene.film, film_of(scene).opening_law(scene.film, *spins(scene))
+    film, parts = scene.film, opening_parts(scene)
     inner, outer = film.inner_pressure, film.outer_pressure
+
+    def opening(clearance, inner, outer):
+        return sum(parts(clearance, inner, outer))
+
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
     roots = equilibria(film, opening, closing, inner, outer)
     low, high = _range(film, roots, settings)
     roots = [root for root in roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
-    force = np.array([opening(c, inner, outer) for c in clearance])
+    carried = np.array([parts(c, inner, outer) for c in clearance])
+    force, friction = carried.sum(axis=1), breakaway(scene)
     # Steps smaller than the distance to closed faces.
     steps = 1e-4 * (clearance - extent(film)[1])
     stiffness = np.array(
@@ -53,20 +61,55 @@ def run(scenario, settings, tools) -> dict:
     )
     support = support_stiffness(scene)
     answer = {
-        "roots": [{**vars(root), "stable": bool(root.stable)} for root in roots],
+        "roots": [_root(root, parts, law, (inner, outer), friction) for root in roots],
         "closing_force": float(closing),
         "balance_ratio": float(law.balance_ratio),
         "spring_force": float(initially(law.spring)),
         "closing_said": said,
         "support_stiffness": support,
+        "friction": friction,
         "range": [float(low), float(high)],
         "curve": {
             "clearance": clearance.tolist(),
             "opening_force": force.tolist(),
+            "contact_force": carried[:, 1].tolist(),
             "stiffness": stiffness.tolist(),
         },
     }
     return answer | {"verdict": _verdict(answer)}
+
+
+def breakaway(scene) -> float:
+    """Axial force (N) that the secondary seals hold of film against closing force: both floating rings carry the same
+    one, so that of the ring that slides first; 0 if one of them slides freely."""
+    floating = [getattr(scene, name) for name in RING_NAMES if getattr(scene, name).support]
+    return min((ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0 for ring in floating), default=0.0)
+
+
+def _root(root, parts, law, pressures, friction) -> dict:
+    """A root with what carries the closing force there, and the clearances (m) at which `friction` (N) holds a ring."""
+    film, rough = (float(force) for force in parts(root.clearance, *pressures))
+    ambient = min(pressures) * law.area
+    carried = film + rough - ambient
+    found = {**vars(root), "stable": bool(root.stable), "film_force": film, "contact_force": rough,
+             "load_support": (film - ambient) / carried if carried else None}  # fmt: skip
+    if friction:
+        found["held"] = _held(root, lambda c: sum(parts(c, *pressures)) - film - rough, friction)
+    return found
+
+
+def _held(root, excess, friction) -> list:
+    """Clearances (m) around a root between which the `excess` (N) of opening force does not exceed the `friction` (N);
+    None for an end that is not within a thousandth and a thousand times the root."""
+    ends = []
+    for ratio in (1 / STRIDE, STRIDE):
+        near = root.clearance
+        while 1e-3 < near / root.clearance < 1e3 and abs(excess(near * ratio)) < friction:
+            near *= ratio
+        within = 1e-3 < near / root.clearance < 1e3
+        beyond = sorted((near, near * ratio))
+        ends.append(crossing(lambda c: abs(excess(c)) - friction, *beyond) if within else None)
+    return ends
 
 
 def closing_force(scene, opening) -> tuple[ClosingForce, str]:
@@ -98,19 +141,28 @@ def _range(film, roots, settings) -> tuple[float, float]:
 
 def tables(answer) -> list:
     """Every clearance of balance."""
-    columns = (("clearance, um", "clearance", 1e6), ("film stiffness, N/m", "stiffness"), ("stable", "stable"))
+    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/m", "stiffness"), ("stable", "stable"),
+               ("by the film, N", "film_force"), ("by contact, N", "contact_force"))  # fmt: skip
     return [(answer["roots"], columns)]
 
 
 def _verdict(answer) -> list[str]:
     (low, high), roots, support = answer["range"], answer["roots"], answer["support_stiffness"]
     stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
+    opening = "Film with asperities" if any(answer["curve"]["contact_force"]) else "Film"
     said = [
-        f"Film and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} um; "
-        f"stable: {', '.join(stable) or 'none'}.",
+        f"{opening} and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} "
+        f"um; stable: {', '.join(stable) or 'none'}.",
         f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
         f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
     ]
+    for root in roots:
+        where, rough = 1e6 * root["clearance"], root["contact_force"]
+        if rough:
+            said.append(f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N.")
+        if "held" in root:
+            low, high = map(_um, root["held"])
+            said.append(f"The secondary seal's friction, {answer['friction']:.4g} N, holds from {low} to {high} too.")
     if not roots:
         curve = answer["curve"]["opening_force"]
         said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
@@ -119,3 +171,8 @@ def _verdict(answer) -> list[str]:
     elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
         said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
     return said
+
+
+def _um(clearance) -> str:
+    """A clearance (m) in words; None: as far as was looked."""
+    return f"{1e6 * clearance:.4g} um" if clearance is not None else "beyond what was looked at"

@@ -32,6 +32,8 @@ NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0
 units = {"resolved/rate": "1/s", "resolved/uncertainty": "1/s", "resolved/numerical_damping": "1/s"}
 
 LINEAR = {"film.model": "linear"}
+# The linear film at its threshold is the measure: nothing else may damp or bound the motion.
+REFUSES = ("contact", "secondary-seal")
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 
-WITH_CONTACT = WITH_WAVES = True
+WITH_WAVES = True
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
          "orbit/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
 

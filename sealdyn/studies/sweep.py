@@ -12,7 +12,7 @@ from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, run_many
 from ..simulation.outputs import unit_of
 
-WITH_CONTACT = WITH_WAVES = True
+WITH_WAVES = True
 OUTPUTS = (
     "h_min.value",
     "h_min.of_clearance",

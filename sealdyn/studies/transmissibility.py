@@ -22,6 +22,7 @@ from ..dynamics.extrema import MOST
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..scene.contact import touch_height
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import Scene
 from ..scene.variants import arrangement, frozen_at_start
@@ -46,6 +47,7 @@ NAMES = {
 # Forcing of a time-domain point, as part of the thinnest edge film, and what may be left of its transient.
 AMPLITUDE, LEFT, PER_TURN = 0.2, 1e-9, 64
 COARSER = 100.0
+REFUSES = ("secondary-seal",)
 # Relative difference below which both arrangements transmit the same.
 SAME = 1e-9
 
@@ -212,7 +214,7 @@ def _amplitude(seal: Arrangement, speed: float) -> float:
 
 
 def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
-    """The arrangement with both forcings, on the linear film."""
+    """The arrangement with both forcings, on the linear film, which has the stiffness of asperities that touch too."""
     linear = seal.linear(speed)
     own = Coefficients(
         tilt_stiffness=linear.film_k[1, 1],
@@ -224,6 +226,7 @@ def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
     return replace(
         scene,
         film=replace(scene.film, model="linear", coefficients=own),
+        contact=None,
         stator=replace(scene.stator, misalignment=amplitude, misalignment_direction=0.0),
         rotor=replace(scene.rotor, misalignment=amplitude, runout=amplitude, misalignment_phase=0.0, runout_phase=0.0),
     )
@@ -274,11 +277,14 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
 
 
 def _critical_misalignment(seal: Arrangement, values) -> float | None:
-    """Partner's misalignment at first touch, in units of C/r_o, with a unit own misalignment."""
+    """Partner's misalignment at first touch, of the asperities of rough faces, in units of C/r_o, with a unit own
+    misalignment; None for faces that touch when aligned."""
     if values[0] is None:
         return None
-    film = seal.scene.film
-    touch = min(h / r for r, h in aligned_gaps(film, film.clearance))
+    film, rough = seal.scene.film, touch_height(seal.scene)
+    touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance))
+    if touch <= 0.0:
+        return None
     own, forcing = (values[1], values[0]) if seal.name == "fmr" else (values[0], values[1])
     found = cf.critical_forcing(touch * film.outer_radius / film.clearance, own, forcing)
     return float(found) if np.isfinite(found) else None

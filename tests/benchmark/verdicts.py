@@ -24,11 +24,11 @@ from sealdyn.simulation.stability import stability
 SEED, NEAR, LOW, HIGH = 2026, 3, 1e-3, 10.0
 
 
-def seals(count: int, points: int):
+def seals(count: int, points: int, drawn=drawn_seal):
     """Numbers, scenes and the thresholds (rad/s) of each, by a scan of so many `points`."""
     for n in range(count):
         draw = np.random.default_rng([SEED, n])
-        scene = drawn_seal(draw)
+        scene = drawn(draw)
         found = thresholds(plain(scene), points, LOW, HIGH)
         if n % NEAR == 0 and found:
             speed = draw.choice(found) * (1.0 + draw.choice([-1.0, 1.0]) * 10.0 ** -draw.uniform(3.0, 9.0))
@@ -37,8 +37,8 @@ def seals(count: int, points: int):
         yield n, scene, found
 
 
-def judged(scene, wanted: list[float]) -> tuple[dict, dict, list[str]]:
-    """The answer, the exact growth rates, and what is wrong with it."""
+def judged(scene, wanted: list[float], close=1e-8) -> tuple[dict, dict, list[str]]:
+    """The answer, the exact growth rates, and what is wrong with it; thresholds as `close` as that, as a share."""
     model = Model(scene)
     answer, exact, bad = stability(model, None, model.linear_scene(), True), growth(plain(scene)), []
     rate, error = answer["growth_rate"], answer["growth_rate_uncertainty"]
@@ -52,7 +52,7 @@ def judged(scene, wanted: list[float]) -> tuple[dict, dict, list[str]]:
         bad.append(f"{answer['verdict']} with growth {rate:.3g} +- {error:.1g}, exactly {true:.3g}")
     speed = scene.shaft.speed
     inside = [w for w in answer["thresholds"] if LOW * speed <= w <= HIGH * speed]
-    if len(inside) != len(wanted) or not np.allclose(inside, wanted, rtol=1e-8, atol=0.0):
+    if len(inside) != len(wanted) or not np.allclose(inside, wanted, rtol=close, atol=0.0):
         bad.append(f"thresholds {inside}, scan {wanted}")
     if answer["critical_speed"] != min(answer["thresholds"], default=None):
         bad.append(f"critical speed {answer['critical_speed']} of {answer['thresholds']}")

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -10,9 +11,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from sealdyn.dynamics.linearisation import ExactMotion
+from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor
+from sealdyn.solvers.contract import Counts
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.matrix_exponential import BETWEEN
+from sealdyn.solvers.matrix_exponential import expm as exact_steps
 from sealdyn.solvers.recorder import Recorder
 
 TURN = 2 * math.pi / SPEED
@@ -54,6 +58,20 @@ def test_between_its_steps_it_keeps_a_tenth_of_the_tolerance(name, start):
         assert found[2].status == "ok" and found[2].energy_residual < 0.1 * accuracy
         for a, b in zip(found[:2], exact[:2], strict=True):
             assert np.max(np.abs(a - b)) < BETWEEN * accuracy + 3e-12
+
+
+@pytest.mark.parametrize("scene", ["fms", "fmr"])
+def test_a_part_that_died_away_asks_for_no_steps(scene):
+    """A film whose squeeze dies out within a nanosecond: what rounding leaves of it is no motion.  Followed, it would
+    take a million times the steps."""
+    squeezed = film("linear", coefficients=Coefficients(tilt_stiffness=1e8, tilt_damping=2e6,
+                                                        axial_stiffness=3e11, axial_damping=5e9))  # fmt: skip
+    made = replace(SCENES[scene], film=squeezed)
+    ready = prepared(made, 3 * TURN, 1e-8, "rest")
+    assert np.min(np.linalg.eigvals(ready.segment(0).exact_motion().matrix).real) < -1e9
+    blocks = exact_steps(ready.segment(0), 0.0, ready.y0, "expm", 1e-8, Counts())
+    reached = [times[-1] for times, _, _ in islice(blocks, 200)]
+    assert reached[-1] == pytest.approx(3 * TURN)
 
 
 def test_a_tighter_tolerance_takes_shorter_steps():

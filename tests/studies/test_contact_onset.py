@@ -27,7 +27,7 @@ CASES = {
 def found(request):
     name, key, overrides = CASES[request.param]
     scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
-    point = {"key": key, "margin": 1e-3, "tolerance": 1e-5, "set": {}, "floor": False}
+    point = {"key": key, "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
     return request.param, scenario, key, onset(scenario, point)
 
 
@@ -77,6 +77,36 @@ def test_plain_runs_touch_just_above_and_not_just_below(found):
         ready.y0[: len(start)] = start
         outcome = solve(ready, "adams", 1e-6, Recorder())
         assert outcome.status == status, (part, ready.extrema.records[0, 0])
+
+
+def test_rough_faces_touch_where_their_asperities_meet():
+    """The steady orbit of a run at the onset comes down to three rms roughnesses, and no asperity carries yet."""
+    contact = 'contact={roughness="0.3 um", compressive_strength="300 MPa"}'
+    scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", [contact])
+    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
+    answer = onset(scenario, point)
+    scene = with_values(scenario, {"stator.misalignment": answer["nonlinear"], "run.start": "steady"}).scene
+    orbit = Shooter(scene, 1e-8, tight=1e-10).find(np.array(answer["start"]))
+    assert orbit.extremes["h_min"]["value"] == pytest.approx(0.9e-6, abs=1e-5 * 1e-5)
+    alone = onset(sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml"), point)
+    assert answer["nonlinear"] < 0.9 * alone["nonlinear"] and answer["formula"] < 0.95 * alone["formula"]
+
+
+def test_an_onset_far_away_is_not_followed():
+    """A forcing of a nanoradian: linear theory says by how much it may grow, and nothing else is done."""
+    scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", ["stator.misalignment=1e-9"])
+    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
+    row = onset(scenario, point)
+    assert "failed" in row and "path" not in row
+    assert row["times_own"] == pytest.approx(row["formula"] / 1e-9) and row["times_own"] > 1e6
+
+
+def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
+    scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
+    point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
+    monkeypatch.setattr(contact_onset, "MOST_WORK", 30_000)
+    row = onset(scenario, point)
+    assert "right-hand sides" in row["failed"] and 1 <= len(row["path"]["forcing"]) < 5 and row["formula"] > 0
 
 
 class Tools:

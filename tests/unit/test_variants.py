@@ -15,7 +15,7 @@ from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AxialVibration, Housing
 from sealdyn.scene.rings import AxialRunout, Support
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.variants import part, tables_at_end, with_values, without_contact
+from sealdyn.scene.variants import part, tables_at_end, with_values, without
 
 TEXT = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
 RAMP = PiecewiseLinear((0.0, 0.5), (100.0, 900.0))
@@ -66,7 +66,7 @@ def test_a_value_takes_its_alternatives_away():
 
 
 def test_contact_goes_and_the_rest_stays():
-    assert without_contact(replace(fmr(), contact=ROUGH)) == fmr()
+    assert without(replace(fmr(), contact=ROUGH), ["contact"]) == fmr()
 
 
 def test_tables_end():

@@ -14,9 +14,14 @@ def draw(archive_path, out_path):
     answer, title = study["answer"], "When do the faces first touch?"
     figure, ax = study_page(study, 12, 5.2, [["film", "opening", "curve"]], title, bold=answer["verdict"][0])
     for name, words, draws in (("film", "Smallest film thickness", _film), ("opening", "Axial opening", _opening)):
-        draws(ax[name], answer) if answer.get("path") else absent(ax[name], words, "no orbit found")
+        draws(ax[name], answer) if answer.get("path") else absent(ax[name], words, _why(answer))
     _curve(ax["curve"], answer)
     return save(figure, out_path)
+
+
+def _why(answer):
+    """Why no orbit is drawn."""
+    return "touching when aligned" if answer["nonlinear"] == 0.0 else "no orbit followed"
 
 
 def _path(answer, name):
@@ -30,8 +35,9 @@ def _path(answer, name):
 def _film(ax, answer):
     forcing, h_min = _path(answer, "h_min")
     ax.plot(forcing, 1e6 * h_min, "o-", color=FILM, ms=3.5, label="nonlinear orbit")
-    ax.plot([0, 1e3 * answer["formula"]], [1e6 * h_min[0], 0], "--", color=THEORY, label="linear theory")
-    ax.axhline(0, color=CONTACT, lw=1.2)
+    touch = 1e6 * (answer.get("touch") or 0.0)
+    ax.plot([0, 1e3 * answer["formula"]], [1e6 * h_min[0], touch], "--", color=THEORY, label="linear theory")
+    ax.axhline(touch, color=CONTACT, lw=1.2)
     ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, mrad", ylabel="h_min, µm")
     ax.legend(loc="upper right")
 
@@ -40,7 +46,8 @@ def _opening(ax, answer):
     forcing, axial = _path(answer, "axial")
     ax.plot(forcing, 100 * axial / answer["clearance"], "o-", color=BLUE, ms=3.5)
     upright(ax, 1e3 * answer["formula"], "linear onset", THEORY, height=0.93, ha="right", ls="--")
-    upright(ax, 1e3 * answer["nonlinear"], "onset", CONTACT, ha="right")
+    if answer["nonlinear"] is not None:
+        upright(ax, 1e3 * answer["nonlinear"], "onset", CONTACT, ha="right")
     ax.set(title="The seal lifts: axial opening", xlabel=f"{answer['key']}, mrad", ylabel="opening, % of the clearance")
 
 

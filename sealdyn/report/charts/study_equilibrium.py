@@ -4,10 +4,12 @@ import numpy as np
 
 from ...archive import read_study
 from .page import logarithmic, look, save, study_page
-from .palette import BLACK, FILM, GREEN, GREY, THEORY, VERMILLION
+from .palette import BLACK, CONTACT, FILM, GREEN, GREY, THEORY, VERMILLION
 
 # Colour and mark of a root by its stability.
 ROOT = {True: (GREEN, "o", "stable"), False: (VERMILLION, "X", "unstable")}
+# What is drawn of the force of asperities, in closing forces, and of their stiffness, in that of the stiffest root.
+SHOWN = 3.0
 
 
 @look()
@@ -28,9 +30,15 @@ def draw(archive_path, out_path):
 
 def _forces(ax, answer, clearance):
     opening, closing = np.array(answer["curve"]["opening_force"]), answer["closing_force"]
-    ax.plot(clearance, opening, color=FILM, lw=2.0, label="opening force of the aligned film")
+    rough = np.array(answer["curve"].get("contact_force", [0.0]))
+    label = "opening force, film and asperities" if rough.any() else "opening force of the aligned film"
+    ax.plot(clearance, opening, color=FILM, lw=2.0, label=label)
+    if rough.any():
+        ax.plot(clearance, rough, color=CONTACT, lw=1.4, ls=":", label="of it asperities")
     ax.axhline(closing, color=THEORY, lw=1.6, ls="--", label=f"closing force {closing:.5g} N")
-    span = max(np.ptp(np.append(opening, closing)), 1e-9)
+    # Asperities pressed flat carry so much that nothing else would be seen.
+    top = min(opening.max(), SHOWN * closing) if rough.any() and closing > 0 else opening.max()
+    span = max(max(top, closing) - min(opening.min(), closing), 1e-9)
     for stable, (colour, mark, label) in ROOT.items():
         at = [1e6 * root["clearance"] for root in answer["roots"] if root["stable"] == stable]
         if at:
@@ -38,7 +46,7 @@ def _forces(ax, answer, clearance):
         for x in at:
             ax.annotate(f"{x:.4g} µm", (x, closing), xytext=(0, -18), textcoords="offset points", fontsize=9,
                         ha="center")  # fmt: skip
-    ax.set(ylim=(min(opening.min(), closing) - 0.08 * span, max(opening.max(), closing) + 0.18 * span),
+    ax.set(ylim=(min(opening.min(), closing) - 0.08 * span, max(top, closing) + 0.18 * span),
            ylabel="axial force, N", title="Opening and closing force")  # fmt: skip
     ax.legend(loc="upper right", ncols=2)
 
@@ -52,4 +60,7 @@ def _stiffness(ax, answer, clearance):
         colour, mark, _ = ROOT[root["stable"]]
         ax.axvline(1e6 * root["clearance"], color=GREY, lw=0.8, ls=":")
         ax.plot(1e6 * root["clearance"], 1e-6 * root["stiffness"], mark, ms=8, mfc=colour, mec=BLACK, zorder=4)
+    held = [1e-6 * root["stiffness"] for root in answer["roots"]]
+    if np.any(answer["curve"].get("contact_force", [0.0])) and max(held, default=0.0) > 0:
+        ax.set_ylim(min(stiffness.min(), 0.0) - 0.1 * max(held), SHOWN * max(held))
     ax.set(ylabel="stiffness, N/µm", title="Axial film stiffness (negative: the film runs away)")

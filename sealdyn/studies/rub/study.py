@@ -23,7 +23,6 @@ from ...status import Status
 from ...units import Speed
 from .statistics import evaluate_point, touch_level
 
-WITH_CONTACT = True
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
 UNITS = {"rotor.runout": "rad", "rotor.misalignment": "rad", "stator.misalignment": "rad", "shaft.speed": "rad/s"}

@@ -23,7 +23,6 @@ from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_en
 from .sentences import WAYS, load_sentences, sentences
 from .speed_ramp import passage, short_pass
 
-WITH_CONTACT = True
 # Rates of the curve, over the rate at which linear theory just touches; how closely the touching rate is located.
 CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
 # Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.

@@ -16,7 +16,6 @@ from ...status import Status
 from . import quasi_static
 from . import released as free
 
-WITH_CONTACT = True
 units = {"line/force_ratio": "1", "line/sealing_number": "1", "map/guide": "1"}
 
 # Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.

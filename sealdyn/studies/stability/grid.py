@@ -17,6 +17,7 @@ from ...dynamics.characteristic import roots
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
+from ...scene.contact import HALF_HEIGHT
 from ...scene.scene import SceneError
 from ...scene.variants import frozen_at_start
 
@@ -94,7 +95,7 @@ class Grid:
     def _closed_form(self):
         film, name = self.scene.film, self.model.interface.name
         own = film.coefficients if name == "linear" else "radial"
-        if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local":
+        if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local" or self.scene.contact:
             return None
         formula, more = (cf.film_coefficients, {}) if own == "green" else (
             cf.radial_film_coefficients, {"geometry": film.geometry})  # fmt: skip
@@ -118,7 +119,7 @@ class Grid:
 
     def _rebuilt(self):
         """Linearise the film once for every value of the axes that touch it."""
-        touching = [key for key in self.axes if key.startswith(("film.", "closing."))]
+        touching = [key for key in self.axes if key.startswith(("film.", "closing.", "contact."))]
         if "shaft.speed" in self.axes and self._follows_speed():
             touching.append("shaft.speed")
         if "stator.speed" in self.axes and self.scene.film.inertia:
@@ -190,7 +191,9 @@ def _open(given, clearance):
     gap = given("film.clearance")
     gap = clearance if gap is None else gap
     outer = gap + given("film.coning") * np.subtract(r_o, r_i)
-    return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > np.multiply(floor, gap)))
+    # Rough faces are closed where all their asperities are flat.
+    lowest = np.multiply(-HALF_HEIGHT, given("contact.roughness")) if given.scene.contact else np.multiply(floor, gap)
+    return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > lowest))
 
 
 def _possible(given, clearance) -> np.ndarray:

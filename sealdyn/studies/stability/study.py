@@ -13,7 +13,8 @@ from ...analysis.validation import growth_rate
 from ...dynamics import modes
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
-from ...scenario.errors import ScenarioError, tables
+from ...scenario.errors import ScenarioError
+from ...scenario.errors import tables as keys_of_tables
 from ...scenario.reader import ScenarioFile
 from ...scenario.settings import axis, with_values
 from ...scene.excitation import Housing, Shaft
@@ -23,6 +24,7 @@ from ...simulation.method_selection import choose_method
 from ...simulation.stability import critical_speed
 from .grid import INERTIA_RATIO, Grid
 
+REFUSES = ("secondary-seal",)
 units = {"growth_rate": "1/s", "tilt_growth_rate": "1/s"}
 # A run in time lasts until a small disturbance (1 % of the clearance) has grown by this much (e-folds), or decayed.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
@@ -93,9 +95,9 @@ def _held_by(scenario, where, key):
     if key == INERTIA_RATIO:
         return float, "1"
     table, _, leaf = key.rpartition(".")
-    holds = tables(ScenarioFile).get(table, {}).get(leaf)
+    holds = keys_of_tables(ScenarioFile).get(table, {}).get(leaf)
     if holds is None or table in ("run", "study", ""):
-        known = [f"{t}.{k}" for t, keys in tables(ScenarioFile).items() for k in keys if t not in ("run", "")]
+        known = [f"{t}.{k}" for t, keys in keys_of_tables(ScenarioFile).items() for k in keys if t not in ("run", "")]
         near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
         hint = f"; nearest {near[0]}" if near else ""
         raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")

@@ -19,7 +19,7 @@ from .verdict import sentences, tables
 
 __all__ = ["Settings", "run", "tables"]
 
-WITH_CONTACT = WITH_WAVES = True
+WITH_WAVES = True
 OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
 # What every run is asked besides, to know whether the faces touched and whether the seal is stable.
 FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"

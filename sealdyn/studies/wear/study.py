@@ -17,7 +17,6 @@ from ...units import Time
 from .averages import ShortRunAverages
 from .rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
 
-WITH_CONTACT = True
 # Radii a profile may have; share of the closing force below which there is no contact, and below which it has faded if
 # nothing more than the accuracy is left to wear; a contact over fewer radii than FEW is coarse; one on faces tilted by
 # more than UNEVEN roughnesses at the outer radius is not even around the circle.

@@ -21,8 +21,6 @@ from . import film_ladder
 from .errors import WHERE, errors, observe, worst
 from .ranking import curve, mark_slow_runs, rank_methods, time_at
 
-WITH_CONTACT = True
-
 NAMES = {
     "adams": "CVODE Adams", "bdf": "CVODE BDF", "bdf2": "CVODE BDF order 2", "ida": "IDA", "dop853": "SciPy DOP853",
     "rk45": "SciPy RK45", "lsoda": "SciPy LSODA", "radau": "SciPy Radau", "newmark": "Newmark",
