@@ -110,8 +110,8 @@ class Interface:
     def _steady_wrench(self, f, s):
         self.film.wrench(f, s, self.steady(f, s))
 
-    def _rough_wrench(self, f, s, film_wrench=None):
-        (film_wrench or self.film_wrench)(f, s)
+    def _rough_wrench(self, f, s):
+        self.film_wrench(f, s)
         contact.contact_load(self.contact, f, s)
         for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
             s[film] += s[rough]
@@ -147,14 +147,14 @@ class Interface:
         film = self.scene.film
         if film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]) and not film.inertia:
             return self._unfloored
-        return self.wrench, self._fine
+        return self.film.wrench, self._fine
 
     @cached_property
     def _unfloored(self):
         plain, table = film_module(self.name), replace(self._table_used, cavitation_pressure=None)
         f = plain.parameters(table, self.clearance, FINE)
         lay_surfaces(f, self.scene)
-        return plain.wrench if self.contact is None else lambda f, s: self._rough_wrench(f, s, plain.wrench), f
+        return plain.wrench, f
 
     def linearised(self, interval=None, mean_spin=None, shift=0.0, omega=0.0, pace=None, film=None):
         """Stiffness and damping matrices (3, 3) of `slopes`."""
@@ -165,40 +165,37 @@ class Interface:
         arguments as `rest_state`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if
         given."""
         s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
-        found = self._slopes_at(s, steps, omega, film)
+        found = self._film_slopes(s, steps, omega, film)
         if self.contact is None:
             return found
-        # Asperities are steep, so that the gap's own rounding shows in the force, and their differences converge more
-        # slowly than a film's.
-        rounding = GAP_NOISE * self.clearance / steps[0] * np.abs(found.stiffness)
-        return found._replace(stiffness_error=SURE * found.stiffness_error + rounding)
+        clear = asperity_steps(self.scene, self.clearance + s[DZ])
+        rough = film_slopes(self._asperities_alone, self._fine, s, clear)
+        both = self._sure(found, steps), self._sure(rough, clear)
+        return Slopes(*(a + b for a, b in zip(*both, strict=True)))
 
-    def _slopes_at(self, s, steps, omega, film) -> Slopes:
+    def _film_slopes(self, s, steps, omega, film) -> Slopes:
+        """Stiffness and damping of the film alone."""
         if hasattr(self.film, "matrices"):
             error = np.finfo(float).eps if isinstance(self.scene.film.coefficients, Coefficients) else FORMULA
-            film = self._with_asperities_at(s, steps, *self.film.matrices(self.f, s), error)
+            own = _known(*self.film.matrices(self.f, s), error)
             if self._borrowed() is self.film:
-                return film
+                return own
             more = self._borrowed_slopes
-            return film._replace(
-                stiffness_error=film.stiffness_error + more.stiffness_error,
-                damping_error=film.damping_error + more.damping_error,
+            return own._replace(
+                stiffness_error=own.stiffness_error + more.stiffness_error,
+                damping_error=own.damping_error + more.damping_error,
             )
         if self.unknowns is None:
-            wrench, f = (
-                (self.wrench, self._fine) if self.scene.film.cavitation_pressure is None else self._floored_at(s)
-            )
-            return film_slopes(wrench, f, s, steps)
+            plain = self.scene.film.cavitation_pressure is None
+            return film_slopes(*((self.film.wrench, self._fine) if plain else self._floored_at(s)), s, steps)
         matrices = (film or self.linear_film(s, steps)).matrices(omega)
-        return self._with_asperities_at(s, steps, *matrices, CONDENSED + NOISE * self.clearance / steps[0])
+        return _known(*matrices, CONDENSED if self.contact is None else CONDENSED + NOISE * self.clearance / steps[0])
 
-    def _with_asperities_at(self, s, steps, stiffness, damping, error) -> Slopes:
-        """A film's stiffness and damping, known to a relative `error`, and those of the asperities."""
-        film = Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
-        if self.contact is None:
-            return film
-        rough = film_slopes(self._asperities_alone, self._fine, s, steps)
-        return Slopes(*(a + b for a, b in zip(film, rough, strict=True)))
+    def _sure(self, found: Slopes, steps) -> Slopes:
+        """Slopes between rough faces: asperities are steep, so that the gap's own rounding shows in the force, and
+        their differences converge more slowly than a film's."""
+        rounding = GAP_NOISE * self.clearance / steps[0] * np.abs(found.stiffness)
+        return found._replace(stiffness_error=SURE * found.stiffness_error + rounding)
 
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
@@ -213,7 +210,10 @@ class Interface:
         condensation.moved_gaps; of a film with unknowns at the frequency `omega` (rad/s)."""
         if self.unknowns is None:
             return linearise(self.wrench, self._fine, s, steps)
-        return self._with_asperities_at(s, steps, *self.linear_film(s, steps).matrices(omega), CONDENSED)[:2]
+        stiffness, damping = self.linear_film(s, steps).matrices(omega)
+        if self.contact is not None:
+            stiffness = stiffness + linearise(self._asperities_alone, self._fine, s, steps)[0]
+        return stiffness, damping
 
     def _asperities_alone(self, f, s):
         contact.contact_load(self.contact, f, s)
@@ -265,21 +265,35 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
         # It is the rotor that turns otherwise.
         s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
         s[MEAN_SPIN] = mean_spin
-    widest, length = (STEP * gap for gap in _analytic(scene, clearance))
+    floor = contact_thresholds(scene.contact)[0] if scene.contact else None
+    widest, length = (STEP * gap for gap in _analytic(scene, clearance, floor))
     radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return s, (length, length / radius, widest * pace, widest / radius * pace)
 
 
-def _analytic(scene, clearance) -> tuple[float, float]:
-    """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where the
-    laws of rough faces change at an edge nearby: the four steps of differences do not reach half as far, unless it is
-    so near that the rounding of the force says more than the change."""
+def asperity_steps(scene, clearance):
+    """Steps for derivatives of the asperities about aligned faces at rest, as those of `rest_state`; of rates, which
+    do nothing to them, any."""
+    length = STEP * _analytic(scene, clearance, contact_thresholds(scene.contact)[1])[1]
+    tilt = length / scene.film.outer_radius
+    return length, tilt, length, tilt
+
+
+def _known(stiffness, damping, error) -> Slopes:
+    """Stiffness and damping known to a relative `error`."""
+    return Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
+
+
+def _analytic(scene, clearance, change) -> tuple[float, float]:
+    """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where a law of
+    rough faces, which changes at the film thickness `change` (m), does so at an edge nearby: the four steps of
+    differences do not reach half as far, unless it is so near that the rounding of the force says more than the
+    change."""
     gaps = [h for _, h in aligned_gaps(scene.film, clearance)]
     if not scene.contact:
         return min(gaps), min(gaps)
-    floor, touch, _ = contact_thresholds(scene.contact)
-    thinnest = max(min(gaps), floor)
-    nearest = min(abs(h - change) for h in gaps for change in (floor, touch))
+    thinnest = max(min(gaps), contact_thresholds(scene.contact)[0])
+    nearest = min(abs(h - change) for h in gaps)
     return thinnest, min(thinnest, max(0.1 / STEP * nearest, NEAREST * thinnest))
 
 

@@ -37,8 +37,8 @@ def seals(count: int, points: int, drawn=drawn_seal):
         yield n, scene, found
 
 
-def judged(scene, wanted: list[float], close=1e-8) -> tuple[dict, dict, list[str]]:
-    """The answer, the exact growth rates, and what is wrong with it; thresholds as `close` as that, as a share."""
+def judged(scene, wanted: list[float]) -> tuple[dict, dict, list[str]]:
+    """The answer, the exact growth rates, and what is wrong with it."""
     model = Model(scene)
     answer, exact, bad = stability(model, None, model.linear_scene(), True), growth(plain(scene)), []
     rate, error = answer["growth_rate"], answer["growth_rate_uncertainty"]
@@ -52,7 +52,7 @@ def judged(scene, wanted: list[float], close=1e-8) -> tuple[dict, dict, list[str
         bad.append(f"{answer['verdict']} with growth {rate:.3g} +- {error:.1g}, exactly {true:.3g}")
     speed = scene.shaft.speed
     inside = [w for w in answer["thresholds"] if LOW * speed <= w <= HIGH * speed]
-    if len(inside) != len(wanted) or not np.allclose(inside, wanted, rtol=close, atol=0.0):
+    if len(inside) != len(wanted) or not np.allclose(inside, wanted, rtol=1e-8, atol=0.0):
         bad.append(f"thresholds {inside}, scan {wanted}")
     if answer["critical_speed"] != min(answer["thresholds"], default=None):
         bad.append(f"critical speed {answer['critical_speed']} of {answer['thresholds']}")
