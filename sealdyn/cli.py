@@ -7,15 +7,15 @@ import gc
 import json
 import os
 import shlex
-import signal
 import sys
-import time
 from pathlib import Path
+from threading import Lock, Timer
 from typing import Annotated
 
 import typer
 from typer.core import TyperCommand
 
+from .numerics.interruption import CODE, Interruption
 from .numerics.threads import VARIABLES
 from .status import Status
 
@@ -25,7 +25,7 @@ for _threads in VARIABLES:
 # It would look for plugins in everything that is installed.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
-DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, 130
+DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, CODE
 EXIT = {
     Status.OK: DONE,
     Status.INACCURATE: CHECK_FAILED,
@@ -54,6 +54,17 @@ app = typer.Typer(
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
 AsJson = Annotated[bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")]
+
+
+# SIGINT and SIGTERM, and what they find: "words", a function that says what is kept, and whether the verb has already
+# "answered".
+interruption = Interruption()
+_left = {}
+
+
+def _leaves(words, answered=False):
+    """What an interruption finds from now on."""
+    _left.update(words=words, answered=answered)
 
 
 @contextlib.contextmanager
@@ -103,7 +114,7 @@ def run(
     resume: Annotated[bool, typer.Option("--continue", help="go on with an interrupted or killed run")] = False,
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
-    from .archive import ArchiveError
+    from .archive import ArchiveError, partial_path
     from .report.text import lines
     from .scene.scene import SceneError
     from .simulation.simulate import simulate
@@ -117,16 +128,20 @@ def run(
     if resume:
         _check_resumable(out, scenario)
     _say_compiling(file=sys.stderr)
-    flag = _catch_interrupt()
-    with _Progress() as bar, _libraries_on_stderr():
+    words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
+    _leaves(lambda: _kept_of_run(partial_path(out), words))
+    with _Progress() as bar, _libraries_on_stderr(), interruption.looks():
         try:
-            result = simulate(scenario, out, progress=bar, stop=lambda: bool(flag), resume=resume)
+            result = simulate(scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume)
         except (SceneError, ArchiveError) as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
             raise Stop(Status.INVALID, f"{out}: cannot be written ({error.strerror or error})") from None
     summary = {**result.summary, "figure": None}
-    if plot and result.status != Status.INTERRUPTED:
+    interrupted = result.status == Status.INTERRUPTED
+    complete = f"the run is complete: {result.archive}"
+    _leaves(lambda: _kept_of_run(result.archive, words) if interrupted else complete)
+    if plot and not interrupted and not interruption.asked:
         from .report.charts import overview
 
         figure = result.archive.with_suffix(".png")
@@ -137,9 +152,7 @@ def run(
     else:
         for line in lines(scenario, summary):
             print(line)
-    if result.status == Status.INTERRUPTED:
-        words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
-        print(f"go on with: sealdyn run {' '.join(words)}", file=sys.stderr)
+    _left["answered"] = True
     raise typer.Exit(EXIT[result.status])
 
 
@@ -158,18 +171,21 @@ def _check_resumable(out, scenario):
         )
 
 
-def _catch_interrupt() -> list:
-    """First Ctrl-C asks the run to end cleanly after its present chunk; a second one breaks off."""
-    asked = []
+def _kept_of_run(archive: Path, words: list[str]) -> str:
+    """What an interrupted run has left, and the words of the command that goes on."""
+    if not archive.exists():
+        return "nothing is kept"
+    return f"{archive} keeps the run so far; go on with: sealdyn run {' '.join(words)}"
 
-    def ask(signum, frame):
-        if asked:
-            raise KeyboardInterrupt
-        asked.append(signum)
 
-    signal.signal(signal.SIGINT, ask)
-    signal.signal(signal.SIGTERM, ask)
-    return asked
+def _kept_of_study(journal: Path, results: Path | None) -> str:
+    """What an interrupted study has left."""
+    if results is not None:
+        return f"finished points are kept in {results}; the same command goes on"
+    count = len(journal.read_text().splitlines()) - 1 if journal.exists() else 0
+    if count < 1:
+        return "no point was finished, nothing is kept"
+    return f"{count} finished point{'s' * (count > 1)} kept in {journal}; the same command goes on"
 
 
 def _say_compiling(file):
@@ -181,38 +197,51 @@ def _say_compiling(file):
 
 
 class _Progress:
-    """Progress bar on standard error: simulated time, turns of time left.  What is done in a second needs none."""
+    """Progress bar on standard error: how far, what is being done, and the time, which moves in any case.  What is done
+    in a second needs none."""
 
     def __init__(self):
         self.bar = self.task = None
-        self.begun = None
+        self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
+        self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
+        self.timer.daemon = True
 
     def __enter__(self):
+        self.timer.start()
         return self
 
     def __exit__(self, *error):
+        self.timer.cancel()
+        with self.lock:
+            if self.bar:
+                self.bar.stop()
+
+    def __call__(self, done: float, end: float, words: str | None = None):
+        """`done` of `end`; without `words` both are times (s)."""
+        words = words or f"t = {done:.4g} of {end:.4g} s"
+        self.now = {"completed": done, "total": end, "words": words}
         if self.bar:
-            self.bar.stop()
+            self.bar.update(self.task, **self.now)
 
-    def __call__(self, t: float, end: float):
-        if self.bar is None:
-            self.begun = self.begun or time.monotonic()
-            if time.monotonic() - self.begun < PATIENCE:
+    def _show(self):
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+        with self.lock:
+            if self.timer.finished.is_set():
                 return
-            from rich.console import Console
-            from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-            self.bar = Progress(
-                TextColumn("{task.fields[time]}"),
+            bar = Progress(
+                TextColumn("{task.fields[words]}"),
                 BarColumn(),
                 TextColumn("{task.percentage:>3.0f}%"),
+                TimeElapsedColumn(),
                 TimeRemainingColumn(),
                 console=Console(stderr=True),
                 transient=False,
             )
-            self.task = self.bar.add_task("", total=end, time="")
-            self.bar.start()
-        self.bar.update(self.task, completed=t, time=f"t = {t:.4g} of {end:.4g} s")
+            self.task = bar.add_task("", **self.now)
+            bar.start()
+            self.bar = bar
 
 
 @app.command()
@@ -362,7 +391,7 @@ def study(
     from .report.text import study_lines
     from .scenario.reader import ScenarioError
     from .scene.scene import SceneError
-    from .studies._runner import run_study, study_names, study_tables
+    from .studies._runner import archive_of, journal_of, run_study, study_names, study_tables
 
     names = study_names()
     if name.replace("_", "-") not in names:
@@ -371,11 +400,13 @@ def study(
         raise Stop(Status.INVALID, f"--workers: found {workers}; expected nothing, the scheduler has its own")
     scenario = _read(file, set)
     _say_compiling(file=sys.stderr)
+    out = archive_of(name, scenario, out)
+    _leaves(lambda: _kept_of_study(journal_of(out), results))
     with _Progress() as bar, _libraries_on_stderr():
         try:
             answer = run_study(
                 name, scenario, out, flags=_flags(context.args), workers=workers, scheduler=scheduler, results=results,
-                progress=lambda t, end: bar(t, end), leave_out=without or (),
+                progress=bar, leave_out=without or (),
             )  # fmt: skip
         except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "
@@ -385,6 +416,7 @@ def study(
         except OSError as error:
             where = error.filename or out
             raise Stop(Status.INVALID, f"{where}: cannot be written ({error.strerror or error})") from None
+    _leaves(lambda: f"the study is complete: {answer['archive']}")
     if plot:
         figure = Path(answer["archive"]).with_suffix(".png")
         importlib.import_module(f"sealdyn.report.charts.study_{answer['study']}").draw(answer["archive"], figure)
@@ -432,8 +464,23 @@ def main():
     gc.set_threshold(GARBAGE)
     # Python would look through all that was loaded once more as it ends.
     atexit.register(gc.freeze)
+    with interruption:
+        _leaves(lambda: "nothing is kept")
+        # Standard output itself: while libraries print, it is not where it was.
+        out = os.dup(1)
+        interruption.last_words = lambda: _break_off(as_json, out)
+        try:
+            _run(as_json)
+        finally:
+            os.close(out)
+
+
+def _run(as_json: bool):
     try:
         code = app(standalone_mode=False)
+        if code == INTERRUPTED:
+            # A KeyboardInterrupt comes out as this code, too.
+            _tell_interrupted(as_json)
         sys.exit(code if isinstance(code, int) else DONE)
     except Stop as stop:
         _refuse(stop.status, stop.message, as_json)
@@ -443,7 +490,7 @@ def main():
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        _tell_interrupted(as_json)
         sys.exit(INTERRUPTED)
     except Exception as error:
         # A misused command line: the parser's own errors can say what they mean in one line.
@@ -451,6 +498,23 @@ def main():
             raise
         _refuse(Status.INVALID, f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
         sys.exit(BAD_INPUT)
+
+
+def _tell_interrupted(as_json: bool):
+    """What is kept, in a line, and as JSON unless that has been printed."""
+    line = f"interrupted: {_left['words']()}"
+    print(line, file=sys.stderr)
+    if as_json and not _left["answered"]:
+        _refuse(Status.INTERRUPTED, line, as_json)
+
+
+def _break_off(as_json: bool, out: int):
+    """Last words of a process that is ended at once, past Python's own streams."""
+    line = f"interrupted: {_left['words']()}"
+    # A progress bar hides the cursor.
+    os.write(2, f"{chr(27) + '[?25h' if os.isatty(2) else ''}{line}\n".encode())
+    if as_json and not _left["answered"]:
+        os.write(out, f"{json.dumps({'status': Status.INTERRUPTED, 'message': line})}\n".encode())
 
 
 def _refuse(status: str, message: str, as_json: bool):

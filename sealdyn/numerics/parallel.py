@@ -15,9 +15,10 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from itertools import islice
-from multiprocessing import get_all_start_methods, get_context
+from multiprocessing import active_children, get_all_start_methods, get_context
 from pathlib import Path
 
+from .interruption import serve, stop_children
 from .results import content_keys
 from .threads import one_thread
 
@@ -125,8 +126,8 @@ def _on_processes(count: int, function, todo: dict, what: str):
         return
     # Forked workers inherit the compiled kernels; where there is no fork they load them.
     way = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
-    with ProcessPoolExecutor(min(count, len(todo)), mp_context=way, initializer=one_thread) as pool:
-        waiting = {}
+    others, waiting = active_children(), {}
+    with ProcessPoolExecutor(min(count, len(todo)), mp_context=way, initializer=_begin) as pool:
         try:
             while True:
                 # No process waits for its next piece.
@@ -138,7 +139,15 @@ def _on_processes(count: int, function, todo: dict, what: str):
                     some = waiting.pop(future)
                     yield from _with_keys(some, pieces.took(some, future.result()))
         finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+            if waiting:
+                # The reader has left, or was interrupted: nobody waits for what is being done.
+                stop_children(spared=others)
+
+
+def _begin():
+    """What a process does first."""
+    serve()
+    one_thread()
 
 
 class _Pieces:

@@ -4,7 +4,7 @@ everything that is looked at."""
 import numpy as np
 
 from ..dynamics.run_state import RunState
-from ..solvers.contract import TIGHTEST, Status, attainable, tolerance_for
+from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import solve
 from .looked_at import LookedAt
 
@@ -44,8 +44,8 @@ class Comparison:
     def error_over_time(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
         """How far (m,) this run, done by `method` with `tolerance`, is from a sharper one at each instant, the largest
         over all quantities, relative to its scale; NaN where the two cannot be compared, infinite where the other has
-        ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`, which raises
-        KeyboardInterrupt."""
+        ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`; Enough once `stop`
+        asks for it."""
         again = self.run.anew()
         other = Comparison(again)
         pair = sharper(method, tolerance, self.run)
@@ -53,7 +53,7 @@ class Comparison:
             again, pair[0], self.run.model.accuracy, Nothing(again, progress, stop), tolerance=pair[1], seen=other
         )
         if outcome.status == Status.INTERRUPTED:
-            raise KeyboardInterrupt
+            raise Enough
         if self.columns is None or other.columns is None:
             return None
         both = ~(np.isnan(self.columns) | np.isnan(other.columns)).any(axis=1)
@@ -83,11 +83,11 @@ class Nothing:
         """Nothing is kept."""
 
     def state(self, segment, tau, y):
-        """Raises KeyboardInterrupt where `stop` asks for it."""
+        """Raises Enough where `stop` asks for it."""
         if self.progress:
             self.progress(segment.time + tau, self.run.duration)
         if self.stop and self.stop():
-            raise KeyboardInterrupt
+            raise Enough
 
 
 def sharper(method: str, tolerance: float, run) -> tuple[str, float]:

@@ -21,7 +21,7 @@ from ..dynamics.intervals import largest_value
 from ..dynamics.signals import PARTS
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..solvers.contract import Cause, Counts, Status, attainable
+from ..solvers.contract import Cause, Counts, Enough, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import Outcome, solve
 from .attempts import Try, judged, next_try
@@ -72,7 +72,7 @@ def simulate(
 
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
-    interrupted or killed run left off.  A run that fails is a result with its status.
+    interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
     Raises SceneError or ArchiveError for a scene or file that cannot be.
     """
     begun = clock.perf_counter()
@@ -103,11 +103,16 @@ def simulate(
         if restart and sink.errors and writer.state.get("errors"):
             sink.errors.restore(writer.state["errors"])
         seen = Comparison(run) if sink.errors is None and one.method != "expm" else None
-        outcome = solve(
-            run, one.method, run.model.accuracy, sink, audit=audit, errors=sink.errors, seen=seen, resume=restart,
-            **_found(trial),
-        )  # fmt: skip
-        found, outcome = certificate(run, one.method, outcome, sink.errors, by_model, seen, progress, stop)
+        try:
+            outcome = solve(
+                run, one.method, run.model.accuracy, sink, audit=audit, errors=sink.errors, seen=seen, resume=restart,
+                **_found(trial),
+            )  # fmt: skip
+            found, outcome = certificate(run, one.method, outcome, sink.errors, by_model, seen, progress, stop)
+        except KeyboardInterrupt:
+            # As if killed: what was written goes on.
+            writer.close()
+            raise
         again = next_try(run, scenario.run.solver, one, outcome, found, tries)
         if again is None:
             break
@@ -155,7 +160,7 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
     if seen:
         try:
             apart = seen.error_over_time(progress, stop, method=method, tolerance=outcome.tolerance)
-        except KeyboardInterrupt:
+        except Enough:
             said = "no certificate: interrupted while the run was done once more"
             return {**none, "said": said}, replace(
                 outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED, message=str(Cause.INTERRUPTED)

@@ -19,6 +19,7 @@ from ..dynamics.signals import (
     signal_table,
     signals,
 )
+from ..solvers.contract import Enough
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -125,13 +126,13 @@ class ArchiveSink:
         self.pending += kept
 
     def state(self, segment, tau, y):
-        """Flush what has been taken, with the state at segment time `tau` (s), `y` (size,); raises KeyboardInterrupt
-        when `stop` asks for it."""
+        """Flush what has been taken, with the state at segment time `tau` (s), `y` (size,); raises Enough when `stop`
+        asks for it."""
         self.flush(segment.index, tau, y)
         if self.progress:
             self.progress(segment.time + tau, self.run.duration)
         if self.stop and self.stop():
-            raise KeyboardInterrupt
+            raise Enough
 
     def flush(self, index, tau, y):
         """Write rows, what happened, and the state to go on from (segment index, `tau` (s), `y` (size,)): all three

@@ -89,6 +89,10 @@ class Retry:
     tolerance: float
 
 
+class Enough(Exception):
+    """A sink has seen enough: it ends the run.  A KeyboardInterrupt is another matter, and passes through."""
+
+
 class SolverFailure(RuntimeError):
     """A solver gave up: the sentence says why and what to try."""
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .block import OVERLAP, Block
-from .contract import FEW, MANY, Cause, Change, Counts, Retry, SolverFailure, Status, Stop, tolerance_for
+from .contract import FEW, MANY, Cause, Change, Counts, Enough, Retry, SolverFailure, Status, Stop, tolerance_for
 from .energy_audit import EnergyAudit
 from .methods import METHODS
 
@@ -51,7 +51,7 @@ def solve(
     `tolerance`.
     The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
     and rates (m, n), after them the film's unknowns (m, n) if it has any, `state(segment, tau, y)`,
-    `event(segment, tau, event)`, and may raise KeyboardInterrupt from `take` or `state` to stop.
+    `event(segment, tau, event)`, and may raise Enough from `take` or `state` to stop.
     Returns an Outcome; a failed run is a result.
     """
     begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()
@@ -88,7 +88,7 @@ def solve(
                 segment, tau = run.segment(index + 1), 0.0
     except SolverFailure as failure:
         status, cause, message = Status.FAILED, Cause.METHOD_GAVE_UP, str(failure)
-    except KeyboardInterrupt:
+    except Enough:
         status, cause, message = Status.INTERRUPTED, Cause.INTERRUPTED, str(Cause.INTERRUPTED)
     index, tau, y = run.last if status in (Status.FAILED, Status.INTERRUPTED) else (segment.index, tau, y)
     spent = clock.perf_counter() - begun

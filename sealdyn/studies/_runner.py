@@ -32,6 +32,16 @@ def study_tables(name: str, answer: dict) -> list:
     return tables(answer) if tables else []
 
 
+def archive_of(name: str, scenario, out=None) -> Path:
+    """Where study `name` (hyphens or underscores) of a scenario puts its archive, if it is not told (`out`)."""
+    return Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
+
+
+def journal_of(out: Path) -> Path:
+    """Where finished points are kept until the archive `out` is there."""
+    return out.with_suffix(".partial.jsonl")
+
+
 def study_module(name: str):
     """The study `name` (underscored): its file, or `study.py` in its folder."""
     found = importlib.import_module(f"{studies.__name__}.{name}")
@@ -53,7 +63,9 @@ class StudyContext:
     def map(self, function, points: list, what: str = "points") -> list[dict]:
         """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
         store = self.results or self.journal
-        rows = evaluate(function, points, store, self.crew, lambda n, m: self.say(n / max(m, 1)), what)
+        rows = evaluate(
+            function, points, store, self.crew, lambda n, m: self.say(n / max(m, 1), f"{what}: {n} of {m}"), what
+        )
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
 
@@ -67,10 +79,10 @@ class StudyContext:
         progress."""
         return replace(self, crew=processes(1), results=None, progress=None)
 
-    def say(self, fraction: float):
-        """Report progress, a share of the whole."""
+    def say(self, fraction: float, words: str = "working"):
+        """Report progress, a share of the whole, and what is being done."""
         if self.progress:
-            self.progress(fraction, 1.0)
+            self.progress(fraction, 1.0, words)
 
 
 def run_study(
@@ -93,10 +105,10 @@ def run_study(
     studied, left_out = without(scenario, leave_out)
     _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
     settings = study_settings(scenario, name, module.Settings, flags or {})
-    out = Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
+    out = archive_of(name, scenario, out)
     plain = json.loads(json.dumps(asdict(settings), default=str))
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain, left_out], sort_keys=True)
-    journal = Checkpoint(out.with_suffix(".partial.jsonl"), identity)
+    journal = Checkpoint(journal_of(out), identity)
     kept = _folder(results) if results else None
     with _crew(workers, scheduler) as crew:
         tools = StudyContext(journal, crew, progress, kept)

@@ -3,6 +3,7 @@
 import json
 import os
 import time
+from multiprocessing import active_children
 
 import pytest
 from threadpoolctl import threadpool_info
@@ -143,3 +144,22 @@ def test_a_row_is_the_same_alone_and_together(calls):
     with pytest.raises(ValueError, match="not for squaring"):
         Together(squares)({"x": 2})
     assert results.content_keys(Together(squares), points(1)) != results.content_keys(Together(cube), points(1))
+
+
+def long_for_the_second(point):
+    time.sleep(60.0 if point["x"] == 1 else 0.0)
+    return {"y": 0}
+
+
+def test_nobody_waits_for_what_is_being_done_when_interrupted(tmp_path):
+    """What is finished is kept, and the processes are gone."""
+
+    def interrupt(done, count):
+        if done == 1:
+            raise KeyboardInterrupt
+
+    begun, journal = time.monotonic(), Checkpoint(tmp_path / "j", "a")
+    with pytest.raises(KeyboardInterrupt):
+        evaluate(long_for_the_second, points(4), journal, processes(2), interrupt, "naps")
+    assert time.monotonic() - begun < 20.0 and not active_children()
+    assert len(Checkpoint(tmp_path / "j", "a").rows) == 1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...dynamics.run_state import RunState
-from ...solvers.contract import Status, attainable
+from ...solvers.contract import Enough, Status, attainable
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
 from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
@@ -14,6 +14,12 @@ from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least
 SMALL = 3e-4
 PER_TURN = 8
 TIGHTER = 1 / 30
+# Blocks of a few hundred steps that one run may take: a hundred times what a healthy one does.
+MOST_BLOCKS = 2000
+
+
+class TooLong(ValueError):
+    """A whirl takes more steps than it may: the film is too stiff for the method at this speed."""
 
 
 class Until(Recorder):
@@ -21,23 +27,31 @@ class Until(Recorder):
 
     def __init__(self, wave, interval, least=0.0):
         super().__init__(interval)
-        self.wave, self.least = wave, least
+        self.wave, self.least, self.left = wave, least, MOST_BLOCKS
 
     def state(self, segment, tau, y):
-        """Raises KeyboardInterrupt, which ends the run, where the tilt of the unknowns `y` (size,) is below
-        the least."""
+        """Raises Enough where the tilt of the unknowns `y` (size,) is below the least, and TooLong."""
+        self.left -= 1
+        if self.left < 0:
+            raise TooLong(f"too many steps: given up {tau:.3g} s into a run of {segment.length:.3g} s")
         if abs(self.wave.relative(y[: self.wave.n])) < self.least:
-            raise KeyboardInterrupt
+            raise Enough
+
+
+def pace(model, speed: float) -> float:
+    """What turns are counted of (rad/s): the shaft at its speed (rad/s), or the least damped whirl where that turns
+    faster, as on a slow shaft in a stator that runs the other way."""
+    return max(abs(speed), abs(least_damped(model, speed)[0]))
 
 
 def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=math.inf):
-    """Relative tilt in time over `turns` of the shaft at a speed (rad/s), from a start `(q (n,), frequency (rad/s))`,
-    or the least damped mode at relative tilt `start` (rad); ends when it falls below `least` (rad), kept at least every
-    `interval` (s).
+    """Relative tilt in time over `turns` (as `pace` counts them) at a shaft speed (rad/s), from a start `(q (n,),
+    frequency (rad/s))`, or the least damped mode at relative tilt `start` (rad); ends when it falls below `least`
+    (rad), kept at least every `interval` (s).
     Returns (outcome, times (m,) (s), relative tilt (m,) (rad, complex), run)."""
-    turn = 2 * math.pi / abs(speed)
-    run = RunState(free_model(scene, speed, accuracy), turns * turn)
-    model = run.model
+    model = free_model(scene, speed, accuracy)
+    turn = 2 * math.pi / pace(model, speed)
+    run = RunState(model, turns * turn)
     wave = RotatingWave(model)
     if isinstance(start, float):
         frequency, shape = least_damped(model, speed)
@@ -140,19 +154,20 @@ def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns:
 
 def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000) -> dict:
     """What becomes of a whirl at a speed (rad/s): `fate` "decays", "bounded" (with its amplitude `whirl` and `drift`,
-    rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` of the shaft run.
+    rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` run (as `pace` counts them).
 
     `start` "small" (a tenth of contact) or "large" (displacements `shape` (n,), turning at `frequency`, rad/s).
     """
     model = free_model(scene, speed)
     unit = contact_tilt_aligned(model)
     linear = max(m.value.real for m in model.linear_scene().modes() if m.kind == "tilt")
-    turns = min(most, int(9 / abs(linear) * abs(speed) / (2 * math.pi)) + 50)
+    frequency_of_turns = pace(model, speed) / (2 * math.pi)
+    turns = min(most, int(9 / abs(linear) * frequency_of_turns) + 50)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit
     outcome, t, tilt, _ = followed(scene, speed, turns, "adams", accuracy, begin, least)
     size = np.abs(tilt)
-    row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * abs(speed) / (2 * math.pi))}
+    row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * frequency_of_turns)}
     if outcome.status == Status.COLLAPSED:
         return {"fate": "contact", **row}
     if outcome.status == Status.INTERRUPTED:

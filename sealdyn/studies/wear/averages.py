@@ -100,8 +100,6 @@ class ShortRunAverages:
             try:
                 y = ramp_to(self.scene, None, None, None, {"accuracy": self.accuracy, "ramp": RAMP}).tolist()
             except FilmCollapsed as lost:
-                if lost.cause == Cause.INTERRUPTED:
-                    raise KeyboardInterrupt from None
                 crushed = lost.cause == Cause.ASPERITIES_CRUSHED
                 raise NoAverage(Status.COLLAPSED if crushed else Status.FAILED, str(lost)) from None
         n = len(self.radius)
@@ -162,8 +160,6 @@ class ShortRunAverages:
             method = method or choose_method(run)[0]
             sink = Recorder(self.period / self._samples())
             outcome = solve(run, method, self.accuracy, sink)
-            if outcome.status == Status.INTERRUPTED:
-                raise KeyboardInterrupt
             if outcome.status != Status.OK:
                 raise NoAverage(outcome.status, outcome.message)
             t, q, rate = (part[:-1] for part in sink.arrays())

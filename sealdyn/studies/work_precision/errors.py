@@ -83,8 +83,6 @@ def observe(run, steps, method: str, tolerance: float, limit: float = math.inf, 
     watch, sink = _Stopwatch(steps, limit), Sampler(run.duration / samples)
     with np.errstate(all="ignore"):
         outcome = solve(run, method, run.model.accuracy, sink, steps=watch, tolerance=tolerance)
-    if outcome.status == Status.INTERRUPTED:
-        raise KeyboardInterrupt
     status, reason = str(outcome.status), "" if outcome.status == Status.OK else outcome.message
     if watch.stopped:
         status = "stopped"

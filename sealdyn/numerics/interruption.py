@@ -1,0 +1,109 @@
+"""SIGINT and SIGTERM end a command within GRACE: in order where that can be, else at once.
+
+Python hears a signal only between two of its own instructions, and compiled code, compilers and libraries keep it
+waiting; what they call back may even swallow the KeyboardInterrupt.  So a thread watches what the system's handler
+writes as the signal comes, and ends the process when its time is up.  What is then on disk is what a killed process
+leaves, and archives and journals are made for that.
+"""
+
+import os
+import signal
+import socket
+import sys
+from contextlib import contextmanager
+from threading import Thread, current_thread, main_thread
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+# Seconds from the signal to the end, and the exit code.
+GRACE, CODE = 1.5, 130
+
+
+class Interruption:
+    """A context that hears SIGINT and SIGTERM: the first raises KeyboardInterrupt, unless somebody `looks` by himself;
+    others change nothing.  `asked` lists the first one; `last_words()` is called if the process is ended at once.
+    **Valid** in the main thread; entered elsewhere it hears nothing."""
+
+    def __init__(self):
+        self.asked, self.last_words, self._looking = [], None, False
+        self._wire = None
+
+    def __enter__(self):
+        self.asked, self.last_words, self._looking = [], None, False
+        if current_thread() is main_thread():
+            ours, theirs = self._wire = socket.socketpair()
+            theirs.setblocking(False)
+            self._wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
+            self._handlers = {number: signal.signal(number, self._hear) for number in SIGNALS}
+            Thread(target=self._watch, args=(ours,), daemon=True).start()
+        return self
+
+    def __exit__(self, *error):
+        if self.asked:
+            # All is said; the watch goes on, for the interpreter may still wait for a thread.
+            self.last_words = None
+        elif self._wire:
+            signal.set_wakeup_fd(self._wakeup)
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)
+            self._wire[1].close()
+            self._wire = None
+
+    @contextmanager
+    def looks(self):
+        """Somebody looks whether `asked` has anything: no KeyboardInterrupt."""
+        self._looking = True
+        try:
+            yield
+        finally:
+            self._looking = False
+
+    def _hear(self, number, frame):
+        if not self.asked:
+            self.asked.append(number)
+            if not self._looking:
+                raise KeyboardInterrupt
+
+    def _watch(self, wire):
+        while (heard := wire.recv(1)) and heard[0] not in SIGNALS:
+            pass
+        wire.settimeout(GRACE)
+        try:
+            while heard:
+                heard = wire.recv(1)
+        except TimeoutError:
+            self._break_off()
+        wire.close()
+
+    def _break_off(self):
+        try:
+            stop_children()
+            if self.last_words:
+                self.last_words()
+        finally:
+            os._exit(CODE)
+
+
+def stop_children(spared=()):
+    """End the processes that this one has started with multiprocessing, at once, except those `spared`."""
+    if "multiprocessing" in sys.modules:
+        from multiprocessing import active_children
+
+        for child in active_children():
+            if child not in spared:
+                child.kill()
+
+
+def serve():
+    """Make this process one that others start and end: it hears no Ctrl-C, which is its parent's, and does not outlive
+    the parent."""
+    from multiprocessing import parent_process
+
+    signal.set_wakeup_fd(-1)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
+
+
+def _end_with(parent):
+    parent.join()
+    os._exit(CODE)
