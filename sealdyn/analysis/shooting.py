@@ -25,11 +25,17 @@ TIGHT = 1e-13
 DIFFERENCE = 3e-3
 # Right-hand sides that each of its fastest forcing periods may cost; a healthy one takes some hundreds.
 CRAWLING = 10_000
+# Scale of an unknown whose error is free.
+FREE = 1e30
 WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 
 
 class NoOrbit(ValueError):
     """There is no isolated periodic orbit, or Newton did not find it: the sentence says which."""
+
+
+class TooMuchWork(NoOrbit):
+    """An orbit costs more than it may."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +61,8 @@ class Orbit:
 class Shooter:
     """The period map of a scene, over `turns` periods of its forcing, integrated at the tolerance `tight`; `size` n of
     its points: the mechanical unknowns, of a massless ring the displacements, and their `scales` (n,); `flows`, `work`:
-    periods and right-hand sides so far.
+    periods and right-hand sides so far, the latter at most `most_work`; `defects` what each step of Newton's method
+    found, in units of the scales.
     Raises NoOrbit if the forcing has no common period, a ring sticks or the film stores."""
 
     def __init__(self, scene, accuracy: float = 1e-8, turns: int = 1, tight: float = TIGHT):
@@ -70,13 +77,15 @@ class Shooter:
             raise NoOrbit("a film that stores has more to its period map than the motion of the rings: run it in time")
         self.period = float(turns * period)
         self.model = probe.model
+        # Nobody asks for the works here, and where next to nothing moves their tolerance is below all rounding.
+        self.model.scales[probe.segment(0).works] = FREE
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
         method, _ = choose_method(RunState(self.model, self.period))
         self.method = {"adams": "dop853", "bdf": "radau"}.get(method, method)
         unknowns = self.model.unknowns
         n = unknowns.n if unknowns.massless else unknowns.n_mechanical
         self.size, self.scales = n, self.model.scales[:n]
-        self.flows = self.work = 0
+        self.flows, self.work, self.most_work, self.defects = 0, 0, np.inf, []
 
     def flow(self, start: np.ndarray) -> np.ndarray:
         """The unknowns (n,) one period later.  Raises NoOrbit where the map crawls, SolverFailure."""
@@ -91,6 +100,8 @@ class Shooter:
                 last = block[-1]
                 if counts.rhs > CRAWLING * max(1.0, self.period / segment.shortest_period):
                     raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
+                if self.work + counts.rhs > self.most_work:
+                    raise TooMuchWork("more right-hand sides than this orbit may cost")
         finally:
             self.work += counts.rhs
         return last[: self.size].copy()
@@ -125,6 +136,7 @@ class Shooter:
             except SolverFailure as failure:
                 raise NoOrbit(f"the period map failed: {failure}") from None
             size = float(np.max(np.abs(defect)))
+            self.defects.append(size)
             if not np.isfinite(size) or size > 1e3:
                 raise NoOrbit("Newton diverged: no periodic orbit near the linear steady state")
             # Below the target, or at the integrator's own noise.

@@ -6,14 +6,17 @@ reduced modulo one turn in exact arithmetic: a phase after a million turns is as
 """
 
 import math
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from decimal import Decimal, getcontext
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 
 LONGEST = 2000  # turns; then the clock is set anew
+FEW = 100  # intervals between two break points that stand for all
 
 # 2 pi to 60 digits (mathematical constant).
 TURN = Decimal("6.28318530717958647692528676655900576839433879875021164194988918")
@@ -34,6 +37,11 @@ class Interval:
     def length(self) -> float:
         """Length of the interval (s)."""
         return float(self.span)
+
+    @property
+    def angles(self) -> tuple[Fraction, Fraction]:
+        """Both exact angles at the start (rad)."""
+        return self.rotor_angle, self.stator_angle
 
     @property
     def time(self) -> float:
@@ -69,31 +77,63 @@ def modulo_turn(angle: Fraction) -> float:
     return float(exact % TURN)
 
 
-def angle_turned(speed, interval: Interval) -> Fraction:
-    """Exact integral (rad) of the speed (rad/s, number or function of time) over an interval."""
-    w, slope = constant_and_slope(speed, interval)
+def angle_turned(speed, interval: Interval, linear_over: Interval | None = None) -> Fraction:
+    """Exact integral (rad) of the speed (rad/s, number or function of time) over an interval, which may begin another
+    one (`linear_over`) whose slope is taken."""
+    w, slope = constant_and_slope(speed, linear_over or interval)
     return Fraction(w) * interval.span + Fraction(slope) * interval.span**2 / 2
 
 
-def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> list[Interval]:
+class Intervals(Sequence):
+    """Intervals in the order of time, each made when it is asked for: a run of 1e9 turns has half a million of them.
+    `few`: those that stand for all where numbers are gathered over the run, the first and last between two break points
+    and up to FEW in all, for in between everything goes on linearly."""
+
+    def __init__(self, wholes: list[Interval], pieces: list[int], speeds: tuple):
+        self._wholes, self._pieces, self._speeds = wholes, pieces, speeds
+        self._first = [0, *accumulate(pieces)]
+
+    def __len__(self) -> int:
+        return self._first[-1]
+
+    def __getitem__(self, index):
+        places = range(len(self))[index]
+        return [self._made(k) for k in places] if isinstance(index, slice) else self._made(places)
+
+    def _made(self, index: int) -> Interval:
+        place = bisect_right(self._first, index) - 1
+        whole, share = self._wholes[place], Fraction(index - self._first[place], self._pieces[place])
+        if not share:
+            return replace(whole, span=whole.span / self._pieces[place])
+        before = replace(whole, span=whole.span * share)
+        angles = (a + angle_turned(w, before, whole) for a, w in zip(whole.angles, self._speeds, strict=True))
+        return Interval(whole.start + before.span, whole.span / self._pieces[place], *angles)
+
+    @property
+    def few(self) -> list[Interval]:
+        """See above."""
+        places = []
+        for first, count in zip(self._first, self._pieces, strict=False):
+            every = range(count) if count <= FEW else (round(k * (count - 1) / (FEW - 1)) for k in range(FEW))
+            places += [first + k for k in every]
+        return [self._made(k) for k in places]
+
+
+def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> Intervals:
     """Intervals from 0 to `duration` (s) of shaft and stator speeds (rad/s).  `quantities` are all imposed numbers and
     functions of time, speeds included."""
     breaks = {0.0, duration}
     for quantity in quantities:
         if isinstance(quantity, PiecewiseLinear):
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
-    intervals, rotor_angle, stator_angle = [], Fraction(0), Fraction(0)
-    points = sorted(breaks)
-    for begin, end in pairwise(points):
-        whole = Interval(Fraction(begin), Fraction(end) - Fraction(begin), rotor_angle, stator_angle)
+    wholes, pieces, angles = [], [], (Fraction(0), Fraction(0))
+    for begin, end in pairwise(sorted(breaks)):
+        whole = Interval(Fraction(begin), Fraction(end) - Fraction(begin), *angles)
+        wholes.append(whole)
         fastest = max(_fastest(rotor_speed, whole), _fastest(stator_speed, whole))
-        pieces = max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST)))
-        for k in range(pieces):
-            interval = Interval(whole.start + whole.span * k / pieces, whole.span / pieces, rotor_angle, stator_angle)
-            intervals.append(interval)
-            rotor_angle += angle_turned(rotor_speed, interval)
-            stator_angle += angle_turned(stator_speed, interval)
-    return intervals
+        pieces.append(max(1, math.ceil(fastest * whole.length / (2 * math.pi * LONGEST))))
+        angles = [a + angle_turned(w, whole) for a, w in zip(angles, (rotor_speed, stator_speed), strict=True)]
+    return Intervals(wholes, pieces, (rotor_speed, stator_speed))
 
 
 def first_interval(quantities) -> Interval:

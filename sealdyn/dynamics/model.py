@@ -10,7 +10,7 @@ from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .equilibrium import axial_shift
 from .interface import FAST, Interface
-from .intervals import Interval, constant_and_slope, first_interval, split_at_breaks, time_of_angle
+from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
 from .stick_slip import FRICTION_FADE
 from .unknowns import Unknowns
@@ -65,7 +65,7 @@ class Model:
 
     # --- time ---------------------------------------------------------------------------------------
 
-    def intervals(self, duration: float) -> list[Interval]:
+    def intervals(self, duration: float) -> Intervals:
         """The intervals of a run of `duration` (s), on each of which everything imposed is linear."""
         return split_at_breaks(duration, self.scene.shaft.speed, self.scene.stator.speed, self._imposed())
 

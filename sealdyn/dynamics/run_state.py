@@ -57,7 +57,7 @@ class RunState:
     @cached_property
     def memory(self) -> float:
         """Number of shortest periods for which the linearised scene remembers an error, at most those of the run."""
-        speeds = {self.model.speed_at(interval): interval for interval in self.intervals}
+        speeds = {self.model.speed_at(interval): interval for interval in self.intervals.few}
         rates = [self.model.linear_scene(interval).eigen()[0].real for interval in speeds.values()]
         # A massless undamped ring has no free motion: it forgets at once.
         slowest = max(float(np.max(rate, initial=-np.inf)) for rate in rates)
@@ -80,7 +80,7 @@ class RunState:
         """Highest angular frequency (rad/s) imposed at any interval's start or end; where anything is imposed the shaft
         speed counts, where nothing is it is 0."""
         scene, fastest = self.model.scene, 0.0
-        for interval in self.intervals:
+        for interval in self.intervals.few:
             rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
             for row in rows:
                 fastest = max(fastest, abs(row[7]), abs(row[7] + 2 * row[8] * interval.length))
@@ -116,7 +116,7 @@ class RunState:
 
     def check_loads(self):
         """Warn of loads for which no equilibrium gap is found."""
-        for interval in self.intervals:
+        for interval in self.intervals.few:
             if not self.model.loads_are_balanced(interval):
                 sentence = (
                     f"no equilibrium gap found for the loads from t = {interval.time:.4g} s: linear numbers are at the "

@@ -28,7 +28,7 @@ class LookedAt:
         model = run.model
         self.n, self.rate = model.unknowns.n, reference_rate(model)
         self.lengths, self.outer_radius = model.scales[: self.n], model.scene.film.outer_radius
-        ends = [end for interval in run.intervals for end in self._ends(model, interval)]
+        ends = [end for interval in run.intervals.few for end in self._ends(model, interval)]
         self.force, self.leakage, self.torque = (max(one[k] for one in ends) for k in range(3))
 
     def _ends(self, model, interval):

@@ -44,7 +44,7 @@ def _fastest_decay(run) -> float:
     model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
     varying = (model.scene.shaft.speed, model.scene.film.viscosity)
     places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
-    for interval in run.intervals:
+    for interval in run.intervals.few:
         places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
     scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
     return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from ..analysis.shooting import NoOrbit, Shooter
+from ..analysis.shooting import NoOrbit, Shooter, TooMuchWork
 from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
@@ -163,10 +163,6 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
     return float(value), float(excess(value)[1])
 
 
-class TooMuchWork(NoOrbit):
-    """The path of orbits costs more than it may."""
-
-
 class Follower:
     """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin, or `touch` (m)."""
 
@@ -183,14 +179,15 @@ class Follower:
 
     def excess(self, value: float) -> float:
         """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
-        if self.work > MOST_WORK:
-            raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits")
         scene = self.scene(value)
         # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
         tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
         shooter = Shooter(scene, self.accuracy, tight=tight)
+        shooter.most_work = MOST_WORK - self.work
         try:
             orbit = shooter.find(self._guess(value, shooter), self.monodromy, target=target, most=25)
+        except TooMuchWork:
+            raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits") from None
         finally:
             self.work += shooter.work
         self.monodromy, self.start = orbit.monodromy, orbit.start

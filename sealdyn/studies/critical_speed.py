@@ -24,6 +24,7 @@ from ..analysis.whirl import (
 from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
 from ..simulation.stability import critical_speed, natural_frequency
+from ..status import Status
 
 REFUSES = ("secondary-seal",)
 units = {
@@ -40,7 +41,8 @@ NARROW = 2e-5
 @dataclass(frozen=True)
 class Settings:
     """`method`, `accuracy`: integrator and accuracy to begin with (tightened until it cannot decide a verdict);
-    `turns`: length of a growth measurement; `speeds`: points along the whirl family; `beyond`: go beyond linear."""
+    `turns`: length of a growth measurement, of the shaft or of a whirl that turns faster; `speeds`: points along the
+    whirl family; `beyond`: go beyond linear."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -107,15 +109,18 @@ def in_time(scene, eigenvalue, how, tools, pace) -> dict:
         signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
         said = "a disturbance grows at some of the speeds tried"
         if len(signs) == 1:
-            said = f"a disturbance {'grows' if signs.pop() else 'dies out'} at every speed tried"
+            said = f"a disturbance {'grows' if True in signs else 'dies out'} at every speed tried"
         elif not signs:
-            said = "neither growth nor decay beyond the method's own"
-        return {"time_domain": {"value": None, "uncertainty": None, "reason": said}, "growth": columns(rows, speeds)}
+            said = _unmeasured(rows) or "neither growth nor decay beyond the method's own"
+        found = {"value": None, "uncertainty": None, "reason": said}
+        # That there is none is not confirmed: growth here and decay there, or neither.
+        undecided = {} if len(signs) == 1 else {"status": Status.FAILED}
+        return {"time_domain": found, "growth": columns(rows, speeds), **undecided}
     speeds = [share * eigenvalue for share in SHARES]
     rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
     if around is None:
-        reason = "growth does not change sign within 5 % of the eigenvalues' threshold"
+        reason = _unmeasured(rows) or "growth does not change sign within 5 % of the eigenvalues' threshold"
         return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
     # Two more on either side of where the line between them crosses zero: a bracket of a few hundred-thousandths.
     crossing, _ = line_crossing(*around)
@@ -132,6 +137,11 @@ def in_time(scene, eigenvalue, how, tools, pace) -> dict:
     found["numerical_damping"] = max(row["numerical_damping"] for row in ends)
     found["against_eigenvalue"] = max(abs(row["rate"] - row["eigenvalue"]) for row in ends)
     return {"time_domain": found, "growth": columns(rows, speeds)}
+
+
+def _unmeasured(rows) -> str:
+    """Why no row has a growth rate; "" if one has."""
+    return rows[0]["failed"] if all("failed" in row for row in rows) else ""
 
 
 def between(rows, speeds):

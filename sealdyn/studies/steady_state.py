@@ -21,6 +21,8 @@ from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 
 WITH_WAVES = True
+# Turns of a run without a period that are drawn, and samples of each.
+SHOWN, PER_TURN = 20, 64
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
          "orbit/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
 
@@ -50,8 +52,12 @@ def run(scenario, settings, tools) -> dict:
     except NoOrbit as reason:
         threshold = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
         said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
+        values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
+        foretold = [complex(np.exp(v * shooter.period)) for v in values]
         return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None, "h_min": None,
                 "relative_misalignment": None, "critical_speed": critical, "near_threshold": [], "orbit": None,
+                "reason": str(reason), "defects": shooter.defects,
+                "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold]},
                 "verdict": list(said)}  # fmt: skip
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)
@@ -71,16 +77,16 @@ def run(scenario, settings, tools) -> dict:
         "linear": {"relative_max": most, "relative_min": least, "verdict": verdict},
         "unknowns": shooter.model.unknowns.names,
         "start": {name: float(x) for name, x in zip(shooter.model.unknowns.names, orbit.start, strict=False)},
-        "orbit": _waves(shooter, waves),
+        "orbit": _waves(shooter.model, waves),
         "near_threshold": rows,
         "critical_speed": critical,
     }
     return {**answer, "verdict": _verdict(answer)}
 
 
-def _waves(shooter, waves) -> dict:
-    """Relative tilt and h_min over one period, from the run's own signals."""
-    columns = signals(shooter.model.segment(), waves["times"], waves["displacements"], waves["rates"])
+def _waves(model, waves) -> dict:
+    """Relative tilt and h_min at some times, from the run's own signals; of conditions that do not change."""
+    columns = signals(model.segment(), waves["times"], waves["displacements"], waves["rates"])
     names = ("time", "relative_tilt_x", "relative_tilt_y", "relative_misalignment", "h_min", "shaft_angle")
     return {name: [float(x) for x in columns[name]] for name in names}
 
@@ -146,15 +152,18 @@ def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> int | None:
 
 
 def _time_domain(scenario, reason: str) -> dict:
-    """Without a common period: a long run, and it says so."""
+    """Without a common period: a long run, of which the last turns are drawn, and it says so."""
     scene = scenario.scene
     speed = abs(initially(scene.shaft.speed)) or 1.0
     turns = 200
     run = RunState(Model(scene, scenario.run.accuracy), turns * 2 * math.pi / speed)
     half = 0.5 * run.duration
     run.extrema.windows[1:] = [[half, run.duration], [half, run.duration]]
-    outcome = solve(run, choose_method(run)[0], scenario.run.accuracy, Recorder())
+    recorder = Recorder(run.duration / turns / PER_TURN)
+    outcome = solve(run, choose_method(run)[0], scenario.run.accuracy, recorder)
     record = run.extrema.records[1]
+    times, q, q_rate = (part[-SHOWN * PER_TURN :] for part in recorder.arrays())
+    shown = {"times": times, "displacements": q, "rates": q_rate}
     return {
         "period": None,
         "multipliers": None,
@@ -163,7 +172,7 @@ def _time_domain(scenario, reason: str) -> dict:
         "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / run.model.clearance)},
         "relative_misalignment": {"max": float(record[4]), "min": float(record[6])},
         "near_threshold": [],
-        "orbit": None,
+        "orbit": _waves(run.model, shown) if run.model.unknowns.constant else None,
         "verdict": [
             f"In time over {turns} turns, the second half: h_min {record[0] * 1e6:.5g} um, relative misalignment "
             f"{record[6] * 1e6:.5g} to {record[4] * 1e6:.5g} urad.",

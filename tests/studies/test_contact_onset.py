@@ -8,13 +8,13 @@ from scenes import started
 
 import sealdyn
 from sealdyn import closed_form as cf
-from sealdyn.analysis.shooting import Shooter
+from sealdyn.analysis.shooting import Shooter, TooMuchWork
 from sealdyn.films.radial import film as radial
 from sealdyn.scenario.settings import with_values
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 from sealdyn.studies import contact_onset
-from sealdyn.studies.contact_onset import Settings, onset
+from sealdyn.studies.contact_onset import Follower, Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CASES = {
@@ -104,9 +104,19 @@ def test_an_onset_far_away_is_not_followed():
 def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
     point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
-    monkeypatch.setattr(contact_onset, "MOST_WORK", 30_000)
+    monkeypatch.setattr(contact_onset, "MOST_WORK", 36_000)
     row = onset(scenario, point)
     assert "right-hand sides" in row["failed"] and 1 <= len(row["path"]["forcing"]) < 5 and row["formula"] > 0
+
+
+def test_a_single_orbit_that_costs_too_much_is_given_up(monkeypatch):
+    """Not only between orbits: one of them may cost more than all others."""
+    scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
+    monkeypatch.setattr(contact_onset, "MOST_WORK", 3000)
+    follower = Follower(lambda value: with_values(scenario, {"stator.misalignment": value}).scene, 1e-3, 1e-7)
+    with pytest.raises(TooMuchWork):
+        follower.excess(1e-4)
+    assert 3000 <= follower.work < 3300 and not follower.path
 
 
 class Tools:

@@ -2,14 +2,17 @@
 it."""
 
 import math
+from functools import partial
 from pathlib import Path
 
 import pytest
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms
 
-from sealdyn.analysis.whirl import growth_rate
+from sealdyn.analysis.whirl import growth_rate, time_domain
+from sealdyn.analysis.whirl.time_domain import followed
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.studies import critical_speed
 from sealdyn.studies._runner import run_study
 
 K_S, D_S = SUPPORT.tilt()
@@ -98,3 +101,44 @@ def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
     }
     assert outside == {("small", False): "decays", ("large", False): "decays",
                        ("small", True): "contact", ("large", True): "contact"}  # fmt: skip
+
+
+# A slow shaft in a stator that runs the other way: the whirl turns twenty times as fast as the shaft at the threshold.
+COUNTER = ["stator.speed=-5000"]
+
+
+def test_growth_is_measured_over_turns_of_the_whirl_where_it_is_faster():
+    path = Path(__file__).parents[2] / "scenarios" / "fmsr_both_flexible.toml"
+    scene = parse_scenario(path.read_text(), "fmsr", COUNTER).scene
+    run = followed(scene, 72.0, 20, "adams", 1e-7, 1e-7)[3]
+    whirl = max(run.model.linear_scene().modes(), key=lambda m: m.value.real).value.imag
+    assert run.duration == pytest.approx(20 * 2 * math.pi / abs(whirl), rel=1e-6) and abs(whirl) > 1400
+    # A shaft at rest has a whirl, too.
+    assert followed(scene, 0.0, 2, "adams", 1e-7, 1e-7)[1][-1] < 0.01
+
+
+@pytest.mark.slow
+def test_a_counter_rotating_seal_has_its_answer(tmp_path):
+    answer = study("fmsr_both_flexible", tmp_path, COUNTER)
+    value, uncertainty = answer["time_domain"]["value"], answer["time_domain"]["uncertainty"]
+    assert abs(value - answer["eigenvalue"]) < 3 * uncertainty < 1e-3 * value
+
+
+def test_a_whirl_that_takes_too_many_steps_is_given_up(tmp_path, monkeypatch):
+    monkeypatch.setattr(time_domain, "MOST_BLOCKS", 1)
+    answer = study("fmsr_both_flexible", tmp_path, COUNTER, beyond=False)
+    assert answer["eigenvalue"] == pytest.approx(73.5325, rel=1e-4) and answer["time_domain"]["value"] is None
+    assert all("TooLong" in words for words in answer["growth"]["failed"])
+
+
+def growing_above(least, scene, point):
+    decided = {"rate": 1.0 if point["speed"] > least else -1.0, "decided": True}
+    return {**decided, "eigenvalue": 1.0, "uncertainty": 0.1, "accuracy": 1e-7, "numerical_damping": 0.0}
+
+
+def test_none_is_an_answer_only_where_all_agree(tmp_path, monkeypatch):
+    """No eigenvalue crosses: growth in time at every speed confirms it, growth at some speeds only does not."""
+
+    for least, status in ((0.0, "ok"), (1000.0, "failed")):
+        monkeypatch.setattr(critical_speed, "growth", partial(growing_above, least))
+        assert study("fmr_reference", tmp_path)["status"] == status

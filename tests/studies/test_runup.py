@@ -145,6 +145,31 @@ def test_without_threshold_the_order_lags(tmp_path):
     assert not panel(figure, "Free whirl").lines and text_trouble(figure)[1] == []
 
 
+def test_without_threshold_an_unstable_seal_is_not_called_stable(tmp_path):
+    """A diverging film pushes the ring over at every speed; undriven, stable rings have nothing that whirls."""
+    diverging = read("fms_reference", "film.coning=-1e-4")
+    answer = study(tmp_path, diverging, begin=500, end=1000, rates="20000", touch=False)
+    assert answer["threshold"] is None and answer["linear_verdict"] == "unstable" and answer["tilting"]
+    undriven = read("fms_reference", "rotor.runout=0", "stator.misalignment=0")
+    answer = study(tmp_path, undriven, begin=500, end=1000, rates="20000", touch=False)
+    assert answer["threshold"] is None and answer["linear_verdict"] == "stable" and not answer["tilting"]
+
+
+def test_a_touching_rate_that_cannot_be_found_is_undecided(tmp_path, monkeypatch):
+    def failed(scenario, point):
+        raise ValueError("no film")
+
+    def found(scenario, point):
+        touched = point["rate"] < 30000
+        return {"rate": point["rate"], "status": "ok", "touched": touched, "relative_misalignment": 1e-4, "h_min": 1e-6}
+
+    calls = []
+    passes = lambda scenario, point: (failed if len(calls) > 4 else found)(scenario, calls.append(0) or point)  # noqa: E731
+    monkeypatch.setattr(runup, "short_pass", passes)
+    answer = study(tmp_path, read("runup_past_threshold", "film.model=linear"), **{**NARROW, "rates": "20000"})
+    assert answer["touch_rate"]["value"] is None and answer["status"] == "failed"
+
+
 def test_no_finished_run_is_repeated(tmp_path, monkeypatch):
     """Stopped at its second run, then started again: the first one is not run anew, and the answer is the same."""
     flags = {**NARROW, "rates": "20000, 60000", "touch": False}

@@ -86,6 +86,22 @@ def test_incommensurate_forcing_falls_back_on_time(tmp_path):
     tilt = answer["relative_misalignment"]
     assert 3.35e-6 < tilt["max"] < 5.4e-6 and 0 <= tilt["min"] < tilt["max"]
     assert 0.97 < answer["h_min"]["of_clearance"] < 0.999
+    # What is drawn are the last turns of that run.
+    shown = answer["orbit"]["relative_misalignment"]
+    assert 0.9 * tilt["min"] < min(shown) < max(shown) < 1.001 * tilt["max"]
+    figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
+    assert sum(len(ax.lines) > 0 for ax in figure.axes) == 2 and text_trouble(figure)[1] == []
+
+
+@pytest.mark.parametrize("runout", ["0", "1e-9"])
+def test_where_next_to_nothing_moves_the_rest_state_is_the_orbit(tmp_path, runout):
+    """Rounding alone is not integrated below itself."""
+    values = [f"rotor.runout={runout}", "stator.misalignment=0"]
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", values)
+    answer = run_study("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
+    assert answer["status"] == "ok" and answer["stable"]
+    assert answer["h_min"]["of_clearance"] == pytest.approx(1.0, abs=1e-5)
+    assert answer["relative_misalignment"]["max"] < 2e-9
 
 
 def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
@@ -97,4 +113,9 @@ def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
     nothing = ("multipliers", "stable", "h_min", "relative_misalignment", "orbit")
     assert [answer[name] for name in nothing] == [None] * 5 and answer["near_threshold"] == []
     assert answer["critical_speed"] > 1000 and len(answer["verdict"]) <= 3
-    assert text_trouble(drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png"))[1] == []
+    # What linear theory foretells is drawn in place of the orbit's multipliers.
+    foretold = [abs(complex(*m)) for m in answer["linear"]["multipliers"]]
+    assert answer["linear"]["verdict"] == "stable" and len(foretold) == 6 and max(foretold) < 1.0
+    figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
+    assert any(len(line.get_xdata()) == 6 for ax in figure.axes for line in ax.lines)
+    assert text_trouble(figure)[1] == []

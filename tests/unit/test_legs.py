@@ -3,6 +3,7 @@
 import math
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from scenes import fmr, fms, ring, started
 from scipy.integrate import quad
 
+from sealdyn.dynamics import intervals
 from sealdyn.dynamics.imposed_motion import (
     OSCILLATOR_COUNT,
     OSCILLATORS,
@@ -25,8 +27,10 @@ from sealdyn.dynamics.imposed_motion import (
 )
 from sealdyn.dynamics.intervals import constant_and_slope, modulo_turn, split_at_breaks, time_of_angle
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import STATOR, AxialRunout, Rotor, Stator
+from sealdyn.simulation.simulate import prepare_run
 
 SPEED = 1047.1975511965977  # 10 000 rpm, not a whole number of rad/s
 MILLION = 2 * math.pi * 1e6 / SPEED
@@ -205,3 +209,31 @@ def test_a_shaft_that_drives_nothing_is_no_forcing():
     """An aligned seal has nothing that samples could alias; a misaligned one has the turning of the shaft."""
     assert started(fms(speed=SPEED, own=0.0, runout=0.0), 0.01).fastest_forcing() == 0.0
     assert started(fms(speed=SPEED, own=25e-6, runout=0.0), 0.01).fastest_forcing() == SPEED
+
+
+def test_a_billion_turns_cost_no_more_than_a_few(monkeypatch):
+    """Intervals are made when they are asked for, and what is gathered over a run asks for few of them."""
+    asked, make = [], intervals.Interval.__init__
+    monkeypatch.setattr(intervals.Interval, "__init__", lambda *how, **named: asked.append(0) or make(*how, **named))
+    scenario = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+    run = prepare_run(read_scenario(scenario, ["run.turns=1e9"]))[0]
+    assert len(run.intervals) in (500_000, 500_001) and len(asked) < 5000
+    assert run.intervals[-1].rotor_angle == 1000 * run.intervals[-1].start
+
+
+def test_few_intervals_stand_for_all():
+    """The first and the last between break points among them; slices and negative places as in a list."""
+    ramp = PiecewiseLinear((0.0, 10.0, 40.0), (0.0, 5e5, 5e5))
+    legs = split_at_breaks(40.0, ramp, 0.0, [ramp])
+    starts = [leg.start for leg in legs]
+    assert starts == sorted(starts) and len(starts) == len(legs) > 10 * intervals.FEW
+    few = [leg.start for leg in legs.few]
+    assert len(few) == 2 * intervals.FEW and set(few) < set(starts)
+    assert {starts[0], starts[-1], Fraction(10)} < set(few) and max(s for s in starts if s < 10) in few
+    assert legs[-1] == legs[len(legs) - 1] and legs[::500] == [legs[k] for k in range(0, len(legs), 500)]
+    # What one has turned is where the next one begins.
+    for k in (0, 5, len(legs) - 2):
+        turned = legs[k + 1].rotor_angle - legs[k].rotor_angle
+        assert float(turned) == pytest.approx(float(intervals.angle_turned(ramp, legs[k])), rel=1e-12)
+    with pytest.raises(IndexError):
+        legs[len(legs)]

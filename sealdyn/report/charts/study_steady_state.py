@@ -24,33 +24,47 @@ def draw(archive_path, out_path):
 
 def _orbit(ax, answer):
     if not answer.get("orbit"):
-        return absent(ax, "Orbit of the relative tilt", "no periodic orbit")
+        return _defects(ax, answer)
     x, y = (1e6 * np.array(answer["orbit"][f"relative_tilt_{axis}"]) for axis in "xy")
     ax.plot(x, y, color=TILT)
     ax.plot(x[0], y[0], "o", color=MARK, ms=4, label="shaft angle 0")
     ax.plot(0, 0, "+", color=GREY)
     ax.set_aspect("equal", "datalim")
-    ax.set(title="Orbit of the relative tilt", xlabel="tilt about x, µrad", ylabel="tilt about y, µrad")
+    title = "Orbit of the relative tilt" if answer["period"] else "Relative tilt over the last turns"
+    ax.set(title=title, xlabel="tilt about x, µrad", ylabel="tilt about y, µrad")
     ax.legend(loc="upper right")
+
+
+def _defects(ax, answer):
+    """Why there is no orbit: what Newton's method left at each step."""
+    title, left = "Newton's method on the period map", answer.get("defects")
+    if not left:
+        return absent(ax, title, answer.get("reason") or "no periodic orbit")
+    ax.semilogy(np.arange(1, len(left) + 1), left, "o-", color=CONTACT)
+    ax.set(title=title, xlabel="step", ylabel="defect over one period, scales")
 
 
 def _film(ax, answer):
     if not answer.get("orbit"):
         return absent(ax, "Smallest film thickness", "no periodic orbit")
     ax.plot(1e3 * np.array(answer["orbit"]["time"]), 1e6 * np.array(answer["orbit"]["h_min"]), color=FILM)
-    ax.set(title="Smallest film thickness over one period", xlabel="time, ms", ylabel="h_min, µm")
+    title = "Smallest film thickness over " + ("one period" if answer["period"] else "the last turns")
+    ax.set(title=title, xlabel="time, ms", ylabel="h_min, µm")
 
 
 def _multipliers(ax, answer):
-    if not answer.get("multipliers"):
-        return absent(ax, "Floquet multipliers", "no periodic orbit")
+    found, name = answer.get("multipliers"), "Floquet multipliers"
+    if not found:
+        found, name = (answer.get("linear") or {}).get("multipliers"), "Multipliers of linear theory"
+    if not found:
+        return absent(ax, name, "no period, no multipliers")
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 200))
     ax.plot(circle.real, circle.imag, color=GREY, lw=0.8)
-    real, imaginary = np.array(answer["multipliers"]).T
-    ax.plot(real, imaginary, "o", color=TILT if answer["stable"] else CONTACT, ms=5, mfc="none", mew=1.3)
+    real, imaginary = np.array(found).T
+    largest = np.max(np.hypot(real, imaginary))
+    ax.plot(real, imaginary, "o", color=TILT if largest < 1.0 else CONTACT, ms=5, mfc="none", mew=1.3)
     ax.set_aspect("equal", "datalim")
-    ax.set(title=f"Floquet multipliers: largest {np.max(np.hypot(real, imaginary)):.3g}", xlabel="real part",
-           ylabel="imaginary part")  # fmt: skip
+    ax.set(title=f"{name}: largest {largest:.3g}", xlabel="real part", ylabel="imaginary part")
 
 
 def _cost(ax, answer):

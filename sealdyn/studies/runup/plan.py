@@ -6,6 +6,7 @@ import numpy as np
 
 from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
+from ...dynamics.modes import verdict
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import si_unit, values_in_si, with_values
@@ -134,7 +135,8 @@ def planned(scenario, settings) -> dict:
     base |= {"settle": settle, "per_turn": per_turn, "window": settings.window, "order": order}
     return {"scenario": with_values(scenario, changed), "base": base, "rates": rates, "mode": mode,
             "crossing": crossing, "steady": steady, "chosen": chosen,
-            "threshold": threshold, "resonances": resonances, "tilt_scale": scale, "touch_tilt": limit,
+            "linear_verdict": verdict(free.linear_scene().modes()), "threshold": threshold,
+            "resonances": resonances, "tilt_scale": scale, "touch_tilt": limit,
             "forced": forced, "rate_foretold": foretold, "warnings": warnings}  # fmt: skip
 
 

@@ -34,6 +34,10 @@ def _passing(answer, rows) -> str:
         near = f"; thinnest film {1e6 * min(films)[0]:.4g} um, at {min(films)[1]:.4g} rad/s^2" if films else ""
         if threshold is not None:
             return f"The stability threshold {_speed(threshold)} is not on the way{near}."
+        if not answer["tilting"]:
+            return f"Nothing tilts the rings here, and no whirl is followed{near}."
+        if answer["linear_verdict"] != "stable":
+            return f"No stability threshold: the seal is {answer['linear_verdict']} at every speed{near}."
         return f"No stability threshold: whirl dies out at every speed, however slowly it is passed{near}."
     linear = f"linear theory: {foretold:.4g} rad/s^2" if foretold else "linear theory: no such rate"
     if touch is None or touch["value"] is None:

@@ -76,6 +76,7 @@ def speed_ramps(scenario, settings, tools) -> dict:
     answer = {
         "key": SPEED, "begin": begin, "end": end, "chosen": plan["chosen"], "order": order,
         "tilting": plan["steady"].tilting, "driven": sorted(plan["steady"].orders), "touch_tilt": plan["touch_tilt"],
+        "linear_verdict": plan["linear_verdict"],
         "threshold": plan["threshold"], "crossing": crossing, "resonances": plan["resonances"],
         "disturbance": base["disturbance"], "tilt_scale": plan["tilt_scale"], "samples_per_turn": base["per_turn"],
         "linear": {"speed": speeds.tolist(), "amplitude": np.abs(linear).tolist(),
@@ -87,7 +88,8 @@ def speed_ramps(scenario, settings, tools) -> dict:
     answer["waterfall"] = {"rate": shown["rate"], "window": shown["window"], **shown["waterfall"]} if shown else None
     answer["rows"] = [{k: v for k, v in row.items() if k != "waterfall"} for row in rows]
     answer |= touching(plan, answer["rows"], settings, tools)
-    if not any("status" in row for row in rows):
+    unknown = answer["touch_rate"] is not None and answer["touch_rate"].get("failed")
+    if unknown or not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer)}
 
@@ -137,7 +139,8 @@ def _closer(plan, done, tools):
         rate = float(f"{math.sqrt(low * high):.5g}")
         (row,) = tools.map(partial(short_pass, plan["scenario"]), [{**plan["base"], "rate": rate}], "touching rate")
         if row.get("status") not in (Status.OK, Status.COLLAPSED):
-            return done, {"value": None, "bracket": [low, high], "said": row.get("failed") or row["message"]}
+            why = row.get("failed") or row["message"]
+            return done, {"value": None, "bracket": [low, high], "said": why, "failed": True}
         done.append(row)
     return done, {"value": math.sqrt(low * high), "bracket": [low, high], "said": ""}
 
