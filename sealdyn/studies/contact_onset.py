@@ -83,7 +83,8 @@ def onset(scenario, point: dict) -> dict:
 
     formula, touching = linear_onset(scene, key, rough)
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
-              "times_own": times_own(scenario.scene, key, formula)}  # fmt: skip
+              "times_own": times_own(scenario.scene, key, formula),
+              "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
     if (result["times_own"] or 0.0) > point["most"]:
         return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)

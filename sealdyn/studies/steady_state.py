@@ -12,6 +12,7 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..dynamics.steady_extremes import steady_extremes
+from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
@@ -24,7 +25,7 @@ WITH_WAVES = True
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
-         "orbit/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
+         "orbit/h_min": "m", "linear/time": "s", "linear/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,8 @@ def run(scenario, settings, tools) -> dict:
         return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None, "h_min": None,
                 "relative_misalignment": None, "critical_speed": critical, "near_threshold": [], "orbit": None,
                 "reason": str(reason), "defects": shooter.defects,
-                "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold]},
+                "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold],
+                           **_linear_film(shooter, settings.samples)},
                 "verdict": list(said)}  # fmt: skip
     tools.say(0.1)
     waves = shooter.extremes(orbit.start, settings.samples)
@@ -82,6 +84,16 @@ def run(scenario, settings, tools) -> dict:
         "critical_speed": critical,
     }
     return {**answer, "verdict": _verdict(answer)}
+
+
+def _linear_film(shooter, samples) -> dict:
+    """Thinnest film of the linear steady state over one period; below zero where it would cut into the faces."""
+    segment, run = shooter.model.segment(), RunState(shooter.model, shooter.period)
+    at, _, _ = segment.steady_motion()
+    places, times = shooter.model.unknowns.among_three(), np.linspace(0.0, shooter.period, samples)
+    moving = [run.model.vector(q[places], rate[places]) for q, rate in map(at, times)]
+    films = [h_min(run.model.face, segment.gap_state(t, y))[0] for t, y in zip(times, moving, strict=True)]
+    return {"time": times.tolist(), "h_min": [float(h) for h in films]}
 
 
 def _waves(model, waves) -> dict:

@@ -4,16 +4,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drawn import drawn, text_trouble
 from scenes import started
 
 import sealdyn
 from sealdyn import closed_form as cf
 from sealdyn.analysis.shooting import Shooter, TooMuchWork
 from sealdyn.films.radial import film as radial
+from sealdyn.report.charts import study_contact_onset
 from sealdyn.scenario.settings import with_values
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 from sealdyn.studies import contact_onset
+from sealdyn.studies._runner import run_study
 from sealdyn.studies.contact_onset import Follower, Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -101,6 +104,17 @@ def test_an_onset_far_away_is_not_followed():
     assert row["times_own"] == pytest.approx(row["formula"] / 1e-9) and row["times_own"] > 1e6
 
 
+def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):
+    """Linear theory's line from the clearance to touch, and where the scenario is on it."""
+    scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", ["stator.misalignment=1e-7"])
+    answer = run_study("contact-onset", scenario, tmp_path / "c.h5", workers=1)
+    assert answer["status"] == "failed" and answer["nonlinear"] is None
+    figure = drawn(study_contact_onset, tmp_path / "c.h5", tmp_path / "c.png")
+    ends = [line.get_xydata().tolist() for ax in figure.axes for line in ax.lines]
+    line = [[0.0, pytest.approx(10.0)], [pytest.approx(1e3 * answer["formula"]), pytest.approx(0.0)]]
+    assert line in ends and text_trouble(figure) == ([], [])
+
+
 def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
     point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
@@ -139,7 +153,6 @@ class Tools:
 @pytest.mark.parametrize("floor", [False, True])
 def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
     from sealdyn.archive import write_study
-    from sealdyn.report.charts import study_contact_onset
 
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
     settings = Settings(over="film.coning", values=(2.0, 3.0, 4.0), floor=floor)
@@ -161,7 +174,6 @@ def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
 
 def test_a_failed_onset_leaves_its_curve(tmp_path):
     from sealdyn.archive import write_study
-    from sealdyn.report.charts import study_contact_onset
 
     class Broken(Tools):
         def map(self, function, points, what="points"):

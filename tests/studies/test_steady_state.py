@@ -116,6 +116,8 @@ def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
     # What linear theory foretells is drawn in place of the orbit's multipliers.
     foretold = [abs(complex(*m)) for m in answer["linear"]["multipliers"]]
     assert answer["linear"]["verdict"] == "stable" and len(foretold) == 6 and max(foretold) < 1.0
+    # And that its film would cut into the faces.
+    assert min(answer["linear"]["h_min"]) < 0.0
     figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
     assert any(len(line.get_xdata()) == 6 for ax in figure.axes for line in ax.lines)
     assert text_trouble(figure)[1] == []

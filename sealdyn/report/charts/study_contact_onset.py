@@ -12,16 +12,19 @@ def draw(archive_path, out_path):
     """Three panels from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "When do the faces first touch?"
-    figure, ax = study_page(study, 12, 5.2, [["film", "opening", "curve"]], title, bold=answer["verdict"][0])
-    for name, words, draws in (("film", "Smallest film thickness", _film), ("opening", "Axial opening", _opening)):
-        draws(ax[name], answer) if answer.get("path") else absent(ax[name], words, _why(answer))
+    bold = " ".join(answer["verdict"]) if "failed" in answer else answer["verdict"][0]
+    figure, ax = study_page(study, 12, 5.2, [["film", "opening", "curve"]], title, bold=bold)
+    # What linear theory says stands where nothing was followed, too.
+    known = answer.get("path") or (answer["formula"] and answer.get("clearance"))
+    _film(ax["film"], answer) if known else absent(ax["film"], "Smallest film thickness", _why(answer))
+    _opening(ax["opening"], answer) if answer.get("path") else absent(ax["opening"], "Axial opening", _why(answer))
     _curve(ax["curve"], answer)
     return save(figure, out_path)
 
 
 def _why(answer):
     """Why no orbit is drawn."""
-    return "touching when aligned" if answer["nonlinear"] == 0.0 else "no orbit followed"
+    return "touching when aligned" if answer["nonlinear"] == 0.0 else answer.get("failed") or "no orbit followed"
 
 
 def _path(answer, name):
@@ -33,11 +36,14 @@ def _path(answer, name):
 
 
 def _film(ax, answer):
-    forcing, h_min = _path(answer, "h_min")
-    ax.plot(forcing, 1e6 * h_min, "o-", color=FILM, ms=3.5, label="nonlinear orbit")
-    touch = 1e6 * (answer.get("touch") or 0.0)
-    ax.plot([0, 1e3 * answer["formula"]], [1e6 * h_min[0], touch], "--", color=THEORY, label="linear theory")
+    if answer.get("path"):
+        forcing, h_min = _path(answer, "h_min")
+        ax.plot(forcing, 1e6 * h_min, "o-", color=FILM, ms=3.5, label="nonlinear orbit")
+    touch, onset = 1e6 * (answer.get("touch") or 0.0), 1e3 * answer["formula"]
+    ax.plot([0, onset], [1e6 * answer["clearance"], touch], "--", color=THEORY, label="linear theory")
     ax.axhline(touch, color=CONTACT, lw=1.2)
+    if answer.get("times_own"):
+        upright(ax, onset / answer["times_own"], "the scenario's own", BLUE, height=0.4, ls=":")
     ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, mrad", ylabel="h_min, µm")
     ax.legend(loc="upper right")
 

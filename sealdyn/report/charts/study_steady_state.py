@@ -45,8 +45,13 @@ def _defects(ax, answer):
 
 
 def _film(ax, answer):
+    linear = answer.get("linear") or {}
     if not answer.get("orbit"):
-        return absent(ax, "Smallest film thickness", "no periodic orbit")
+        if "h_min" not in linear:
+            return absent(ax, "Smallest film thickness", "no periodic orbit")
+        ax.plot(1e3 * np.array(linear["time"]), 1e6 * np.array(linear["h_min"]), color=THEORY)
+        ax.axhline(0, color=CONTACT, lw=1.2)
+        return ax.set(title="Smallest film thickness of linear theory", xlabel="time, ms", ylabel="h_min, µm")
     ax.plot(1e3 * np.array(answer["orbit"]["time"]), 1e6 * np.array(answer["orbit"]["h_min"]), color=FILM)
     title = "Smallest film thickness over " + ("one period" if answer["period"] else "the last turns")
     ax.set(title=title, xlabel="time, ms", ylabel="h_min, µm")
