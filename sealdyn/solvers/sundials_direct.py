@@ -71,7 +71,8 @@ def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
     carried[JACOBIANS] += 1
     carried[CALLS] += carried[COLUMNS]
     for j in range(carried[COLUMNS]):
-        step = 1e-7 * max(abs(y[j]), scale[j])
+        # A negative scale is a step of its own: where friction turns within less than the usual one.
+        step = -scale[j] if scale[j] < 0.0 else 1e-7 * max(abs(y[j]), scale[j])
         at[j] = y[j] + step
         status = call_rates(carried[FUNCTION], tau, there, data + 8 * size * j, carried[DATA])
         if status != 0:
