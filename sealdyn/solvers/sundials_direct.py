@@ -163,6 +163,10 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
             raise OSError("SUNDIALS refused a setting")
         if max_order:
             lib.CVodeSetMaxOrd(memory, max_order)
+        if segment.may_change:
+            # Dry friction turns within a step: an older Jacobian holds the motion where it is.
+            lib.CVodeSetJacEvalFrequency(memory, ctypes.c_long(1))
+            lib.CVodeSetLSetupFrequency(memory, ctypes.c_long(1))
         rows = FEW if segment.may_change else BLOCK
         while reached[0] < segment.length:
             ts, ys = np.empty(rows), np.empty((rows, segment.size))
