@@ -65,11 +65,12 @@ from .imposed_motion import (
 
 # Slots of one ring in the parameter block: it floats?, inertia, support, where its unknowns are in `y`
 # (-1: not an unknown) and where their rates are (-1: massless, the rate is the derivative itself); its secondary seal:
-# friction per length, radius, sliding speed below which it fades, a smooth law?, whether it sticks now, and the address
-# of its kernel (dynamics/secondary_seal.py), so that only scenes with a seal compile it.
+# friction per length, radius, sliding speed below which it fades, a smooth law?, whether it sticks now, the velocity of
+# its onset (m/s, rad/s, rad/s), and the address of its kernel (dynamics/secondary_seal.py), so that only scenes with a
+# seal compile it.
 FLOATS, MASS, INERTIA, POLAR, AXIAL_K, AXIAL_D, TILT_K, TILT_D, AT_Z, AT_TILT, AT_Z_RATE, AT_TILT_RATE = range(12)
-SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, SEAL_KERNEL = range(12, 18)
-RING = 18
+SEAL_LINE, SEAL_RADIUS, SEAL_BAND, SEAL_SMOOTH, STUCK, ONSET, SEAL_KERNEL = 12, 13, 14, 15, 16, 17, 20
+RING = 21
 WORKS_AT = 2 * RING
 EXTENDED = WORKS_AT + 1
 LEG_AT = WORKS_AT + 2

@@ -12,7 +12,7 @@ from .equilibrium import axial_shift
 from .interface import FAST, Interface
 from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
-from .stick_slip import FRICTION_FADE
+from .stick_slip import CAPTURE, FADE, ONSET_SPEED
 from .unknowns import Unknowns
 
 
@@ -45,7 +45,7 @@ class Model:
         self._shifts, self._linear_scenes, self._still_films = {}, {}, {}
         self.algebraic = self.unknowns.algebraic(self.film_matrices()[1]) if self.unknowns.has_residual_form else []
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
-        self.capture_speed = accuracy * self.clearance * self.reference_rate / FRICTION_FADE
+        self.capture_speed = CAPTURE * accuracy * self.clearance * self.reference_rate
         self._set_bands()
 
     def _imposed(self) -> list:
@@ -57,10 +57,10 @@ class Model:
         ]  # fmt: skip
 
     def _set_bands(self):
-        """Sliding speeds (m/s) below which friction fades: the user's width, or a little below the capture speed."""
+        """Sliding speeds (m/s) below which friction fades: the user's, or a part of the onset's (stick_slip.py)."""
         for k in self.unknowns.seals:
             coulomb = k in self.unknowns.coulomb_rings
-            band = FRICTION_FADE * self.capture_speed if coulomb else self.unknowns.seal(k).width
+            band = FADE * ONSET_SPEED * self.capture_speed if coulomb else self.unknowns.seal(k).width
             self.unknowns.ring_block[equations.RING * k + equations.SEAL_BAND] = band
 
     # --- time ---------------------------------------------------------------------------------------
@@ -77,7 +77,7 @@ class Model:
             raise SceneError("run.turns", str(error), "run.duration instead") from None
 
     def segment(self, interval: Interval | None = None, index: int = 0, last: bool = True, stuck=None) -> Segment:
-        """The equations over an interval (the first one if none is given); `stuck` rings: {ring: bool}."""
+        """The equations over an interval (the first one if none is given); `stuck` as Segment's."""
         if self.unknowns.film_unknowns is None:
             kind = Segment
         else:

@@ -38,11 +38,11 @@ class RunState:
         self._segment = None
 
     def segment(self, index: int = 0, stuck=None) -> Segment:
-        """The equations over the interval `index` (negative: from the end); `stuck` {ring: bool} in place of the rings
-        that stick now.  Where none can stick, the last one is not made twice."""
+        """The equations over the interval `index` (negative: from the end); `stuck` as Segment's in place of how the
+        rings are held now.  Where none can stick, the last one is not made twice."""
         index %= len(self.intervals)
         if stuck is None and self.stick_slip:
-            stuck = self.stick_slip.stuck
+            stuck = self.stick_slip.held()
         if self.stick_slip or self._segment is None or self._segment.index != index:
             self._segment = self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
         return self._segment

@@ -20,6 +20,7 @@ from .equations import (
     INERTIA,
     MASS,
     NET,
+    ONSET,
     OWN_STATE,
     PER_SEAL,
     RING,
@@ -50,8 +51,8 @@ def sliding(v, q_x, q_y, line, radius, band, smooth, out):
     """Axial force (N) and moments (N m) on a ring that slides, into out[0:3]; returns its sliding speed (m/s).
 
     `v` axial speed (m/s), `q_x`, `q_y` tilt rates (rad/s) relative to what the ring slides on; `line` friction (N/m),
-    `radius` (m); `band` sliding speed (m/s) below which the friction fades linearly (Coulomb: a ring that slow is
-    captured), or the width of the `smooth` law.
+    `radius` (m); `band` sliding speed (m/s) below which the friction fades linearly (Coulomb: no ring comes to be that
+    slow), or the width of the `smooth` law.
     **Source**, **Valid** as the module.
     """
     q = math.hypot(q_x, q_y)
@@ -111,8 +112,11 @@ def friction_on_ring(k, spin, spin_rate, p, w):
         friction[0], friction[1], friction[2] = force, moment_x, moment_y
         w[seal + SEAL_SPEED] = 0.0
     else:
-        w[seal + SEAL_SPEED] = sliding(
-            v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x,
+        s, s_x, s_y = v - w[c + Z_RATE], dv_x + spin * d_y, dv_y - spin * d_x
+        w[seal + SEAL_SPEED] = math.hypot(s, radius * math.hypot(s_x, s_y))
+        # The velocity of the onset beside its own gives friction a direction at standstill (stick_slip.py).
+        sliding(
+            s + p[ring + ONSET], s_x + p[ring + ONSET + 1], s_y + p[ring + ONSET + 2],
             line, radius, p[ring + SEAL_BAND], p[ring + SEAL_SMOOTH] != 0.0, friction,
         )  # fmt: skip
     for i in range(3):

@@ -18,6 +18,8 @@ from .step_bounds import largest_swing
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
+# By how much of the speed below which friction fades a rate is moved to difference it.
+TURNING = 0.2
 # Longest step in radians of the fastest imposed motion: a third of its period.
 LONGEST = 2.0
 
@@ -28,7 +30,7 @@ class Segment:
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
     all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics,
     `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan; `index` among the segments of a run, `last` of
-    them; `stuck` {ring: bool}.
+    them; `stuck` {ring: True, False, or the velocity of its onset (3,) in m/s and rad/s}.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -58,7 +60,9 @@ class Segment:
         head = np.array([x for pair in pairs for x in pair] + [*angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, head, rows.ravel()])
         for k, held in self.stuck.items():
-            p[equations.RING * k + equations.STUCK] = held
+            at = equations.RING * k
+            p[at + equations.STUCK] = held is True
+            p[at + equations.ONSET : at + equations.ONSET + 3] = 0.0 if isinstance(held, bool) else held
         return p, rows
 
     def _pace(self) -> float:
@@ -138,11 +142,27 @@ class Segment:
         jac[:, :] = 0.0
         column = np.empty(self.size)
         for j in range(self.n_mechanical):
-            step = 1e-7 * max(abs(y[j]), self.scales[j])
+            scale = self.differences[j]
+            step = -scale if scale < 0.0 else 1e-7 * max(abs(y[j]), scale)
             moved[j] = y[j] + step
             self.rhs(tau, moved, column)
             jac[:, j] = (column - base) / step
             moved[j] = y[j]
+
+    @cached_property
+    def differences(self) -> np.ndarray:
+        """Scales (size,) of the steps by which a Jacobian is differenced; negative the step itself, of the rates of a
+        ring whose dry friction turns within less than the usual step (stick_slip.py)."""
+        scales, unknowns = self.scales.copy(), self.model.unknowns
+        for k in unknowns.coulomb_rings:
+            ring = self.p[equations.RING * k : equations.RING * (k + 1)]
+            band, radius = ring[equations.SEAL_BAND], ring[equations.SEAL_RADIUS]
+            z, tilt = int(ring[equations.AT_Z_RATE]), int(ring[equations.AT_TILT_RATE])
+            if z >= 0:
+                scales[z] = -TURNING * band
+            if tilt >= 0:
+                scales[tilt : tilt + 2] = -TURNING * band / radius
+        return scales
 
     def settle_film(self, tau, y):
         """Film unknowns of `y` as those of the steady film: an algebraic film has none."""
@@ -190,7 +210,7 @@ class Segment:
     def longest_step(self) -> float:
         """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; not past an imposed
         motion unseen, however faint; no longer than its scan can see waves pass; else any."""
-        longest = self.shortest_period / PER_PERIOD if any(self.stuck.values()) else math.inf
+        longest = self.shortest_period / PER_PERIOD if any(held is True for held in self.stuck.values()) else math.inf
         if self.imposed_pace:
             longest = min(longest, LONGEST / self.imposed_pace)
         return min(longest, longest_scan(self.pace)) if self.model.face[WAVES] else longest

@@ -1,8 +1,12 @@
-"""When a ring on its secondary seal sticks and when it slips: found between steps, to the time.
+"""When a ring on its secondary seal sticks, slips and reverses: found between steps, to the time.
 
-A sliding ring is captured when its sliding speed has fallen below the model's `capture_speed` (1.25 times the accuracy
-times the scale of the axial rates) and what it would have to hold lies inside the limit surface; a stuck ring slips
-when that load reaches the surface.
+A sliding ring is captured when its sliding speed has fallen below the model's `capture_speed` (a hundredth of the
+accuracy times the scale of the axial rates) and what it would have to hold lies inside the limit surface; a stuck ring
+slips when that load reaches the surface.  A ring that comes to rest on a load outside the surface reverses.
+
+Friction has no direction at standstill.  It is that of the sliding velocity plus the velocity of the onset: a little in
+the direction in which the load makes the ring slide.  So it is whole and smooth from the first instant of a slip to the
+last: solvers see a jump nowhere.
 """
 
 import numpy as np
@@ -11,14 +15,20 @@ from ..numerics.hermite import NODES, sample
 from ..scene.rings import RING_NAMES
 from ..solvers.contract import Change, Transition
 from .equations import (
+    AT_TILT,
     AT_TILT_RATE,
+    AT_Z,
     AT_Z_RATE,
     FOLLOWING,
+    INERTIA,
     LEG_AT,
+    MASS,
+    NET,
     OWN_STATE,
     PER_SEAL,
     RING,
     SEAL_EXCESS,
+    SEAL_LINE,
     SEAL_RADIUS,
     SEAL_SPEED,
     SEALS,
@@ -41,21 +51,27 @@ INSIDE = 1e-9
 WITHDRAWN = 1e-3
 # Each approach to standstill goes so much of the way that a constant deceleration would leave.
 APPROACH_FACTOR, SHORTEST = 0.9, 0.2
-# Friction fades only below this share of the band, and the last approach ends above it: where a ring is captured its
-# deceleration is the sliding one, with which the motion of the last step is interpolated.
-FRICTION_FADE, ABOVE = 0.8, 0.9
+# The capture speed over the scale of the axial rates and the accuracy; the speed of the onset over the capture speed,
+# and that below which friction fades, for a step that goes too far, over the speed of the onset.
+CAPTURE, ONSET_SPEED, FADE = 0.01, 0.8, 0.5
+# The last approach ends above this share of the capture speed, where friction is still whole.
+ABOVE = 0.9
+# An onset goes on while its direction and that of the load agree so well (cosine).
+SAME = 0.5
 # Looks into each step of a stuck ring.
 LOOKS = 2
 
 
 class StickSlip:
-    """Which rings stick (`stuck` {ring: bool}); finds and makes the changes: `sticks`, `slips` counts them, `dropped`
-    is the kinetic energy (J) lost at captures."""
+    """Which rings stick (`stuck` {ring: bool}) and how the others began to slide (`onset` {ring: (3,)}: axial speed,
+    m/s, and tilt rates, rad/s); finds and makes the changes: `sticks`, `slips` counts them, `dropped` is the kinetic
+    energy (J) lost at captures."""
 
     def __init__(self, model):
         self.model, self.rings, self.segment = model, model.unknowns.coulomb_rings, None
         self.stuck = dict.fromkeys(self.rings, False)
         self.leaving = dict.fromkeys(self.rings, False)
+        self.onset = {k: np.zeros(3) for k in self.rings}
         self.sticks, self.slips, self.dropped = 0, 0, 0.0
         self._yp = np.empty(model.unknowns.size)
 
@@ -75,23 +91,32 @@ class StickSlip:
         self.begin(segment, tau, y)
         for k in self.rings:
             speed, outside = self.sliding_state(k, tau, y)
-            self.stuck[k] = bool(speed < self.model.capture_speed and outside < -INSIDE)
-        return dict(self.stuck)
+            slow = speed < self.model.capture_speed
+            self.stuck[k] = bool(slow and outside < -INSIDE)
+            self.onset[k] = self._onset(k, tau, y, self._velocity(k, tau, y)[0] if not slow else None)
+        return self.held()
+
+    def held(self) -> dict:
+        """How the rings are held, as a Segment takes it: {ring: True if it sticks, else the velocity of its onset}."""
+        return {k: self.stuck[k] or self.onset[k].copy() for k in self.rings}
 
     def state(self) -> dict:
-        """What a continued run needs: `stuck` {ring: bool}, the counts and the energy lost (J)."""
+        """What a continued run needs: `stuck` {ring: bool}, `onset`, the counts and the energy lost (J)."""
         stuck, leaving = ({str(k): bool(v) for k, v in of.items()} for of in (self.stuck, self.leaving))
-        return {"stuck": stuck, "leaving": leaving, "sticks": self.sticks, "slips": self.slips, "dropped": self.dropped}
+        onset = {str(k): v.tolist() for k, v in self.onset.items()}
+        return {"stuck": stuck, "leaving": leaving, "onset": onset, "sticks": self.sticks, "slips": self.slips,
+                "dropped": self.dropped}  # fmt: skip
 
     def restore(self, state: dict):
         """Go on from `state`."""
         self.stuck = {int(k): v for k, v in state["stuck"].items()}
         self.leaving |= {int(k): v for k, v in state.get("leaving", {}).items()}
+        self.onset |= {int(k): np.array(v) for k, v in state.get("onset", {}).items()}
         self.sticks, self.slips, self.dropped = state["sticks"], state["slips"], state["dropped"]
 
     def accept(self, block, advance) -> Transition | None:
         """The first transition in a block of steps, or None.  `advance(tau, y, until)` integrates from `tau` to `until`
-        (s) and returns the unknowns (size,) there."""
+        (s) and returns the unknowns (size,) there, or None where the equations jump between."""
         found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
         return Transition(found[0], float(found[1]), *found[2:]) if found else None
 
@@ -119,21 +144,28 @@ class StickSlip:
         return None
 
     def make(self, transition: Transition) -> Change:
-        """Let the ring of a transition stick or slip; the event's `value` is the kinetic energy (J) lost."""
+        """Let the ring of a transition slip, reverse or stick; the event's `value` is the kinetic energy (J) lost, as
+        what carries the ring sees it: what the friction turns to heat."""
         k, tau, y = transition.what, transition.time, transition.y
         name = RING_NAMES[k]
+        velocity, _, outside = self._velocity(k, tau, y)
         if self.stuck[k]:
             self.stuck[k], self.leaving[k] = False, True
+            self.onset[k] = self._onset(k, tau, y)
             self.slips += 1
             event = {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
-            return Change(y, dict(self.stuck), event)
-        after = self._carried_along(k, tau, y)
-        lost = -float(np.diff(self.segment.energies(np.array([tau, tau]), np.vstack([y, after])))[0])
+            return Change(y, self.held(), event)
+        after, ring = self._carried_along(k, tau, y), self.segment.p[RING * k : RING * (k + 1)]
+        if not outside < -self._margin(k):
+            self.onset[k] = self._onset(k, tau, after)
+            return Change(after, self.held(), None)
+        inertia = ring[INERTIA] / ring[SEAL_RADIUS] ** 2
+        lost = float(0.5 * ring[MASS] * velocity[0] ** 2 + 0.5 * inertia * (velocity[1:] @ velocity[1:]))
         self.stuck[k] = True
         self.sticks += 1
         self.dropped += lost
         event = {"kind": "stick", "value": lost, "text": f"the {name} sticks on its secondary seal"}
-        return Change(after, dict(self.stuck), event)
+        return Change(after, self.held(), event)
 
     # --- a stuck ring -------------------------------------------------------------------------------
 
@@ -188,6 +220,41 @@ class StickSlip:
             a[1:] = radius * (self._yp[tilt_rate : tilt_rate + 2] - w[follow + 1 : follow + 3])
         return v, a, outside
 
+    def _margin(self, k):
+        return WITHDRAWN if self.leaving[k] else INSIDE
+
+    def _onset(self, k, tau, y, velocity=None):
+        """The velocity (3,) of the onset of ring k: in the direction in which its load makes it slide, or of its
+        sliding `velocity`, if that is given.
+
+        **Source** the law of secondary_seal.py, solved for the velocity: v / u = -sin(pi F / (2 F_most)), the tilt
+        rates against the moments."""
+        segment, ring, radius = self.segment, RING * k, self.segment.p[RING * k + SEAL_RADIUS]
+        if velocity is None:
+            self.sliding_state(k, tau, y)
+            p, w, net = segment.p, segment.w, NET + 3 * k
+            at = SEALS + PER_SEAL * k
+            inertias = p[ring + MASS], p[ring + INERTIA], p[ring + INERTIA]
+            floats = np.array([p[ring + AT_Z], p[ring + AT_TILT], p[ring + AT_TILT]]) >= 0.0
+            load = (inertias * w[at + FOLLOWING : at + FOLLOWING + 3] - w[net : net + 3] + w[at : at + 3]) * floats
+            angle = np.clip(load[0] / (4.0 * radius * p[ring + SEAL_LINE]), -0.5 * np.pi, 0.5 * np.pi)
+            moment = np.hypot(load[1], load[2])
+            # A moment of rounding size has no direction.
+            tilting = moment > 1e-9 * radius * abs(load[0])
+            velocity = -np.array([np.sin(angle), *(load[1:] / moment if tilting else (0.0, 0.0))])
+            velocity[0] = velocity[0] if tilting else -np.sign(load[0])
+        size = float(np.linalg.norm(velocity))
+        onset = ONSET_SPEED * self.model.capture_speed * velocity / (size or 1.0)
+        onset[1:] /= radius
+        return onset
+
+    def _reverses(self, k, tau, y):
+        """Whether the load on ring k, nearly at rest, makes it slide another way than it has begun to."""
+        now, then = self.onset[k].copy(), self._onset(k, tau, y)
+        for onset in (now, then):
+            onset[1:] *= self.segment.p[RING * k + SEAL_RADIUS]
+        return float(now @ then) < SAME * float(then @ then)
+
     def _spin(self, k, tau):
         leg, at = self.segment.p[LEG_AT:], STATOR_SPEED if k == 0 else ROTOR_SPEED
         return leg[at] + leg[at + 1] * tau
@@ -213,18 +280,21 @@ class StickSlip:
         change = b - a
         length = float(change @ change)
         nearest = float(np.clip(-(a @ change) / length, 0.0, 1.0)) if length > 0 else 1.0
-        inside = WITHDRAWN if self.leaving[k] else INSIDE
+        inside = self._margin(k)
         self.leaving[k] = self.leaving[k] and float(np.linalg.norm(b)) < band
         if float(np.linalg.norm(a + nearest * change)) > band + 0.5 * length**0.5:
             return None
+        if float(a @ b) > 0.0 and float(np.linalg.norm(b)) > band:
+            # Still on its way, and not at rest between.
+            return None
         # From here each integration ends before standstill, so that the friction's direction stays smooth.
-        tau, y, part, latest = t[step], ys[step].copy(), APPROACH_FACTOR, 2 * t[step + 1] - t[step]
+        tau, y, part, latest = t[step], ys[step].copy(), APPROACH_FACTOR, t[step + 1]
         before = (tau, y)
         for _ in range(60):
             v, rate, outside = self._velocity(k, tau, y)
             speed = float(np.linalg.norm(v))
             if speed < band:
-                return (tau, y) if outside < -inside else None
+                return (tau, y) if outside < -inside or self._reverses(k, tau, y) else None
             slowing = -float(v @ rate) / speed
             if slowing <= 0.0:
                 # Past the slowest place: again, with a shorter stride.
@@ -236,8 +306,14 @@ class StickSlip:
                 speed = float(np.linalg.norm(v))
                 slowing = -float(v @ rate) / speed
             until = tau + min(part * speed, speed - ABOVE * band) / slowing
-            if until > latest or until <= tau:
+            until = min(until, tau + part * (latest - tau))
+            if until <= tau:
                 return None
+            there = advance(tau, y, until)
+            if there is None or float(v @ self._velocity(k, until, there)[0]) < 0.0:
+                # Beyond standstill, where friction jumps.
+                part *= 0.5
+                continue
             before = (tau, y)
-            tau, y = until, advance(tau, y, until)
+            tau, y = until, there
         return None

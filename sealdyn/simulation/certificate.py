@@ -27,6 +27,10 @@ from .looked_at import LookedAt
 TRIAL_PERIODS, TRIAL_SAFETY = 3.0, 8.0
 # How far a run is from a sharper one, times this, is its error.
 MEASURED = 2.0
+# What an estimate leaves out, between steps and between the instants that are compared, over the accuracy: nothing
+# below is promised (tests/benchmark/honesty.py: 2 of 200 random scenes erred by 0.02 and 0.15 of the accuracy and were
+# estimated twenty and more times lower).
+LEFT_OUT = 0.05
 # First try of a tolerance over the cautious one; the share of the accuracy its error may take, and what the energy
 # audit may show of the stretch, in accuracies.
 LOOSER, SHARE, ENERGY = 30.0, 0.5, 2.5
@@ -187,6 +191,8 @@ def certify(
     of its film (`by_model`, relative) as far as they have been followed; `measured`: instants (m,) (s) and how
     far (m,) it is from a sharper run there."""
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
+    if by_solver is not None and method != "expm":
+        by_solver = max(by_solver, LEFT_OUT * run.model.accuracy)
     if by_model is None and run.model.interface.name == "linear":
         by_model = model_error(run)
     said = f", against a sharper run{_since(*measured)}" if measured else ""

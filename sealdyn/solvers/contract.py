@@ -75,11 +75,11 @@ class Transition:
 @dataclass(frozen=True)
 class Change:
     """The equations have changed: unknowns `y` (size,) after it, the new `modes` of the segment, and the `event` to log
-    (keys of an archive's event: kind, value, text)."""
+    (keys of an archive's event: kind, value, text), if it is one."""
 
     y: np.ndarray
     modes: dict
-    event: dict
+    event: dict | None
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ from .methods import METHODS
 
 # A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
+# Steps from one step's start to a point within it, beyond which the equations are not smooth there.
+CRAWLING = 1000
 # Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
 STIFF = ("bdf", "ida")
 
@@ -79,7 +81,8 @@ def solve(
                 tolerance = found.tolerance
             elif isinstance(found, Change):
                 segment, y = run.segment(index, found.modes), found.y
-                sink.event(segment, tau, found.event)
+                if found.event:
+                    sink.event(segment, tau, found.event)
             elif segment.last:
                 break
             if tau >= segment.length:
@@ -154,12 +157,15 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
 
 
 def _advanced(method_over, segment, tau, y, until):
-    """Unknowns at `until`, integrated from tau."""
+    """Unknowns at `until`, integrated from tau; None where that takes so many steps that the equations jump between."""
     if until - tau <= CRUMB * max(abs(until), segment.length):
         # Too short for any solver's first step: nothing moves in it.
         return y.copy()
+    count = 0
     for _, ys, _ in method_over(segment.until(until), tau, y):
-        last = ys[-1]
+        count, last = count + len(ys), ys[-1]
+        if count > CRAWLING:
+            return None
     return last.copy()
 
 

@@ -71,7 +71,8 @@ def _jacobian(tau, y, yp, matrix, carried, moved, spare, another):
     carried[JACOBIANS] += 1
     carried[CALLS] += carried[COLUMNS]
     for j in range(carried[COLUMNS]):
-        step = 1e-7 * max(abs(y[j]), scale[j])
+        # A negative scale is a step of its own: where friction turns within less than the usual one.
+        step = -scale[j] if scale[j] < 0.0 else 1e-7 * max(abs(y[j]), scale[j])
         at[j] = y[j] + step
         status = call_rates(carried[FUNCTION], tau, there, data + 8 * size * j, carried[DATA])
         if status != 0:
@@ -162,6 +163,10 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
             raise OSError("SUNDIALS refused a setting")
         if max_order:
             lib.CVodeSetMaxOrd(memory, max_order)
+        if segment.may_change:
+            # Dry friction turns within a step: an older Jacobian holds the motion where it is.
+            lib.CVodeSetJacEvalFrequency(memory, ctypes.c_long(1))
+            lib.CVodeSetLSetupFrequency(memory, ctypes.c_long(1))
         rows = FEW if segment.may_change else BLOCK
         while reached[0] < segment.length:
             ts, ys = np.empty(rows), np.empty((rows, segment.size))

@@ -95,7 +95,7 @@ class Objects:
 def words_for(segment, function: int) -> np.ndarray:
     """The words (CARRIED,) for the equations of a segment, by the address of their `function`; they point into its
     native block and its scales, which have to stay."""
-    block, scales = segment.native.block.ctypes.data, segment.scales.ctypes.data
+    block, scales = segment.native.block.ctypes.data, segment.differences.ctypes.data
     words = [function, block, segment.size, segment.n_mechanical, scales, *[0] * (CARRIED - CALLS)]
     return np.array(words, dtype=np.int64)
 
@@ -104,7 +104,7 @@ class Carried:
     """The words that SUNDIALS carries through to the functions that it calls, kept alive, and what they count."""
 
     def __init__(self, segment, function: int):
-        self.native, self.scales = segment.native, segment.scales
+        self.native, self.scales = segment.native, segment.differences
         self.words, self.orders = words_for(segment, function), np.zeros(MOST_ORDERS, dtype=np.int64)
         self.failures = [0, 0]
 

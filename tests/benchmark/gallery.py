@@ -74,18 +74,29 @@ def winner(row: dict) -> str:
 
 
 def honesty():
-    """The automatic choice on random seals."""
+    """The automatic choice on random scenes."""
     found = json.loads((GALLERY / "honesty.json").read_text())
+    least, low, middle, high = map(number, found["estimate_over_error"])
     yield "measured", "value"
-    yield "seed, random seals", f"{found['seed']}, {found['scenes']}"
-    yield "asked accuracies", " to ".join(number(asked) for asked in found["asked"])
-    yield "runs whose true error was within the asked accuracy", str(found["honest"])
-    yield "runs on the linear film", str(found["linear"])
+    yield "seed, random scenes", f"{found['seed']}, {found['scenes']}"
     yield (
-        "cost of choosing, running and certifying over the cheapest choice in hindsight, median",
+        "drawn anew: known for less than a turn, or no two references",
+        (", ".join(str(found["dropped"].get(why, 0)) for why in ("known for less than a turn", "not judged"))),
+    )
+    yield "asked accuracies", " to ".join(number(asked) for asked in found["asked"])
+    yield "runs right in everything within the asked accuracy", str(found["honest"])
+    yield "wrong, and saying so; wrong without a word", f"{found['spoken']}; {found['wrong']}"
+    yield "runs that ended without a promise (collapsed, or not as exact as asked)", str(found["over_asked"])
+    yield "contacts of the faces, missed or too many", f"{found['contacts']}, {found['contacts_wrong']}"
+    yield (
+        "estimate over true error where that exceeds a hundredth of the accuracy: least, 10 %, median, 90 %",
+        f"{least}, {low}, {middle}, {high}",
+    )
+    yield (
+        "cost of choosing, running and certifying over the cheapest in hindsight, median of "
+        f"{found['smooth']} smooth scenes",
         number(found["median_cost"]),
     )
-    yield "cost of the run alone over the same, median", number(found["median_cost_running"])
 
 
 def failures():
