@@ -12,6 +12,7 @@ class Concern(StrEnum):
     NO_EQUILIBRIUM = "no equilibrium gap"
     BLOWN_OPEN = "blown open"
     CONTACT_ARM = "arm of the contact force"
+    ENERGY = "energy"
     FLASHING = "flashing"
     HEATING = "heating"
     INERTIA = "inertia of the film"

@@ -26,12 +26,14 @@ class Model:
     of the unknowns, `reference_rate` (rad/s) between displacements and rates, `shortest_period` (s) of interest;
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
-    `film` is given: a module or what offers the same (films/__init__.py).
+    `film` is given: a module or what offers the same (films/__init__.py).  `film_error`: relative, of the film's
+    integrals (default a hundredth of the accuracy).
     """
 
-    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None):
-        self.scene, self.accuracy = scene, accuracy
-        self.interface = Interface(scene, max(accuracy / 100, 1e-13), film)
+    def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
+        self.scene, self.accuracy, self.film = scene, accuracy, film
+        self.film_error = accuracy / 100 if film_error is None else film_error
+        self.interface = Interface(scene, max(self.film_error, 1e-13), film)
         self.f, self.contact = self.interface.f, self.interface.contact
         self.face = self.f[:FACE_SIZE].copy()
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
@@ -47,6 +49,11 @@ class Model:
         self.scales, self.reference_rate, self.shortest_period = self.unknowns.scales(self)
         self.capture_speed = CAPTURE * accuracy * self.clearance * self.reference_rate
         self._set_bands()
+
+    def with_sharper_film(self, share: float) -> "Model":
+        """The same with a film whose integrals err by this share of what they do.  **Valid** where the film is the one
+        that is observed."""
+        return Model(self.scene, self.accuracy, None, self.film, share * self.film_error)
 
     def _imposed(self) -> list:
         """Everything that may be a table."""

@@ -47,9 +47,9 @@ class RunState:
             self._segment = self.model.segment(self.intervals[index], index, index + 1 == len(self.intervals), stuck)
         return self._segment
 
-    def anew(self) -> "RunState":
-        """The same run before its start, with observers of its own."""
-        other = RunState(self.model, self.duration)
+    def anew(self, model: Model | None = None) -> "RunState":
+        """The same run before its start, with observers of its own; `model`: in place of its own."""
+        other = RunState(model or self.model, self.duration)
         other.y0, other.reasons, other.cautions = self.y0.copy(), list(self.reasons), list(self.cautions)
         other.extrema.windows[1:], other.start = self.extrema.windows[1:], self.start
         return other

@@ -31,8 +31,11 @@ HALF_CIRCLE = tuple(
     function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin)
 )
 
+# At the floor the film's law has a bend of second order, of which the trapezoid leaves LOW/N^3 of the load.
+LOW = 10.0
+
 # Block layout after the faces; INERTIA is the density (kg/m^3) of a film with inertia, else 0.
-CAVITATION, HAS_CAVITATION, INERTIA, LOG_ERROR, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 6)
+CAVITATION, HAS_CAVITATION, INERTIA, LOG_ERROR, LOW_ANGLES, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 7)
 RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
 ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
 COSINES = ANGLE_COUNTS + len(ANGLES)
@@ -103,6 +106,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     f[INERTIA] = film.density if film.inertia else 0.0
     f[ERROR] = error = min(max(error, 1e-14), 1e-2)
     f[LOG_ERROR] = math.log(1e4 / error)
+    f[LOW_ANGLES] = (LOW / (10.0 * error)) ** (1.0 / 3.0)
     # Of a floored line a small part may be left: a tenth of the error is asked of its radial integrals.
     share = 0.1 if f[HAS_CAVITATION] else 1.0
     f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, share * error)
@@ -161,14 +165,13 @@ def relative_clearance(h, swing):
 
 
 @inner_kernel()
-def angle_count(f, ratio):
-    """Number of angles for a `ratio` of mean film to swing; `f` the film's block.  The trapezoid's error falls as
-    exp(-N eta), cosh(eta) = ratio.
+def angle_count(f, ratio, low):
+    """Number of angles for a `ratio` of mean film to swing, `low` where the film is below its floor somewhere; `f` the
+    film's block.  The trapezoid's error falls as exp(-N eta), cosh(eta) = ratio.
     **Source** Trefethen & Weideman (2014), SIAM Review 56, 385: trapezoidal rule of periodic analytic functions."""
-    if ratio <= 1.0:
-        # Below the floor only trial states remain: smooth is enough.
-        return MOST_ANGLES // 8
-    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9))
+    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9)) if ratio > 1.0 else MOST_ANGLES / 8
+    if low:
+        wanted = max(wanted, f[LOW_ANGLES])
     for i in range(len(ANGLES)):
         if f[ANGLE_COUNTS + i] >= wanted:
             return int(f[ANGLE_COUNTS + i])

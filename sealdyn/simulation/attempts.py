@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..solvers.contract import TIGHTEST, Cause, Status, tolerance_for
+from ..solvers.energy_audit import missing_energy
 from .certificate import TrialRun, choose_tolerance
 from .second_run import LEAST_SHARPER, OTHER
 
@@ -65,9 +66,15 @@ def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> T
 
 
 def judged(found: dict, outcome, tries: list):
-    """Certificate and outcome of the last try: "inaccurate" where the solver erred by more than was asked, unless
-    errors grow so fast that sharper tries only put off when they show (chaos): then the certificate has a horizon."""
-    if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
+    """Certificate and outcome of the last try: "inaccurate" where energy is missing, or where the solver erred by
+    more than was asked, unless errors grow so fast that sharper tries only put off when they show (chaos): then the
+    certificate has a horizon."""
+    if outcome.status != Status.OK:
+        return found, outcome
+    lost = missing_energy(outcome.energy_residual, found["asked"])
+    if lost:
+        return found, replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=lost)
+    if found["solver"] is None or found["solver"] <= found["asked"]:
         return found, outcome
     before = tries[-1][2] if tries else None
     if before and found["horizon"] and before["horizon"] and found["solver"] > HELPED * before["solver"]:

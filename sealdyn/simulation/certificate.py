@@ -142,7 +142,8 @@ def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun 
         return None
     t, ys = (np.concatenate([part[i] for part in parts]) for i in range(2))
     whole = np.vstack([y, ys])
-    block, audit = Block(segment, np.concatenate([[0.0], t]), whole, np.zeros_like(whole), 0, len(t)), EnergyAudit(True)
+    block = Block(segment, np.concatenate([[0.0], t]), whole, np.zeros_like(whole), 0, len(t))
+    audit = EnergyAudit(solved=False)
     audit.begin(segment, 0.0, y)
     for observer in (errors, audit):
         observer.accept(block)

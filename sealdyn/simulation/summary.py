@@ -15,6 +15,7 @@ from ..faces.geometry import TOUCH
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
+from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions
 from .stability import stability
 
@@ -170,7 +171,9 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     model = run.model
     leakage, rise = _leakage(model, tally)["mean"], _temperature_rise(model, tally)
     low = run.extrema.records[0][H]
-    return [*run.cautions, *_blown_open(model, tally), *cautions(scenario, run, outcome, leakage, rise, low)]
+    lost = missing_energy(outcome.energy_residual, model.accuracy)
+    energy = [Caution(Concern.ENERGY, lost)] if lost else []
+    return [*run.cautions, *energy, *_blown_open(model, tally), *cautions(scenario, run, outcome, leakage, rise, low)]
 
 
 def _blown_open(model, tally) -> list[Caution]:

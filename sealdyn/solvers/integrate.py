@@ -59,7 +59,6 @@ def solve(
     begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()
     steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, run.memory)
     observers = [*([errors] if errors else []), run.extrema, run.contacts, audit, *([seen] if seen else [])]
-    audit.from_powers = errors is not None
     if errors:
         errors.tolerance = tolerance
     index, tau, y = resume if resume else (0, 0.0, run.y0.copy())

@@ -1,12 +1,18 @@
 """The energy audit sees what it must: an equation that does not do what its works say."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scenes import INERTIA, SPEED, SUPPORT, fmr, fms, fmsr, prepared, run
 
+from sealdyn.archive import read_info
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.segments import Segment
-from sealdyn.solvers.global_error import GlobalErrorEstimate
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.simulation import film_selection
+from sealdyn.simulation.simulate import simulate
+from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -58,21 +64,36 @@ def test_a_wrong_force_is_exposed(scene, mistake):
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_works_summed_over_the_steps_expose_it_too(mistake):
     """A tolerance at which the works among the unknowns hide the smallest mistake (2e-6 to 2e-5 of a right scene,
-    1.4e-5 of a spring 1 % stiff): Adams takes 690 to 830 steps, as rounding decides, and the residual jumps with them,
-    so the middle one of five neighbours is compared."""
+    1.4e-5 of a spring 1 % stiff): Adams takes 690 to 830 steps, as rounding decides, and the residual jumps with
+    them."""
 
-    def audited(model_class, follow, tolerance=1.4e-6):
-        ready = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4, model_class=model_class)
-        told = {"errors": GlobalErrorEstimate(ready.segment(0))} if follow else {}
-        return solve(ready, "adams", 1e-4, Recorder(), tolerance=tolerance, **told).energy_residual
+    def audited(model_class, tolerance=1.4e-6):
+        ready, audit = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4, model_class=model_class), EnergyAudit()
+        found = solve(ready, "adams", 1e-4, Recorder(), tolerance=tolerance, audit=audit).energy_residual
+        return found, audit.worst[0] / audit.exchanged
 
-    # The damped rotor forgets its errors, its works do not.
-    right, hidden = (
-        [audited(Model, follow, tolerance) for tolerance in np.linspace(1.33e-6, 1.47e-6, 5)]
-        for follow in (True, False)
+    # The damped rotor forgets its errors, its works do not: the middle one of five neighbours is compared.
+    right, by_unknowns = zip(
+        *(audited(Model, tolerance) for tolerance in np.linspace(1.33e-6, 1.47e-6, 5)), strict=True
     )
-    assert 3 * np.median(right) < np.median(hidden)
-    assert max(right) < 4e-6 < audited(wrong(MISTAKES[mistake]), True)
+    assert 3 * np.median(right) < np.median(by_unknowns)
+    assert max(right) < 4e-6 < audited(wrong(MISTAKES[mistake]))[0]
+
+
+def test_long_steps_are_audited_by_what_the_solver_worked_out():
+    """Radau steps over large parts of a turn: its works are more exact than what the powers at its steps tell."""
+    ready, audit = prepared(fmr(), 30 * 2 * np.pi / SPEED, 1e-4), EnergyAudit()
+    found = solve(ready, "radau", 1e-4, Recorder(), audit=audit)
+    assert 3 * audit.worst[0] < audit.worst[1] and found.energy_residual == audit.worst[0] / audit.exchanged
+
+
+def test_a_run_that_loses_energy_is_inaccurate(tmp_path, monkeypatch):
+    """Status, warning and archive say so, though the run is the exact one of its wrong equations."""
+    monkeypatch.setattr(film_selection, "Model", wrong(MISTAKES["spring 1 % stiff"]))
+    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml", ["run.turns=5"])
+    found = simulate(scenario, tmp_path / "a.h5")
+    assert found.status == "inaccurate" == read_info(found.archive)["status"]
+    assert "energy audit" in found.message and found.message in found.summary["warnings"]
 
 
 def test_gyroscopic_moment_does_no_work():

@@ -110,7 +110,7 @@ def pieces_of(f, nodes, tilt):
             piece[RULE], piece[IN_R], piece[FIRST] = plain if in_r else rational, in_r, total
             total += int(f[RULES + RULE_SIZE * piece[RULE]])
         last_thin, last_thick = thin, thick
-    return pieces, total, angle_count(f, room), low
+    return pieces, total, angle_count(f, room, low), low
 
 
 @inner_kernel()
