@@ -52,11 +52,13 @@ class Instants:
 
 
 def instants(random, run, count=240):
-    """Times (s) at which runs are compared: anywhere, and closer to the starts and breaks, where fast parts decay."""
+    """Times (s) at which runs are compared: anywhere, and closer to the starts and breaks, where fast parts decay, and
+    before the end, where the last step is cut short."""
     anywhere = random.uniform(0.0, run.duration, count)
     starts = np.array([interval.time for interval in run.intervals][:6])
     after = starts[:, None] + run.duration * 10.0 ** random.uniform(-6.0, -1.0, (len(starts), count // 8))
-    return np.unique(np.clip(np.concatenate([anywhere, after.ravel()]), 0.0, run.duration * (1 - 1e-9)))
+    before = run.duration * (1.0 - 10.0 ** random.uniform(-6.0, -1.0, count // 8))
+    return np.unique(np.clip(np.concatenate([anywhere, after.ravel(), before]), 0.0, run.duration * (1 - 1e-9)))
 
 
 def landed(run, scales, times, kind, tolerance, deadline=math.inf):

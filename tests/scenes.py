@@ -180,7 +180,13 @@ def started(scene, duration, accuracy=1e-6, model_class=Model):
 def prepared(scene, duration, accuracy, start="rest", model_class=Model):
     """A run with its start: at rest (plus what [initial] gives) or on the linear steady state."""
     ready = started(scene, duration, accuracy, model_class)
-    unknowns = ready.model.unknowns
+    set_start(ready, start)
+    return ready
+
+
+def set_start(ready, start):
+    """Set a run's unknowns as `prepared` does."""
+    unknowns, scene = ready.model.unknowns, ready.model.scene
     if start == "steady":
         ready.y0 = ready.steady_start()
     for name, given in (("stator", scene.initial.stator), ("rotor", scene.initial.rotor)):
@@ -189,7 +195,6 @@ def prepared(scene, duration, accuracy, start="rest", model_class=Model):
             if value is not None and base in unknowns.names:
                 place = unknowns.names.index(base)
                 ready.y0[unknowns.rate_places[place] if part.endswith("_rate") else place] = value
-    return ready
 
 
 def run(scene, turns=None, accuracy=1e-6, method="adams", per_turn=64, start="rest", duration=None,

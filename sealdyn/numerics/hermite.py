@@ -23,15 +23,15 @@ GAUSS = math.sqrt(0.6)
 
 
 @inner_kernel()
-def window(t, k, count):
+def window(t, k, count, longest):
     """First and one-past-last step (int, int) that the interpolant of the interval [t[k], t[k+1]] uses; `t` (s) the
-    times of the `count` steps."""
+    times of the `count` steps; up to `longest` times as long."""
     first, last = k, k + 2
     span = t[k + 1] - t[k]
     go_left = go_right = True
     while last - first < NODES and (go_left or go_right):
-        go_left = go_left and first > 0 and SHORTEST * span <= t[first] - t[first - 1] <= LONGEST * span
-        go_right = go_right and last < count and SHORTEST * span <= t[last] - t[last - 1] <= LONGEST * span
+        go_left = go_left and first > 0 and SHORTEST * span <= t[first] - t[first - 1] <= longest * span
+        go_right = go_right and last < count and SHORTEST * span <= t[last] - t[last - 1] <= longest * span
         left_near = go_left and (not go_right or k - first <= last - (k + 2))
         if left_near:
             first -= 1
@@ -47,7 +47,7 @@ def fit(t, q, q_rate, k, count, table, nodes):
     `t` (count,), `q` and `q_rate` (count, n); `table` (n, 2 NODES) and `nodes` (2 NODES,) are filled.
     Returns the number of conditions used: 4 (a cubic) to 2 NODES.
     """
-    first, last = window(t, k, count)
+    first, last = window(t, k, count, LONGEST)
     size = 2 * (last - first)
     # Order the steps by distance from the interval: the leading terms are then the cubic.
     left, right, near = k, k + 1, k + 1
@@ -136,7 +136,7 @@ def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
     table, nodes, unused = np.zeros((n, 2 * NODES)), np.zeros(2 * NODES), np.empty(n)
     plain, own, there = np.zeros((n, NODES)), np.zeros(NODES), np.empty(n)
     trusted = np.ones(n, dtype=np.bool_)
-    k, size = begin, 0
+    k, size, known = begin, 0, 0
     for j in range(len(times)):
         moved = size == 0
         while k < end - 1 and times[j] > t[k + 1]:
@@ -144,33 +144,40 @@ def sample_doubtful(t, q, q_rate, count, begin, end, times, out):
             moved = True
         if moved:
             size = fit(t, q, q_rate, k, count, table, nodes)
-            _plain(t, q, k, size // 2, nodes, plain, own)
+            known = _plain(t, q, k, count, plain, own)
             middle = 0.5 * (t[k] + t[k + 1])
             value(table, nodes, size, middle, there, unused)
             for i in range(n):
-                found, last = _newton(plain, own, size // 2, i, middle)
+                found, last = _newton(plain, own, known, i, middle)
                 trusted[i] = abs(there[i] - found) <= last
         value(table, nodes, size, times[j], out[j], unused)
         for i in range(n):
             if not trusted[i]:
-                out[j, i], _ = _newton(plain, own, size // 2, i, times[j])
+                out[j, i], _ = _newton(plain, own, known, i, times[j])
 
 
 @inner_kernel()
-def _plain(t, q, k, count, nodes, table, own):
-    """Divided differences (n, count) of the values alone at the steps around interval `k` that `nodes` names twice
-    each, in their order."""
-    for m in range(count):
-        own[m] = nodes[2 * m]
-        row = max(0, k + 2 - NODES)
-        while t[row] != own[m]:
-            row += 1
+def _plain(t, q, k, count, table, own):
+    """Divided differences of the values alone at the steps around interval `k`, into `table`, and these steps, from the
+    nearest, into `own`; returns how many.  Beside a short step (a run's last) longer ones are counted in: two values
+    alone would not tell how well they do."""
+    first, last = window(t, k, count, math.inf)
+    left, right, near = k, k + 1, k + 1
+    for m in range(last - first):
+        own[m] = t[near]
         for i in range(q.shape[1]):
-            table[i, m] = q[row, i]
+            table[i, m] = q[near, i]
+        if near == right:
+            right += 1
+            near = left if left >= first else right
+        else:
+            left -= 1
+            near = right if right < last else left
     for i in range(q.shape[1]):
-        for order in range(1, count):
-            for m in range(count - 1, order - 1, -1):
+        for order in range(1, last - first):
+            for m in range(last - first - 1, order - 1, -1):
                 table[i, m] = (table[i, m] - table[i, m - 1]) / (own[m] - own[m - order])
+    return last - first
 
 
 @inner_kernel()
@@ -192,7 +199,7 @@ def integrals(t, rates, begin, end):
     count, n = rates.shape
     out = np.zeros((end - begin, n))
     for k in range(begin, end):
-        first, last = window(t, k, count)
+        first, last = window(t, k, count, LONGEST)
         width = t[k + 1] - t[k]
         for j in range(first, last):
             # Of the Lagrange polynomial that is one there: three Gauss points are exact to degree five.

@@ -9,7 +9,7 @@ from ..solvers.integrate import solve
 from .looked_at import LookedAt
 
 # Instants at which two runs are compared: per fastest period and at most, and after each start of a stretch, where fast
-# parts die away, by decades of its length.
+# parts die away, and before its end, where a step is cut short, by decades of its length.
 PER_PERIOD, MOST, AFTER, DECADES = 12, 3000, 12, 7
 GOLDEN = 0.6180339887498949
 # By how much sharper the second run is, and at least.
@@ -104,10 +104,11 @@ def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
 
 def instants(run) -> np.ndarray:
     """Times (m,) (s) at which runs are compared: evenly over the run, but in step with nothing, and closer after the
-    starts of its stretches."""
+    starts of its stretches and before their ends."""
     count = int(min(max(PER_PERIOD * run.duration / run.model.shortest_period, 100), MOST))
     evenly = np.mod(GOLDEN * np.arange(1, count + 1), 1.0) * run.duration
     stretches = run.intervals[:: max(1, len(run.intervals) // 30)]
     decades = 10.0 ** -np.linspace(0.3, DECADES, AFTER)
     after = [interval.time + interval.length * decades for interval in stretches]
-    return np.unique(np.concatenate([evenly, *after]))
+    before = [interval.time + interval.length * (1.0 - decades) for interval in stretches]
+    return np.unique(np.concatenate([evenly, *after, *before]))

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 from families import wide
 from judge import Instants, TooLong, all_contacts, contact_errors, instants, truth
-from scenes import prepared
+from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
@@ -46,12 +46,11 @@ DEARER, LONGEST = 4.0, 20.0
 def begin(drawn):
     """What sets a run's unknowns."""
 
-    def set_start(run):
-        if drawn.start == "steady":
-            run.y0 = run.steady_start()
+    def begun(run):
+        set_start(run, drawn.start)
         run.check_start()
 
-    return set_start
+    return begun
 
 
 def automatic(drawn, times):

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import KroghInterpolator
 from sksundae.cvode import CVODE
 
-from sealdyn.numerics.hermite import NODES, fit, sample, window
+from sealdyn.numerics.hermite import LONGEST, NODES, fit, sample, sample_doubtful, window
 
 
 def sampled(t, motion, times, begin=0, end=None):
@@ -74,11 +74,22 @@ def test_steps_are_met_exactly_and_the_rate_is_the_slope():
 def test_much_shorter_or_longer_neighbours_are_left_out():
     t = np.array([0.0, 1.0, 2.0, 2.1, 2.2, 2.3, 3.3, 4.3])
     # The long interval before the short ones keeps to the left, the short ones to themselves.
-    assert window(t, 1, len(t)) == (0, 3)
-    assert window(t, 4, len(t)) == (2, 6)
+    assert window(t, 1, len(t), LONGEST) == (0, 3)
+    assert window(t, 4, len(t), LONGEST) == (2, 6)
     table, nodes = np.zeros((1, 2 * NODES)), np.zeros(2 * NODES)
     q = np.zeros((len(t), 1))
     assert fit(t, q, q, 4, len(t), table, nodes) == 8
+
+
+def test_a_short_last_step_does_not_take_doubtful_rates():
+    """Values good to 1e-12, rates to 1e-2 as a stiff scene's: a step cut to a fifth has no neighbour of its own size,
+    and is told by the values all the same (by its own two alone the rates would seem as good: error 2e-4)."""
+    t = np.append(np.arange(20.0), 19.2)
+    q, wrong = np.sin(0.1 * t)[:, None], 0.1 * np.cos(0.1 * t)[:, None] + 1e-2 * (-1.0) ** np.arange(21)[:, None]
+    times = np.linspace(19.0, 19.2, 41)
+    out = np.empty((41, 1))
+    sample_doubtful(t, q, wrong, len(t), 0, len(t) - 1, times, out)
+    assert np.max(np.abs(out[:, 0] - np.sin(0.1 * times))) < 1e-6
 
 
 def test_uneven_steps_do_not_blow_up_noise():

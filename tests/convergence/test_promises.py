@@ -1,0 +1,77 @@
+"""The accuracy promise on scenes unlike those that it was drawn up on: rubbing, thrown, blown open, a pump's seal.
+
+Every quantity of a run as `sealdyn run` does it, against two other references that agree to a hundredth of the accuracy
+(tests/judge.py).
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from benchmark.honesty import automatic
+from families import Drawn
+from judge import contact_errors, instants, truth
+from scenes import film, fms, prepared
+from studies.test_rough_faces_in_studies import PUMP
+
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.scene.contact import Contact
+from sealdyn.simulation.looked_at import LookedAt
+from sealdyn.simulation.method_selection import choose_method
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+TURN = 2 * math.pi / 1000.0
+
+
+def rubbing():
+    """The runout grows until the faces rub, half the roughness deep."""
+    grown = PiecewiseLinear((0.0, 0.05), (25e-6, 5.3e-3))
+    return fms("radial", runout=grown, contact=Contact(roughness=0.3e-6, compressive_strength=1e9)), 11 * TURN
+
+
+def blown_open():
+    """A pressure that grows a hundredfold opens the gap by hundreds of clearances."""
+    grown = PiecewiseLinear((0.0, 0.02, 0.04), (5e5, 5e5, 5e7))
+    return fms("radial", film=film("radial", outer_pressure=grown)), 12 * TURN
+
+
+def thrown():
+    """The ring of scenarios/impact.toml."""
+    scenario = read_scenario(SCENARIOS / "impact.toml")
+    return scenario.scene, scenario.run.duration
+
+
+def pump():
+    """A film of a third of a micrometre between rough faces, stiffer than anything else by four decades."""
+    return parse_scenario(PUMP, "pump").scene, 2 * 2 * math.pi / 309.0
+
+
+@pytest.mark.parametrize(
+    ("make", "accuracy"),
+    [
+        *((rubbing, accuracy) for accuracy in (1e-3, 1e-5, 1e-6)),
+        *((blown_open, accuracy) for accuracy in (1e-3, 1e-5, 1e-7)),
+        *((thrown, accuracy) for accuracy in (1e-5, 1e-7)),
+        *((pump, accuracy) for accuracy in (1e-2, 1e-3, 1e-6)),
+    ],
+    ids=lambda given: given.__name__ if callable(given) else f"{given:.0e}",
+)
+def test_run_and_certificate(make, accuracy):
+    scene, duration = make()
+
+    def anew(accuracy=accuracy / 100):
+        return prepared(scene, duration, accuracy)
+
+    reference = anew()
+    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference)
+    known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
+    # Where a hit has magnified the references' own errors, nothing is known any more.
+    assert known.rows > 30
+    run, _, found, outcome, columns, contacts, _ = automatic(Drawn(scene, duration, accuracy, "rest", ()), times)
+    errors = scales.errors(columns[: known.rows], known.columns[: known.rows]).max()
+    wrong, depth, instant = contact_errors(contacts, known.contacts, times[known.rows - 1], run, scales.rate)
+    assert outcome.status == "ok" and found["met"]
+    assert errors <= accuracy and found["estimated"] > 0.3 * errors
+    assert wrong == 0 and depth <= accuracy and instant <= accuracy
