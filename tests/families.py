@@ -10,7 +10,7 @@ from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
-from sealdyn.scene.scene import Scene
+from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
 
 
@@ -33,7 +33,8 @@ class Drawn:
 
 def wide(random) -> Drawn:
     """One scene of all the families: arrangements, light and stiff rings, thin and thick, flat, converging and
-    diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, O-rings."""
+    diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, growing into a rub and hit
+    by a thrown ring, O-rings."""
 
     def log(low, high):
         return float(np.exp(random.uniform(math.log(low), math.log(high))))
@@ -93,7 +94,19 @@ def wide(random) -> Drawn:
     if chance(0.15, "axial runout"):
         axial.append(AxialRunout(order=float(random.integers(1, 4)), amplitude=clearance * log(0.01, 0.2)))
     shaft = Shaft(speed=varying(speed, 0.15, "speed table", 0.3, 2.0), whirl=whirl)
-    fixed = varying(tilt * log(1e-3, 0.5), 0.08, "misalignment table", 0.2, 1.6)
+    fixed, initial, rough = varying(tilt * log(1e-3, 0.5), 0.08, "misalignment table", 0.2, 1.6), Initial(), None
+    if chance(0.18, "contact"):
+        rough = clearance * log(0.03, 0.3)
+        if chance(0.5, "rub"):
+            begun = fixed.value[0] if isinstance(fixed, PiecewiseLinear) else fixed
+            fixed = PiecewiseLinear((0.0, random.uniform(0.2, 0.9) * duration), (begun, tilt * log(0.8, 5.0)))
+        if chance(0.5, "throw"):
+            rate, tumble = clearance * speed * log(0.1, 3.0), tilt * speed * log(0.1, 1.0)
+            rings = {}
+            for name, towards in (("rotor", 1.0), ("stator", -1.0)):
+                if name[0] in arrangement[2:]:
+                    rings[name] = RingStart(z_rate=towards * rate, tilt_x_rate=tumble * random.uniform(-1.0, 1.0))
+            initial = Initial(**rings)
     stator_speed = -speed * random.uniform(0.2, 1.0) if chance(0.08, "counter-rotating") else 0.0
     rotor = Rotor(**ring(), axial_runout=axial) if "r" in arrangement[2:] else Rotor(runout=fixed, axial_runout=axial)
     stator = (
@@ -102,12 +115,12 @@ def wide(random) -> Drawn:
         else Stator(misalignment=fixed, speed=stator_speed)
     )
     contact = None
-    if chance(0.12, "contact"):
-        roughness = clearance * log(0.03, 0.3)
+    if rough:
         christensen = dict(compressive_strength=log(1e7, 1e9))
         gaussian = dict(law="greenwood-williamson", asperity_density=log(1e10, 1e11), asperity_radius=log(1e-6, 2e-5),
                         modulus=log(1e9, 5e10))  # fmt: skip
-        contact = Contact(roughness=roughness, **(christensen if random.random() < 0.6 else gaussian))
-    made = Scene(shaft=shaft, film=film, housing=housing, rotor=rotor, stator=stator, contact=contact)
-    start = str(random.choice(["rest", "steady"]))
+        contact = Contact(roughness=rough, **(christensen if random.random() < 0.6 else gaussian))
+    made = Scene(shaft=shaft, film=film, housing=housing, rotor=rotor, stator=stator, contact=contact,
+                 initial=initial)  # fmt: skip
+    start = "rest" if initial.given else str(random.choice(["rest", "steady"]))
     return Drawn(made, duration, log(1e-7, 1e-2), start, (*words, f"film {film.model}", start))

@@ -165,12 +165,12 @@ def relative_clearance(h, swing):
 
 
 @inner_kernel()
-def angle_count(f, ratio, low):
-    """Number of angles for a `ratio` of mean film to swing, `low` where the film is below its floor somewhere; `f` the
+def angle_count(f, ratio, bent):
+    """Number of angles for a `ratio` of mean film to swing, `bent` where the film meets its floor somewhere; `f` the
     film's block.  The trapezoid's error falls as exp(-N eta), cosh(eta) = ratio.
     **Source** Trefethen & Weideman (2014), SIAM Review 56, 385: trapezoidal rule of periodic analytic functions."""
     wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9)) if ratio > 1.0 else MOST_ANGLES / 8
-    if low:
+    if bent:
         wanted = max(wanted, f[LOW_ANGLES])
     for i in range(len(ANGLES)):
         if f[ANGLE_COUNTS + i] >= wanted:

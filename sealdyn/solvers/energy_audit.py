@@ -70,8 +70,9 @@ class EnergyAudit:
 
 
 def missing_energy(residual: float, accuracy: float) -> str | None:
-    """A sentence where the residual of a run's audit is larger than its accuracy lets it be, else None."""
-    if residual <= ALLOWED * accuracy:
+    """A sentence where the residual of a run's audit is larger than its accuracy lets it be, else None; NaN: of a run
+    that was not audited."""
+    if not residual > ALLOWED * accuracy:
         return None
     return (
         f"energy audit: {residual:.1e} of the work exchanged is not accounted for, {ALLOWED * accuracy:.0e} is "

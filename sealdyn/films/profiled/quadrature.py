@@ -91,13 +91,13 @@ def nodes_of(f, dz):
 def pieces_of(f, nodes, tilt):
     """The pieces: rows named above, (3, pieces); the number of points and of angles, and whether any film is below the
     floor.  `nodes` (3, radii), `tilt` (rad)."""
-    floor, room, low, total = f[FLOOR], 1e9, False, 0
+    floor, room, low, bent, total = f[FLOOR], 1e9, False, False, 0
     pieces = np.zeros((3, nodes.shape[1] - 1), np.int64)
     last_thin = last_thick = 0.0
     for n in range(nodes.shape[1]):
         h, swing = nodes[ALIGNED, n], nodes[ARM, n] * tilt
         room = min(room, relative_clearance(h, swing))
-        low = low or h - swing < floor
+        low, bent = low or h - swing < floor, bent or abs(h - floor) < swing
         thin, thick = regularised_thickness(h - swing, floor), regularised_thickness(h + swing, floor)
         if n > 0:
             ratio = max(thin / last_thin, last_thin / thin, thick / last_thick, last_thick / thick)
@@ -110,7 +110,7 @@ def pieces_of(f, nodes, tilt):
             piece[RULE], piece[IN_R], piece[FIRST] = plain if in_r else rational, in_r, total
             total += int(f[RULES + RULE_SIZE * piece[RULE]])
         last_thin, last_thick = thin, thick
-    return pieces, total, angle_count(f, room, low), low
+    return pieces, total, angle_count(f, room, bent), low
 
 
 @inner_kernel()

@@ -107,8 +107,8 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
 def angles_for(f, h_i, h_o, swing_i, swing_o):
     """Number of angles for the edge that is nearer to touching: mean films `h_i`, `h_o` (m) and their swings around the
     circle (m)."""
-    low = min(h_i - swing_i, h_o - swing_o) < f[FLOOR]
-    return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)), low)
+    bent = abs(h_i - f[FLOOR]) < swing_i or abs(h_o - f[FLOOR]) < swing_o
+    return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)), bent)
 
 
 @njit(inline="always")
