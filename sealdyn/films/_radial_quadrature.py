@@ -31,11 +31,12 @@ HALF_CIRCLE = tuple(
     function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin)
 )
 
-# At the floor the film's law has a bend of second order, of which the trapezoid leaves LOW/N^3 of the load.
-LOW = 10.0
+# At the floor the film's law has a bend of second order, of which the trapezoid leaves LOW/N^3 of the load; and by how
+# many powers of e each Gauss point of a panel between two bends gains (radial/bent_angles.py).
+LOW, PANEL_GAIN = 10.0, 2.88
 
 # Block layout after the faces; INERTIA is the density (kg/m^3) of a film with inertia, else 0.
-CAVITATION, HAS_CAVITATION, INERTIA, LOG_ERROR, LOW_ANGLES, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 7)
+CAVITATION, HAS_CAVITATION, INERTIA, LOG_ERROR, LOW_ANGLES, PANEL_RULE, ERROR, RULES = range(FACE_SIZE, FACE_SIZE + 8)
 RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
 ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
 COSINES = ANGLE_COUNTS + len(ANGLES)
@@ -107,6 +108,8 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     f[ERROR] = error = min(max(error, 1e-14), 1e-2)
     f[LOG_ERROR] = math.log(1e4 / error)
     f[LOW_ANGLES] = (LOW / (10.0 * error)) ** (1.0 / 3.0)
+    wanted = int(np.searchsorted(RADIAL_POINTS, f[LOG_ERROR] / PANEL_GAIN))
+    f[PANEL_RULE] = RULES + RULE_SIZE * min(wanted, len(RADIAL_POINTS) - 1)
     # Of a floored line a small part may be left: a tenth of the error is asked of its radial integrals.
     share = 0.1 if f[HAS_CAVITATION] else 1.0
     f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, share * error)

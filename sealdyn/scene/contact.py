@@ -75,8 +75,9 @@ def contact_errors(contact: Contact) -> list[tuple[str, str, str]]:
 def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
     """Mean films h (m), with c = 3 rms roughnesses: (film_floor, touch, collapse).
 
-    film_floor  0.6 c: below it the smooth film law is continued (`geometry.regularised_thickness`, floor/2 at h = 0),
-                as rough faces do: E(H^3)^(1/3) at h = 0 is 0.30 c (Christensen), 0.31 c (Gaussian).
+    film_floor  0.6 c: below it the film at an edge of the face is continued (`geometry.regularised_thickness`, floor/2
+                at h = 0), as rough faces do: E(H^3)^(1/3) at h = 0 is 0.30 c (Christensen), 0.31 c (Gaussian); between
+                the edges it stays linear in r, so where one of them is below, places above it are thicker, too.
     touch       where the first asperities meet: c; 5 rms for Gaussian heights, whose load there is 1e-7 of that at 0.
     collapse    -c: all asperities are flattened, and the law has nothing more to say.
     """

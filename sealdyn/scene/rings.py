@@ -73,7 +73,7 @@ class Stator:
     misalignment: Varying[Angle] = 0.0
     """Tilt of the seat of a rigid stator, or of the unloaded face in its springs if it floats."""
     misalignment_direction: Angle = 0.0
-    """Of the axis of that tilt, fixed in space, from the x axis."""
+    """Of the axis of that tilt, from the x axis; fixed in space, or in the carrier of a stator with a `speed`."""
     speed: Varying[Speed] = 0.0
     """Of a stator that turns with a carrier of its own (counter-rotation: negative)."""
     waviness: list[Waviness] = field(default_factory=list)

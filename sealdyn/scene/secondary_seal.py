@@ -10,8 +10,9 @@ from ..units import Force, Length, LineForce, Velocity
 @dataclass(frozen=True)
 class SecondarySeal:
     """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` (m) of the circle, and `line_friction`
-    (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` replaces the sign of the
-    sliding speed v by v/sqrt(v^2 + width^2): smooth, and creeping where a real seal sticks."""
+    (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` takes the
+    force and moment of Coulomb's law times s/sqrt(s^2 + width^2), where s^2 = v^2 + (R |q|)^2 of the axial speed v and
+    the tilt rate q: it creeps where a real seal sticks."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -22,9 +23,9 @@ class SecondarySeal:
     friction_force: Force | None = None
     """Axial breakaway force, in place of `line_friction`."""
     law: Literal["coulomb", "regularised"] = "coulomb"
-    """Real sticking, or a smoothed sign that creeps."""
+    """Real sticking, or friction that fades with the sliding speed and creeps."""
     width: Velocity | None = None
-    """Sliding speed over which the sign turns, for "regularised"."""
+    """Sliding speed below which friction fades, for "regularised"."""
 
     def line(self) -> float:
         """Friction per length F' (N/m)."""

@@ -4,9 +4,10 @@
 
 A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
 Random scenes (tests/families.py, seeded) of all that the program accepts; the truth of each by two other references
-(tests/judge.py), up to the time where they agree within accuracy/100.  Scenes of which less than a turn is known are
-drawn anew.  A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it
-is not exact enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
+(tests/judge.py), of every tenth by equations that share nothing with the program (tests/own_words.py), up to the time
+where they agree within accuracy/100.  Scenes of which less than a turn is known are drawn anew.
+A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
+enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
 within the asked accuracy, or the run says that it is not.
 Cost: processor time of all that, over that of the cheapest method and tolerance that would have done, known only in
 hindsight; smooth scenes; the least of three times each.
@@ -23,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 from families import wide
-from judge import Instants, TooLong, all_contacts, contact_errors, instants, truth
+from judge import Instants, TooLong, all_contacts, contact_errors, instants, truth, truth_in_own_words
 from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
@@ -37,6 +38,8 @@ from sealdyn.simulation.simulate import certificate
 from sealdyn.solvers.integrate import solve
 
 SEED, TIMES = 20_26, 3
+# Every tenth scene is judged by equations in the tests' own words.
+OWN = 10
 ALL = (*QUANTITIES, "contact depth", "contact time")
 # Accuracies tried in hindsight, in units of the asked one, from the cheapest; the first that does is taken.
 KNOBS = (1000.0, 100.0, 30.0, 10.0, 3.0, 1.0, 0.3)
@@ -121,7 +124,9 @@ def judge(number):
     except ValueError:
         return {**row, "why": "no scene"}
     scales, times = LookedAt(reference), instants(random, reference)
-    known = truth(make, scales, times, drawn.accuracy, choose_method(reference)[0])
+    chosen = choose_method(reference)[0]
+    known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if number % OWN == 0 else None
+    known = known or truth(make, scales, times, drawn.accuracy, chosen)
     if known is None:
         return {**row, "why": "not judged"}
     turn = 2 * math.pi / scales.rate
@@ -202,6 +207,7 @@ def main():
         "asked": [min(row["accuracy"] for row in rows), max(row["accuracy"] for row in rows)],
         "median_cost": float(np.median(costs)),
         "smooth": len(costs),
+        "own_words": sum(row["by"].startswith("own words") for row in rows),
         "contacts": sum(row["contacts"] for row in rows),
         "contacts_wrong": sum(row["contacts_wrong"] for row in rows),
     }

@@ -16,11 +16,10 @@ from sealdyn.simulation.looked_at import LookedAt
 
 SEED = 77
 # Together everything that `wide` draws but sticking: see test_scenes_have_everything.
-SCENES = (18, 19, 21, 23, 33, 36, 46, 63, 126, 133, 138, 169, 210, 279)
-ROUGH = (19, 46, 138, 169)
-# A speed table with whirl and axial tone; a pressure table after which the other side is the high one; an
-# O-ring beside a speed table.
-TRAVELLED = ((18, "adams", DOP853), (63, "bdf", Radau), (126, "bdf", Radau))
+SCENES = (6, 12, 13, 17, 18, 23, 31, 33, 36, 39, 42, 63, 64, 89, 338, 396)
+ROUGH = (6, 12, 17, 31, 33, 36)
+# A speed table with whirl and axial tone; tables of pressure and misalignment; an O-ring beside axial runout.
+TRAVELLED = ((18, "adams", DOP853), (63, "bdf", Radau), (39, "bdf", Radau))
 
 
 @cache
@@ -85,7 +84,7 @@ def test_scenes_have_everything():
     assert words >= {
         "fms", "fmr", "fmsr", "flat", "cone", "negative cone", "contact", "o-ring", "angular tone", "axial tone",
         "whirl", "axial runout", "counter-rotating", "pressure table", "viscosity table", "misalignment table",
-        "speed table",
+        "speed table", "rub", "throw",
     }  # fmt: skip
     laws = {one.scene.contact.law for one in drawn if one.scene.contact}
     assert laws == {"christensen", "greenwood-williamson"}
@@ -125,17 +124,14 @@ def test_rates_and_loads(number):
 
 @pytest.mark.parametrize("number", ROUGH)
 def test_rough_faces_pressed_together(number):
-    """Asperities of faces that overlap: equal to 1e-9 of the load.  The film between them, where it is continued below
-    0.6 of the asperity height, has a kink around the circle that the program's even angles do not meet: 1e-4 of the
-    load, whatever accuracy is asked."""
+    """Asperities of faces that overlap, and the film between them, which is continued below 0.6 of the asperity height
+    and has a bend there: equal to 1e-9 of the load."""
     _, scene, _, _, seal = scene_of(number)
     random = np.random.default_rng([SEED, number, 2])
     for of_height in (0.5, 0.1, -0.3):
         share = of_height * 3.0 * scene.contact.roughness / scene.film.clearance
         for t in times_of(random, seal):
-            _, of_loads, of_rest = apart(number, random, share, t)
-            assert of_rest.max() <= 1e-9
-            assert of_loads.max() <= 3e-4
+            assert max(part.max() for part in apart(number, random, share, t)) <= 1e-9
 
 
 @pytest.mark.parametrize(("number", "method", "kind"), TRAVELLED)

@@ -66,6 +66,7 @@ from .._radial_quadrature import (
     points_for,
     relative_clearance,
 )
+from .bent_angles import COSINE, SINE, WEIGHT, bent_angles, meets_floor, no_angles
 
 RUNG = 2
 FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
@@ -107,8 +108,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
 def angles_for(f, h_i, h_o, swing_i, swing_o):
     """Number of angles for the edge that is nearer to touching: mean films `h_i`, `h_o` (m) and their swings around the
     circle (m)."""
-    bent = abs(h_i - f[FLOOR]) < swing_i or abs(h_o - f[FLOOR]) < swing_o
-    return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)), bent)
+    return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)), False)
 
 
 @njit(inline="always")
@@ -190,7 +190,9 @@ def circle(f, s, complete):
     swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
 
     low = min(h_i0 - swing_i, h_o0 - swing_o) < floor
-    angles = angles_for(f, h_i0, h_o0, swing_i, swing_o)
+    bent = meets_floor(f, h_i0, h_o0, swing_i, swing_o)
+    own = no_angles(bent)
+    angles = 0 if bent else angles_for(f, h_i0, h_o0, swing_i, swing_o)
     rule = RULES + RULE_SIZE * max(
         points_for(f, regularised_thickness(h_i0 - swing_i, floor), regularised_thickness(h_o0 - swing_o, floor)),
         points_for(f, regularised_thickness(h_i0 + swing_i, floor), regularised_thickness(h_o0 + swing_o, floor)),
@@ -198,7 +200,8 @@ def circle(f, s, complete):
     points = int(f[rule])
     x_k = f[rule + 2 : rule + 2 + points]
     w_k = f[rule + 2 + RADIAL_POINTS[-1] : rule + 2 + RADIAL_POINTS[-1] + points]
-    stride = MOST_ANGLES // angles
+    half = bent_angles(f, h_i0, h_o0, swing_i, swing_o, own) if bent else angles // 2 + 1
+    stride, d_beta = (0, 1.0) if bent else (MOST_ANGLES // angles, 2.0 * math.pi / angles)
     drive = (p_o - p_i) / (12.0 * mu)
 
     if planar:
@@ -208,14 +211,15 @@ def circle(f, s, complete):
     if mean:
         whole_1 = r_m * whole_0
 
-    at, half = np.empty((ROWS, LANES)), angles // 2 + 1
+    at = np.empty((ROWS, LANES))
     force = moment_even = moment_odd = flow_i = flow_o = drag = twist = 0.0
     for first in range(0, half, LANES):
         count = min(LANES, half - first)
         # Whole vector registers: behind the half circle its last angle again.
         lanes = (count + 3) // 4 * 4
         for j in range(lanes):
-            cos_b = f[COSINES + min(first + j, half - 1) * stride]
+            n = min(first + j, half - 1)
+            cos_b = own[COSINE, n] if bent else f[COSINES + n * stride]
             h_i, h_o = h_i0 - swing_i * cos_b, h_o0 - swing_o * cos_b
             if low:
                 h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
@@ -228,9 +232,12 @@ def circle(f, s, complete):
             _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, False)
         for j in range(count):
             n = first + j
-            cos_b, sin_b = f[COSINES + n * stride], f[SINES + n * stride]
+            if bent:
+                cos_b, sin_b, twice = own[COSINE, n], own[SINE, n], 2.0 * own[WEIGHT, n]
+            else:
+                cos_b, sin_b = f[COSINES + n * stride], f[SINES + n * stride]
+                twice = 1.0 if n == 0 or 2 * n == angles else 2.0
             edge, edge_odd = (drive - at[AE, j]) / at[A0, j], -at[A1, j] / at[A0, j]
-            twice = 1.0 if n == 0 or 2 * n == angles else 2.0
             force += twice * (at[BE, j] + edge * at[B0, j])
             moment_even += twice * cos_b * (at[CE, j] + edge * at[C0, j])
             moment_odd += twice * sin_b * sin_b * (at[C1, j] + edge_odd * at[C0, j])
@@ -240,7 +247,6 @@ def circle(f, s, complete):
                 drag += twice * at[D0, j]
                 twist += twice * sin_b * sin_b * (at[B1, j] + edge_odd * at[B0, j])
 
-    d_beta = 2.0 * math.pi / angles
     m_along = 4.0 * mu * d_beta * moment_even
     m_across = -4.0 * mu * across * d_beta * moment_odd
     s[FORCE] = math.pi * (p_o * r_o * r_o - p_i * r_i * r_i) - 6.0 * mu * d_beta * force
