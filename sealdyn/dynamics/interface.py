@@ -151,7 +151,8 @@ class Interface:
 
     @cached_property
     def _unfloored(self):
-        plain, table = film_module(self.name), replace(self._table_used, cavitation_pressure=None)
+        table = replace(self._table_used, cavitation_pressure=None)
+        plain = film_module(self.name, table, self.scene.contact is not None)
         f = plain.parameters(table, self.clearance, FINE)
         lay_surfaces(f, self.scene)
         return plain.wrench, f
@@ -223,7 +224,7 @@ class Interface:
 def _lender(scene, film):
     """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
     borrows = film_name(film) == "linear" and scene.film.coefficients == "radial"
-    return film_module("radial", scene.film) if borrows else film
+    return film_module("radial", scene.film, scene.contact is not None) if borrows else film
 
 
 def opening_law(scene, film=None):

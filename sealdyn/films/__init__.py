@@ -5,6 +5,7 @@ What every film module offers (the contract):
 `RUNG`            int, its fidelity level (1 linear, 2 radial, ...); "auto" climbs it.
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `floored()`       (if any) the module that offers the same for tables with a floor of the pressure.
+`rough()`         (if any) the module that offers the same between rough faces, which may meet.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
@@ -63,11 +64,13 @@ def has_unknowns(film) -> bool:
     return hasattr(film, "unknowns")
 
 
-def film_module(name: str, film=None):
-    """The film called `name`, found by file (or folder) name; its floored one if a `Film` table asks for that."""
+def film_module(name: str, film=None, rough: bool = False):
+    """The film called `name`, found by file (or folder) name; its floored one if a `Film` table asks for that, or the
+    one for `rough` faces."""
     found = _module(name)
-    floored = film is not None and film.cavitation_pressure is not None and hasattr(found, "floored")
-    return found.floored() if floored else found
+    if film is not None and film.cavitation_pressure is not None and hasattr(found, "floored"):
+        return found.floored()
+    return found.rough() if rough and hasattr(found, "rough") else found
 
 
 @cache
@@ -104,7 +107,7 @@ def film_of(scene, module=None):
             name = max(able, key=lambda n: film_module(n).RUNG, default=None)
         if name is None or film_module(name).accepts(film, waves):
             raise _refused(film, waves, able)
-        module = film_module(name, film)
+        module = film_module(name, film, scene.contact is not None)
     elif module.accepts(film, waves):
         found = f"faces that the film {film_name(module)} does not take"
         raise SceneError("film", found, module.accepts(film, waves))

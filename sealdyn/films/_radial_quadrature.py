@@ -26,10 +26,11 @@ RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
 MOST_ANGLES = 3072
 ANGLES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1536, 3072)
 
-# Cosines and sines of the half circle.
+# Cosines and sines of the half circle, and how often each of its angles is met on the whole one.
 HALF_CIRCLE = tuple(
     function(2 * np.pi * np.arange(MOST_ANGLES // 2 + 1) / MOST_ANGLES) for function in (np.cos, np.sin)
 )
+TWICE = np.array([1.0, *(MOST_ANGLES // 2 - 1) * [2.0], 1.0])
 
 # At the floor the film's law has a bend of second order, of which the trapezoid leaves LOW/N^3 of the load; and by how
 # many powers of e each Gauss point of a panel between two bends gains (radial/bent_angles.py).
@@ -41,7 +42,8 @@ RULE_SIZE = 2 + 2 * RADIAL_POINTS[-1]
 ANGLE_COUNTS = RULES + RULE_SIZE * len(RADIAL_POINTS)
 COSINES = ANGLE_COUNTS + len(ANGLES)
 SINES = COSINES + MOST_ANGLES // 2 + 1
-BLOCK_SIZE = SINES + MOST_ANGLES // 2 + 1
+WEIGHTS = SINES + MOST_ANGLES // 2 + 1
+BLOCK_SIZE = WEIGHTS + MOST_ANGLES // 2 + 1
 
 
 @lru_cache(maxsize=16)
@@ -114,7 +116,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     share = 0.1 if f[HAS_CAVITATION] else 1.0
     f[RULES:ANGLE_COUNTS] = _rules(film.inner_radius / film.outer_radius, share * error)
     f[ANGLE_COUNTS:COSINES] = ANGLES
-    f[COSINES:SINES], f[SINES:] = HALF_CIRCLE
+    (f[COSINES:SINES], f[SINES:WEIGHTS]), f[WEIGHTS:BLOCK_SIZE] = HALF_CIRCLE, TWICE
     return f
 
 
@@ -172,9 +174,9 @@ def angle_count(f, ratio, bent):
     """Number of angles for a `ratio` of mean film to swing, `bent` where the film meets its floor somewhere; `f` the
     film's block.  The trapezoid's error falls as exp(-N eta), cosh(eta) = ratio.
     **Source** Trefethen & Weideman (2014), SIAM Review 56, 385: trapezoidal rule of periodic analytic functions."""
-    wanted = f[LOG_ERROR] / math.acosh(min(ratio, 1e9)) if ratio > 1.0 else MOST_ANGLES / 8
-    if bent:
-        wanted = max(wanted, f[LOW_ANGLES])
+    wanted = f[LOG_ERROR] / math.acosh(ratio if ratio < 1e9 else 1e9) if ratio > 1.0 else MOST_ANGLES / 8
+    if bent and wanted < f[LOW_ANGLES]:
+        wanted = f[LOW_ANGLES]
     for i in range(len(ANGLES)):
         if f[ANGLE_COUNTS + i] >= wanted:
             return int(f[ANGLE_COUNTS + i])

@@ -66,7 +66,6 @@ from .._radial_quadrature import (
     points_for,
     relative_clearance,
 )
-from .bent_angles import COSINE, SINE, WEIGHT, bent_angles, meets_floor, no_angles
 
 RUNG = 2
 FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
@@ -74,6 +73,7 @@ FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_p
 # Angles worked on side by side, and their rows: what their Gauss points need, and the integrals over 1/h^3 of 1, Phi's
 # even and its odd part; the three with r^2; with r^3; the integral of r^3/h.
 LANES, ROWS = 16, 16
+ROW = SINES - COSINES
 T, REACH, SCALE, U_I, H_G, EVEN, A0, AE, A1, B0, BE, B1, C0, CE, C1, D0 = range(ROWS)
 
 
@@ -87,6 +87,13 @@ def floored():
     from . import floored
 
     return floored
+
+
+def rough():
+    """The same film between rough faces, which may meet."""
+    from . import rough
+
+    return rough
 
 
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
@@ -105,10 +112,19 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
 
 
 @inner_kernel()
+def edges_of(f, s):
+    """Mean films (m) at the inner and the outer edge, and their swings around the circle (m), of a gap state."""
+    tilt, mean = math.hypot(s[GX], s[GY]), 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
+    inner, outer = (mean, mean) if f[TILT_AT_MEAN] != 0.0 else (f[INNER_RADIUS], f[OUTER_RADIUS])
+    h_i = f[CLEARANCE] + s[DZ]
+    return h_i, h_i + f[CONING] * (f[OUTER_RADIUS] - f[INNER_RADIUS]), inner * tilt, outer * tilt
+
+
+@inner_kernel()
 def angles_for(f, h_i, h_o, swing_i, swing_o):
-    """Number of angles for the edge that is nearer to touching: mean films `h_i`, `h_o` (m) and their swings around the
-    circle (m)."""
-    return angle_count(f, min(relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)), False)
+    """Number of angles for the edge that is nearer to touching: films and swings of `edges_of`."""
+    inner, outer = relative_clearance(h_i, swing_i), relative_clearance(h_o, swing_o)
+    return angle_count(f, inner if inner < outer else outer, False)
 
 
 @njit(inline="always")
@@ -168,10 +184,12 @@ def _lines(at, lanes, width):
 
 
 @inner_kernel()
-def circle(f, s, complete):
-    """Integrate over the face.  `complete` asks for leakage and friction torque too; returns the torque's part that
-    the pressure has on the slope of the film."""
-    r_i, r_o, coning, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[CONING], f[FLOOR]
+def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
+    """Integrate over the face, between `edges_of` it, at `half` angles of half the circle.  `nodes` holds from `first`
+    on, every `stride` slots, their cosines, ROW slots farther their sines and another ROW farther their weights, in
+    units of `d_beta` (rad).  `complete` asks for leakage and friction torque too; returns the torque's part that the
+    pressure has on the slope of the film."""
+    r_i, r_o, floor = f[INNER_RADIUS], f[OUTER_RADIUS], f[FLOOR]
     mean, planar = f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
     width, r_m = r_o - r_i, 0.5 * (r_i + r_o)
     mu, p_i, p_o = s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE]
@@ -185,23 +203,15 @@ def circle(f, s, complete):
     along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
     across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
     z_rate = s[DZ_RATE]
-    h_i0 = f[CLEARANCE] + s[DZ]
-    h_o0 = h_i0 + coning * width
-    swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
+    h_i0, h_o0, swing_i, swing_o = edges
 
-    low = min(h_i0 - swing_i, h_o0 - swing_o) < floor
-    bent = meets_floor(f, h_i0, h_o0, swing_i, swing_o)
-    own = no_angles(bent)
-    angles = 0 if bent else angles_for(f, h_i0, h_o0, swing_i, swing_o)
-    rule = RULES + RULE_SIZE * max(
-        points_for(f, regularised_thickness(h_i0 - swing_i, floor), regularised_thickness(h_o0 - swing_o, floor)),
-        points_for(f, regularised_thickness(h_i0 + swing_i, floor), regularised_thickness(h_o0 + swing_o, floor)),
-    )
+    low = h_i0 - swing_i < floor or h_o0 - swing_o < floor
+    thin = points_for(f, regularised_thickness(h_i0 - swing_i, floor), regularised_thickness(h_o0 - swing_o, floor))
+    thick = points_for(f, regularised_thickness(h_i0 + swing_i, floor), regularised_thickness(h_o0 + swing_o, floor))
+    rule = RULES + RULE_SIZE * (thin if thin > thick else thick)
     points = int(f[rule])
     x_k = f[rule + 2 : rule + 2 + points]
     w_k = f[rule + 2 + RADIAL_POINTS[-1] : rule + 2 + RADIAL_POINTS[-1] + points]
-    half = bent_angles(f, h_i0, h_o0, swing_i, swing_o, own) if bent else angles // 2 + 1
-    stride, d_beta = (0, 1.0) if bent else (MOST_ANGLES // angles, 2.0 * math.pi / angles)
     drive = (p_o - p_i) / (12.0 * mu)
 
     if planar:
@@ -213,13 +223,12 @@ def circle(f, s, complete):
 
     at = np.empty((ROWS, LANES))
     force = moment_even = moment_odd = flow_i = flow_o = drag = twist = 0.0
-    for first in range(0, half, LANES):
-        count = min(LANES, half - first)
+    for done in range(0, half, LANES):
+        count = half - done if half - done < LANES else LANES
         # Whole vector registers: behind the half circle its last angle again.
         lanes = (count + 3) // 4 * 4
         for j in range(lanes):
-            n = min(first + j, half - 1)
-            cos_b = own[COSINE, n] if bent else f[COSINES + n * stride]
+            cos_b = nodes[first + (done + j if done + j < half else half - 1) * stride]
             h_i, h_o = h_i0 - swing_i * cos_b, h_o0 - swing_o * cos_b
             if low:
                 h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
@@ -231,12 +240,8 @@ def circle(f, s, complete):
         else:
             _sums(at, lanes, x_k, w_k, r_i, r_m, z_rate, mean, planar, False)
         for j in range(count):
-            n = first + j
-            if bent:
-                cos_b, sin_b, twice = own[COSINE, n], own[SINE, n], 2.0 * own[WEIGHT, n]
-            else:
-                cos_b, sin_b = f[COSINES + n * stride], f[SINES + n * stride]
-                twice = 1.0 if n == 0 or 2 * n == angles else 2.0
+            n = first + (done + j) * stride
+            cos_b, sin_b, twice = nodes[n], nodes[n + ROW], nodes[n + 2 * ROW]
             edge, edge_odd = (drive - at[AE, j]) / at[A0, j], -at[A1, j] / at[A0, j]
             force += twice * (at[BE, j] + edge * at[B0, j])
             moment_even += twice * cos_b * (at[CE, j] + edge * at[C0, j])
@@ -265,14 +270,22 @@ def circle(f, s, complete):
     return 0.0
 
 
+@inner_kernel()
+def even_circle(f, s, complete):
+    """`circle` with even angles, as many as the film's block `f` asks for."""
+    edges = edges_of(f, s)
+    angles = angles_for(f, *edges)
+    return circle(f, s, edges, f, COSINES, MOST_ANGLES // angles, angles // 2 + 1, 2.0 * math.pi / angles, complete)
+
+
 @value_kernel()
 def wrench(f, s):
     """Force (N) and moments (N m) of the film on the stator, from the gap state, into the gap state."""
-    circle(f, s, False)
+    even_circle(f, s, False)
 
 
 @value_kernel()
 def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
     `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""
-    circle(f, s, True)
+    even_circle(f, s, True)
