@@ -330,11 +330,12 @@ class ExtremaTracker:
     run of `duration` (s), its last forcing period and the one before.  `reach` (m,) bounds the film of each step last
     seen from below (m).
 
-    A film that reaches its floor ends the run.
+    A film that reaches its floor ends the run, with a sentence that knows whether it began on the steady response
+    (`steady`).
     """
 
     def __init__(self, model, duration: float):
-        self.model, self.records = model, empty_records()
+        self.model, self.records, self.steady = model, empty_records(), False
         self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
         self.segment = self.reach = None
 
@@ -372,12 +373,13 @@ class ExtremaTracker:
         """When, where, and what to try."""
         record, face = self.records[0], self.model.face
         limit = "floor" if self.model.contact is None else "all flat at"
+        other = "" if self.steady else ', run.start = "steady"'
         at = "at the {} radius".format("inner" if record[H_RADIUS] == face[INNER_RADIUS] else "outer")
         if record[H_RADIUS] not in face[[INNER_RADIUS, OUTER_RADIUS]]:
             at = "at the radius"
         return (
             f"{self._cause()} at t = {self.segment.time + tau:.6g} s: thickness {record[H] * 1e6:.3g} um "
             f"({limit} {face[COLLAPSE] * 1e6:.3g} um) {at} {record[H_RADIUS] * 1e3:.4g} mm, "
-            f"theta = {math.degrees(record[H_THETA]):.1f} deg.  Try less misalignment or runout, "
-            'more coning or clearance, a stiffer or more damped support, run.start = "steady".'
+            f"theta = {math.degrees(record[H_THETA]):.1f} deg.  Try less misalignment or runout, more coning or "
+            f"clearance, a stiffer or more damped support{other}."
         )

@@ -52,6 +52,7 @@ class RunState:
         other = RunState(model or self.model, self.duration)
         other.y0, other.reasons, other.cautions = self.y0.copy(), list(self.reasons), list(self.cautions)
         other.extrema.windows[1:], other.start = self.extrema.windows[1:], self.start
+        other.extrema.steady = self.extrema.steady
         return other
 
     @cached_property

@@ -231,7 +231,7 @@ def _start(run, scenario, begun: Start):
     unknowns, start = run.model.unknowns, begun.taken
     run.start, run.y0 = begun, np.zeros(unknowns.size)
     if start == "steady":
-        run.y0 = run.steady_start()
+        run.y0, run.extrema.steady = run.steady_start(), True
     elif start != "rest":
         state = archive.last_state(start)
         if not state:

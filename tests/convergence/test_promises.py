@@ -75,3 +75,24 @@ def test_run_and_certificate(make, accuracy):
     assert outcome.status == "ok" and found["met"]
     assert errors <= accuracy and found["estimated"] > 0.3 * errors
     assert wrong == 0 and depth <= accuracy and instant <= accuracy
+
+
+@pytest.mark.slow
+def test_chaos_is_promised_up_to_its_horizon():
+    """The rub of scenarios/rub_chaotic.toml: exact where the certificate says that it can be foretold; the rest differs
+    from any other run by more than the film."""
+    scene, accuracy = read_scenario(SCENARIOS / "rub_chaotic.toml").scene, 1e-6
+    duration = 40 * 2 * math.pi / 2442.0
+
+    def anew(accuracy=accuracy / 100):
+        return prepared(scene, duration, accuracy)
+
+    reference = anew()
+    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference)
+    known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
+    _, _, found, outcome, columns, _, _ = automatic(Drawn(scene, duration, accuracy, "rest", ()), times)
+    assert outcome.status == "ok" and not found["met"] and 0.0 < found["horizon"] < duration
+    both = min(known.rows, int(np.searchsorted(times, found["horizon"])))
+    assert both > 50 and scales.errors(columns[:both], known.columns[:both]).max() <= accuracy
+    late = times > 1.5 * found["horizon"]
+    assert scales.errors(columns[late], known.columns[late]).max() > 0.1

@@ -155,3 +155,11 @@ def test_films_are_compared_from_one_kind_of_start(monkeypatch):
 
     study.run(seal("run.turns=1", "film.model=linear"), given, Tools())
     assert seen == ["steady"]
+
+
+def test_advice_of_a_closed_film_knows_where_the_run_began(tmp_path):
+    """Nobody is told to begin where he has begun."""
+    grown = 'rotor.runout={time=["0 s", "0.05 s"], value=["25 urad", "8 mrad"]}'
+    for start, advised in (("rest", True), ("steady", False)):
+        found = simulation.simulate(read_scenario(SEAL, [grown, f"run.start={start}"]), tmp_path / "a.h5")
+        assert found.status == "collapsed" and ("run.start" in found.message) is advised
