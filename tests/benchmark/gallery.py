@@ -83,6 +83,7 @@ def honesty():
         "drawn anew: known for less than a turn, or no two references",
         (", ".join(str(found["dropped"].get(why, 0)) for why in ("known for less than a turn", "not judged"))),
     )
+    yield "judged by equations of their own", str(found["own_words"])
     yield "asked accuracies", " to ".join(number(asked) for asked in found["asked"])
     yield "runs right in everything within the asked accuracy", str(found["honest"])
     yield "wrong, and saying so; wrong without a word", f"{found['spoken']}; {found['wrong']}"
