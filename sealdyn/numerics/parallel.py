@@ -203,4 +203,6 @@ def row_of(function, point: dict) -> tuple[dict, bool]:
 
 def _failed(error: Exception) -> tuple[dict, bool]:
     lasting = not isinstance(error, OSError | MemoryError | ImportError)
-    return {"failed": f"{type(error).__name__}: {error}"}, lasting
+    # A ValueError is a sentence about the point; of anything else its kind tells more.
+    said = str(error) if isinstance(error, ValueError) and str(error) else f"{type(error).__name__}: {error}"
+    return {"failed": said}, lasting
