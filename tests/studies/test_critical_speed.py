@@ -128,7 +128,7 @@ def test_a_whirl_that_takes_too_many_steps_is_given_up(tmp_path, monkeypatch):
     monkeypatch.setattr(time_domain, "MOST_BLOCKS", 1)
     answer = study("fmsr_both_flexible", tmp_path, COUNTER, beyond=False)
     assert answer["eigenvalue"] == pytest.approx(73.5325, rel=1e-4) and answer["time_domain"]["value"] is None
-    assert all("TooLong" in words for words in answer["growth"]["failed"])
+    assert all("too many steps" in words for words in answer["growth"]["failed"])
 
 
 def growing_above(least, scene, point):
