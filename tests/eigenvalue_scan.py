@@ -1,4 +1,4 @@
-"""Stability of an aligned seal the long way, importing nothing of the package: film coefficients by quadrature in
+"""Stability of an aligned seal the long way, with nothing of the package: film coefficients by quadrature in
 mpmath, eigenvalues in mpmath, thresholds by a dense scan over the shaft speed.
 
 A seal is a dict of plain SI numbers: `film` (see `film_numbers`), `rings` {"stator": ..., "rotor": ...} of those that
@@ -14,6 +14,7 @@ from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
+from own_face import gaussian_series
 
 DIGITS = 40
 
@@ -32,8 +33,8 @@ def gauss(points=30) -> list:
 def film_numbers(film: dict) -> tuple:
     """Tilt stiffness and damping, axial stiffness and damping of the aligned film, as mpmath numbers: `kind` "given"
     (`numbers`), "green" (the narrow seal's formulas) or "radial" (Reynolds' equation along the radius, to first order
-    in a small motion of the gap); with `rough` (half height in m, strength in Pa) of Christensen's asperities too,
-    below 0.6 of which the radial film has the edges H = f^2 / (2 f - h)."""
+    in a small motion of the gap); with `rough` (3 rms heights in m, unit of pressure in Pa) of asperities too, below
+    0.6 of which the radial film has the edges H = f^2 / (2 f - h)."""
     found = _smooth_numbers(film)
     if "rough" not in film:
         return found
@@ -42,25 +43,44 @@ def film_numbers(film: dict) -> tuple:
 
 
 def asperity_stiffness(film: dict) -> tuple:
-    """Tilt (N m/rad) and axial (N/m) stiffness of the asperities of aligned faces: the slope of their pressure,
-    strength 35 (c^2 - h^2)^3 / 32 c^7, summed over the face where h < c."""
+    """Tilt (N m/rad) and axial (N/m) stiffness of the asperities of aligned faces: the slope of their pressure, summed
+    over the face where they meet.  Christensen's: strength 35 (c^2 - h^2)^3 / 32 c^7 below c; `gaussian` ones: that of
+    the polynomial in own_face.py, below 5 rms."""
     r_i, r_o, clearance, coning, c, strength = (
         mp.mpf(x) for x in (*(film[n] for n in ("inner_radius", "outer_radius", "clearance", "coning")), *film["rough"])
     )
-    ends = [r_i, r_o]
-    if coning and r_i < r_i + (c - clearance) / coning < r_o:
+    ends, top = [r_i, r_o], c
+    if film["gaussian"]:
+        q, top = gaussian_slope(), 5 * c / 3
+    if coning and r_i < r_i + (top - clearance) / coning < r_o:
         # Exact for polynomials: the asperities meet on one side of this radius only.
-        ends.insert(1, r_i + (c - clearance) / coning)
+        ends.insert(1, r_i + (top - clearance) / coning)
     total = [mp.mpf(0), mp.mpf(0)]
     for a, b in pairwise(ends):
         for x, w in gauss():
             r = (a + b) / 2 + (b - a) / 2 * x
             h = clearance + coning * (r - r_i)
-            if h < c:
-                slope = (b - a) / 2 * w * strength * 35 * (c * c - h * h) ** 3 / (32 * c**7)
+            if h < top:
+                steep = 35 * (c * c - h * h) ** 3 / (32 * c**7)
+                if film["gaussian"]:
+                    steep = mp.polyval(q, (top - h) / (8 * c / 3), asc=True) / (8 * c / 3)
+                slope = (b - a) / 2 * w * strength * steep
                 arm = (r_i + r_o) / 2 if film["mean"] else r
                 total = [total[0] + slope * mp.pi * r * arm**2, total[1] + slope * 2 * mp.pi * r]
     return tuple(total)
+
+
+@cache
+def gaussian_slope() -> list:
+    """Slope by u of the polynomial u^4 Q(2u - 1) for the pressure of Gaussian asperities, lowest power first."""
+    # T_0, T_1, ... as polynomials of u, lowest power first.
+    before, here, found = [mp.mpf(1)], [mp.mpf(-1), mp.mpf(2)], [mp.mpf(0)] * 21
+    for coefficient in gaussian_series(1.5):
+        for power, x in enumerate(before):
+            found[power + 4] += mp.mpf(float(coefficient)) * x
+        twice = product(here, [mp.mpf(-2), mp.mpf(4)])
+        before, here = here, [x - (before[k] if k < len(before) else 0) for k, x in enumerate(twice)]
+    return [power * x for power, x in enumerate(found)][1:]
 
 
 def _smooth_numbers(film: dict) -> tuple:

@@ -35,15 +35,19 @@ def gaussian_integrals(x, power):
     return (heights * t ** (2 * power) * 2 * t) @ weights * longest / 2
 
 
-def gaussian_law(power):
-    """The polynomial that the program has for these integrals, as a function of x: (u^4 Q)(x), u = (5 - x)/8, Q of
-    degree 16, by least squares, relative where they are above 1e-5.  Pieces (32, 14): a polynomial over each quarter.
-    """
+def gaussian_series(power):
+    """The polynomial that the program has for these integrals: (u^4 Q)(x), u = (5 - x)/8, Q of degree 16 in 2u - 1, by
+    least squares, relative where they are above 1e-5.  Chebyshev's coefficients (17,) of Q."""
     v = np.cos(np.pi * (np.arange(800) + 0.5) / 800)
     exact = gaussian_integrals(1.0 - 4.0 * v, power)
     weight = (exact + 1e-5) ** -0.75
     matrix = ((1.0 + v) / 2)[:, None] ** 4 * chebvander(v, 16)
-    q = np.linalg.lstsq(weight[:, None] * matrix, weight * exact, rcond=None)[0]
+    return np.linalg.lstsq(weight[:, None] * matrix, weight * exact, rcond=None)[0]
+
+
+def gaussian_law(power):
+    """The same in pieces (32, 14): a polynomial over each quarter of x."""
+    q = gaussian_series(power)
     places = np.cos(np.pi * (np.arange(14) + 0.5) / 14)
     x = -3.0 + 0.25 * (np.arange(32)[:, None] + 0.5 + 0.5 * places)
     values = ((5.0 - x) / 8.0) ** 4 * chebval((1.0 - x) / 4.0, q)

@@ -17,7 +17,8 @@ FILMS = ("radial", "green", "of radial", "given")
 def drawn_seal(draw: np.random.Generator) -> Scene:
     """FMS, FMR or FMSR, co- and counter-rotating; clearance 0.5 to 50 um, flat, converging or diverging faces, either
     side high; light, heavy and massless rings on soft and stiff, damped and undamped supports; radial and linear
-    films, thin and stiff ones among them (squeeze modes beyond 1e7 1/s)."""
+    films, thin and stiff ones among them (squeeze modes beyond 1e7 1/s); every third film with a floor of its
+    pressure, half of them at the lower of the two pressures, which small motion does not meet either."""
 
     def number(low, high):
         return float(np.exp(draw.uniform(math.log(low), math.log(high))))
@@ -60,11 +61,13 @@ def drawn_seal(draw: np.random.Generator) -> Scene:
     turning = float(draw.choice([0.0, -number(10.0, 1e4), number(10.0, 1e4)], p=[0.7, 0.2, 0.1]))
     stator = Stator(**(ring() if arrangement != "fmr" else {}), speed=turning)
     rotor = Rotor(**(ring() if arrangement != "fms" else {}))
+    if draw.random() < 1 / 3:
+        film = replace(film, cavitation_pressure=low - number(1e-3, low or 1.0) * float(draw.random() < 0.5))
     return Scene(shaft=Shaft(speed=speed), film=film, stator=stator, rotor=rotor)
 
 
 def rough_seal(draw: np.random.Generator) -> Scene:
-    """A drawn seal whose faces ride on Christensen's asperities: these meet somewhere on it, the thinnest film from a
+    """A drawn seal whose faces ride on asperities of either law: these meet somewhere on it, the thinnest film from a
     fifth of their height to just below it, in a third of them within 1e-1 to 1e-12 of where their laws change."""
     scene = drawn_seal(draw)
     thinnest = min(h for _, h in aligned_gaps(scene.film, scene.film.clearance))
@@ -72,7 +75,15 @@ def rough_seal(draw: np.random.Generator) -> Scene:
     if draw.random() < 1 / 3:
         share = float(draw.choice([0.6, 1.0])) * (1.0 + draw.choice([-1.0, 1.0]) * 10.0 ** -draw.uniform(1.0, 12.0))
     strength = math.exp(draw.uniform(math.log(1e6), math.log(1e9)))
-    return replace(scene, contact=Contact(roughness=thinnest / share / 3.0, compressive_strength=strength))
+    height, gaussian = thinnest / share / 3.0, draw.random() < 0.5
+    if not gaussian:
+        return replace(scene, contact=Contact(roughness=height, compressive_strength=strength))
+    if draw.random() < 0.5:
+        # They meet at 5 rms.
+        height *= 0.6
+    peaks = {"asperity_density": draw.uniform(0.01, 0.1) / height**2, "asperity_radius": height * draw.uniform(5, 50)}
+    law = Contact(height, "greenwood-williamson", modulus=strength, **peaks)
+    return replace(scene, contact=law)
 
 
 def plain(scene: Scene) -> dict:
@@ -89,7 +100,12 @@ def plain(scene: Scene) -> dict:
         green = film.model == "linear" and film.coefficients == "green"
         numbers["kind"] = "green" if green else "radial"
     if scene.contact:
-        numbers["rough"] = 3.0 * scene.contact.roughness, scene.contact.compressive_strength
+        c = scene.contact
+        numbers |= {"gaussian": c.law != "christensen", "rough": (3.0 * c.roughness, c.compressive_strength)}
+        if numbers["gaussian"]:
+            peaks = c.asperity_density * c.asperity_radius * c.roughness
+            unit = 4.0 / 3.0 * peaks * c.modulus * math.sqrt(c.roughness / c.asperity_radius)
+            numbers["rough"] = 3.0 * c.roughness, unit
     for name in ("stator", "rotor"):
         ring = getattr(scene, name)
         if ring.support is None:

@@ -79,9 +79,14 @@ class Interface:
         table, source = self.scene.film, self._borrowed()
         if source is self.film:
             return table
+        edges = initially(table.inner_pressure), initially(table.outer_pressure)
+        if table.cavitation_pressure is not None and _clear(table, *edges):
+            # Small motion meets no floor.
+            table = replace(table, cavitation_pressure=None)
+            source = film_module(film_name(source), table, self.scene.contact is not None)
         block = source.parameters(table, self.clearance, FINE)
         lay_surfaces(block, self.scene)
-        # A floor of the pressure is met by the scene's own motion, if at all.
+        # Where it does, it is the scene's own motion that says how much.
         pace, spin = (FAST, 0.0) if table.cavitation_pressure is None else (None, None)
         self._borrowed_slopes = film_slopes(
             source.wrench, block, *rest_state(self.scene, self.clearance, mean_spin=spin, pace=pace)
@@ -90,7 +95,7 @@ class Interface:
         taken = Coefficients(
             tilt_stiffness=k[1, 1], tilt_damping=d[1, 1], axial_stiffness=k[0, 0], axial_damping=d[0, 0]
         )
-        return replace(table, coefficients=taken)
+        return replace(self.scene.film, coefficients=taken)
 
     @property
     def stores(self) -> bool:
@@ -134,18 +139,14 @@ class Interface:
         return f
 
     def floor_is_clear(self, interval=None) -> bool:
-        """Whether the aligned film's pressure lies above its floor everywhere, or has none: small motion never meets
-        it."""
-        floor, film = self.scene.film.cavitation_pressure, self.scene.film
+        """Whether small motion of the aligned film never meets the floor of its pressure, or it has none."""
+        film = self.scene.film
         first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
-        # What turns the fluid draws the pressure below both edges.
-        low = min(first(film.inner_pressure), first(film.outer_pressure))
-        return floor is None or (floor < low and not film.inertia)
+        return _clear(film, first(film.inner_pressure), first(film.outer_pressure))
 
     def _floored_at(self, s):
         """Function `wrench(f, s)` and block for small motion about a gap state: without a floor that it never meets."""
-        film = self.scene.film
-        if film.cavitation_pressure < min(s[INNER_PRESSURE], s[OUTER_PRESSURE]) and not film.inertia:
+        if _clear(self.scene.film, s[INNER_PRESSURE], s[OUTER_PRESSURE]):
             return self._unfloored
         return self.film.wrench, self._fine
 
@@ -221,6 +222,15 @@ class Interface:
         s[FORCE : FORCE + 3] = s[CONTACT_FORCE : CONTACT_FORCE + 3]
 
 
+def _clear(film, inner_pressure, outer_pressure) -> bool:
+    """Whether the pressure of an aligned `Film` lies above its floor inside the face.  At the floor it may be at an
+    edge that the pressure rises from."""
+    floor, low = film.cavitation_pressure, min(inner_pressure, outer_pressure)
+    # What turns the fluid draws the pressure below both edges.
+    above = floor is None or floor < low or (floor == low and inner_pressure != outer_pressure)
+    return above and (floor is None or not film.inertia)
+
+
 def _lender(scene, film):
     """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
     borrows = film_name(film) == "linear" and scene.film.coefficients == "radial"
@@ -275,7 +285,9 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
 def asperity_steps(scene, clearance):
     """Steps for derivatives of the asperities about aligned faces at rest, as those of `rest_state`; of rates, which
     do nothing to them, any."""
-    length = STEP * _analytic(scene, clearance, contact_thresholds(scene.contact)[1])[1]
+    length = _analytic(scene, clearance, contact_thresholds(scene.contact)[1])[1]
+    # Few asperities reach far: how many changes by a factor over one rms.
+    length = STEP * min(length, scene.contact.roughness)
     tilt = length / scene.film.outer_radius
     return length, tilt, length, tilt
 

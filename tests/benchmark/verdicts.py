@@ -6,7 +6,8 @@ Random seals (tests/random_seals.py, seeded), every third moved to within 1e-3 t
 film coefficients by quadrature, eigenvalues in mpmath and a dense scan from a thousandth to ten times the seal's speed
 (tests/eigenvalue_scan.py).  Right: the verdict is that of the exact growth rate, or "neutral" where the stated
 uncertainty contains both zero and that rate; the growth rate is right within its uncertainty; the thresholds in the
-scanned range are those of the scan to 1e-8, and the critical speed is the lowest of all.
+scanned range are those of the scan to 1e-8, or 1e-6 where the stated uncertainty of the growth rate is no better (a
+face edge within 1e-7 of where the film between rough faces has a bend), and the critical speed is the lowest of all.
 """
 
 import sys
@@ -52,11 +53,21 @@ def judged(scene, wanted: list[float]) -> tuple[dict, dict, list[str]]:
         bad.append(f"{answer['verdict']} with growth {rate:.3g} +- {error:.1g}, exactly {true:.3g}")
     speed = scene.shaft.speed
     inside = [w for w in answer["thresholds"] if LOW * speed <= w <= HIGH * speed]
-    if len(inside) != len(wanted) or not np.allclose(inside, wanted, rtol=1e-8, atol=0.0):
+    if len(inside) != len(wanted) or not all(same(scene, *pair) for pair in zip(inside, wanted, strict=True)):
         bad.append(f"thresholds {inside}, scan {wanted}")
     if answer["critical_speed"] != min(answer["thresholds"], default=None):
         bad.append(f"critical speed {answer['critical_speed']} of {answer['thresholds']}")
     return answer, exact, bad
+
+
+def same(scene, found: float, wanted: float) -> bool:
+    """Whether two thresholds (rad/s) are the same to 1e-8, or as nearly as the growth rate there is known."""
+    if abs(found - wanted) <= 1e-8 * wanted:
+        return True
+    model = Model(replace(scene, shaft=Shaft(speed=wanted)))
+    tilt = [(m.value.real, m.error) for m in model.linear_scene().modes() if m.kind == "tilt"]
+    low, high = (max(rate + sign * error for rate, error in tilt) for sign in (-1.0, 1.0))
+    return abs(found - wanted) <= 1e-6 * wanted and low <= 0.0 <= high
 
 
 def main(count: int, points: int):

@@ -153,10 +153,12 @@ def test_bounds_on_coefficients_of_rough_faces_hold():
         scene = rough_seal(np.random.default_rng([77, n]))
         linear, exact = Model(scene).linear_scene(), [float(x) for x in film_numbers(plain(scene)["film"])]
         found = linear.film_k[1, 1], linear.film_d[1, 1], linear.film_k[0, 0], linear.film_d[0, 0]
-        # Asperities that all but touch carry less than any rounding.
-        nothing = 1e-15 * scene.contact.compressive_strength * scene.film.outer_radius**2 / scene.contact.roughness
+        # Asperities that all but touch carry less than any rounding; a polynomial fitted twice is the same to 1e-11.
+        rough = plain(scene)["film"]
+        nothing = 1e-15 * rough["rough"][1] * scene.film.outer_radius**2 / scene.contact.roughness
+        fit = 3e-11 * rough["gaussian"]
         for value, true, bound in zip(found, exact, (*linear.doubt.tilt, *linear.doubt.axial), strict=True):
-            assert abs(value - true) <= bound + nothing, n
+            assert abs(value - true) <= bound + nothing + fit * abs(true), n
 
 
 def test_a_linear_film_that_borrows_has_the_floor_of_rough_faces_too():
@@ -166,10 +168,12 @@ def test_a_linear_film_that_borrows_has_the_floor_of_rough_faces_too():
     assert lent.film_k == pytest.approx(own.film_k, rel=1e-9, abs=1e-9 * own.film_k[1, 1])
 
 
-@pytest.mark.parametrize("floor", [-1.0, -1e5])
-def test_a_floor_below_all_pressure_is_none_to_small_motion(floor):
-    """However little below, it is met by large motion only."""
-    plain_film, floored = (answer(fms(film=replace(THIN, cavitation_pressure=p), speed=5000.0)) for p in (None, floor))
+@pytest.mark.parametrize("floor", [0.0, -1.0, -1e5])
+@pytest.mark.parametrize("lent", [{}, {"model": "linear", "coefficients": "radial"}], ids=["radial", "lent"])
+def test_a_floor_that_only_large_motion_meets_is_none_to_small_motion(floor, lent):
+    """At the lower of the two pressures, or however little below."""
+    table = replace(THIN, **lent)
+    plain_film, floored = (answer(fms(film=replace(table, cavitation_pressure=p), speed=5000.0)) for p in (None, floor))
     assert floored == plain_film
 
 
