@@ -464,15 +464,20 @@ def main():
     gc.set_threshold(GARBAGE)
     # Python would look through all that was loaded once more as it ends.
     atexit.register(gc.freeze)
-    with interruption:
-        _leaves(lambda: "nothing is kept")
-        # Standard output itself: while libraries print, it is not where it was.
-        out = os.dup(1)
-        interruption.last_words = lambda: _break_off(as_json, out)
-        try:
-            _run(as_json)
-        finally:
-            os.close(out)
+    _leaves(lambda: "nothing is kept")
+    try:
+        with interruption:
+            # Standard output itself: while libraries print, it is not where it was.
+            out = os.dup(1)
+            interruption.last_words = lambda: _break_off(as_json, out)
+            try:
+                _run(as_json)
+            finally:
+                os.close(out)
+    except KeyboardInterrupt:
+        # It came before the first thing was done, or after the last.
+        _tell_interrupted(as_json)
+        sys.exit(INTERRUPTED)
 
 
 def _run(as_json: bool):

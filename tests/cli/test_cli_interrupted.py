@@ -5,6 +5,8 @@ import io
 import json
 import random
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -229,3 +231,23 @@ def test_killed_at_twenty_random_instants(tmp_path):
     whole = tmp_path / "whole.h5"
     assert finished(started("run", REFERENCE, *LONGEST, "--no-plot", "--out", whole, cwd=tmp_path)).code == 0
     agree(archive, whole)
+
+
+def test_a_signal_before_the_first_thing_is_done_says_so():
+    """Here as the watch is about to start."""
+    early = """
+import os, signal, sys
+from sealdyn import cli
+from sealdyn.numerics import interruption
+
+class Early(interruption.Thread):
+    def start(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+interruption.Thread = Early
+sys.argv = ["sealdyn", "check", sys.argv[1], "--json"]
+cli.main()
+"""
+    done = subprocess.run([sys.executable, "-c", early, str(REFERENCE)], capture_output=True, text=True)
+    assert done.returncode == 130 and json.loads(done.stdout)["status"] == "interrupted"
+    assert done.stderr.splitlines() == [json.loads(done.stdout)["message"]]
