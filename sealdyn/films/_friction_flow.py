@@ -34,6 +34,8 @@ def blended_friction(laminar, turbulent, reynolds):
     may be 0."""
     laminar, turbulent = laminar / reynolds, turbulent / math.sqrt(math.sqrt(reynolds))
     large, small = max(laminar, turbulent), min(laminar, turbulent)
+    if small == 0.0:
+        return large
     square = (small / large) * (small / large)
     return large * math.sqrt(math.sqrt(math.sqrt(1.0 + square * square * square * square)))
 
