@@ -88,7 +88,7 @@ def marched(dam: Dam, mach: float, rtol: float):
     return math.log(m_1) - log, Flow(mass_flow, force, moment / (force * width), mach, math.sqrt(m_2))
 
 
-def flow(dam: Dam, rtol: float = 1e-10) -> Flow | None:
+def flow(dam: Dam, rtol: float = 1e-12) -> Flow | None:
     """The flow; None if there is none."""
 
     def left(log):
