@@ -112,6 +112,19 @@ class Quantity:
         return {"description": self.expected(), "quantity": self.name, "unit": self.unit, "anyOf": [number, text]}
 
 
+class TemperatureScale(Quantity):
+    """A temperature: in kelvin, or on a scale with another zero."""
+
+    def _from_string(self, text: str) -> float:
+        number, unit = self._split(text)
+        # Degrees per kelvin, and where absolute zero lies.
+        scale = {"degC": ("1", "273.15"), "degF": ("1.8", "459.67")}.get(unit)
+        if scale is None:
+            return super()._from_string(text)
+        degrees, zero = map(Decimal, scale)
+        return float((Decimal(number) + zero) / degrees)
+
+
 UNICODE_UNITS = {
     ord("µ"): "u",
     ord("μ"): "u",
@@ -248,6 +261,7 @@ Stress = Annotated[float, Quantity("stress", "Pa", '"300 MPa"', (), 0, True)]
 WearCoefficient = Annotated[float, Quantity("wear coefficient", "1/Pa", '"1e-15 1/Pa"', (), 0)]
 AsperityDensity = Annotated[float, Quantity("number per area", "1/m^2", '"1e10 1/m^2"', (), 0, True)]
 Viscosity = Annotated[float, Quantity("viscosity", "Pa*s", '"0.5 mPa*s"', (), 0, True)]
+Temperature = Annotated[float, TemperatureScale("temperature", "K", '"300 K", "20 degC", "800 degF"', (), 0, True)]
 Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0, True)]
 SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True)]
 Force = Annotated[float, Quantity("force", "N", '"50 N"')]

@@ -10,6 +10,7 @@ class Concern(StrEnum):
     ACCURACY = "accuracy"
     ALIASING = "aliasing"
     NO_EQUILIBRIUM = "no equilibrium gap"
+    CHOKING = "choking"
     BLOWN_OPEN = "blown open"
     CONTACT_ARM = "arm of the contact force"
     ENERGY = "energy"

@@ -36,6 +36,7 @@ from ..faces.geometry import (
     ROTOR_ANGLE,
     SPIN_DIFFERENCE,
     STATOR_ANGLE,
+    TEMPERATURE,
     VISCOSITY,
 )
 from ..numerics.addresses import call_seal
@@ -53,6 +54,7 @@ from .imposed_motion import (
     ROTOR_SPEED,
     STATOR_ANGLE_AT,
     STATOR_SPEED,
+    TEMPERATURE_AT,
     TILT_X,
     TILT_X_RATE,
     TILT_Y,
@@ -127,6 +129,7 @@ def kinematics(tau, y, yp, p, w, s):
     s[VISCOSITY] = leg[VISCOSITY_AT] + leg[VISCOSITY_AT + 1] * tau
     s[INNER_PRESSURE] = leg[INNER_AT] + leg[INNER_AT + 1] * tau
     s[OUTER_PRESSURE] = leg[OUTER_AT] + leg[OUTER_AT + 1] * tau
+    s[TEMPERATURE] = leg[TEMPERATURE_AT] + leg[TEMPERATURE_AT + 1] * tau
 
 
 @inner_kernel()

@@ -9,15 +9,13 @@ from ..faces.geometry import (
     DZ,
     FORCE,
     GAP_STATE_SIZE,
-    INNER_PRESSURE,
     MEAN_SPIN,
-    OUTER_PRESSURE,
     SPIN_DIFFERENCE,
-    VISCOSITY,
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
+from .fluid import set_fluid
 from .intervals import Interval, constant_and_slope, spins
 
 POINTS = 600
@@ -172,9 +170,7 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     design clearance: opening force = closing force + support springs.  (0, False) if none is found from 0.1 % to 50
     times the clearance."""
     film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
-    s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE] = (
-        constant_and_slope(q, interval)[0] for q in (film.viscosity, film.inner_pressure, film.outer_pressure)
-    )
+    set_fluid(s, film, lambda quantity: constant_and_slope(quantity, interval)[0])
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
     if speed is not None:
         w_s = s[MEAN_SPIN] - 0.5 * s[SPIN_DIFFERENCE]

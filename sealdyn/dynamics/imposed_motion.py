@@ -14,9 +14,9 @@ from ..numerics.kernel import outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 
-ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, CLOSING_AT = range(0, 12, 2)
+ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Angles (rad, modulo one turn) of both rings at the segment's start.
-ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 12, 13, 14, 15
+ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 14, 15, 16, 17
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about

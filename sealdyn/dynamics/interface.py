@@ -21,7 +21,6 @@ from ..faces.geometry import (
     MOMENT_Y,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
-    VISCOSITY,
     face_parameters,
 )
 from ..faces.surfaces import lay_surfaces
@@ -32,6 +31,7 @@ from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
+from .fluid import set_fluid
 from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
@@ -269,8 +269,7 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     s[DZ] = shift
     clearance = clearance + shift
     first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
-    s[VISCOSITY] = first(scene.film.viscosity)
-    s[INNER_PRESSURE], s[OUTER_PRESSURE] = first(scene.film.inner_pressure), first(scene.film.outer_pressure)
+    set_fluid(s, scene.film, first)
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
     if mean_spin is not None:
         # It is the rotor that turns otherwise.

@@ -9,6 +9,7 @@ from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .equilibrium import axial_shift
+from .fluid import fluid_conditions
 from .interface import FAST, Interface
 from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
@@ -59,7 +60,7 @@ class Model:
         """Everything that may be a table."""
         scene, film = self.scene, self.scene.film
         return [
-            scene.shaft.speed, scene.stator.speed, film.viscosity, film.inner_pressure, film.outer_pressure,
+            scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(),
             self.closing.spring, scene.rotor.runout, scene.rotor.misalignment, scene.stator.misalignment,
         ]  # fmt: skip
 

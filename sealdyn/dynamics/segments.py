@@ -11,6 +11,7 @@ from ..faces.geometry import GAP_STATE_SIZE, WAVES
 from ..faces.waviness import highest_orders
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
+from .fluid import fluid_conditions
 from .imposed_motion import harmonics_of_segment
 from .intervals import Interval, constant_and_slope, modulo_turn
 from .steady_extremes import common_period
@@ -53,7 +54,7 @@ class Segment:
         """Parameters: tables as value and slope, phases reduced modulo one turn; and the imposed harmonics."""
         scene, interval = self.model.scene, self.interval
         film = scene.film
-        varying = (scene.shaft.speed, scene.stator.speed, film.viscosity, film.inner_pressure, film.outer_pressure)
+        varying = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values())
         pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]

@@ -32,6 +32,7 @@ from ..faces.geometry import (
     WEAR,
 )
 from ..faces.waviness import wave_parts_along
+from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
 from .intervals import constant_and_slope, modulo_turn
@@ -42,6 +43,7 @@ DISPLAY_UNITS = {
     "rad": ("µrad", 1e6),
     "m/s": ("mm/s", 1e3),
     "m^3/s": ("ml/h", 3.6e9),
+    "kg/s": ("g/h", 3.6e6),
     "Pa": ("MPa", 1e-6),
 }
 DEGREES, MILLIMETRES, MICROMETRES_PER_HOUR = ("deg", 180 / np.pi), ("mm", 1e3), ("µm/h", 3.6e9)
@@ -126,6 +128,10 @@ def _leakage(slot):
     return lambda at: np.where(at.gap[:, OUTER_PRESSURE] >= at.gap[:, INNER_PRESSURE], -1.0, 1.0) * at.gap[:, slot]
 
 
+def _mass_flow(slot):
+    return lambda at: density_of(at.segment.model.scene.film) * at.gap[:, slot]
+
+
 SHAFT_AND_FILM = (
     Signal("shaft_angle", "rad", "shaft angle, modulo one turn", _shaft_angle, DEGREES),
     Signal("shaft_speed", "rad/s", "shaft speed", lambda at: at.shaft[0] + at.shaft[1] * at.taus, tallied=True),
@@ -147,6 +153,8 @@ SHAFT_AND_FILM = (
            tallied=True),
     Signal("leakage_outer", "m^3/s", "leakage at the outer radius, from high to low pressure", _leakage(FLOW_OUTER),
            tallied=True),
+    Signal("mass_flow_inner", "kg/s", "mass flow at the inner radius, outwards", _mass_flow(FLOW_INNER)),
+    Signal("mass_flow_outer", "kg/s", "mass flow at the outer radius, outwards", _mass_flow(FLOW_OUTER)),
     Signal("friction_torque", "N m", "friction torque on the rotor", lambda at: at.torque, tallied=True),
     Signal("friction_power", "W", "friction power", lambda at: at.torque * at.gap[:, SPIN_DIFFERENCE], tallied=True),
     Signal("cavitated_fraction", "1", "share of the face at the cavitation pressure", _gap(CAVITATED), tallied=True),

@@ -8,6 +8,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from . import equations
+from .fluid import fluid_conditions
 from .function_values import SEAL, Value
 from .imposed_motion import AXIAL, harmonics_of_segment
 from .intervals import largest_value
@@ -45,9 +46,9 @@ class Unknowns:
         tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
         shifted = any(v for s in moved for v in (s.z, s.z_rate))
         film = scene.film
-        loads = (film.inner_pressure, film.outer_pressure, closing.spring)
+        loads = (film.inner_pressure, film.outer_pressure, film.temperature, closing.spring)
         loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
-        others = (scene.shaft.speed, scene.stator.speed, film.viscosity, scene.rotor.runout)
+        others = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), scene.rotor.runout)
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))

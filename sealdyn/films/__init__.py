@@ -6,6 +6,7 @@ What every film module offers (the contract):
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `floored()`       (if any) the module that offers the same for tables with a floor of the pressure.
 `rough()`         (if any) the module that offers the same between rough faces, which may meet.
+`FLUID`           (if any) "gas"; a film without it is one of liquids.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
@@ -90,10 +91,19 @@ def all_film_names() -> list[str]:
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 
 
+def refused(module, film, waves=()) -> str:
+    """What a film (module) takes, as words that go after its name, where it cannot take the faces and the fluid of a
+    `Film` table with these waves (Waviness); "" where it can."""
+    fluid = "liquid" if film is None or film.gas is None else "gas"
+    if film is not None and fluid != getattr(module, "FLUID", "liquid"):
+        return "liquids only" if fluid == "gas" else "gases only"
+    return module.accepts(film, waves)
+
+
 def film_names(film=None, waves=()) -> list[str]:
-    """Names of the films that can take the faces of a `Film` table (None: plain cones) with these waves (Waviness),
-    sorted, without those that are another one of them once more."""
-    able = [name for name in all_film_names() if not film_module(name).accepts(film, waves)]
+    """Names of the films that can take the faces and the fluid of a `Film` table (None: plain cones) with these waves
+    (Waviness), sorted, without those that are another one of them once more."""
+    able = [name for name in all_film_names() if not refused(film_module(name), film, waves)]
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 
 
@@ -105,12 +115,12 @@ def film_of(scene, module=None):
         able, name = film_names(film, waves), film.model
         if name == "auto":
             name = max(able, key=lambda n: film_module(n).RUNG, default=None)
-        if name is None or film_module(name).accepts(film, waves):
-            raise _refused(film, waves, able)
+        if name is None or refused(film_module(name), film, waves):
+            raise _refusal(film, waves, able)
         module = film_module(name, film, scene.contact is not None)
-    elif module.accepts(film, waves):
-        found = f"faces that the film {film_name(module)} does not take"
-        raise SceneError("film", found, module.accepts(film, waves))
+    elif refused(module, film, waves):
+        found = f"faces or a fluid that the film {film_name(module)} does not take"
+        raise SceneError("film", found, refused(module, film, waves))
     for key, found, expected in profile_errors(film):
         raise SceneError(f"film.{key}", found, expected)
     for error in waviness_errors(scene):
@@ -118,10 +128,13 @@ def film_of(scene, module=None):
     return module
 
 
-def _refused(film, waves, able) -> SceneError:
+def _refusal(film, waves, able) -> SceneError:
     faces = "wavy faces" if waves else "film.inertia" if film.inertia else "a profile"
+    named = film_module(film.model) if film.model in all_film_names() else None
+    if named is not None and refused(named, film) in ("gases only", "liquids only"):
+        faces = "a liquid" if film.gas is None else "a gas"
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
-        said = {name: film_module(name).accepts(film, waves) for name in all_film_names()}
+        said = {name: refused(film_module(name), film, waves) for name in all_film_names()}
         expected = "a film that takes them: " + "; ".join(f"{name} takes {words}" for name, words in said.items())
     return SceneError("film.model", f'"{film.model}" with {faces}', expected)

@@ -267,6 +267,31 @@ def _load(f, p_low, pieces, slope, direction, r_mean, out):
     out[FORCE], out[MOMENT] = force, moment
 
 
+@inner_kernel()
+def pressure_inside(f, out, h_exit, h_entrance, r_exit, r_entrance, r):
+    """Pressure (Pa) at radius `r` of the flow that `dam` has left in `out`; films (m) and radii (m) at the edge where
+    it leaves and at the other."""
+    g, pieces = f[HEAT_RATIO], max(int(f[PIECES]), 1)
+    d, r_mean = 0.5 * (g - 1.0), 0.5 * (r_exit + r_entrance)
+    flow = abs(out[MASS_FLOW]) * math.sqrt(f[GAS_CONSTANT] * f[TEMPERATURE] / g)
+    share = (r - r_exit) / (r_entrance - r_exit)
+    h = h_exit + (h_entrance - h_exit) * share
+    # int dx/h from the exit, in pieces.
+    rise = (h - h_exit) / h_exit
+    length = share * abs(r_entrance - r_exit) / h_exit * (math.log1p(rise) / rise if rise != 0.0 else 1.0)
+    piece = min(int(length / out[LENGTH]), pieces - 1)
+    i = FIRST_PIECE + PIECE_SIZE * piece
+    part = min(max(length / out[LENGTH] - piece, 0.0), 1.0)
+    state = out[i + STATE]
+    if part > 0.0:
+        wanted = 2.0 * g * out[i + FRICTION] * out[i + RESISTANCE] * part
+        state = span(out[i + SHAPE], state, wanted, 0.0, d)[1]
+    area = h
+    if f[PIECES] > 0.0:
+        area = out[i + FILM] * out[i + RADIUS] / r_mean * math.exp(-out[i + GROWTH] * part)
+    return flow * (state - d) / (area * math.sqrt(state))
+
+
 @outer_kernel()
 def dam(f, inner_film, outer_film, inner_pressure, outer_pressure, out):
     """Flow across a sector of the dam: parameter block `f` (BLOCK_SIZE,), films (m) and pressures (Pa) at the inner and

@@ -4,8 +4,10 @@ import cmath
 import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..units import Temperature, Viscosity
 from . import contact, secondary_seal
 from . import film as film_table
+from .gas import GASES, gas_of
 from .scene import SceneError
 from .waviness import waves_of, waviness_errors
 
@@ -57,6 +59,50 @@ def _film(film) -> None:
                 "an open film",
             )
     _cavitation(film)
+    _gas(film) if film.gas is not None else _liquid(film)
+
+
+def _liquid(film) -> None:
+    if film.viscosity is None:
+        raise SceneError("film.viscosity", "nothing", Viscosity.__metadata__[0].expected())
+    for key in ("temperature", "gas_dam", "gas_reynolds"):
+        if getattr(film, key) is not None:
+            raise SceneError(f"film.{key}", "a key of gases, with a liquid", f"nothing, or film.gas = {_names(GASES)}")
+
+
+def _gas(film) -> None:
+    gas = gas_of(film)
+    if not 1.0 < gas.heat_ratio <= 5.0 / 3.0 + 1e-9:
+        raise SceneError("film.gas.heat_ratio", f"{gas.heat_ratio:g}", "a ratio above 1, at most 5/3")
+    if film.temperature is None:
+        raise SceneError("film.temperature", "nothing", Temperature.__metadata__[0].expected())
+    if film.viscosity is None and gas.reference_viscosity is None:
+        expected = f"{Viscosity.__metadata__[0].expected()}, or film.gas.reference_viscosity"
+        raise SceneError("film.viscosity", "nothing", expected)
+    for value in points(film.temperature) if film.viscosity is None else ():
+        if not gas.lowest <= value <= gas.highest:
+            limits = f"{gas.lowest:g} to {gas.highest:g} K"
+            expected = f"{limits}, where its viscosity follows Sutherland's law, or film.viscosity"
+            raise SceneError("film.temperature", f"{value:g} K", expected)
+    for key in ("outer_pressure", "inner_pressure"):
+        for value in points(getattr(film, key)):
+            if value <= 0.0:
+                raise SceneError(f"film.{key}", f"{value:g} Pa of a gas", "an absolute pressure above 0")
+    for key, words in (("cavitation_pressure", "a gas does not cavitate"), ("inertia", "a gas film has none")):
+        if getattr(film, key) not in (None, False):
+            raise SceneError(f"film.{key}", "a value with a gas", f"nothing: {words}")
+    if film.gas_dam is not None and not 0.0 < film.gas_dam.entrance_loss <= 1.0:
+        found = f"{film.gas_dam.entrance_loss:g}"
+        raise SceneError("film.gas_dam.entrance_loss", found, "a share above 0, at most 1 (no loss)")
+    if film.gas_reynolds is not None:
+        radial, around = film.gas_reynolds.cells
+        if not (2 <= radial <= 200 and 8 <= around <= 1000):
+            found = f"{radial} x {around} cells"
+            raise SceneError("film.gas_reynolds.cells", found, "2 to 200 over the radius, 8 to 1000 around")
+
+
+def _names(words) -> str:
+    return " or ".join(f'"{word}"' for word in words)
 
 
 def _profile(scene) -> None:
@@ -241,6 +287,9 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:
         leaves += ["rotor.runout", "rotor.runout_phase"]
+    if scene.film.gas is not None:
+        leaves += [f"film.{key}" for key in ("density", "specific_heat", "vapour_pressure", "coefficients")]
+        leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]
     if scene.film.model != "linear":
         leaves.append("film.coefficients")
     elif scene.film.coefficients != "radial":

@@ -18,10 +18,12 @@ from ..units import (
     SignedTiltDamping,
     SignedTiltStiffness,
     SpecificHeat,
+    Temperature,
     Varying,
     Viscosity,
     quoted,
 )
+from .gas import Gas, GasDam, GasName, GasReynolds
 
 # Most radii of a profile: kernels keep room for them.
 MOST_NODES = 65
@@ -96,14 +98,19 @@ class Film:
     """Inner radius of the narrower face."""
     outer_radius: Length
     """Outer radius of the narrower face."""
-    viscosity: Varying[Viscosity]
-    """Dynamic viscosity, the same over the face."""
     outer_pressure: Varying[Pressure]
     """Absolute, at the outer radius."""
     inner_pressure: Varying[Pressure]
     """Absolute, at the inner radius."""
+    viscosity: Varying[Viscosity] | None = None
+    """Dynamic viscosity, the same over the face; of a gas by Sutherland's law at its temperature where not given."""
+    gas: GasName | Gas | None = None
+    """A gas, by name or as a table of its numbers; without it the film is a liquid."""
+    temperature: Varying[Temperature] | None = None
+    """Of a gas: total temperature of the reservoir."""
     model: str = "auto"
-    """"auto": the linear film where its estimated error is within the accuracy, else the radial or profiled one."""
+    """"auto": the linear film where its estimated error is within the accuracy, else the radial or profiled one; of a
+    gas "gas_reynolds"."""
     geometry: Literal["cylindrical", "planar"] = "cylindrical"
     """Radial flow on the ring, or the narrow-seal limit without curvature."""
     tilt_radius: Literal["local", "mean"] = "local"
@@ -113,7 +120,7 @@ class Film:
     coning: Angle = 0.0
     """Slope of the faces: the film is thicker outwards where positive."""
     density: Density = 1000.0
-    """For mass flow, heating of the leakage, Reynolds numbers and inertia."""
+    """Of a liquid: for mass flow, heating of the leakage, Reynolds numbers and inertia."""
     inertia: bool = False
     """Centrifugal inertia of the film: its pressure rises outwards by density times radius times speed squared."""
     specific_heat: SpecificHeat = 4180.0
@@ -128,6 +135,10 @@ class Film:
     """Share of the clearance below which the film counts as collapsed; with [contact] the asperities decide."""
     profile: Profile | None = None
     """Faces that are no plain cones."""
+    gas_dam: GasDam | None = None
+    """Options of model = "gas_dam"."""
+    gas_reynolds: GasReynolds | None = None
+    """Options of model = "gas_reynolds"."""
 
 
 def profile_errors(film) -> list[tuple[str, str, str]]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..dynamics.intervals import constant_and_slope
 from ..faces.geometry import DZ, FLOOR
+from ..scene.gas import viscosity_of
 from ..scene.scene import SceneError
 
 # Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
@@ -42,7 +43,7 @@ def _fastest_decay(run) -> float:
     """Fastest decay (1/s) of the scene linearised where the run starts (a squeezed film is stiffer by the cube) and at
     the equilibrium of each interval's loads."""
     model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
-    varying = (model.scene.shaft.speed, model.scene.film.viscosity)
+    varying = (model.scene.shaft.speed, viscosity_of(model.scene.film))
     places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
     for interval in run.intervals.few:
         places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval

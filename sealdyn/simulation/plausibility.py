@@ -8,14 +8,18 @@ import numpy as np
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
+from ..numerics.piecewise_linear import initially
 from ..scene.checks import points
 from ..scene.film import Coefficients, aligned_gaps
+from ..scene.gas import density_of, gas_of, viscosity_of
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
 # Films (m) that are thinner than lapped faces are rough, and than a liquid is a continuum; widest clearance (m) of a
 # seal's faces.
 SMOOTH, CONTINUUM, WIDE = 1e-7, 1e-8, 1e-3
+# Mach number from which the inertia of a gas changes its pressure by some 5 %.
+FAST = 0.3
 # Share of the sealed pressure from which the fluid's inertia matters.
 HEAVY = 0.05
 
@@ -26,7 +30,9 @@ def cautions(scenario, run, outcome, leakage, temperature_rise, h_min) -> list[C
     scene, model = scenario.scene, run.model
     found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(temperature_rise)]
     found += _flash(run, outcome)
-    if not isinstance(scene.film.coefficients, Coefficients) or model.interface.name != "linear":
+    if scene.film.gas is not None:
+        found += _gas_flow(model, leakage)
+    elif not isinstance(scene.film.coefficients, Coefficients) or model.interface.name != "linear":
         found += [*_turbulence(model, leakage), *_inertia(scene)]
     return found
 
@@ -50,7 +56,7 @@ def _thin(scene, h_min):
     if not math.isfinite(h_min) or h_min >= max(rough, CONTINUUM):
         return
     if h_min < CONTINUUM:
-        why = "a liquid is no continuum there"
+        why = "it is no continuum there"
     elif scene.contact is None:
         why = "lapped faces are rougher, which a table [contact] counts"
     else:
@@ -90,6 +96,34 @@ def _turbulence(model, leakage):
     if math.isfinite(through) and through > LAMINAR:
         found = f"Poiseuille Reynolds number {through:.0f} of the leakage"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; {doubt}")
+
+
+def _gas_flow(model, leakage):
+    """A gas film that is isothermal and without inertia where the gas is fast: Mach number of the aligned film at the
+    low pressure, with the mass flow of the mean leakage (m^3/s at normal conditions)."""
+    film, scene = model.scene.film, model.scene
+    gas, temperature = gas_of(film), min(points(film.temperature))
+    sound = math.sqrt(gas.heat_ratio * gas.gas_constant * temperature)
+    low = min(*points(film.inner_pressure), *points(film.outer_pressure))
+    density, viscosity = low / (gas.gas_constant * temperature), min(points(viscosity_of(film)))
+    outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
+    radius, h = aligned_gaps(film, model.clearance)[0 if outer_is_high else -1]
+    flow = density_of(film) * leakage / (2.0 * math.pi * radius)
+    if model.interface.name != "gas_dam" and math.isfinite(flow) and h > 0.0:
+        mach = flow / (density * h * sound)
+        if mach > FAST:
+            why = 'this film has no inertia of the gas and no choking; film.model = "gas_dam" has both'
+            yield Caution(Concern.CHOKING, f"the gas would leave the faces at a Mach number of {mach:.3g}: {why}")
+        if 2.0 * flow / viscosity > LAMINAR:
+            found = f"Reynolds number {2.0 * flow / viscosity:.0f} of the leakage"
+            yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
+    sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
+    high = max(*points(film.inner_pressure), *points(film.outer_pressure))
+    thickest, at = max((h, r) for r, h in aligned_gaps(film, model.clearance))
+    most = couette_reynolds(high / (gas.gas_constant * temperature), viscosity, sliding * at, thickest)
+    if most > LAMINAR:
+        found = f"Couette Reynolds number {most:.0f} at r = {at * 1e3:.4g} mm"
+        yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}, below {LAMINAR:.0f} it is laminar")
 
 
 def _inertia(scene):

@@ -12,6 +12,7 @@ from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import TOUCH
+from ..scene.gas import density_of, gas_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
@@ -248,7 +249,7 @@ def _leakage(model, tally):
         "mean": mean,
         "max": tally.largest[side] if tally.largest else math.nan,
         "mean_ml_per_h": mean * ML_PER_H,
-        "mean_kg_per_h": mean * model.scene.film.density * KG_PER_H,
+        "mean_kg_per_h": mean * density_of(model.scene.film) * KG_PER_H,
     }
 
 
@@ -256,7 +257,9 @@ def _temperature_rise(model, tally):
     """Rise (K) if all friction power heats the leakage."""
     film = model.scene.film
     flow = abs(tally.mean("leakage_inner" if model.closing.outer_is_high else "leakage_outer"))
-    return tally.mean("friction_power") / (film.density * film.specific_heat * flow) if flow > 0 else math.nan
+    gas = gas_of(film)
+    heat = film.specific_heat if gas is None else gas.heat_ratio / (gas.heat_ratio - 1.0) * gas.gas_constant
+    return tally.mean("friction_power") / (density_of(film) * heat * flow) if flow > 0 else math.nan
 
 
 def _film(segment, linear, tally):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.equilibrium import axial_excess, crossing
+from ..dynamics.fluid import set_fluid
 from ..dynamics.model import Model
 from ..faces.geometry import (
     COLLAPSE,
@@ -18,11 +19,8 @@ from ..faces.geometry import (
     GX_RATE,
     GY,
     GY_RATE,
-    INNER_PRESSURE,
     MEAN_SPIN,
-    OUTER_PRESSURE,
     SPIN_DIFFERENCE,
-    VISCOSITY,
     smallest_gap,
 )
 from ..scene.film import aligned_gaps
@@ -115,8 +113,7 @@ def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndar
     turning = 1j * state.whirl * state.tilt
     s[GX_RATE], s[GY_RATE] = turning.real, turning.imag
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (w_r + w_s), w_r - w_s
-    s[VISCOSITY] = scene.film.viscosity
-    s[INNER_PRESSURE], s[OUTER_PRESSURE] = scene.film.inner_pressure, scene.film.outer_pressure
+    set_fluid(s, scene.film, float)
     return s
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...dynamics.fluid import set_fluid
 from ...dynamics.intervals import constant_and_slope, spins
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
@@ -19,7 +20,6 @@ from ...faces.geometry import (
     MEAN_SPIN,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
-    VISCOSITY,
     edge_gaps,
 )
 from ...numerics.piecewise_linear import PiecewiseLinear
@@ -70,9 +70,7 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     source, f = model.observed
     s, film = np.zeros(GAP_STATE_SIZE), model.scene.film
     s[DZ] = shift
-    pressures = ((INNER_PRESSURE, film.inner_pressure), (OUTER_PRESSURE, film.outer_pressure))
-    for slot, q in ((VISCOSITY, film.viscosity), *pressures):
-        s[slot] = constant_and_slope(q, interval)[0]
+    set_fluid(s, film, lambda quantity: constant_and_slope(quantity, interval)[0])
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
     source.flow(f, s)
     leakage = -s[FLOW_INNER] if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else s[FLOW_OUTER]
