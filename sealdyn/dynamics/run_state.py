@@ -33,7 +33,8 @@ class RunState:
         self.extrema = ExtremaTracker(model, duration)
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
-        self.reasons, self.cautions = list(model.unknowns.reasons), []
+        remark = getattr(model.interface.film, "REMARK", None)
+        self.reasons, self.cautions = [*model.unknowns.reasons, *([remark] if remark else [])], []
         self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
 

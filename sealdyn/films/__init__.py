@@ -3,6 +3,7 @@
 What every film module offers (the contract):
 
 `RUNG`            int, its fidelity level (1 linear, 2 radial, ...); "auto" climbs it.
+`REMARK`          (if any) a sentence that every run with it says.
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `floored()`       (if any) the module that offers the same for tables with a floor of the pressure.
 `rough()`         (if any) the module that offers the same between rough faces, which may meet.

@@ -46,10 +46,12 @@ from . import _gas_dam as sector
 from ._fields import PRESSURE
 from ._gas_dam import STATUS
 
-__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid", "opening_law",
-           "parameters", "wrench"]  # fmt: skip
+__all__ = ["FIELDS", "FLUIDS", "REMARK", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid",
+           "opening_law", "parameters", "wrench"]  # fmt: skip
 
 RUNG, FLUIDS, FIELDS = 2, ("gas",), (PRESSURE,)
+
+REMARK = "a gas dam has no squeeze film: all damping is that of the supports and secondary seals"
 
 # Block after the faces: the sector's (_gas_dam.py), whether viscosity is that of the gap state, density at which
 # volumes are stated (kg/m^3), ln of what sectors may err, how many sectors a bend around the circle takes.

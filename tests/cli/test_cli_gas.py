@@ -12,6 +12,7 @@ REFERENCE = SCENARIOS / "gas_dam_reference.toml"
 def test_reference_follows_its_seat(tmp_path):
     done = sealdyn("run", REFERENCE, "--out", "x.h5", "--json", "--no-plot", cwd=tmp_path)
     assert done.code == 0 and done.found["status"] == "ok"
+    assert any("no squeeze film" in reason for reason in done.found["model"]["reasons"])
     tracking = done.found["relative_misalignment"]["max"]
     assert tracking < 0.05 * 1.5e-5
     flows = [column(tmp_path / "x.h5", f"mass_flow_{side}") for side in ("inner", "outer")]
