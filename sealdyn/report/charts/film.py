@@ -14,6 +14,8 @@ MOST_COLUMNS, STEPS = 1500, 20
 WIDTH, HEIGHT, FOR_PRESSURE = 12.0, 5.8, 4.7
 # Angles around the circle, at least, and per wave of the highest order.
 ANGLES, PER_WAVE = 180, 16
+# Faces narrower than this share of their radius are drawn wider.
+NARROW = 0.1
 NOTHING = 1e-12  # m: a film this even shows no thinnest place
 
 
@@ -152,9 +154,15 @@ def _over_face(ax, radius, angle, over, colours: str):
     image = ax.pcolormesh(
         angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=_scale(over)
     )
-    ax.set(ylim=(0, 1e3 * radius[-1]), yticks=[])
+    words, width = f"{1e3 * radius[0]:.4g}–{1e3 * radius[-1]:.4g} mm", radius[-1] - radius[0]
+    if width < NARROW * radius[-1]:
+        # To scale it would be a line.
+        ax.set(ylim=(1e3 * radius[0], 1e3 * radius[-1]), rorigin=1e3 * (radius[0] - 2.0 * width), yticks=[])
+        words += "\nwidth stretched"
+    else:
+        ax.set(ylim=(0, 1e3 * radius[-1]), yticks=[])
     ax.grid(False)
-    ax.text(0, 0, f"{1e3 * radius[0]:.4g}–{1e3 * radius[-1]:.4g} mm", ha="center", va="center")
+    ax.text(0.5, 0.5, words, ha="center", va="center", transform=ax.transAxes)
     return image
 
 
