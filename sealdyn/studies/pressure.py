@@ -31,7 +31,7 @@ from .coefficients import State, gap_state
 WITH_WAVES = True
 # What `at` may set.
 PLACES = {"clearance": Quantity("clearance", "m", '"10 um"', (), 0, True), "tilt": Angle.__metadata__[0]}
-# Of the film's integrals, as a share; and of the force, where the sum over the grid is no longer that of the film.
+# Error of the film's integrals, as a share; share of gauge force or moment by which the sums over a coarse grid err.
 EXACT, COARSE = 1e-10, 0.01
 # Of the larger edge pressure times the area: a gauge force below has no centre; of force and radius: no moment.
 NOTHING = 1e-9
@@ -69,16 +69,20 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.pressure.at", *_closed(interface, tilt))
     own = () if interface.unknowns is None else (interface.steady(f, s),)
     interface.film.flow(f, s, *own)
+    if not np.all(np.isfinite(s[FORCE : FLOW_OUTER + 1])):
+        found = f"a clearance of {interface.clearance:.4g} m, at which force and leakage are no numbers"
+        raise ScenarioError(scenario.name, "study.pressure.at", found, "a clearance of the size of a film's")
     p_low, area = min(scene.film.inner_pressure, scene.film.outer_pressure), interface.closing.area
     # What leaves on the side of the low pressure.
     leakage = -s[FLOW_INNER] if interface.closing.outer_is_high else s[FLOW_OUTER]
+    gauge = float(s[FORCE] - p_low * area)
     answer = {
         "film": interface.name,
         "clearance": float(interface.clearance),
         "tilt": float(tilt),
         "h_min": {"value": float(thinnest), "theta": float(angle % (2 * math.pi)), "radius": float(radius)},
         "force": float(s[FORCE]),
-        "gauge_force": float(s[FORCE] - p_low * area),
+        "gauge_force": gauge if abs(gauge) > EXACT * abs(s[FORCE]) else 0.0,
         "contact_force": _contact_force(interface, s),
         "moment": [float(s[MOMENT_X]), float(s[MOMENT_Y])],
         "centre_of_pressure": None,
@@ -128,9 +132,11 @@ def _closed(interface, tilt: float) -> tuple[str, str]:
 
     if gap(0.0) <= 0.0:
         return f"faces that meet at a clearance of {1e6 * clearance:.4g} um", "a larger clearance"
-    most = 1e3 * abs(crossing(gap, 0.0, tilt, 1e-9))
     found = f"faces that meet at a clearance of {1e6 * clearance:.4g} um and a tilt of {1e3 * tilt:.4g} mrad"
-    return found, f"a tilt below {most:.4g} mrad"
+    # However far beyond the tilt is.
+    while gap(0.5 * tilt) <= 0.0:
+        tilt *= 0.5
+    return found, f"a tilt below {1e3 * abs(crossing(gap, 0.5 * tilt, tilt, 1e-9)):.4g} mrad"
 
 
 def _contact_force(interface, s) -> float:
@@ -225,12 +231,11 @@ def _verdict(answer, message: str) -> list[str]:
     where = f"{'the equilibrium of ' if message else ''}{1e6 * answer['clearance']:.5g} um"
     where += f", tilted by {1e6 * answer['tilt']:.5g} urad" if answer["tilt"] else ", aligned"
     x, y = answer["moment"]
-    turned = math.hypot(x, y) > NOTHING * abs(answer["force"]) * answer["edges"]["outer"][0]
     said = [
         f"At {where} ({answer['film']} film; thinnest {1e6 * answer['h_min']['value']:.4g} um): force "
         f"{answer['force']:.6g} N, {answer['gauge_force']:.5g} N of it above the lower edge pressure; "
-        f"{f'moments {x:.4g} and {y:.4g} N m' if turned else 'no moment'}; leakage {answer['leakage']:.4g} m^3/s, "
-        f"{answer['mass_flow']:.4g} kg/s.",
+        f"{f'moments {x:.4g} and {y:.4g} N m' if _turns(answer) else 'no moment'}; leakage "
+        f"{answer['leakage']:.4g} m^3/s, {answer['mass_flow']:.4g} kg/s.",
     ]
     if message:
         said.append(f"Clearance: {message}.")
@@ -239,7 +244,7 @@ def _verdict(answer, message: str) -> list[str]:
     if answer["pressure"] is None:
         said.append(
             f"The {answer['film']} film has no pressure over the face: it implies a force and a moment that change in "
-            'proportion to the motion, and no profile; film.model = "radial" shows one.'
+            "proportion to the motion, and no profile; the radial and the profiled film have one."
         )
         return said
     return [*said, *_of_the_field(answer)]
@@ -253,12 +258,25 @@ def _of_the_field(answer) -> list[str]:
     else:
         edge = answer["high_pressure"]
         said.append(f"{spread}; its centre lies {centre:.4g} of the width from the {edge} edge.")
-    if p.min() < 0:
-        said.append("Below 0 no liquid is drawn: film.cavitation_pressure gives a floor.")
-    off = abs(answer["integrated"]["force"] - answer["force"])
-    if off > COARSE * abs(answer["force"]):
-        said.append(f"The grid is coarse here: the field sums up to {answer['integrated']['force']:.5g} N.")
+    if p.min() < -NOTHING * p.max():
+        said.append("A liquid hardly bears less than 0: film.cavitation_pressure gives the film a floor.")
+    if _is_coarse(answer):
+        force, (x, y) = answer["integrated"].values()
+        said.append(f"The grid is coarse here: the field sums up to {force:.5g} N and to {x:.4g} and {y:.4g} N m.")
     return said
+
+
+def _turns(answer) -> bool:
+    """Whether there is a moment that is no rounding."""
+    return math.hypot(*answer["moment"]) > NOTHING * abs(answer["force"]) * answer["edges"]["outer"][0]
+
+
+def _is_coarse(answer) -> bool:
+    """Whether the sums over the grid are not those of the film."""
+    off, shown = abs(answer["integrated"]["force"] - answer["force"]), answer["integrated"]["moment"]
+    if off > COARSE * max(abs(answer["gauge_force"]), NOTHING * abs(answer["force"])):
+        return True
+    return _turns(answer) and math.dist(shown, answer["moment"]) > COARSE * math.hypot(*answer["moment"])
 
 
 def tables(answer) -> list:

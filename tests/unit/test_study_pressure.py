@@ -55,6 +55,9 @@ def test_nothing_said_is_the_aligned_equilibrium():
         ("tilt=3 mm", "length", "in rad"),
         ("tilt=0.32 mrad", "0.32 mrad", "below 0.3122 mrad"),
         ("tilt=-0.32 mrad", "-0.32 mrad", "below 0.3122 mrad"),
+        ("tilt=1e300", "1e+303 mrad", "below 0.3122 mrad"),
+        ("clearance=1e300", "1e+300 m", "size of a film's"),
+        ("clearance=1e-300", "1e-300 m", "size of a film's"),
         (5, "5", "clearance or tilt"),
     ],
 )
@@ -69,6 +72,21 @@ def test_diverging_faces_need_a_clearance():
     scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["film.coning=-1 mrad"])
     with pytest.raises(ScenarioError, match="larger clearance"):
         answer("clearance=5 um", scenario)
+
+
+def test_equal_pressures_have_no_gauge_force_and_no_centre():
+    found = answer("", read_scenario(SCENARIOS / "fms_reference.toml", ["film.inner_pressure=5 bar"]))
+    assert found["gauge_force"] == 0.0 and found["centre_of_pressure"] is None and found["leakage"] == 0.0
+
+
+def test_a_coarse_grid_and_a_pressure_below_zero_are_said():
+    """Nearly touching: the grid of the film no longer sums up to its moment."""
+    fine, coarse = answer("tilt=0.1 mrad"), answer("tilt=0.312 mrad")
+    off = [np.subtract(found["integrated"]["moment"], found["moment"]) for found in (fine, coarse)]
+    off = [np.hypot(*o) / np.hypot(*found["moment"]) for o, found in zip(off, (fine, coarse), strict=True)]
+    assert off[0] < 0.003 and off[1] > 0.015 and len(coarse["verdict"]) > len(fine["verdict"])
+    drawn_down = answer("tilt=0.1 mrad", read_scenario(SCENARIOS / "fms_reference.toml", ["film.outer_pressure=0 bar"]))
+    assert np.min(drawn_down["pressure"]["p"]) < 0 and len(drawn_down["verdict"]) > len(fine["verdict"])
 
 
 def test_what_asperities_carry_is_told_apart():

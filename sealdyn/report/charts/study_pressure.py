@@ -62,9 +62,7 @@ def _over_radius(ax, answer, r, uneven):
         for name, colour, dashes in (("thinnest", CONTACT, "-"), ("thickest", GREEN, "--")):
             label = f"where the film is {name}, {np.degrees(profiles['at'][name]):.4g}°"
             ax.plot(r, BAR * np.array(profiles[name]), color=colour, ls=dashes, lw=1.6, label=label)
-    ax.plot(
-        r, BAR * np.array(profiles["circle_mean"]), color=FILM, lw=2.0, label="mean of the circle" if uneven else ""
-    )
+    ax.plot(r, BAR * np.array(profiles["circle_mean"]), color=FILM, lw=2.0, label="mean of the circle")
     ax.set(xlabel="radius, mm", ylabel="film pressure, bar", title="Over the radius")
     centre, edges = answer["centre_of_pressure"], [1e3 * answer["edges"][side][0] for side in ("inner", "outer")]
     ax.set_xlim(*edges)
