@@ -31,6 +31,9 @@ A film that has no solution at some gaps writes NaN as its force, and into REFUS
 What it may show over the faces, kept by archives at a few instants (a film that says nothing shows nothing):
 
 `FIELDS`          tuple of Field (films/_fields.py): names, units, long names.
+`MEAN_CIRCUMFERENCE`
+                  (if any) True where pressure acts on the mean circumference, at whatever radius.
+`exit_mach(f, s)` (if any) least and largest Mach number of the gas at its exit around the circle at a gap state.
 `grid(f)`         radii (m) and angles (rad, from the x axis) at which it gives them; they do not change during a run.
 `fields(f, s, out)`
                   compiled kernel: their values at a gap state into `out` (fields, radii, angles).

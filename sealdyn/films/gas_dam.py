@@ -61,7 +61,9 @@ OWN_VISCOSITY, DENSITY, LOG_ERROR, BENT, BLOCK_SIZE = range(DAM + sector.BLOCK_S
 FEWEST, MOST = 8, 512
 # The friction's Gauss points, and those of the field.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
-RADII, ANGLES = 24, 48
+RADII, ANGLES = 65, 48
+# Pressure acts on the mean circumference, at whatever radius.
+MEAN_CIRCUMFERENCE = True
 
 
 def accepts(film, waves=()) -> str:
@@ -225,8 +227,15 @@ def flow(f, s):
 
 
 def grid(f) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (m) and angles (rad) of the field."""
-    return np.linspace(f[INNER_RADIUS], f[OUTER_RADIUS], RADII), np.arange(ANGLES) * (2 * np.pi / ANGLES)
+    """Radii (m), closer at the edges, where a choked gas expands, and angles (rad) of the field."""
+    return np.array([_radius(f, k, RADII) for k in range(RADII)]), np.arange(ANGLES) * (2 * np.pi / ANGLES)
+
+
+@inner_kernel()
+def _radius(f, k, count):
+    """Radius (m) number k of so many."""
+    share = 0.5 * (1.0 - math.cos(math.pi * k / (count - 1)))
+    return f[INNER_RADIUS] + (f[OUTER_RADIUS] - f[INNER_RADIUS]) * share
 
 
 @value_kernel()
@@ -239,7 +248,7 @@ def fields(f, s, out):
         cos = math.cos(2.0 * math.pi * j / out.shape[2] - thinnest)
         h_i, h_o, code = _solve(f, g, s, edges, cos, work)
         for i in range(out.shape[1]):
-            r = r_i + (r_o - r_i) * i / (out.shape[1] - 1)
+            r = _radius(f, i, out.shape[1])
             if code != sector.SOLVED:
                 out[0, i, j] = math.nan
             elif s[INNER_PRESSURE] == s[OUTER_PRESSURE]:

@@ -17,6 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 COMMANDS = {
     "equilibrium": ["run_in"],
+    "pressure": ["fms_reference", "--at", "tilt=0.15mrad"],
     "coefficients": ["fmr_reference"],
     "transmissibility": ["fmr_reference"],
     "steady-state": ["fms_reference"],

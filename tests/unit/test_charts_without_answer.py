@@ -47,6 +47,7 @@ ANSWERS = {
     "failures": {"rows": [{"item": 1, "title": "chaos", **LOST}]},
     "neutral_stability": {"damping": [], "reason": WHY, "drift": [], "drift_reason": WHY, "resolved": None,
                           "turns": 60},
+    "pressure": {"film": "linear", "pressure": None},
     "rub": {"key": "rotor.runout", "touch": 1e-7, "rows": [], "judge": None, "methods": None, "separation": None,
             "whirl": {"rows": [{"speed": 1.0, **LOST}]}},
     "runup": {

@@ -5,6 +5,7 @@ from matplotlib import colormaps
 from matplotlib.colors import Normalize
 
 from ...archive import FIELD_TIME, field
+from .face import annulus, in_the_middle
 from .page import absent, header, look, save, sheet
 from .palette import CONTACT, PRESSURE, THICKNESS
 from .record import BLOCK, Run
@@ -14,8 +15,6 @@ MOST_COLUMNS, STEPS = 1500, 20
 WIDTH, HEIGHT, FOR_PRESSURE = 12.0, 5.8, 4.7
 # Angles around the circle, at least, and per wave of the highest order.
 ANGLES, PER_WAVE = 180, 16
-# Faces narrower than this share of their radius are drawn wider.
-NARROW = 0.1
 NOTHING = 1e-12  # m: a film this even shows no thinnest place
 
 
@@ -154,15 +153,7 @@ def _over_face(ax, radius, angle, over, colours: str):
     image = ax.pcolormesh(
         angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=_scale(over)
     )
-    words, width = f"{1e3 * radius[0]:.4g}–{1e3 * radius[-1]:.4g} mm", radius[-1] - radius[0]
-    if width < NARROW * radius[-1]:
-        # To scale it would be a line.
-        ax.set(ylim=(1e3 * radius[0], 1e3 * radius[-1]), rorigin=1e3 * (radius[0] - 2.0 * width), yticks=[])
-        words += "\nwidth stretched"
-    else:
-        ax.set(ylim=(0, 1e3 * radius[-1]), yticks=[])
-    ax.grid(False)
-    ax.text(0.5, 0.5, words, ha="center", va="center", transform=ax.transAxes)
+    in_the_middle(ax, annulus(ax, 1e3 * radius[0], 1e3 * radius[-1]))
     return image
 
 
