@@ -20,6 +20,7 @@ from ..faces.geometry import (
     MOMENT_X,
     MOMENT_Y,
     OUTER_RADIUS,
+    REFUSED,
 )
 from ..numerics.crossing import crossing
 from ..scenario.errors import ScenarioError
@@ -76,14 +77,17 @@ def run(scenario, settings, tools) -> dict:
     own = () if interface.unknowns is None else (interface.steady(f, s),)
     interface.film.flow(f, s, *own)
     if not np.all(np.isfinite(s[FORCE : FLOW_OUTER + 1])):
-        found = f"a clearance of {interface.clearance:.4g} m, at which force and leakage are no numbers"
-        raise ScenarioError(scenario.name, "study.pressure.at", found, "a clearance of the size of a film's")
+        where = f"a clearance of {interface.clearance:.4g} m and a tilt of {tilt:.4g} rad"
+        why = interface.film.STATUS[int(s[REFUSED])] if s[REFUSED] else "force and leakage are no numbers"
+        expected = "a clearance of the size of a film's, and a flow through it"
+        raise ScenarioError(scenario.name, "study.pressure.at", f"{where}: {why}", expected)
     p_low, area = min(scene.film.inner_pressure, scene.film.outer_pressure), interface.closing.area
     # What leaves on the side of the low pressure.
     leakage = -s[FLOW_INNER] if interface.closing.outer_is_high else s[FLOW_OUTER]
     gauge = float(s[FORCE] - p_low * area)
     answer = {
         "film": interface.name,
+        "gas": scene.film.gas is not None,
         "clearance": float(interface.clearance),
         "tilt": float(tilt),
         "h_min": {"value": float(thinnest), "theta": float(angle % (2 * math.pi)), "radius": float(radius)},
@@ -244,7 +248,8 @@ def _verdict(answer, message: str) -> list[str]:
         f"At {where} ({answer['film']} film; thinnest {1e6 * answer['h_min']['value']:.4g} um): force "
         f"{answer['force']:.6g} N, {answer['gauge_force']:.5g} N of it above the lower edge pressure; "
         f"{f'moments {x:.4g} and {y:.4g} N m' if _turns(answer) else 'no moment'}; leakage "
-        f"{answer['leakage']:.4g} m^3/s, {answer['mass_flow']:.4g} kg/s.",
+        f"{answer['leakage']:.4g} m^3/s{' at 0 degC and 1.01325 bar' if answer['gas'] else ''}, "
+        f"{answer['mass_flow']:.4g} kg/s.",
     ]
     if answer["exit_mach"] is not None:
         choked = "choked" if answer["exit_mach"] >= 1.0 else "subsonic"

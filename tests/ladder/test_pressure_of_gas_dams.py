@@ -1,0 +1,42 @@
+"""The study of film pressure on a gas dam: what the field sums up to (Zuk's rows: test_zuk_by_the_program.py)."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sealdyn import read_scenario
+from sealdyn.closed_form.zuk_1972 import CRUISE
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.studies import pressure
+from sealdyn.studies.pressure import Settings
+
+REFERENCE = Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml"
+
+
+def answer(at="", *overrides):
+    return pressure.run(read_scenario(REFERENCE, overrides), Settings(at), None)
+
+
+def test_the_field_sums_up_to_the_dams_force_and_moments():
+    found = answer("tilt = 0.03 mrad")
+    assert found["integrated"]["force"] == pytest.approx(found["force"], rel=2e-3)
+    assert found["integrated"]["moment"] == pytest.approx(found["moment"], abs=0.02 * np.hypot(*found["moment"]))
+    assert found["moment"][0] < -0.1 and found["moment"][1] == 0.0
+
+
+@pytest.mark.parametrize("at, found", [("clearance=1 mm", "0.001 m"), ("clearance=0.6 mm,tilt=4 mrad", "chokes")])
+def test_a_dam_without_a_solution_says_why(at, found):
+    with pytest.raises(ScenarioError) as error:
+        answer(at)
+    assert found in error.value.found and error.value.key == "study.pressure.at"
+
+
+def test_a_wide_dam_is_a_strip_too():
+    """Weighted with r the field of a dam so wide would sum up to other numbers."""
+    found = answer("", "film.inner_radius=2 in", "film.coning=0")
+    assert found["integrated"]["force"] == pytest.approx(found["force"], rel=2e-3)
+    p, r = np.array(found["pressure"]["p"])[:, 0] - CRUISE.low_pressure, np.array(found["pressure"]["r"])
+    width = (r - r[0]) / (r[-1] - r[0])
+    centre = np.trapezoid(p * width, width) / np.trapezoid(p, width)
+    assert found["centre_of_pressure"] == pytest.approx(centre, rel=0.01)
