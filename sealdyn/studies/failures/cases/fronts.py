@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....faces.geometry import FORCE, GAP_STATE_SIZE, GY, MEAN_SPIN, VISCOSITY
 from ....films._radial_quadrature import RADIAL_POINTS, RULE_SIZE, RULES
 from ....films.radial import floored as radial

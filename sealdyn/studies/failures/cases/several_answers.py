@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from scipy.optimize import newton
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
 from ....scene.contact import Contact
 from ....scene.scene import Closing
