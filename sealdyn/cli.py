@@ -375,17 +375,27 @@ def plot(
 
 
 @app.command()
-def validate(as_json: AsJson = False):
-    """Compare published numbers with three independent methods: formula, linear algebra, time domain."""
-    from .analysis.validation import report, validate_all
+def validate(
+    source: Annotated[str | None, typer.Argument(help="one source, e.g. zuk-1972 (default all)")] = None,
+    as_json: AsJson = False,
+):
+    """Compare published numbers with what the program computes: all sources, or one."""
+    from .analysis.validation import report, source_names
+    from .analysis.validation import validate as found_of
 
+    names = source_names()
+    wanted = names if source is None else [source.replace("_", "-")]
+    if not set(wanted) <= set(names):
+        near = _nearest(wanted[0], names)
+        raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
     with _libraries_on_stderr():
-        rows = validate_all()
+        found = found_of(wanted)
+    rows = [row for part in found.values() for row in part]
     good = all(row["verdict"] != "FAILED" for row in rows)
     if as_json:
         print(json.dumps({"status": Status.OK if good else Status.FAILED, "checks": rows}))
     else:
-        report(rows)
+        report(found)
     raise typer.Exit(DONE if good else CHECK_FAILED)
 
 

@@ -41,7 +41,7 @@ class Published(NamedTuple):
     """One row: tilt (rad, positive: the film grows outwards), mean film (m), printed leakage (kg/s), force (N) and its
     centre (share of the dam's width from the high pressure); force and centre without the error of the tilted rows,
     and exit Mach number, computed: laminar, no entrance loss, width constant (no tilt) or radial, the friction factor
-    of the mean radius."""
+    of the mean radius; the printed exit Mach number, where there is one."""
 
     tilt: float
     mean_film: float
@@ -51,13 +51,14 @@ class Published(NamedTuple):
     corrected_force: float
     corrected_centre: float
     exit_mach: float
+    printed_exit_mach: float | None
 
 
 CRUISE = Cruise()
 MIL, POUND, POUND_FORCE = 25.4e-6, 0.45359237, 4.4482216152605
 
 
-def _row(tilt, mils, pounds_per_minute, pounds, centre, corrected_pounds, corrected_centre, exit_mach):
+def _row(tilt, mils, pounds_per_minute, pounds, centre, corrected_pounds, corrected_centre, exit_mach, printed=None):
     return Published(
         tilt,
         mils * MIL,
@@ -67,6 +68,7 @@ def _row(tilt, mils, pounds_per_minute, pounds, centre, corrected_pounds, correc
         corrected_pounds * POUND_FORCE,
         corrected_centre / 100,
         exit_mach,
+        printed,
     )
 
 
@@ -75,8 +77,8 @@ ZUK_1972 = (
     _row(0.0, 0.1, 0.0122, 133, 39.1, 133.4, 39.07, 0.251),
     _row(0.0, 0.2, 0.0939, 135, 39.7, 134.8, 39.51, 0.907),
     _row(0.0, 0.3, 0.2890, 138, 40.5, 137.8, 40.55, 1.0),
-    _row(0.002, 0.1, 0.0068, 58, 26.0, 82.4, 31.57, 0.093),
-    _row(0.002, 0.2, 0.0837, 91, 33.0, 110.3, 36.12, 0.661),
+    _row(0.002, 0.1, 0.0068, 58, 26.0, 82.4, 31.57, 0.093, 0.09),
+    _row(0.002, 0.2, 0.0837, 91, 33.0, 110.3, 36.12, 0.661, 0.66),
     _row(-0.002, 0.2, 0.0827, 220, 49.8, 155.3, 42.16, 1.0),
 )
 

@@ -125,7 +125,23 @@ def test_validate_agrees(tmp_path):
     answer = sealdyn("validate", "--json", cwd=tmp_path)
     assert answer.code == 0, answer.err
     checks = answer.found["checks"]
-    assert len(checks) >= 10 and all(check["verdict"] != "FAILED" for check in checks)
+    assert len(checks) >= 40 and all(check["verdict"] != "FAILED" for check in checks)
+    assert {check["source"].split(" (")[0] for check in checks} == {"Green", "Ludwig & Allen", "Zuk"}
+
+
+def test_validate_takes_one_source(tmp_path):
+    answer = sealdyn("validate", "zuk-1972", cwd=tmp_path)
+    assert answer.code == 0 and "tilt counted twice" in answer.out
+    for name in ("zuk-1972", "zuk_1972"):
+        checks = sealdyn("validate", name, "--json", cwd=tmp_path).found["checks"]
+        assert len(checks) == 24 and {check["source"] for check in checks} == {"Zuk (1972), sealing dam at cruise"}
+    assert sealdyn("validate", "green", cwd=tmp_path).err.count("green-1989") == 2
+
+
+def test_validate_fails_where_the_methods_disagree(tmp_path, monkeypatch):
+    monkeypatch.setattr("sealdyn.analysis.sources.zuk_1972.TOLERANCE", 1e-3)
+    answer = sealdyn("validate", "zuk-1972", "--json", cwd=tmp_path)
+    assert answer.code == 5 and answer.found["status"] == "failed"
 
 
 def test_help_imports_nothing_heavy():

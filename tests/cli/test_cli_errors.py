@@ -41,8 +41,9 @@ BAD = {
     "show: another HDF5 file": ["show", "other.h5"],
     "plot: no archive": ["plot", "fake.h5"],
     "plot: unknown kind": ["plot", "other.h5", "--kind", "orbti"],
+    "validate: unknown source": ["validate", "zuk-1927"],
 }
-HAVE_JSON = ("run", "check", "show", "rum")
+HAVE_JSON = ("run", "check", "show", "rum", "validate")
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,8 @@ Face width over mean radius is 0.017: the arm of the sine moment, dR^2/(20 R^2) 
 import numpy as np
 import pytest
 
+from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
-from sealdyn.studies.sealing_number import quasi_static
 
 RING = quasi_static.Ring()
 RATIOS = [2.0, 3.0, 5.0, 20.0]

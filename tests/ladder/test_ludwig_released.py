@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import fsolve
 
+from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.closed_form import released_ring as rr
 from sealdyn.scene.contact import Contact
@@ -15,7 +16,6 @@ from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
 from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.studies.sealing_number import quasi_static
 from sealdyn.studies.sealing_number import released as free
 from sealdyn.studies.sealing_number.released import film_on, released, ring_of, started, with_force_ratio
 

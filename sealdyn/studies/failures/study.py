@@ -1,4 +1,4 @@
-"""Failures: twelve places where methods fail, each failing method run beside the one that survives it.
+"""Failures: thirteen places where methods fail, each failing method run beside the one that survives it.
 
 The exhibits are small scenes of the reference seal (exhibits/); the scenario is told what the program does with it.
 """
@@ -18,7 +18,7 @@ units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row
 
 @dataclass(frozen=True)
 class Settings:
-    """`items`: numbers of the exhibits to show (default all twelve)."""
+    """`items`: numbers of the exhibits to show (default all)."""
 
     items: tuple[int, ...] | int = ()
 
@@ -29,7 +29,9 @@ def run(scenario, settings, tools) -> dict:
     wanted = (settings.items,) if isinstance(settings.items, int) else settings.items
     unknown = set(wanted) - set(names.values())
     if unknown:
-        raise ScenarioError(scenario.name, "study.failures.items", str(sorted(unknown)), "items from 1 to 12")
+        raise ScenarioError(
+            scenario.name, "study.failures.items", str(sorted(unknown)), f"items from 1 to {max(names.values())}"
+        )
     chosen = [name for name, item in names.items() if item in wanted or not wanted]
     found = tools.map(shown, [{"exhibit": name} for name in chosen], "exhibit")
     rows = []

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from ...analysis import quasi_static
 from ...closed_form import ludwig_allen as closed
 from ...closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
 from ...dynamics.model import Model
@@ -23,7 +24,6 @@ from ...simulation.method_selection import choose_method
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
-from . import quasi_static
 
 # h1/h0 below which a ring has straightened; share of the spring force, or of time, that counts; what is steady.
 STRAIGHT, COUNTS, STEADY = 0.1, 0.01, 0.02

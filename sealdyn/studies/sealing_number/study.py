@@ -8,12 +8,12 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from ...analysis import quasi_static
 from ...closed_form import ludwig_allen as closed
 from ...closed_form import released_ring
 from ...dynamics.model import Model
 from ...numerics.piecewise_linear import initially
 from ...status import Status
-from . import quasi_static
 from . import released as free
 
 units = {"line/force_ratio": "1", "line/sealing_number": "1", "map/guide": "1"}

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ... import closed_form as cf
-from ...analysis.validation import growth_rate
+from ...analysis.growth import growth_rate
 from ...dynamics import modes
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState

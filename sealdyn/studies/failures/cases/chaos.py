@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....scene.contact import Contact

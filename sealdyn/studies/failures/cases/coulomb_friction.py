@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....scene.rings import Rotor
 from ....scene.secondary_seal import SecondarySeal
 from ._common import ZERO_FILM, integrated, row, run_from

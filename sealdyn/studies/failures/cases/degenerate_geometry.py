@@ -7,7 +7,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....closed_form import film_coefficients
 from ....faces.geometry import DZ_RATE, FORCE, GAP_STATE_SIZE, VISCOSITY
 from ....films.radial import film as radial

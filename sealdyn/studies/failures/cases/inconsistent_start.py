@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
 from ....films import film_module
 from ....scene.scene import Closing, SceneError

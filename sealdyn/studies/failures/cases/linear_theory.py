@@ -5,7 +5,7 @@ from dataclasses import replace
 from scipy.optimize import brentq
 
 from ....analysis.shooting import Shooter
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
 from ....dynamics.steady_extremes import steady_extremes

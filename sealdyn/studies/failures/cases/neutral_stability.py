@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....analysis.whirl import RotatingWave, contact_tilt_aligned, free_model, least_damped
 from ....dynamics.run_state import RunState
 from ....simulation.stability import critical_speed

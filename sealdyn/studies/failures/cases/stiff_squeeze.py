@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....scene.rings import Rotor, Stator
 from ....simulation.method_selection import choose_method
 from ....solvers.contract import Counts, Status

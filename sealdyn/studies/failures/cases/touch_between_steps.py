@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from sksundae.cvode import CVODE
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....scene.contact import Contact, contact_thresholds
 from ....scene.rings import AxialRunout, Rotor
 from ._common import ZERO_FILM, integrated, row, run_from

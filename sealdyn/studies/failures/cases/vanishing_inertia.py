@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....analysis.validation import reference_scene
+from ....analysis.sources.green_1989 import reference_scene
 from ....scene.rings import Rotor, Stator
 from ....solvers.contract import Counts, SolverFailure
 from ....solvers.methods import METHODS

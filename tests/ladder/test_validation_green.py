@@ -1,15 +1,15 @@
-"""`sealdyn validate`: every row of Green's Table 1 holds, and the one that the print has wrong says so."""
+"""`sealdyn validate`, Green: every row of his Table 1 holds, and the one that the print has wrong says so."""
 
 import pytest
 
 from sealdyn import closed_form
-from sealdyn.analysis import validation
-from sealdyn.analysis.validation import report, validate_all
+from sealdyn.analysis.sources import green_1989
+from sealdyn.analysis.validation import report
 
 
 @pytest.fixture(scope="module")
 def rows():
-    return validate_all()
+    return green_1989.checks()
 
 
 # What Green prints and what is computed from his formulas: (seal, c, quantity) -> printed, computed, verdict.
@@ -58,7 +58,7 @@ def test_the_print_that_differs_is_explained(rows):
 
 
 def test_report_shows_every_row_and_remark(rows, capsys):
-    report(rows)
+    report({"green-1989": rows})
     printed = capsys.readouterr().out
     assert "print differs" in printed and "8683.96" in printed and "none" in printed
     assert all(row["remark"] in printed for row in rows)
@@ -75,9 +75,9 @@ WRONG = {
 def test_a_wrong_formula_fails(wrong, monkeypatch):
     """One per cent off in one road: its row fails."""
     right = getattr(closed_form, wrong)
-    monkeypatch.setattr(validation.cf, wrong, lambda **numbers: 1.01 * right(**numbers))
-    monkeypatch.setattr(validation.cf, "GREEN_1989", [closed_form.GREEN_1989[WRONG[wrong]]])
-    (row,) = validate_all()
+    monkeypatch.setattr(green_1989.cf, wrong, lambda **numbers: 1.01 * right(**numbers))
+    monkeypatch.setattr(green_1989.cf, "GREEN_1989", [closed_form.GREEN_1989[WRONG[wrong]]])
+    (row,) = green_1989.checks()
     assert row["quantity"].startswith(wrong[4:]) and row["arrangement"] == wrong[:3].upper()
     assert row["verdict"] == "FAILED" and row["remark"] == "the three methods disagree"
     assert row["roads_apart"] == pytest.approx(1 - 1 / 1.01, rel=1e-3)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root
 
-from ...closed_form import ludwig_allen as closed
-from ...faces.geometry import (
+from ..closed_form import ludwig_allen as closed
+from ..faces.geometry import (
     DZ,
     DZ_RATE,
     FORCE,
@@ -25,11 +25,11 @@ from ...faces.geometry import (
     MOMENT_Y,
     VISCOSITY,
 )
-from ...films.radial import floored as radial
-from ...scene.film import Film
-from ...solvers.contract import Counts, SolverFailure, tolerance_for
-from ...solvers.methods import METHODS
-from ...status import Status
+from ..films.radial import floored as radial
+from ..scene.film import Film
+from ..solvers.contract import Counts, SolverFailure, tolerance_for
+from ..solvers.methods import METHODS
+from ..status import Status
 
 # Film error: below what the integrator is asked, so that it meets a smooth function.
 FILM_ERROR = 1e-10

@@ -1,0 +1,132 @@
+"""Choked gas flow: marched with the flow, a gas dam's equation is singular where it chokes and repels where it widens.
+
+    d(M^2)/dx = 2 M^2 (1 + d M^2) (g f M^2 - h')/((1 - M^2) h),   d = (g - 1)/2
+
+of Zuk (1972), laminar, at his cruise condition; followed upstream it is regular at M = 1 and comes nearer to the line
+M^2 = h'/(g f) instead of leaving it.
+"""
+
+import math
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import bisect, brentq
+
+from ....closed_form.zuk_1972 import CRUISE, MIL
+from ....films import _gas_dam as sector
+from ._common import row
+
+ITEM = 13
+STEPS = 20
+# Faces that narrow outwards by 2 mrad at 0.3 mil; films from 0.45 to 1.35 mil.
+WIDTH = CRUISE.outer_radius - CRUISE.inner_radius
+NARROWING = 0.3 * MIL + 1e-3 * WIDTH, 0.3 * MIL - 1e-3 * WIDTH
+WIDENING = 0.45 * MIL, 1.35 * MIL
+# What the widening dam's entrance Mach number is off, relative.
+OFF = 1e-9
+D = (CRUISE.heat_ratio - 1) / 2
+
+
+def solved(films) -> np.ndarray:
+    """The program's solution (films/_gas_dam.py) of the choked dam with films (m) at the entrance and the exit."""
+    gas = {"gas_constant": CRUISE.gas_constant, "heat_ratio": CRUISE.heat_ratio, "sutherland": CRUISE.sutherland}
+    radii, out = (CRUISE.inner_radius, CRUISE.outer_radius), np.empty(sector.DAM_SIZE)
+    f = sector.parameters(*radii, CRUISE.temperature, friction="laminar", width="constant", **gas)
+    if sector.dam(f, *films, CRUISE.high_pressure, CRUISE.low_pressure, out) != sector.SOLVED:
+        raise RuntimeError("the gas dam was not solved")
+    return out
+
+
+def entrance(mach, film) -> tuple[float, float]:
+    """Mass flow (kg/(m s)) and friction factor that an entrance Mach number makes."""
+    g, cooling = CRUISE.heat_ratio, 1 + D * mach**2
+    temperature, (factor, s) = CRUISE.temperature / cooling, CRUISE.sutherland
+    pressure = CRUISE.high_pressure / cooling ** (g / (g - 1))
+    flow = pressure * film * mach * math.sqrt(g / (CRUISE.gas_constant * temperature))
+    return flow, 24 * factor * temperature**1.5 / (temperature + s) / (2 * flow)
+
+
+def slopes(m, x, films, friction) -> tuple[float, float]:
+    """d(M^2) and dx over a common measure, which is regular: x grows, and M^2 with it, as long as M < 1."""
+    taper = (films[1] - films[0]) / WIDTH
+    h = films[0] + taper * x
+    return 2 * m * (1 + D * m) * (CRUISE.heat_ratio * friction * m - taper), (1 - m) * h
+
+
+def runge_kutta(mach, films) -> float:
+    """Mach number at the exit by so many classical steps with the flow; infinite if it is sonic before."""
+    friction, m, step = entrance(mach, films[0])[1], mach**2, WIDTH / STEPS
+
+    def rate(m, x):
+        change, dx = slopes(m, x, films, friction)
+        return change / dx if m < 1 else math.inf
+
+    for k in range(STEPS):
+        x = k * step
+        k_1 = rate(m, x)
+        k_2 = rate(m + step / 2 * k_1, x + step / 2)
+        k_3 = rate(m + step / 2 * k_2, x + step / 2)
+        m += step / 6 * (k_1 + 2 * k_2 + 2 * k_3 + rate(m + step * k_3, x + step))
+        if not m < 1:
+            return math.inf
+    return math.sqrt(m)
+
+
+def with_the_flow(mach, films) -> tuple[float, float]:
+    """Where along the dam (share of its width) a march in ever smaller steps ends, and the Mach number there."""
+    friction = entrance(mach, films[0])[1]
+
+    def edge(_, y):
+        return y[1] - WIDTH
+
+    def sonic(_, y):
+        return y[0] - 1
+
+    edge.terminal = sonic.terminal = True
+    done = solve_ivp(lambda _, y: slopes(*y, films, friction), (0, 1e4 * WIDTH / films[0]), [mach**2, 0.0], "DOP853",
+                     events=(edge, sonic), rtol=1e-12, atol=[1e-14, 1e-14 * WIDTH])  # fmt: skip
+    return float(done.y[1, -1] / WIDTH), math.sqrt(done.y[0, -1])
+
+
+def upstream(films) -> float:
+    """Entrance Mach number of the choked dam: the one that a march upstream from the sonic exit arrives with."""
+
+    def arrived(mach):
+        friction = entrance(mach, films[0])[1]
+
+        def edge(_, y):
+            return y[1]
+
+        edge.terminal = True
+        done = solve_ivp(lambda _, y: -np.array(slopes(*y, films, friction)), (0, 1e4 * WIDTH / films[1]),
+                         [1.0, WIDTH], "DOP853", events=edge, rtol=1e-13, atol=[1e-15, 1e-15 * WIDTH])  # fmt: skip
+        return math.sqrt(done.y[0, -1])
+
+    # A sonic exit needs h' < g f: a large flow has too little friction for it.
+    taper = (films[1] - films[0]) / WIDTH
+    most = 0.999
+    if entrance(most, films[0])[1] * CRUISE.heat_ratio < taper:
+        most = brentq(lambda mach: entrance(mach, films[0])[1] * CRUISE.heat_ratio - 1.0001 * taper, 1e-3, most)
+    return brentq(lambda mach: mach - arrived(mach), 1e-3, most, xtol=1e-14, rtol=1e-14)
+
+
+def show() -> list[dict]:
+    """Leakage of a choked dam, and where a march through a widening one arrives."""
+    found, right = solved(NARROWING), entrance(upstream(NARROWING), NARROWING[0])[0]
+    largest = bisect(lambda mach: -1.0 if runge_kutta(mach, NARROWING) < 1 else 1.0, 1e-3, 0.9)
+    marched = entrance(largest, NARROWING[0])[0]
+    line, truth = solved(WIDENING)[sector.ENTRANCE_MACH], upstream(WIDENING)
+    slow, fast = (with_the_flow(line * (1 + off), WIDENING) for off in (-OFF, OFF))
+    return [
+        row(
+            ITEM, "Choked exit", (f"Runge-Kutta, {STEPS} steps to the exit", marched / right - 1),
+            ("closed form, from the exit upstream", abs(found[sector.MASS_FLOW] / right - 1)), "leakage, relative",
+            "follows the flow upstream in closed form: no steps, and nothing singular at M = 1",
+        ),
+        row(
+            ITEM, "A line that flows leave",
+            (f"march: sonic at {100 * fast[0]:.0f} % of the dam, or M2 = {slow[1]:.2g}, {OFF:g} apart", 1 - slow[1]),
+            ("closed form, from the sonic exit upstream", abs(line - truth)), "Mach number where it arrives",
+            "goes upstream, where flows come nearer to the line M^2 = h'/(g f) by which a widening film holds them",
+        ),
+    ]  # fmt: skip
