@@ -44,6 +44,8 @@ CELLS, ANGLES, SCALE, SLIP, SLOPE_STEP, CURVATURE_STEP, TABLES = range(FACE_SIZE
 RADIUS, RISE, ARM, APART, CORE, AREA, AROUND, DRAG, PRESSED, TURNED, ROWS = range(11)
 # How much narrower the cells at the edges are: 0 all alike, 1 as the cosines of equal angles.
 GRADING = 0.8
+# Exact for what `weights` integrates.
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def radii(inner_radius: float, outer_radius: float, cells: int, grading: float) -> np.ndarray:
@@ -60,9 +62,8 @@ def weights(r: np.ndarray, between: np.ndarray, power: int) -> np.ndarray:
     for n, (a, b) in enumerate(pairwise(limits)):
         # Counted from the middle node, in half widths.
         middle, half = r[n + 1], 0.5 * (r[n + 2] - r[n])
-        y, w = np.polynomial.legendre.leggauss(4)
-        x = (0.5 * (a + b) - middle + 0.5 * (b - a) * y) / half
-        moments = [0.5 * (b - a) * np.sum(w * x**k * (middle + half * x) ** power) for k in range(3)]
+        x = (0.5 * (a + b) - middle + 0.5 * (b - a) * POINTS) / half
+        moments = [0.5 * (b - a) * np.sum(WEIGHTS * x**k * (middle + half * x) ** power) for k in range(3)]
         at = (r[n : n + 3] - middle) / half
         found[n : n + 3] += np.linalg.solve(np.vander(at, increasing=True).T, moments)
     return found
