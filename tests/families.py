@@ -1,7 +1,8 @@
 """Random scenes from everything that the program accepts, for benchmarks and tests of what it promises."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film
+from sealdyn.scene.gas import GASES, GasDam
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
@@ -31,13 +33,46 @@ class Drawn:
         return not {"contact", "o-ring"} & set(self.words)
 
 
+def logarithmic(random, low, high) -> float:
+    """A number between two, evenly over its logarithm."""
+    return float(np.exp(random.uniform(math.log(low), math.log(high))))
+
+
+def gas(random) -> Drawn:
+    """A scene of `wide` whose film is a gas: a dam that the gas crosses from either side, subsonic to choked, laminar
+    to turbulent, hot and cold; pressures, speeds and misalignments as there, tables of temperature too."""
+    drawn, log = wide(random), partial(logarithmic, random)
+    film, duration = drawn.scene.film, drawn.duration
+
+    def lifted(pressure):
+        """Above 1 bar, and at most 20 of them."""
+        if isinstance(pressure, PiecewiseLinear):
+            return PiecewiseLinear(pressure.time, tuple(1e5 + min(p, 2e6) for p in pressure.value))
+        return 1e5 + min(pressure, 2e6)
+
+    name = str(random.choice(sorted(GASES)))
+    temperature, words = log(250.0, 590.0), (*drawn.words, "gas", name)
+    if random.random() < 0.15:
+        begin, end = np.sort(random.uniform(0.1, 0.9, 2)) * duration
+        temperature = PiecewiseLinear((0.0, begin, end), (temperature, temperature, log(250.0, 590.0)))
+        words = (*words, "temperature table")
+    options = GasDam(
+        entrance_loss=float(random.choice([1.0, 0.7])), friction=str(random.choice(["blend", "laminar", "turbulent"])),
+        width=str(random.choice(["radial", "constant"])),
+    )  # fmt: skip
+    dam = replace(
+        film, model="gas_dam", gas=name, temperature=temperature, viscosity=None, gas_dam=options,
+        outer_pressure=lifted(film.outer_pressure), inner_pressure=lifted(film.inner_pressure),
+    )  # fmt: skip
+    return replace(drawn, scene=replace(drawn.scene, film=dam), words=words)
+
+
 def wide(random) -> Drawn:
     """One scene of all the families: arrangements, light and stiff rings, thin and thick, flat, converging and
     diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, growing into a rub and hit
     by a thrown ring, O-rings."""
 
-    def log(low, high):
-        return float(np.exp(random.uniform(math.log(low), math.log(high))))
+    log = partial(logarithmic, random)
 
     def chance(share, word):
         taken = random.random() < share

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..faces.geometry import FORCE
+from ..scene.scene import SceneError
 
 # Central differences of eighth order: places in steps, and weights; those of sixth and fourth order at the same places.
 OFFSETS = np.array([-4, -3, -2, -1, 1, 2, 3, 4])
@@ -59,13 +60,15 @@ def film_slopes(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float,
 
     A film law is analytic in the gap: differences of fourth, sixth and eighth order come nearer by about the same
     factor each, which foretells the error of the last, below 1e-12 as a share at steps of 1 % of the thinnest film;
-    rounding of the force comes on top.
+    rounding of the force comes on top.  Raises SceneError where the film has no solution.
     """
 
     moved, sizes = moved_gaps(s, steps), _sizes(steps)
     for gap in moved:
         wrench(f, gap)
     forces = moved[:, FORCE : FORCE + 3]
+    if np.isnan(forces).any():
+        raise SceneError("film", "a gap and pressures at which it has no solution", "a flow through the aligned film")
     # (3, 6) of each of the three orders.
     each = np.array([FOURTH, SIXTH, WEIGHTS]) @ forces.reshape(len(OFFSETS), -1)
     fourth, sixth, jacobian = (each.reshape(3, 6, 3) / sizes[:, None]).transpose(0, 2, 1)

@@ -75,6 +75,9 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
 
     if film.clearance is not None:
         force = opening_force(film.clearance, inner, outer)
+        if math.isnan(force):
+            found = f"{film.clearance * 1e6:.4g} um, at which the film has no solution"
+            raise SceneError("film.clearance", found, "a gap and pressures that a flow through it exists for")
         if balance is None and spring is None:
             balance = (force / area - low) / (high - low) if high > low else 1.0
             spring = 0.0 if high > low else force - area * low

@@ -4,11 +4,13 @@ Python inside.  What a compiled loop calls, and SUNDIALS itself (solvers/sundial
 The kernels of film and contact come as addresses in the block: one function on disk serves all scenes.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numba import carray, float64, int32
 
+from ..faces.geometry import FORCE
 from ..numerics.addresses import ADDRESS, call_film, call_load, floats, integers
 from ..numerics.kernel import c_function, inner_kernel
 from .equations import kinematics, rates
@@ -18,8 +20,8 @@ from .function_values import Value, load_value
 SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
 PARAMETERS, SCRATCH, GAP, FILM, CONTACT, WORK = range(6)
 BLOCK = ARRAYS + 2 * 6
-# C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status always 0, or -1 where a film
-# with unknowns of its own (coupled_native.py) has no solution.
+# C: int(double tau, double *y, double *yp, [double *res,] int64 *block), the status 0, or 1 where the film has no
+# solution, -1 where one with unknowns of its own (coupled_native.py) has none.
 RATES = int32(float64, ADDRESS, ADDRESS, ADDRESS)
 RESIDUAL = int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS)
 
@@ -79,5 +81,7 @@ def rates_at(tau, y_at, yp_at, data):
     block = carray(integers(data), BLOCK)
     y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
     loads(tau, y, yp, block)
-    rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), yp)
-    return 0
+    s = array(block, GAP)
+    rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), s, yp)
+    # A shorter step may stay where the film has a solution.
+    return 1 if math.isnan(s[FORCE]) else 0

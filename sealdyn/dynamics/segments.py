@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ..faces import contact
-from ..faces.geometry import GAP_STATE_SIZE, WAVES
+from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
 from ..faces.waviness import highest_orders
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
@@ -125,8 +125,9 @@ class Segment:
         return native(self)
 
     def failure(self) -> str:
-        """What the film says if it has failed: an algebraic film never does."""
-        return ""
+        """What the film says if it had no solution since it was asked last, else ""."""
+        code, self.s[REFUSED] = int(self.s[REFUSED]), 0.0
+        return self.model.interface.film.STATUS[code] if code else ""
 
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""

@@ -28,7 +28,7 @@ CONTACT_FORCE, CONTACT_X, CONTACT_Y = range(18, 21)
 CONTACT_TORQUE, CONTACT_AREA, CONTACT_PRESSURE, CONTACT_ENERGY, WEAR = range(21, 26)
 # Angle (rad) each ring has turned, less whole turns before the present stretch of time.
 STATOR_ANGLE, ROTOR_ANGLE = 26, 27
-# Of a gas the temperature (K) of its reservoir; a code of the film's STATUS where it has no solution, else 0.
+# Of a gas the temperature (K) of its reservoir; a code of the film's STATUS once it had no solution, 0 before.
 TEMPERATURE, REFUSED = 28, 29
 GAP_STATE_SIZE = 30
 

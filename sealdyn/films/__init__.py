@@ -6,7 +6,7 @@ What every film module offers (the contract):
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `floored()`       (if any) the module that offers the same for tables with a floor of the pressure.
 `rough()`         (if any) the module that offers the same between rough faces, which may meet.
-`FLUID`           (if any) "gas"; a film without it is one of liquids.
+`FLUIDS`          (if any) tuple of "liquid" and "gas"; a film without it is one of liquids.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
@@ -20,6 +20,9 @@ What every film module offers (the contract):
 `wrench(f, s)`    compiled kernel: film block `f`, gap state `s` (slots named in faces/geometry.py) -> writes
                   force and moments on the stator into `s`.
 `flow(f, s)`      compiled kernel: as `wrench`, and also leakage, friction torque into `s`.
+
+A film that has no solution at some gaps writes NaN as its force, and into REFUSED (faces/geometry.py) a code of
+`STATUS`, its {code: sentence}.
 
 `matrices(f, s)`  (optional) stiffness and damping, each (3, 3), on (dz, g_x, g_y) at a gap state; without it they
                   are differences of the force.
@@ -95,7 +98,7 @@ def refused(module, film, waves=()) -> str:
     """What a film (module) takes, as words that go after its name, where it cannot take the faces and the fluid of a
     `Film` table with these waves (Waviness); "" where it can."""
     fluid = "liquid" if film is None or film.gas is None else "gas"
-    if film is not None and fluid != getattr(module, "FLUID", "liquid"):
+    if film is not None and fluid not in getattr(module, "FLUIDS", ("liquid",)):
         return "liquids only" if fluid == "gas" else "gases only"
     return module.accepts(film, waves)
 
@@ -131,7 +134,8 @@ def film_of(scene, module=None):
 def _refusal(film, waves, able) -> SceneError:
     faces = "wavy faces" if waves else "film.inertia" if film.inertia else "a profile"
     named = film_module(film.model) if film.model in all_film_names() else None
-    if named is not None and refused(named, film) in ("gases only", "liquids only"):
+    said = "" if named is None else refused(named, film)
+    if said in ("gases only", "liquids only") or said.startswith("a gas"):
         faces = "a liquid" if film.gas is None else "a gas"
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:

@@ -46,10 +46,10 @@ from . import _gas_dam as sector
 from ._fields import PRESSURE
 from ._gas_dam import STATUS
 
-__all__ = ["FIELDS", "FLUID", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid", "opening_law",
+__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid", "opening_law",
            "parameters", "wrench"]  # fmt: skip
 
-RUNG, FLUID, FIELDS = 2, "gas", (PRESSURE,)
+RUNG, FLUIDS, FIELDS = 2, ("gas",), (PRESSURE,)
 
 # Block after the faces: the sector's (_gas_dam.py), whether viscosity is that of the gap state, density at which
 # volumes are stated (kg/m^3), ln of what sectors may err, how many sectors a bend around the circle takes.
@@ -156,7 +156,6 @@ def _circle(f, s, complete):
     r_m, low = 0.5 * (r_i + r_o), min(s[INNER_PRESSURE], s[OUTER_PRESSURE])
     g, out, edges = _gas(f, s), np.empty(sector.DAM_SIZE), _edges(f, s)
     tilt = math.hypot(s[GX], s[GY])
-    s[REFUSED] = 0.0
 
     # The thinnest place and the thickest tell what is between.
     force = moment = mass = drag = 0.0
@@ -169,7 +168,8 @@ def _circle(f, s, complete):
         if code != sector.SOLVED:
             s[FORCE] = s[MOMENT_X] = s[MOMENT_Y] = math.nan
             s[FLOW_INNER] = s[FLOW_OUTER] = s[TORQUE] = math.nan
-            s[REFUSED] = code
+            if s[REFUSED] == 0.0:
+                s[REFUSED] = code
             return
         twice = 1.0 if k < 2 else 2.0
         force += twice * out[sector.FORCE]

@@ -8,7 +8,7 @@ destabilising one.  Green's stiffness follows the pressure drop and his damping 
 follow tables over time; the user's own numbers stay as given.
 **Valid** small motion: |g| r_o and dz well below the clearance; then it costs nothing.
 Leakage and drag are those of the narrow seal at the tilted and wavy film, angle by angle, without squeeze and without
-what the pressure does on the slope of a wave.
+what the pressure does on the slope of a wave; the leakage of a gas is isothermal and viscous.
 """
 
 import math
@@ -42,6 +42,7 @@ from ..faces.geometry import (
     OUTER_PRESSURE,
     OUTER_RADIUS,
     SPIN_DIFFERENCE,
+    TEMPERATURE,
     TILT_AT_MEAN,
     TORQUE,
     VISCOSITY,
@@ -51,8 +52,9 @@ from ..faces.geometry import (
 )
 from ..numerics.kernel import value_kernel
 from ..scene.film import Coefficients
+from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
 
-RUNG = 1
+RUNG, FLUIDS = 1, ("liquid", "gas")
 
 
 def accepts(film, waves=()) -> str:
@@ -62,14 +64,17 @@ def accepts(film, waves=()) -> str:
     if film is not None and film.inertia:
         return "a fluid without inertia"
     own = film is not None and film.model == "linear" and isinstance(film.coefficients, Coefficients)
+    if film is not None and film.gas is not None and not (own and film.clearance is not None):
+        return 'a gas with model = "linear", a clearance and a table film.coefficients of your own numbers'
     return "" if own or not waves else 'waves, with model = "linear" and a table film.coefficients of your own numbers'
 
 
 # Block layout after the faces: each coefficient is a constant plus a part per pressure drop or viscosity.
-TILT_K, TILT_K_DP, TILT_D, TILT_D_MU, AXIAL_K, AXIAL_K_DP, AXIAL_D, AXIAL_D_MU, FORCE_I, FORCE_O = range(
-    FACE_SIZE, FACE_SIZE + 10
+# Then forces per pressure, and of a gas normal temperature over normal pressure (K/Pa), 0 of a liquid.
+TILT_K, TILT_K_DP, TILT_D, TILT_D_MU, AXIAL_K, AXIAL_K_DP, AXIAL_D, AXIAL_D_MU, FORCE_I, FORCE_O, GAS = range(
+    FACE_SIZE, FACE_SIZE + 11
 )
-BLOCK_SIZE = FACE_SIZE + 10
+BLOCK_SIZE = FACE_SIZE + 11
 FLOW_ANGLES = 64
 
 
@@ -95,6 +100,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
             c.axial_stiffness,
             c.axial_damping,
         )
+    f[GAS] = 0.0 if film.gas is None else NORMAL_TEMPERATURE / NORMAL_PRESSURE
     f[FORCE_I] = narrow_seal_opening_force(**faces, inner_pressure=1.0, outer_pressure=0.0)
     f[FORCE_O] = narrow_seal_opening_force(**faces, inner_pressure=0.0, outer_pressure=1.0)
     return f
@@ -164,6 +170,10 @@ def flow(f, s):
         drag += width / h_i * (math.log1p(change) / change if abs(change) > 1e-9 else 1.0)
     d_theta = 2.0 * math.pi / angles
     drop = s[OUTER_PRESSURE] - s[INNER_PRESSURE]
-    s[FLOW_INNER] = s[FLOW_OUTER] = -r_m * drop * d_theta * conductance / (12.0 * s[VISCOSITY])
+    volume = -r_m * drop * d_theta * conductance / (12.0 * s[VISCOSITY])
+    if f[GAS] != 0.0:
+        # Isothermal, at the mean pressure: p^2 falls as the pressure of a liquid.
+        volume *= 0.5 * (s[INNER_PRESSURE] + s[OUTER_PRESSURE]) * f[GAS] / s[TEMPERATURE]
+    s[FLOW_INNER] = s[FLOW_OUTER] = volume
     twist = 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])
     s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * r_m**3 * d_theta * drag + twist

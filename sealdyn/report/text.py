@@ -172,10 +172,16 @@ def _n(value, factor=1.0, digits=4):
     return "-" if value is None else f"{value * factor:.{digits}g}"
 
 
+# Keys of [film] that say nothing of a gas.
+OF_LIQUIDS = ("density", "inertia", "specific_heat", "coefficients")
+
+
 def resolved_lines(found: dict) -> list[str]:
     """The resolved scene in SI, then what the program makes of it."""
     out = []
     for table, keys in found["scene"].items():
+        if table == "film" and keys["gas"] is not None:
+            keys = {key: value for key, value in keys.items() if key not in OF_LIQUIDS}
         out += _table_lines(table, keys)
     model = found["model"]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")

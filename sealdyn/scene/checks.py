@@ -88,9 +88,10 @@ def _gas(film) -> None:
         for value in points(getattr(film, key)):
             if value <= 0.0:
                 raise SceneError(f"film.{key}", f"{value:g} Pa of a gas", "an absolute pressure above 0")
-    for key, words in (("cavitation_pressure", "a gas does not cavitate"), ("inertia", "a gas film has none")):
-        if getattr(film, key) not in (None, False):
-            raise SceneError(f"film.{key}", "a value with a gas", f"nothing: {words}")
+    if film.cavitation_pressure is not None:
+        raise SceneError("film.cavitation_pressure", "a value with a gas", "nothing: a gas does not cavitate")
+    if film.inertia:
+        raise SceneError("film.inertia", "true with a gas", "nothing: centrifugal inertia is for films of liquids")
     if film.gas_dam is not None and not 0.0 < film.gas_dam.entrance_loss <= 1.0:
         found = f"{film.gas_dam.entrance_loss:g}"
         raise SceneError("film.gas_dam.entrance_loss", found, "a share above 0, at most 1 (no loss)")

@@ -28,6 +28,9 @@ def select_film(scene, settings, start: Callable[[RunState], None]) -> tuple[Run
     name = highest.model.interface.name
     if film.model != "auto":
         return highest, None
+    if film.gas is not None:
+        highest.reasons.append(f"film auto: the {name} film, for a gas")
+        return highest, None
     if name != "radial":
         highest.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
         return highest, None

@@ -89,7 +89,9 @@ def solve(
                     break
                 segment, tau = run.segment(index + 1), 0.0
     except SolverFailure as failure:
-        status, cause, message = Status.FAILED, Cause.METHOD_GAVE_UP, str(failure)
+        reason = segment.failure()
+        message = f"{reason}; {failure}" if reason else str(failure)
+        status, cause = Status.FAILED, Cause.METHOD_GAVE_UP
     except Enough:
         status, cause, message = Status.INTERRUPTED, Cause.INTERRUPTED, str(Cause.INTERRUPTED)
     index, tau, y = run.last if status in (Status.FAILED, Status.INTERRUPTED) else (segment.index, tau, y)

@@ -45,8 +45,12 @@ def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
     )
     while solver.status == "running":
         # A trial stage may fly off and overflow; the error norm then refuses the step.
-        with np.errstate(all="ignore"):
-            message = solver.step()
+        try:
+            with np.errstate(all="ignore"):
+                message = solver.step()
+        except (ValueError, np.linalg.LinAlgError) as error:
+            # A matrix that is no number: the film has no solution there.
+            raise SolverFailure(failure_message(method, str(error), solver.t)) from None
         if solver.status == "failed":
             raise SolverFailure(failure_message(method, message, solver.t))
         yield np.array([solver.t]), solver.y[None, :].copy(), None

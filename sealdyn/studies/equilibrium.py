@@ -156,6 +156,10 @@ def _verdict(answer) -> list[str]:
         f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
         f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
     ]
+    loose = [f"{1e6 * root['clearance']:.6g} um" for root in roots if not root["stable"]]
+    if loose:
+        less = "A smaller gap would carry less there, and a larger one more: the faces close, or open to a stable gap."
+        said.append(f"Statically unstable: {', '.join(loose)}.  {less}")
     for root in roots:
         where, rough = 1e6 * root["clearance"], root["contact_force"]
         if rough:

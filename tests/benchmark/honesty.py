@@ -1,11 +1,12 @@
 """How honest are runs and their certificates on any scene, and what do they cost?
 
-    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes]
+    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes] [family]
 
 A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
-Random scenes (tests/families.py, seeded) of all that the program accepts; the truth of each by two other references
-(tests/judge.py), of every tenth by equations that share nothing with the program (tests/own_words.py), up to the time
-where they agree within accuracy/100.  Scenes of which less than a turn is known are drawn anew.
+Random scenes (tests/families.py, seeded; family "wide" or "gas") of all that the program accepts; the truth of each by
+two other references (tests/judge.py), of every tenth of liquids by equations that share nothing with the program
+(tests/own_words.py), up to the time where they agree within accuracy/100.  Scenes of which less than a turn is known are
+drawn anew.
 A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
 enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
 within the asked accuracy, or the run says that it is not.
@@ -20,10 +21,11 @@ import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+import families
 import numpy as np
-from families import wide
 from judge import Instants, TooLong, all_contacts, contact_errors, instants, truth, truth_in_own_words
 from scenes import prepared, set_start
 
@@ -108,15 +110,17 @@ def hindsight(make, drawn, times, scales, true, rows):
     return best
 
 
-def judge(number):
+def judge(number, family="wide"):
     """What one scene shows: a dict, with `why` where it is no scene or cannot be judged."""
     random = np.random.default_rng([SEED, number])
-    drawn = wide(random)
+    drawn = getattr(families, family)(random)
     row = {"number": number, "words": drawn.words, "accuracy": drawn.accuracy, "smooth": drawn.smooth}
-    radial = replace(drawn.scene, film=replace(drawn.scene.film, model="radial"))
+    highest = drawn.scene
+    if highest.film.gas is None:
+        highest = replace(highest, film=replace(highest.film, model="radial"))
 
     def make(accuracy=drawn.accuracy / 100):
-        return prepared(radial, drawn.duration, accuracy, drawn.start)
+        return prepared(highest, drawn.duration, accuracy, drawn.start)
 
     try:
         reference = make()
@@ -125,7 +129,8 @@ def judge(number):
         return {**row, "why": "no scene"}
     scales, times = LookedAt(reference), instants(random, reference)
     chosen = choose_method(reference)[0]
-    known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if number % OWN == 0 else None
+    own = number % OWN == 0 and highest.film.gas is None
+    known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if own else None
     known = known or truth(make, scales, times, drawn.accuracy, chosen)
     if known is None:
         return {**row, "why": "not judged"}
@@ -172,11 +177,12 @@ def said(row) -> str:
 def main():
     wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     processes = int(sys.argv[3]) if len(sys.argv) > 3 else 2
+    family = sys.argv[4] if len(sys.argv) > 4 else "wide"
     rows, dropped, number = [], Counter(), 0
     with ProcessPoolExecutor(processes) as pool:
         while len(rows) < wanted:
             count = max(4 * processes, wanted - len(rows))
-            for row in pool.map(judge, range(number, number + count)):
+            for row in pool.map(partial(judge, family=family), range(number, number + count)):
                 if "why" in row:
                     dropped[row["why"]] += 1
                     print(row["number"], row["why"], ",".join(row["words"]), flush=True)

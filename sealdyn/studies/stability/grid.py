@@ -95,7 +95,13 @@ class Grid:
     def _closed_form(self):
         film, name = self.scene.film, self.model.interface.name
         own = film.coefficients if name == "linear" else "radial"
-        if film.clearance is None or not isinstance(own, str) or film.tilt_radius != "local" or self.scene.contact:
+        if (
+            film.gas is not None
+            or film.clearance is None
+            or not isinstance(own, str)
+            or film.tilt_radius != "local"
+            or self.scene.contact
+        ):
             return None
         formula, more = (cf.film_coefficients, {}) if own == "green" else (
             cf.radial_film_coefficients, {"geometry": film.geometry})  # fmt: skip
