@@ -7,6 +7,7 @@ Leakage is the volume at normal conditions.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.sparse import csc_array
@@ -32,7 +33,7 @@ from ...faces.geometry import (
 )
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, viscosity_of
+from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
 from .._fields import PRESSURE
 from .._unknowns import FilmUnknowns
 from .balance import between, jacobian, pressures, radial_ways, residual
@@ -54,10 +55,10 @@ from .cells import (
 )
 from .steady import UNSOLVED, start
 
-__all__ = ["FIELDS", "FLUID", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "jacobian", "opening_law",
+__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "jacobian", "opening_law",
            "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
 
-RUNG, FLUID, FIELDS = 3, "gas", (PRESSURE,)
+RUNG, FLUIDS, FIELDS = 3, ("gas",), (PRESSURE,)
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 
@@ -84,10 +85,6 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     """Opening force (N) of the aligned film, `force(clearance, inner_pressure, outer_pressure, floor)`: pressures
     absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m.  It is the sum over the
     cells of a run, so that rings rest where it balances the closing force; the spins do not matter."""
-    from dataclasses import replace
-
-    from ...scene.gas import GasReynolds
-
     options = film.gas_reynolds or GasReynolds()
     # All angles are alike.
     f = parameters(replace(film, gas_reynolds=replace(options, cells=(options.cells[0], 3))), 1.0)
