@@ -1,8 +1,9 @@
 """Gas film with storage: the unsteady isothermal Reynolds equation over radius and angle, integrated with the rings.
 
 **Source** balance.py; the cells are in cells.py, the steady film in steady.py.
-**Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"); faces with
-coning, a profile, tilt and waves, in cylindrical geometry; films thicker than some mean free paths with slip.
+**Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
+down to films of some mean free paths; faces with coning, a profile and tilt (the balances know waves too), in
+cylindrical geometry.
 Leakage is the volume at normal conditions.
 """
 
@@ -63,8 +64,10 @@ STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 
 def accepts(film, waves=()) -> str:
-    """What faces it takes, "" if it can take these."""
-    return "cylindrical faces only" if film is not None and film.geometry != "cylindrical" else ""
+    """What faces it takes, "" if it can take these.  The balances know waves, but a film with unknowns is started and
+    linearised about a gap that stands still, which passing waves never let it."""
+    plain = film is None or film.geometry == "cylindrical"
+    return "" if plain and not waves else "cylindrical faces without waves only"
 
 
 def unknowns(f) -> FilmUnknowns:

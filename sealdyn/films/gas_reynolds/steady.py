@@ -14,6 +14,8 @@ from .cells import ANGLES, CELLS, thickness_rates, thicknesses
 # Newton's steps, the change of a pressure after which only rounding is left, and how near to zero a step may take a
 # pressure; the change from which on what closing adds counts fully.
 MOST_STEPS, ARRIVED, NEAREST, NEAR = 200, 1e-9, 0.1, 0.01
+# Least pressure, and least pressure of which flows have their slope, as shares of the lower one of the edges.
+LEAST, SLOPED = 1e-6, 1e-3
 UNSOLVED = 1
 
 
@@ -61,8 +63,8 @@ def _first(f, s, x):
 
 @outer_kernel()
 def start(f, s, x):
-    """Unknowns `x` (n,) of the steady film at a gap state: p h_t + wm d(p h)/dtheta = what flows in.  Returns 0, or a
-    code where none is found."""
+    """Unknowns `x` (n,) of the steady film at a gap state: p h_t + wm d(p h)/dtheta = what flows in.  A film that opens
+    so fast that it would be drawn empty keeps the least pressure.  Returns 0, or a code where none is found."""
     angles, cells = int(f[ANGLES]), int(f[CELLS])
     n, width = angles * cells, 2 * cells
     x[:] = 0.0
@@ -71,11 +73,13 @@ def start(f, s, x):
     thicknesses(f, s, h, np.empty(angles))
     thickness_rates(f, s, h, h_rate)
     left, rows, band, y = np.empty(n), np.empty((n, 5)), np.empty((n, 2 * width + 1)), np.empty(n)
-    far = True
+    far, strayed, low = True, False, min(s[INNER_PRESSURE], s[OUTER_PRESSURE])
     for _ in range(MOST_STEPS):
         now = state(f, s, x)
         rates(f, s, x, *now, left)
-        slopes(f, s, *now, rows)
+        # Where no pressure is left, a flow does not know its slope.
+        _, p, ways, slips, ways_around, slips_around = now
+        slopes(f, s, h, np.maximum(p, SLOPED * low), ways, slips, ways_around, slips_around, rows)
         band[:] = 0.0
         for k in range(angles):
             here = _place(k, angles) * cells
@@ -98,12 +102,14 @@ def start(f, s, x):
         for k in range(angles):
             for j in range(cells):
                 i, before = k * cells + j, x[k * cells + j]
-                x[i] = max(before + y[_place(k, angles) * cells + j], NEAREST * before)
+                x[i] = max(before + y[_place(k, angles) * cells + j], NEAREST * before, LEAST * low * h[k, j + 1])
                 change = max(change, abs(x[i] - before) / h[k, j + 1])
                 highest = max(highest, x[i] / h[k, j + 1])
         if not change < np.inf:
             return UNSOLVED
-        far = change > NEAR * highest
         if change < ARRIVED * highest:
             return 0
+        # Once has shown whether it may count.
+        strayed |= not far and change > NEAR * highest
+        far = strayed or change > NEAR * highest
     return UNSOLVED
