@@ -286,16 +286,23 @@ def schema():
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
-    csv: Annotated[bool, typer.Option("--csv", help="all series as comma-separated values on standard output")] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="all series, or a study's table, to standard output")] = False,
+    mat: Annotated[Path | None, typer.Option("--mat", help="MATLAB file to write them to")] = None,
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""
-    from .archive import ArchiveError, column, read_info
+    from .archive import ArchiveError, column, is_study, read_info
     from .report.text import archive_lines, csv_rows
 
+    if mat is not None and mat.suffix != ".mat":
+        raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
     try:
+        if is_study(file):
+            return _show_study(file, csv, mat, as_json)
         info = read_info(file)
-        if csv:
+        if mat is not None:
+            _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])})
+        elif csv:
             for row in csv_rows(info, lambda name, rows: column(file, name, rows)):
                 print(row)
         elif as_json:
@@ -306,6 +313,40 @@ def show(
                 print(line)
     except ArchiveError as error:
         raise Stop(Status.INVALID, str(error)) from None
+
+
+def _show_study(file, csv, mat, as_json):
+    """The answer of a study; its table of columns for other programs."""
+    from .archive import read_study
+    from .report.text import study_lines
+    from .studies._runner import study_tables
+
+    study = read_study(file)
+    answer, table = study["answer"], study["answer"].get("table")
+    if (csv or mat is not None) and not isinstance(table, dict):
+        raise Stop(Status.INVALID, f"{file}: study {study['study']} has no table of columns; --json prints all of it")
+    if mat is not None:
+        _write_mat(mat, table)
+    elif csv:
+        print(",".join(table))
+        for row in zip(*table.values(), strict=True):
+            print(",".join(map(repr, row)))
+    elif as_json:
+        print(json.dumps(answer))
+    else:
+        print(f"{study['name']}, study {study['study']}:")
+        for line in study_lines(answer, study_tables(study["study"], answer)):
+            print(line)
+
+
+def _write_mat(path, columns):
+    """Columns of numbers into a MATLAB file."""
+    from scipy.io import savemat
+
+    try:
+        savemat(path, columns, oned_as="column")
+    except OSError as error:
+        raise Stop(Status.INVALID, f"{path}: cannot be written ({error.strerror})") from None
 
 
 @app.command()

@@ -4,7 +4,7 @@ shows both to xarray."""
 from .dataset import as_dataset, open_archive
 from .fields import FIELD_TIME, Fields, Series
 from .run import ArchiveError, ArchiveWriter, column, field, last_state, partial_path, read_info
-from .study import read_study, write_study
+from .study import is_study, read_study, write_study
 
 __all__ = [
     "FIELD_TIME",
@@ -15,6 +15,7 @@ __all__ = [
     "as_dataset",
     "column",
     "field",
+    "is_study",
     "last_state",
     "open_archive",
     "partial_path",

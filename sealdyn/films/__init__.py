@@ -97,10 +97,13 @@ def all_film_names() -> list[str]:
 def refused(module, film, waves=()) -> str:
     """What a film (module) takes, as words that go after its name, where it cannot take the faces and the fluid of a
     `Film` table with these waves (Waviness); "" where it can."""
-    fluid = "liquid" if film is None or film.gas is None else "gas"
-    if film is not None and fluid not in getattr(module, "FLUIDS", ("liquid",)):
-        return "liquids only" if fluid == "gas" else "gases only"
+    if film is not None and not _takes_fluid(module, film):
+        return "gases only" if film.gas is None else "liquids only"
     return module.accepts(film, waves)
+
+
+def _takes_fluid(module, film) -> bool:
+    return ("liquid" if film.gas is None else "gas") in getattr(module, "FLUIDS", ("liquid",))
 
 
 def film_names(film=None, waves=()) -> list[str]:
@@ -132,11 +135,8 @@ def film_of(scene, module=None):
 
 
 def _refusal(film, waves, able) -> SceneError:
-    faces = "wavy faces" if waves else "film.inertia" if film.inertia else "a profile"
-    named = film_module(film.model) if film.model in all_film_names() else None
-    said = "" if named is None else refused(named, film)
-    if said in ("gases only", "liquids only") or said.startswith("a gas"):
-        faces = "a liquid" if film.gas is None else "a gas"
+    plain = "a gas" if film.gas is not None else "a profile" if film.profile is not None else "a liquid"
+    faces = "wavy faces" if waves else "film.inertia" if film.inertia else plain
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
         said = {name: refused(film_module(name), film, waves) for name in all_film_names()}

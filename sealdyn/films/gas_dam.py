@@ -248,6 +248,11 @@ def fields(f, s, out):
                 out[0, i, j] = sector.pressure_inside(g, work, h_i, h_o, r_i, r_o, r)
 
 
+def sectors_for(f, s) -> int:
+    """How many sectors the rule takes at a gap state where nothing begins to choke."""
+    return _sectors(f, _edges(f, s), False)
+
+
 def exit_mach(f, s) -> tuple[float, float]:
     """Least and largest Mach number at the exit around the circle at a gap state."""
     g, edges, out, found = _gas(f, s), _edges(f, s), np.empty(sector.DAM_SIZE), []

@@ -32,8 +32,10 @@ def _rows(summary):
     yield from _settled_rows(summary)
     yield from _whole_run_rows(summary)
     yield from _margin_rows(summary)
-    yield "leakage", (f"{_n(leak['mean'])} m^3/s = {_n(leak['mean_ml_per_h'])} ml/h = {_n(leak['mean_kg_per_h'])} kg/h "
-                      "(mean)")  # fmt: skip
+    volume = f"{_n(leak['mean_ml_per_h'])} ml/h"
+    if leak["conditions"]:
+        volume = f"{_n(leak['mean_ml_per_h'], 1 / 6e4)} l/min at 0 degC and 1.01325 bar"
+    yield "leakage", f"{_n(leak['mean'])} m^3/s = {volume} = {_n(leak['mean_kg_per_h'])} kg/h (mean)"
     yield "friction", (f"{_n(friction['power'])} W, torque {_n(friction['torque'])} N m; would heat the leakage by "
                        f"{_n(friction['temperature_rise'])} K")  # fmt: skip
     yield "film", (f"clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} N m/rad, "

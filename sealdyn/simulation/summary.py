@@ -12,7 +12,7 @@ from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import TOUCH
-from ..scene.gas import density_of, gas_of
+from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
@@ -242,6 +242,10 @@ def _secondary_seal(run):
     }
 
 
+# At which volumes of a gas are stated.
+NORMAL = {"temperature": NORMAL_TEMPERATURE, "pressure": NORMAL_PRESSURE}
+
+
 def _leakage(model, tally):
     side = "leakage_inner" if model.closing.outer_is_high else "leakage_outer"
     mean = tally.mean(side)
@@ -250,6 +254,7 @@ def _leakage(model, tally):
         "max": tally.largest[side] if tally.largest else math.nan,
         "mean_ml_per_h": mean * ML_PER_H,
         "mean_kg_per_h": mean * density_of(model.scene.film) * KG_PER_H,
+        "conditions": None if model.scene.film.gas is None else NORMAL,
     }
 
 

@@ -23,6 +23,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
     smallest_gap,
 )
+from ..scenario.settings import values_in_si
 from ..scene.film import aligned_gaps
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, seals_that_stick
@@ -38,6 +39,8 @@ STEP = 0.02
 units = {
     "against_speed/speed": "rad/s",
     "against_frequency/frequency": "rad/s",
+    "table/speed": "rad/s",
+    "table/frequency": "rad/s",
     "against_clearance/clearance": "m",
     "against_tilt/tilt": "rad",
     "against_tilt/axial_opening": "m",
@@ -48,7 +51,8 @@ units = {
 class Settings:
     """`tilt`: relative misalignment of the tilted state (default: the mean of the linear steady state, or, if that is
     nothing, its turning part); `tilt_direction` from the x axis; sweeps over `speed_to`, `clearance_from` to
-    `clearance_to`, and the tilt, `points` each."""
+    `clearance_to`, and the tilt, `points` each; `frequency` of the motion, "0:2kHz:60" or a list: with it the answer
+    has a table of the aligned film's matrices over speed and frequency for a rotordynamics code, too."""
 
     tilt: Angle | None = None
     tilt_direction: Angle = 0.0
@@ -56,6 +60,7 @@ class Settings:
     clearance_from: Length | None = None
     clearance_to: Length | None = None
     points: int = 41
+    frequency: str | float | None = None
 
 
 @dataclass(frozen=True)
@@ -83,8 +88,12 @@ def run(scenario, settings, tools) -> dict:
         "against_clearance": _against_clearance(scene, model, settings),
         "against_tilt": _against_tilt(model, settings),
     }
+    asked = settings.frequency
+    frequencies = None if asked is None else values_in_si(scenario, str(asked), "rad/s", "--frequency")
     if model.interface.stores:
-        answer["against_frequency"] = against_frequency(model, settings, speed)
+        answer["against_frequency"] = against_frequency(model, settings, speed, frequencies)
+    if frequencies is not None:
+        answer["table"] = table(model, _speeds(settings, speed), frequencies)
     return answer | {"verdict": _verdict(answer)}
 
 
@@ -207,10 +216,26 @@ def _against_speed(model, settings, speed) -> dict:
     return _columns("speed", speeds, [_listed(matrices(model, State(), w)) for w in speeds])
 
 
-def against_frequency(model, settings, speed) -> dict:
-    """Of a film that stores: what a motion of another frequency (rad/s) meets."""
-    frequencies = _speeds(settings, speed)
+def against_frequency(model, settings, speed, frequencies=None) -> dict:
+    """Of a film that stores: what a motion of another frequency (rad/s) meets; without `frequencies` those of the
+    speeds."""
+    frequencies = _speeds(settings, speed) if frequencies is None else frequencies
     return _columns("frequency", frequencies, [_listed(matrices(model, State(), omega=w)) for w in frequencies])
+
+
+def table(model, speeds, frequencies) -> dict:
+    """Columns of numbers, SI: shaft `speed` and `frequency` of the motion (rad/s), every pair of them, and there the
+    aligned film's k_ROW_COLUMN and d_ROW_COLUMN for rows and columns of ORDER.  A film that does not store has the same
+    at every frequency."""
+    rows = []
+    for speed in speeds:
+        found = None
+        for omega in frequencies:
+            if found is None or model.interface.stores:
+                found = np.concatenate([part.ravel() for part in matrices(model, State(), speed, omega)])
+            rows.append([speed, omega, *found])
+    names = [f"{letter}_{row}_{column}" for letter in "kd" for row in ORDER for column in ORDER]
+    return dict(zip(("speed", "frequency", *names), np.array(rows).T.tolist(), strict=True))
 
 
 def _against_clearance(scene, model, settings) -> dict:
@@ -240,6 +265,18 @@ def _against_tilt(model, settings) -> dict:
     return {**_columns("tilt", tilts, rows), "axial_opening": opening}
 
 
+def _hammer(answer) -> list[str]:
+    """Where the damping of a film that stores is negative, which compressibility may do."""
+    swept, said = answer.get("against_frequency"), []
+    for name, k in (("axial", 0), ("tilt", 1)) if swept else ():
+        negative = [w for w, d in zip(swept["frequency"], swept["damping"], strict=True) if d[k][k] < 0.0]
+        if negative:
+            share, ends = f"{len(negative)} of {len(swept['frequency'])}", f"{negative[0]:.5g} to {negative[-1]:.5g}"
+            where = f"{share} frequencies, {ends} rad/s"
+            said.append(f"The film's {name} damping is negative (pneumatic hammer) at {where}.")
+    return said
+
+
 def _verdict(answer) -> list[str]:
     k, d, at, tilted = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"], answer["tilted"]
     pace = d[1, 1] * at["speed"]
@@ -249,6 +286,7 @@ def _verdict(answer) -> list[str]:
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]
+    said += _hammer(answer)
     if tilted["stiffness"] is None:
         return [*said, f"Tilted: {tilted['said']}."]
     t, where = np.array(tilted["stiffness"]), tilted["at"]

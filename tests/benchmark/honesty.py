@@ -5,8 +5,8 @@
 A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
 Random scenes (tests/families.py, seeded; family "wide" or "gas") of all that the program accepts; the truth of each by
 two other references (tests/judge.py), of every tenth of liquids by equations that share nothing with the program
-(tests/own_words.py), up to the time where they agree within accuracy/100.  Scenes of which less than a turn is known are
-drawn anew.
+(tests/own_words.py), up to the time where they agree within accuracy/100.  Scenes of which less than a turn is known
+are drawn anew.
 A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
 enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
 within the asked accuracy, or the run says that it is not.

@@ -18,4 +18,5 @@ def test_reference_follows_its_seat(tmp_path):
     assert np.array_equal(*flows) and np.all(flows[0] > 0)
     # Kilograms are what volumes at normal conditions weigh.
     leakage = done.found["leakage"]
+    assert leakage["conditions"] == {"temperature": 273.15, "pressure": 101325.0}
     assert leakage["mean_kg_per_h"] == pytest.approx(3600 * flows[0].mean(), rel=1e-3)

@@ -12,6 +12,7 @@ TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{
 NAMES = ("z", "x", "y")
 SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed, rad/s"), "clearance": ("Over clearance", 1e6, "clearance, µm"),
           "tilt": ("Over tilt (axially balanced)", 1e6, "relative tilt about x, µrad")}  # fmt: skip
+FREQUENCY = {"frequency": ("Over frequency", 1.0, "frequency of the motion, rad/s")}
 
 
 @look()
@@ -19,14 +20,15 @@ def draw(archive_path, out_path):
     """Three panels of stiffness above three of damping, and two matrices, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "How stiff is the film, and how does it damp?"
-    sweeps, matrices = [[f"{matrix} {name}" for name in SWEEPS] for matrix in "KD"], [["aligned", "tilted"]]
+    shown = SWEEPS | (FREQUENCY if "against_frequency" in answer else {})
+    sweeps, matrices = [[f"{matrix} {name}" for name in shown] for matrix in "KD"], [["aligned", "tilted"]]
     figure, ax = study_page(study, 11.5, 8.0, [[sweeps], [matrices]], title, height_ratios=(9, 4))
-    for name, (words, scale, label) in SWEEPS.items():
+    for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
         stacked(above, below)
         x = scale * np.array(sweep[name])
         _stiffness(above, sweep, x, words)
-        _damping(below, sweep, x, name)
+        _damping(below, sweep, x, name, name == list(shown)[-1])
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
             logarithmic(below, "x")
@@ -49,7 +51,7 @@ def _stiffness(ax, sweep, x, title):
     ax.set_title(title)
 
 
-def _damping(ax, sweep, x, name):
+def _damping(ax, sweep, x, name, last):
     """Tilt damping on the left, axial stiffness on the right."""
     shown = [_entries(sweep, "damping", i, i) for i in (1, 2)]
     for values, dashes in zip(shown, ("-", DASHED), strict=True):
@@ -60,8 +62,8 @@ def _damping(ax, sweep, x, name):
     if name == "clearance" and len(shown) and shown.min() > 0:
         ax.set(yscale="log", ylim=(shown.min() / 2, shown.max() * 2))
     else:
-        ax.set_ylim(0, 1.15 * max(shown.max(initial=0.0), 1e-12))
-    other = right_axis(ax, "axial stiffness, N/µm" if name == "tilt" else "", GREY)
+        ax.set_ylim(1.15 * shown.min(initial=0.0), 1.15 * max(shown.max(initial=0.0), 1e-12))
+    other = right_axis(ax, "axial stiffness, N/µm" if last else "", GREY)
     axial = 1e-6 * _entries(sweep, "stiffness", 0, 0)
     other.plot(x, axial, color=GREY, lw=1.7)
     low, high = np.nanmin(np.append(axial, 0)), np.nanmax(np.append(axial, 0))
