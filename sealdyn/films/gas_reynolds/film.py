@@ -1,0 +1,202 @@
+"""Gas film with storage: the unsteady isothermal Reynolds equation over radius and angle, integrated with the rings.
+
+**Source** balance.py; the cells are in cells.py, the steady film in steady.py.
+**Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
+down to films of some mean free paths; faces with coning, a profile and tilt (the balances know waves too), in
+cylindrical geometry.
+Leakage is the volume at normal conditions.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from ...faces.geometry import (
+    CAVITATED,
+    CLEARANCE,
+    FLOOR,
+    FLOW_INNER,
+    FLOW_OUTER,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GY,
+    INNER_PRESSURE,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    TEMPERATURE,
+    TORQUE,
+    VISCOSITY,
+)
+from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
+from ...numerics.piecewise_linear import initially
+from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
+from .._fields import PRESSURE
+from .._unknowns import FilmUnknowns
+from .balance import between, jacobian, pressures, radial_ways, residual
+from .cells import (
+    ANGLES,
+    AREA,
+    CELLS,
+    CORE,
+    DRAG,
+    PRESSED,
+    RADIUS,
+    SCALE,
+    SLOPE_STEP,
+    TURNED,
+    parameters,
+    sines,
+    table,
+    thicknesses,
+)
+from .steady import UNSOLVED, start
+
+__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "jacobian", "opening_law",
+           "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
+
+RUNG, FLUIDS, FIELDS = 3, ("gas",), (PRESSURE,)
+STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
+
+
+def accepts(film, waves=()) -> str:
+    """What faces it takes, "" if it can take these.  The balances know waves, but a film with unknowns is started and
+    linearised about a gap that stands still, which passing waves never let it."""
+    plain = film is None or film.geometry == "cylindrical"
+    return "" if plain and not waves else "cylindrical faces without waves only"
+
+
+def unknowns(f) -> FilmUnknowns:
+    """Products p h of the cells (Pa m), angle by angle, all with rates."""
+    cells, angles = int(f[CELLS]), int(f[ANGLES])
+    n = cells * angles
+    own = np.arange(n)
+    inner, outer = own[own % cells > 0], own[own % cells < cells - 1]
+    rows = np.concatenate([own, inner - 1, outer + 1, (own - cells) % n, (own + cells) % n])
+    columns = np.concatenate([own, inner, outer, own, own])
+    pattern = csc_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
+    pattern.sort_indices()
+    names = tuple(f"gas_{angle}_{cell}" for angle in range(angles) for cell in range(cells))
+    return FilmUnknowns(names, np.full(n, f[SCALE]), np.full(n, True), pattern)
+
+
+def opening_law(film, mean_spin=0.0, spin_difference=0.0):
+    """Opening force (N) of the aligned film, `force(clearance, inner_pressure, outer_pressure, floor)`: pressures
+    absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m.  It is the sum over the
+    cells of a run, so that rings rest where it balances the closing force; the spins do not matter."""
+    options = film.gas_reynolds or GasReynolds()
+    # All angles are alike.
+    f = parameters(replace(film, gas_reynolds=replace(options, cells=(options.cells[0], 3))), 1.0)
+    s, x = np.zeros(GAP_STATE_SIZE), np.empty(int(f[CELLS] * f[ANGLES]))
+    s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
+
+    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
+        f[CLEARANCE], f[FLOOR] = clearance, film.floor * clearance if floor is None else floor
+        s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
+        if start(f, s, x):
+            return math.nan
+        wrench(f, s, x)
+        return float(s[FORCE])
+
+    return force
+
+
+@inner_kernel()
+def _nodes(f, s, x):
+    """Thicknesses (m), pressures (Pa) at the nodes, (angles, cells + 2), and the height of the waves (m)."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    h, p, bumps = np.empty((angles, cells + 2)), np.empty((angles, cells + 2)), np.empty(angles)
+    thicknesses(f, s, h, bumps)
+    pressures(f, s, x, h, p)
+    return h, p, bumps
+
+
+@inner_kernel()
+def _sum_up(f, s, p):
+    """Force and moments of the pressures, into the gap state."""
+    pressing, turning = table(f, PRESSED), table(f, TURNED)
+    sin, cos = sines(f)
+    force = moment_x = moment_y = 0.0
+    for k in range(p.shape[0]):
+        pressed = turned = 0.0
+        for n in range(p.shape[1]):
+            pressed += p[k, n] * pressing[n]
+            turned += p[k, n] * turning[n]
+        force += pressed
+        moment_x += sin[k] * turned
+        moment_y -= cos[k] * turned
+    step = 2.0 * math.pi / p.shape[0]
+    s[FORCE], s[MOMENT_X], s[MOMENT_Y], s[CAVITATED] = step * force, step * moment_x, step * moment_y, 0.0
+
+
+@value_kernel()
+def wrench(f, s, x):
+    """Force (N) and moments (N m) of the pressures on the stator, into the gap state."""
+    _, p, _ = _nodes(f, s, x)
+    _sum_up(f, s, p)
+
+
+@value_kernel()
+def wrench_jacobian(f, s, x, rows):
+    """What force and moments have of every unknown, (3, n)."""
+    h, _, _ = _nodes(f, s, x)
+    pressing, turning = table(f, PRESSED), table(f, TURNED)
+    sin, cos = sines(f)
+    angles, cells = h.shape[0], h.shape[1] - 2
+    step = 2.0 * math.pi / angles
+    for k in range(angles):
+        for j in range(cells):
+            i, per = k * cells + j, step / h[k, j + 1]
+            rows[0, i] = per * pressing[j + 1]
+            rows[1, i], rows[2, i] = per * turning[j + 1] * sin[k], -per * turning[j + 1] * cos[k]
+
+
+@value_kernel()
+def flow(f, s, x):
+    """As `wrench`; also flow in +r (m^3/s at normal conditions) at both radii, and the friction torque on the rotor
+    (N m): `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""
+    h, p, bumps = _nodes(f, s, x)
+    _sum_up(f, s, p)
+    angles, cells = h.shape[0], h.shape[1] - 2
+    ways, slips = np.empty((angles, cells + 1)), np.empty((angles, cells + 1))
+    radial_ways(f, s, h, ways, slips)
+    area, core, pressing, drag = table(f, AREA), table(f, CORE), table(f, PRESSED), table(f, DRAG)
+    last = cells - 1
+    reach_i, reach_o = area[0] / core[0] - 1.0, area[last] / core[last] - 1.0
+    inner = outer = couette = lift = 0.0
+    for k in range(angles):
+        first = between(p[k, 0], p[k, 1], ways[k, 0], slips[k, 0])
+        second = between(p[k, 1], p[k, 2], ways[k, 1], slips[k, 1])
+        inner += first + reach_i * (first - second)
+        first = between(p[k, cells], p[k, cells + 1], ways[k, cells], slips[k, cells])
+        second = between(p[k, last], p[k, cells], ways[k, last], slips[k, last])
+        outer += first + reach_o * (first - second)
+        pressed = 0.0
+        for n in range(cells + 2):
+            pressed += p[k, n] * pressing[n]
+        for j in range(cells):
+            couette += drag[j] / h[k, j + 1]
+        lift -= 0.5 * pressed * (bumps[k + 1 if k < angles - 1 else 0] - bumps[k - 1]) / f[SLOPE_STEP]
+    step = 2.0 * math.pi / angles
+    # Of the volume at the film's temperature and 1 Pa.
+    normal = step * NORMAL_TEMPERATURE / (s[TEMPERATURE] * NORMAL_PRESSURE)
+    s[FLOW_INNER], s[FLOW_OUTER] = normal * inner, normal * outer
+    # The pressure on the slope of the film, by parts: of the tilt, half the moment across it, times it.
+    lift = step * lift + 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])
+    s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * step * couette + lift
+
+
+def grid(f) -> tuple[np.ndarray, np.ndarray]:
+    """Radii (m) and angles (rad) of the cells' nodes, those of the face's edges too."""
+    return table(f, RADIUS).copy(), 2.0 * math.pi / int(f[ANGLES]) * np.arange(int(f[ANGLES]))
+
+
+@outer_kernel()
+def fields(f, s, x, out):
+    """Pressure (Pa, absolute) at the grid's radii and angles, `out` (1, radii, angles)."""
+    _, p, _ = _nodes(f, s, x)
+    out[0] = p.T
