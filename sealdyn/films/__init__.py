@@ -47,6 +47,7 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
                   compiled: what is left of the film's equations, in any units; returns 0, or a code of STATUS, which
                   ends the run, as does what is not a number.  Finite and smooth at any gap state that a solver may try.
 `STATUS`          {code: sentence}.
+`halved(film)`    (if any) the `Film` table with half the cells, which err four times as much.
 `jacobian(f, s, x, x_rate, alpha, data)`
                   (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.
 `wrench_jacobian(f, s, x, rows)`

@@ -19,6 +19,7 @@ from ..solvers.energy_audit import EnergyAudit
 from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
+from .cell_error import cell_error
 from .film_error import model_error
 from .looked_at import LookedAt
 
@@ -198,7 +199,11 @@ def certify(
         by_model = model_error(run)
     said = f", against a sharper run{_since(*measured)}" if measured else ""
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
-    if by_model is not None:
+    by_cells = cell_error(run)
+    if by_cells is not None:
+        by_model = by_cells
+        parts.append(f"cells {by_model:.1e}, by half of them")
+    elif by_model is not None:
         parts.append(f"model {by_model:.1e} against the radial film")
     elif run.model.interface.name == "linear":
         parts.append("the linear film's own error not estimated here")
@@ -211,7 +216,8 @@ def certify(
     if known and sum(known) > asked:
         coarse = by_model and by_model > 0.5 * sum(known)
         since = f" from {until:.4g} s on" if until is not None else ""
-        sentence += (
-            f"; NOT met{since}: try {'a higher film rung' if coarse else CURE.get(method, 'a sharper run.accuracy')}"
-        )
+        cure = CURE.get(method, "a sharper run.accuracy")
+        if coarse:
+            cure = "a higher film rung" if by_cells is None else f"more film.{run.model.interface.name}.cells"
+        sentence += f"; NOT met{since}: try {cure}"
     return Certificate(asked, by_solver, by_model, sentence, until)

@@ -56,8 +56,8 @@ from .cells import (
 )
 from .steady import UNSOLVED, start
 
-__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "jacobian", "opening_law",
-           "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
+__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "halved", "jacobian",
+           "opening_law", "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
 
 RUNG, FLUIDS, FIELDS = 3, ("gas",), (PRESSURE,)
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
@@ -82,6 +82,13 @@ def unknowns(f) -> FilmUnknowns:
     pattern.sort_indices()
     names = tuple(f"gas_{angle}_{cell}" for angle in range(angles) for cell in range(cells))
     return FilmUnknowns(names, np.full(n, f[SCALE]), np.full(n, True), pattern)
+
+
+def halved(film):
+    """The `Film` table with half the cells over the radius and around the circle."""
+    options = film.gas_reynolds or GasReynolds()
+    cells = tuple(max(count // 2, 3) for count in options.cells)
+    return replace(film, gas_reynolds=replace(options, cells=cells))
 
 
 def opening_law(film, mean_spin=0.0, spin_difference=0.0):

@@ -1,0 +1,39 @@
+"""How far the cells of a film are from the film itself: force, moment and leakage once more with half the cells.
+
+**Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^2 - 1, is the error of a
+method of second order.
+"""
+
+import numpy as np
+
+from ..faces.geometry import FLOW_INNER, FORCE, MOMENT_X, MOMENT_Y
+from ..faces.surfaces import lay_surfaces
+from .looked_at import LookedAt
+
+# The difference to half the cells, over this, is the error of all of them.
+RICHARDSON = 3.0
+
+
+def cell_error(run) -> float | None:
+    """Relative error of the film's cells, the largest of force, moment and leakage on the scales of the certificate, of
+    the steady film at the gap where the run began and where it ended; None of a film that has none to halve."""
+    model = run.model
+    film, f = model.observed
+    if not hasattr(film, "halved"):
+        return None
+    coarse = film.parameters(film.halved(model.scene.film), model.clearance)
+    lay_surfaces(coarse, model.scene)
+    scales, worst = LookedAt(run), 0.0
+    for index, tau, y in ((0, 0.0, run.y0), run.last or (0, 0.0, run.y0)):
+        loads = []
+        for block in (f, coarse):
+            s, x = run.segment(index).gap_state(tau, y).copy(), np.empty(len(film.unknowns(block).names))
+            if film.start(block, s, x):
+                return None
+            film.flow(block, s, x)
+            loads.append(s[[FORCE, MOMENT_X, MOMENT_Y, FLOW_INNER]])
+        off, force = np.abs(loads[0] - loads[1]), scales.force or abs(loads[0][0])
+        moment = np.hypot(off[1], off[2]) / (force * scales.outer_radius)
+        leakage = max(scales.leakage, abs(loads[0][3])) or 1.0
+        worst = max(worst, off[0] / force, moment, off[3] / leakage)
+    return float(worst) / RICHARDSON
