@@ -380,8 +380,7 @@ def validate(
     as_json: AsJson = False,
 ):
     """Compare published numbers with what the program computes: all sources, or one."""
-    from .analysis.validation import report, source_names
-    from .analysis.validation import validate as found_of
+    from .analysis.validation import checks, report, source_names
 
     names = source_names()
     wanted = names if source is None else [source.replace("_", "-")]
@@ -389,7 +388,7 @@ def validate(
         near = _nearest(wanted[0], names)
         raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
     with _libraries_on_stderr():
-        found = found_of(wanted)
+        found = checks(wanted)
     rows = [row for part in found.values() for row in part]
     good = all(row["verdict"] != "FAILED" for row in rows)
     if as_json:

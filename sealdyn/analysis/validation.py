@@ -16,13 +16,13 @@ def source_module(name: str):
     return importlib.import_module(f"{sources.__name__}.{name.replace('-', '_')}")
 
 
-def validate(names: list[str]) -> dict[str, list[dict]]:
+def checks(names: list[str]) -> dict[str, list[dict]]:
     """The rows of each of these sources (sources/__init__.py says what a row has)."""
     return {name: source_module(name).checks() for name in names}
 
 
 def report(found: dict[str, list[dict]]) -> None:
-    """Print what `validate` returns: a table per source, its remarks below."""
+    """Print what `checks` returns: a table per source, its remarks below."""
     for count, (name, rows) in enumerate(found.items()):
         source = source_module(name)
         cells = [source.HEAD, *map(source.cells, rows)]

@@ -43,7 +43,7 @@ BOUNDS = {
                         "Two stable clearances": (1.0, 1e-9)},  # 11
     "linear_theory": {"Linear theory at large tilt": (0.05, 1e-6)},  # 0.13, 8e-11
     "choked_gas": {"Choked exit": (3e-3, 1e-10),  # 9e-3, 5e-14
-                   "A line that flows leave": (0.1, 1e-10)},  # 0.45, 4e-15
+                   "Invariant line": (0.1, 1e-10)},  # 0.45, 4e-15
 }  # fmt: skip
 LONG = {"chaos"}
 NOT_YET = {"inconsistent_start": 1, "several_answers": 1}

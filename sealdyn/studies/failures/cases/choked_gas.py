@@ -124,9 +124,9 @@ def show() -> list[dict]:
             "follows the flow upstream in closed form: no steps, and nothing singular at M = 1",
         ),
         row(
-            ITEM, "A line that flows leave",
+            ITEM, "Invariant line",
             (f"march: sonic at {100 * fast[0]:.0f} % of the dam, or M2 = {slow[1]:.2g}, {OFF:g} apart", 1 - slow[1]),
             ("closed form, from the sonic exit upstream", abs(line - truth)), "Mach number where it arrives",
-            "goes upstream, where flows come nearer to the line M^2 = h'/(g f) by which a widening film holds them",
+            "goes upstream, where flows approach the line M^2 = h'/(g f), which they leave the other way",
         ),
     ]  # fmt: skip
