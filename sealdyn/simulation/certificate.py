@@ -37,6 +37,9 @@ LEFT_OUT = 0.05
 LOOSER, SHARE, ENERGY = 30.0, 0.5, 2.5
 # The share of the accuracy beyond which a run goes on with a sharper tolerance.
 ERROR_SHARE = 0.6
+# Motion so many times faster than all that turns or shakes, and damped by less than this share of its frequency, rings
+# after every error of a step that passes over it, which the steps do not show: a gas dam's, which damps nothing.
+RINGS, DEAD = 10.0, 0.05
 # A linear answer that grows by more than this power of e over the run tells nothing.
 GROWN = 5.0
 # What to try where the solver errs too much: of a stiff scene, which BDF is chosen for, no explicit method.
@@ -98,7 +101,8 @@ class Certificate:
 
 def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
     """What follows the errors of a run by this method; None where its steps cannot show them: contact, friction,
-    changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear.
+    changing conditions, a massless ring, other methods than Adams and BDF, a whirl that grows until it is not linear,
+    fast motion that nothing damps.
     """
     model, unknowns = run.model, run.model.unknowns
     follows = unknowns.constant and not (model.contact is not None or unknowns.seals or unknowns.has_residual_form)
@@ -106,8 +110,12 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
         return None
     asked = model.accuracy
     segment, least = run.segment(0), tolerance_for(method, asked, run.memory)
-    errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least, LookedAt(run))
+    scales = LookedAt(run)
+    errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least, scales)
     if not errors.sound:
+        return None
+    modes = errors.motion.values
+    if np.any((np.abs(modes.imag) > RINGS * scales.rate) & (np.abs(modes.real) < DEAD * np.abs(modes.imag))):
         return None
     growth = float(np.max(errors.motion.values.real))
     return errors if growth * run.duration < GROWN else None
