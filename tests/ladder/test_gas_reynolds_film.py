@@ -17,6 +17,8 @@ from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.films.radial import film as radial
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.scene import SceneError
+from sealdyn.simulation.cell_error import cell_error
+from sealdyn.simulation.certificate import certify
 from sealdyn.simulation.method_selection import check_method, choose_method
 from sealdyn.solvers.integrate import solve
 
@@ -153,3 +155,35 @@ def test_the_residual_form_is_chosen():
         check_method(ready.model, "adams")
     given = started(replace(scene, film=replace(scene.film, model="auto")), 0.01, model_class=partial(Model, film=gas))
     assert given.model.interface.film is gas
+
+
+@pytest.mark.parametrize("tilt", [0.2, 0.6])
+@pytest.mark.parametrize("cells", [(8, 24), (12, 48)])
+def test_the_error_of_the_cells_is_told_by_half_of_them(cells, tilt):
+    """Neither hidden, nor more than a few times as large, against 48 x 144 cells."""
+
+    def loads(cells):
+        scene = fms(film=gas_film(cells, coning=3e-4), runout=tilt * 5e-6 / 0.04, own=0.0)
+        ready = prepared(scene, 1e-3, 1e-6)
+        model, s = ready.model, ready.segment(0).gap_state(0.0, ready.y0)
+        gas.flow(model.f, s, model.interface.steady(model.f, s))
+        return ready, s
+
+    ready, s = loads(cells)
+    _, exact = loads((48, 144))
+    area = np.pi * (0.040**2 - 0.032**2)
+    force = ready.model.closing_force() - 1e5 * area
+    off = np.abs(s - exact)
+    true = max(
+        off[geometry.FORCE] / force,
+        np.hypot(off[geometry.MOMENT_X], off[geometry.MOMENT_Y]) / (force * 0.040),
+        off[geometry.FLOW_INNER] / abs(exact[geometry.FLOW_INNER]),
+    )
+    assert 0.5 * true < cell_error(ready) < 10.0 * true + 1e-6
+
+
+def test_cells_too_coarse_for_the_accuracy_are_said():
+    scene = fms(film=gas_film((6, 16), coning=3e-4))
+    ready = prepared(scene, 1e-3, 1e-6)
+    found = certify(ready, "ida", 1e-8, measured=(np.array([0.0, 1e-3]), np.array([0.0, 1e-9])))
+    assert found.model > 1e-5 and "more film.gas_reynolds.cells" in found.said and found.solved
