@@ -7,7 +7,8 @@ What every film module offers (the contract):
 `GENERALISES`     (if any) name of a film that this one is once more, between faces which that one takes too.
 `floored()`       (if any) the module that offers the same for tables with a floor of the pressure.
 `rough()`         (if any) the module that offers the same between rough faces, which may meet.
-`FLUIDS`          (if any) tuple of "liquid" and "gas"; a film without it is one of liquids.
+`FLUIDS`          (if any) tuple of "liquid" and "gas"; a film without it is one of liquids.  Of a folder also in its
+                  `__init__`, so that other films' scenes need not load it.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
@@ -82,9 +83,14 @@ def film_module(name: str, film=None, rough: bool = False):
     return found.rough() if rough and hasattr(found, "rough") else found
 
 
+def _outside(name: str):
+    """What a film's file or folder says of it before all of it is loaded."""
+    return importlib.import_module(f"{__name__}.{name}")
+
+
 @cache
 def _module(name: str):
-    found = importlib.import_module(f"{__name__}.{name}")
+    found = _outside(name)
     return importlib.import_module(f"{__name__}.{name}.film") if hasattr(found, "__path__") else found
 
 
@@ -114,7 +120,8 @@ def _takes_fluid(module, film) -> bool:
 def film_names(film=None, waves=()) -> list[str]:
     """Names of the films that can take the faces and the fluid of a `Film` table (None: plain cones) with these waves
     (Waviness), sorted, without those that are another one of them once more."""
-    able = [name for name in all_film_names() if not refused(film_module(name), film, waves)]
+    named = [name for name in all_film_names() if film is None or _takes_fluid(_outside(name), film)]
+    able = [name for name in named if not refused(film_module(name), film, waves)]
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 
 

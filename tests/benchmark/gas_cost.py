@@ -15,7 +15,7 @@ from numba import njit
 from sealdyn.closed_form.zuk_1972 import CRUISE, MIL
 from sealdyn.faces import geometry
 from sealdyn.films import _gas_dam as sector
-from sealdyn.films import gas_dam
+from sealdyn.films.gas_dam import film as gas_dam
 from sealdyn.scene.film import Film
 from sealdyn.scene.gas import GasDam
 

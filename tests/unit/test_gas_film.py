@@ -12,7 +12,8 @@ from sealdyn.dynamics.condensation import film_slopes
 from sealdyn.dynamics.fluid import fluid_conditions
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
-from sealdyn.films import gas_dam, linear
+from sealdyn.films import linear
+from sealdyn.films.gas_dam import film as gas_dam
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario

@@ -20,7 +20,7 @@ from ...faces.geometry import (
     VISCOSITY,
 )
 from ...films import _gas_dam as sector
-from ...films import gas_dam
+from ...films.gas_dam import film as gas_dam
 from ...scene.film import Film
 from ...scene.gas import Gas, GasDam, viscosity_of
 

@@ -1,1 +1,3 @@
 """Film of a gas with storage: the unsteady isothermal Reynolds equation on cells over radius and angle."""
+
+FLUIDS = ("gas",)

@@ -37,6 +37,7 @@ from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
 from .._fields import PRESSURE
 from .._unknowns import FilmUnknowns
+from . import FLUIDS
 from .balance import between, jacobian, pressures, radial_ways, residual
 from .cells import (
     ANGLES,
@@ -59,7 +60,7 @@ from .steady import UNSOLVED, start
 __all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "halved", "jacobian",
            "opening_law", "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
 
-RUNG, FLUIDS, FIELDS = 3, ("gas",), (PRESSURE,)
+RUNG, FIELDS = 3, (PRESSURE,)
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 

@@ -20,8 +20,8 @@ from ....faces.geometry import (
     VISCOSITY,
 )
 from ....films import _gas_dam as sector
-from ....films import gas_dam
 from ....films._radial_quadrature import RADIAL_POINTS, RULE_SIZE, RULES
+from ....films.gas_dam import film as gas_dam
 from ....films.radial import floored as radial
 from ....films.radial.cavitated_line import cavitated_line
 from ....scene.film import Film

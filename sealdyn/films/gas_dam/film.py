@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ..faces.geometry import (
+from ...faces.geometry import (
     CAVITATED,
     CLEARANCE,
     CONING,
@@ -39,17 +39,18 @@ from ..faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
-from ..numerics.kernel import inner_kernel, value_kernel
-from ..numerics.piecewise_linear import initially
-from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
-from . import _gas_dam as sector
-from ._fields import PRESSURE
-from ._gas_dam import STATUS
+from ...numerics.kernel import inner_kernel, value_kernel
+from ...numerics.piecewise_linear import initially
+from ...scene.gas import GasDam, density_of, gas_of, viscosity_of
+from .. import _gas_dam as sector
+from .._fields import PRESSURE
+from .._gas_dam import STATUS
+from . import FLUIDS
 
 __all__ = ["FIELDS", "FLUIDS", "REMARK", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid",
            "opening_law", "parameters", "wrench"]  # fmt: skip
 
-RUNG, FLUIDS, FIELDS = 2, ("gas",), (PRESSURE,)
+RUNG, FIELDS = 2, (PRESSURE,)
 
 REMARK = "a gas dam has no squeeze film: all damping is that of the supports and secondary seals"
 
