@@ -3,7 +3,8 @@
     python tests/benchmark/gallery.py
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
-studies), work_precision_all.json (all_scenarios.py) and honesty.json (honesty.py).  The captions stand in gallery.md.
+studies), work_precision_all.json (all_scenarios.py), honesty.json and honesty_gas.json (honesty.py).  The captions
+stand in gallery.md.
 """
 
 import json
@@ -21,7 +22,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, honesty, failures):
+    for rows in (fastest, models, machine, scenarios, honesty, honesty_gas, failures):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -75,7 +76,16 @@ def winner(row: dict) -> str:
 
 def honesty():
     """The automatic choice on random scenes."""
-    found = json.loads((GALLERY / "honesty.json").read_text())
+    yield from _honesty("honesty.json")
+
+
+def honesty_gas():
+    """The same with gas dams."""
+    yield from _honesty("honesty_gas.json")
+
+
+def _honesty(name):
+    found = json.loads((GALLERY / name).read_text())
     least, low, middle, high = map(number, found["estimate_over_error"])
     yield "measured", "value"
     yield "seed, random scenes", f"{found['seed']}, {found['scenes']}"
