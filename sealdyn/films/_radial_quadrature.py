@@ -6,19 +6,15 @@ from functools import lru_cache
 import numpy as np
 
 from ..faces.geometry import (
-    CLEARANCE,
     FACE_SIZE,
-    FLOOR,
-    FORCE,
     GAP_STATE_SIZE,
-    INNER_PRESSURE,
     MEAN_SPIN,
-    OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     VISCOSITY,
     face_parameters,
 )
 from ..numerics.kernel import inner_kernel
+from ._opening import opening_force
 
 # Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
@@ -125,16 +121,7 @@ def opening_law(film, parameters, wrench, mean_spin, spin_difference):
     `wrench`."""
     s = np.zeros(GAP_STATE_SIZE)
     s[VISCOSITY], s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 1.0, mean_spin, spin_difference
-    # One block for all clearances: only the slots of the clearance differ.
-    f = parameters(film, 1.0, 1e-13)
-
-    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
-        f[CLEARANCE], f[FLOOR] = clearance, film.floor * clearance if floor is None else floor
-        s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
-        wrench(f, s)
-        return float(s[FORCE])
-
-    return force
+    return opening_force(film, parameters(film, 1.0, 1e-13), s, wrench)
 
 
 @inner_kernel()

@@ -31,9 +31,7 @@ def cell_error(run) -> float | None:
             if film.start(block, s, x):
                 return None
             film.flow(block, s, x)
-            loads.append(s[[FORCE, MOMENT_X, MOMENT_Y, FLOW_INNER]])
-        off, force = np.abs(loads[0] - loads[1]), scales.force or abs(loads[0][0])
-        moment = np.hypot(off[1], off[2]) / (force * scales.outer_radius)
-        leakage = max(scales.leakage, abs(loads[0][3])) or 1.0
-        worst = max(worst, off[0] / force, moment, off[3] / leakage)
+            still = np.zeros(2 * scales.n)
+            loads.append([[*still, s[FORCE], s[MOMENT_X], s[MOMENT_Y], s[FLOW_INNER], 0.0]])
+        worst = max(worst, scales.errors(*map(np.array, loads[::-1])).max())
     return float(worst) / RICHARDSON

@@ -45,6 +45,7 @@ from ...scene.gas import GasDam, density_of, gas_of, viscosity_of
 from .. import _gas_dam as sector
 from .._fields import PRESSURE
 from .._gas_dam import STATUS
+from .._opening import opening_force
 from . import FLUIDS
 
 __all__ = ["FIELDS", "FLUIDS", "REMARK", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid",
@@ -102,14 +103,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     has no solution.  The spins do not matter."""
     f, s = parameters(film, 1.0), np.zeros(GAP_STATE_SIZE)
     s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
-
-    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
-        f[CLEARANCE], f[FLOOR] = clearance, film.floor * clearance if floor is None else floor
-        s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
-        wrench(f, s)
-        return float(s[FORCE])
-
-    return force
+    return opening_force(film, f, s, wrench)
 
 
 @inner_kernel()
@@ -144,8 +138,6 @@ def _solve(f, g, s, edges, cos, out):
 def _sectors(f, edges, bent):
     """Number of sectors: even, what the trapezoidal rule needs for the edge that is nearer to touching, its error
     falling as exp(-N eta), cosh(eta) = film over swing; more where something is `bent`."""
-    if edges[2] == 0.0:
-        return 2
     ratio, wanted = min(edges[0] / edges[2], edges[1] / edges[3]), float(MOST)
     if ratio > 1.0:
         wanted = min(wanted, f[LOG_ERROR] / math.acosh(ratio))
@@ -165,7 +157,7 @@ def _circle(f, s, complete):
     # The thinnest place and the thickest tell what is between.
     force = moment = mass = drag = 0.0
     bent = edges[0] - edges[2] < f[FLOOR] or edges[1] - edges[3] < f[FLOOR]
-    k, count, choked = 0, 2, 0
+    k, count, choked = 0, 2 if tilt > 0.0 else 1, 0
     while k <= count // 2:
         # In the order 0, N/2, then all between.
         cos = 1.0 - 2.0 * k if k < 2 else math.cos(2.0 * math.pi * (k - 1) / count)

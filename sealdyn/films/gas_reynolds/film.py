@@ -15,18 +15,14 @@ from scipy.sparse import csc_array
 
 from ...faces.geometry import (
     CAVITATED,
-    CLEARANCE,
-    FLOOR,
     FLOW_INNER,
     FLOW_OUTER,
     FORCE,
     GAP_STATE_SIZE,
     GX,
     GY,
-    INNER_PRESSURE,
     MOMENT_X,
     MOMENT_Y,
-    OUTER_PRESSURE,
     SPIN_DIFFERENCE,
     TEMPERATURE,
     TORQUE,
@@ -36,6 +32,7 @@ from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
 from .._fields import PRESSURE
+from .._opening import opening_force
 from .._unknowns import FilmUnknowns
 from . import FLUIDS
 from .balance import between, jacobian, pressures, radial_ways, residual
@@ -102,15 +99,13 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     s, x = np.zeros(GAP_STATE_SIZE), np.empty(int(f[CELLS] * f[ANGLES]))
     s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
 
-    def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
-        f[CLEARANCE], f[FLOOR] = clearance, film.floor * clearance if floor is None else floor
-        s[INNER_PRESSURE], s[OUTER_PRESSURE] = inner_pressure, outer_pressure
+    def solve(f, s):
         if start(f, s, x):
-            return math.nan
-        wrench(f, s, x)
-        return float(s[FORCE])
+            s[FORCE] = math.nan
+        else:
+            wrench(f, s, x)
 
-    return force
+    return opening_force(film, f, s, solve)
 
 
 @inner_kernel()

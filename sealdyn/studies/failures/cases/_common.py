@@ -1,13 +1,28 @@
 """What exhibits share: rows, and runs of small scenes in memory."""
 
+from ....closed_form.zuk_1972 import CRUISE
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
-from ....scene.film import Coefficients
+from ....scene.film import Coefficients, Film
 from ....solvers.integrate import solve
 from ....solvers.recorder import Recorder
 
 # A film that does nothing, so that a ring's own motion is known exactly.
 ZERO_FILM = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
+
+
+def cruise_dam(**faces) -> Film:
+    """Zuk's dam at cruise as a film table; `faces`: its clearance (m) and coning (rad), as far as they are given."""
+    return Film(
+        model="gas_dam",
+        gas="air",
+        temperature=CRUISE.temperature,
+        inner_radius=CRUISE.inner_radius,
+        outer_radius=CRUISE.outer_radius,
+        inner_pressure=CRUISE.high_pressure,
+        outer_pressure=CRUISE.low_pressure,
+        **faces,
+    )
 
 
 def row(item: int, title: str, failing: tuple, survivor: tuple, unit: str, default: str) -> dict:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....analysis.sources.green_1989 import reference_scene
-from ....closed_form.zuk_1972 import CRUISE, MIL
+from ....closed_form.zuk_1972 import MIL
 from ....faces.geometry import (
     FORCE,
     GAP_STATE_SIZE,
@@ -24,9 +24,8 @@ from ....films._radial_quadrature import RADIAL_POINTS, RULE_SIZE, RULES
 from ....films.gas_dam import film as gas_dam
 from ....films.radial import floored as radial
 from ....films.radial.cavitated_line import cavitated_line
-from ....scene.film import Film
 from ....scene.gas import viscosity_of
-from ._common import row
+from ._common import cruise_dam, row
 
 ITEM = 8
 ANGLES = 256
@@ -80,16 +79,7 @@ def cavitation() -> dict:
 def tilted_dam():
     """Block and gap state of Zuk's parallel dam at cruise, 0.22 mil and tilted by a fifth of that: choked on the wide
     side only."""
-    film = Film(
-        model="gas_dam",
-        gas="air",
-        temperature=CRUISE.temperature,
-        inner_radius=CRUISE.inner_radius,
-        outer_radius=CRUISE.outer_radius,
-        inner_pressure=CRUISE.high_pressure,
-        outer_pressure=CRUISE.low_pressure,
-        clearance=0.22 * MIL,
-    )
+    film = cruise_dam(clearance=0.22 * MIL)
     s = np.zeros(GAP_STATE_SIZE)
     s[INNER_PRESSURE], s[OUTER_PRESSURE] = film.inner_pressure, film.outer_pressure
     s[TEMPERATURE], s[VISCOSITY], s[GY] = film.temperature, viscosity_of(film), 0.2 * film.clearance / film.outer_radius

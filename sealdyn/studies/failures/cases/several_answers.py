@@ -6,12 +6,10 @@ from dataclasses import replace
 from scipy.optimize import newton
 
 from ....analysis.sources.green_1989 import reference_scene
-from ....closed_form.zuk_1972 import CRUISE
 from ....dynamics.model import Model
 from ....scene.contact import Contact
-from ....scene.film import Film
 from ....scene.scene import Closing
-from ._common import not_available, row
+from ._common import cruise_dam, not_available, row
 
 ITEM = 11
 # Spring (N) beside a balance of 0.6.
@@ -30,16 +28,7 @@ def two_that_hold():
     """The reference seal's ring on Zuk's dam at cruise, 0.2 mrad narrower outwards: thin, the taper holds it, thick,
     choking does, and in between neither."""
     scene = reference_scene("FMS")
-    film = Film(
-        model="gas_dam",
-        gas="air",
-        temperature=CRUISE.temperature,
-        inner_radius=CRUISE.inner_radius,
-        outer_radius=CRUISE.outer_radius,
-        inner_pressure=CRUISE.high_pressure,
-        outer_pressure=CRUISE.low_pressure,
-        coning=-0.2e-3,
-    )
+    film = cruise_dam(coning=-0.2e-3)
     return replace(scene, film=film, closing=Closing(balance_ratio=0.6, spring_force=SPRING))
 
 
