@@ -240,6 +240,10 @@ SECONDS = Quantity("time", "s", '"0.5 s"')
 Time = Annotated[float, SECONDS]
 Length = Annotated[float, Quantity("length", "m", '"10 um"')]
 Angle = Annotated[float, Quantity("angle", "rad", '"25 urad", "0.5 mrad", "1 deg"', ("m/m",))]
+ConingPerSpeedSquared = Annotated[
+    float, Quantity("coning per speed squared", "s^2/rad", '"2e-9 s^2/rad", "2e-5 urad/rpm^2"', ("s^2",))
+]
+ConingPerKelvin = Annotated[float, Quantity("coning per temperature", "rad/K", '"5 urad/K"')]
 Speed = Annotated[float, Quantity("speed of rotation", "rad/s", '"1000 rad/s", "9550 rpm", "150 Hz"')]
 Frequency = Annotated[float, Quantity("frequency", "Hz", '"50 Hz", "3000 rpm", "314 rad/s"', (), 0, True)]
 Velocity = Annotated[float, Quantity("velocity", "m/s", '"1 mm/s"')]

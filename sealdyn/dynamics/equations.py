@@ -18,6 +18,8 @@ rings, the index of the works, whether there are two more of them, then the impo
 
 from ..faces.contact import contact_load
 from ..faces.geometry import (
+    CONING_CHANGE,
+    CONING_RATE,
     CONTACT_FORCE,
     CONTACT_X,
     CONTACT_Y,
@@ -62,6 +64,7 @@ from .imposed_motion import (
     VISCOSITY_AT,
     Z_RATE,
     Z,
+    coning_at,
     imposed_state,
 )
 
@@ -130,6 +133,7 @@ def kinematics(tau, y, yp, p, w, s):
     s[INNER_PRESSURE] = leg[INNER_AT] + leg[INNER_AT + 1] * tau
     s[OUTER_PRESSURE] = leg[OUTER_AT] + leg[OUTER_AT + 1] * tau
     s[TEMPERATURE] = leg[TEMPERATURE_AT] + leg[TEMPERATURE_AT + 1] * tau
+    s[CONING_CHANGE], s[CONING_RATE] = coning_at(tau, leg)
 
 
 @inner_kernel()

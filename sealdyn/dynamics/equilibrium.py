@@ -13,9 +13,10 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..scene.coning import coned
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
-from .fluid import set_fluid
+from .fluid import set_conditions
 from .intervals import Interval, constant_and_slope, spins
 
 POINTS = 600
@@ -66,7 +67,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     (no scenario has them): the closing force is as given, whether or not it balances at the clearance.
     Raises SceneError if there is no stable equilibrium.
     """
-    film, closing = scene.film, scene.closing
+    film, closing = coned(scene), scene.closing
     inner, outer = initially(film.inner_pressure), initially(film.outer_pressure)
     area = math.pi * (film.outer_radius**2 - film.inner_radius**2)
     outer_is_high = outer >= inner
@@ -173,7 +174,7 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     design clearance: opening force = closing force + support springs.  (0, False) if none is found from 0.1 % to 50
     times the clearance."""
     film, s = model.scene.film, np.zeros(GAP_STATE_SIZE)
-    set_fluid(s, film, lambda quantity: constant_and_slope(quantity, interval)[0])
+    set_conditions(s, model.scene, lambda quantity: constant_and_slope(quantity, interval)[0], speed)
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
     if speed is not None:
         w_s = s[MEAN_SPIN] - 0.5 * s[SPIN_DIFFERENCE]

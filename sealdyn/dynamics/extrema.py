@@ -15,8 +15,9 @@ from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
 from ..solvers.contract import Cause, Stop
-from .equations import kinematics
+from .equations import LEG_AT, kinematics
 from .function_values import thinnest_value
+from .imposed_motion import coning_at
 from .step_bounds import (
     FROM,
     MINUS_TILT,
@@ -240,7 +241,8 @@ def track_extremes(
             begins, ended, seen_end = True, True, k + 1
         else:
             for at in range(2):
-                films[at], _ = smallest_gap(f, motion[FROM + at, 0], tilt_at(motion, FROM + at))
+                change, _ = coning_at(t[k + at], p[LEG_AT:])
+                films[at], _ = smallest_gap(f, motion[FROM + at, 0], tilt_at(motion, FROM + at), change)
         bound_measures(f, swing, span, pace * t[k + 1], motion, films, lower)
         reach[k] = lower[THICKNESS]
         for window in range(WINDOWS if asked else 1):

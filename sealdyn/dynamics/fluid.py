@@ -1,7 +1,10 @@
-"""The state of the fluid: what of the `[film]` table goes into which slots of a gap state."""
+"""The state of fluid and faces at rest: what of a scene goes into which slots of a gap state."""
 
-from ..faces.geometry import INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
+from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
+from ..numerics.piecewise_linear import initially
+from ..scene.coning import coning_change
 from ..scene.gas import viscosity_of
+from .intervals import constant_and_slope
 
 
 def fluid_conditions(film) -> dict:
@@ -15,7 +18,20 @@ def fluid_conditions(film) -> dict:
     }
 
 
-def set_fluid(s, film, value) -> None:
-    """Writes them into a gap state `s`; `value` takes the number of a function of time."""
-    for slot, quantity in fluid_conditions(film).items():
+def thermal_coning(film, interval) -> tuple[float, float]:
+    """Change (rad) of the coning of a `Film` at an interval's start and its slope (rad/s), without what follows the
+    speed."""
+    ends = (constant_and_slope(quantity, interval) for quantity in (film.coning, film.temperature or 0.0))
+    (coning, rate), (temperature, warming) = ends
+    change, share = coning - initially(film.coning), film.coning_per_kelvin
+    if share:
+        change += share * (temperature - film.coning_reference_temperature)
+    return change, rate + share * warming
+
+
+def set_conditions(s, scene, value, speed=None) -> None:
+    """Writes them into a gap state `s`, and how much the coning has changed; `value` takes the number of a function of
+    time, `speed` (rad/s) is the shaft's in place of the scene's."""
+    for slot, quantity in fluid_conditions(scene.film).items():
         s[slot] = value(quantity)
+    s[CONING_CHANGE] = coning_change(scene, value, speed)

@@ -1,6 +1,7 @@
 """Imposed motion in the solver's inner loop: one block per segment, one compiled kernel.
 
-Block layout: for each varying quantity its value and slope over the interval, then both rings' angles at its start,
+Block layout: for each varying quantity its value and slope over the interval, the coning's with what follows the
+shaft speed squared, then both rings' angles at its start,
 then the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2`
 with the phase `a0 + a1 tau + a2 tau^2`.
 """
@@ -10,13 +11,15 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..numerics.kernel import outer_kernel
+from ..numerics.kernel import inner_kernel, outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
-# Angles (rad, modulo one turn) of both rings at the segment's start.
-ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 14, 15, 16, 17
+# Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both
+# rings at the segment's start.
+CONING_AT, CONING_PER_SPEED_SQUARED = 14, 16
+ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 17, 18, 19, 20
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
@@ -70,6 +73,14 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
         direction = getattr(source, "direction", 0.0)
         add(STATOR, kind, amplitude, source.phase, frequency=source.frequency, direction=direction)
     return np.array(rows, dtype=np.float64).reshape(-1, ROW)
+
+
+@inner_kernel()
+def coning_at(tau, p):
+    """By how much the coning differs at segment time tau (s) from the face block's (rad), and its rate (rad/s)."""
+    speed, share = p[ROTOR_SPEED] + p[ROTOR_SPEED + 1] * tau, p[CONING_PER_SPEED_SQUARED]
+    change = p[CONING_AT] + p[CONING_AT + 1] * tau + share * speed * speed
+    return change, p[CONING_AT + 1] + 2.0 * share * speed * p[ROTOR_SPEED + 1]
 
 
 @outer_kernel()

@@ -8,6 +8,7 @@ import numpy as np
 from ..faces import contact
 from ..faces.geometry import (
     CLEARANCE,
+    CONING_CHANGE,
     CONTACT_FORCE,
     CONTACT_X,
     CONTACT_Y,
@@ -26,12 +27,13 @@ from ..faces.geometry import (
 from ..faces.surfaces import lay_surfaces
 from ..films import film_module, film_name, film_of, has_unknowns
 from ..numerics.piecewise_linear import initially
+from ..scene.coning import coned
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
-from .fluid import set_fluid
+from .fluid import set_conditions
 from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
@@ -64,7 +66,7 @@ class Interface:
         self.contact = lay_surfaces(self.f, scene)
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
-            force = self._borrowed().opening_law(scene.film, *spins(scene))
+            force = self._borrowed().opening_law(coned(scene), *spins(scene))
             for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
                 self.f[slot] = force(self.clearance, *ends, self.f[FLOOR] if scene.contact else None)
         self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
@@ -170,7 +172,7 @@ class Interface:
         found = self._film_slopes(s, steps, omega, film)
         if self.contact is None:
             return found
-        clear = asperity_steps(self.scene, self.clearance + s[DZ])
+        clear = asperity_steps(self.scene, self.clearance + s[DZ], s[CONING_CHANGE])
         rough = film_slopes(self._asperities_alone, self._fine, s, clear)
         both = self._sure(found, steps), self._sure(rough, clear)
         return Slopes(*(a + b for a, b in zip(*both, strict=True)))
@@ -247,10 +249,11 @@ def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
-    film_force = _lender(scene, film_of(scene, film)).opening_law(scene.film, *spins(scene))
+    table = coned(scene)
+    film_force = _lender(scene, film_of(scene, film)).opening_law(table, *spins(scene))
     if not scene.contact:
         return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
-    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(scene.film, 1.0)
+    s, face = np.zeros(GAP_STATE_SIZE), face_parameters(table, 1.0)
     asperities = lay_surfaces(face, scene)
 
     def forces(clearance: float, inner_pressure: float, outer_pressure: float) -> tuple[float, float]:
@@ -269,22 +272,23 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     s[DZ] = shift
     clearance = clearance + shift
     first = (lambda q: constant_and_slope(q, interval)[0]) if interval else initially
-    set_fluid(s, scene.film, first)
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(scene, interval)
     if mean_spin is not None:
         # It is the rotor that turns otherwise.
         s[SPIN_DIFFERENCE] += 2.0 * (mean_spin - s[MEAN_SPIN])
         s[MEAN_SPIN] = mean_spin
+    speed = s[MEAN_SPIN] + 0.5 * s[SPIN_DIFFERENCE]
+    set_conditions(s, scene, first, speed)
     floor = contact_thresholds(scene.contact)[0] if scene.contact else None
-    widest, length = (STEP * gap for gap in _analytic(scene, clearance, floor))
+    widest, length = (STEP * gap for gap in _analytic(scene, clearance, s[CONING_CHANGE], floor))
     radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return s, (length, length / radius, widest * pace, widest / radius * pace)
 
 
-def asperity_steps(scene, clearance):
+def asperity_steps(scene, clearance, change):
     """Steps for derivatives of the asperities about aligned faces at rest, as those of `rest_state`; of rates, which
     do nothing to them, any."""
-    length = _analytic(scene, clearance, contact_thresholds(scene.contact)[1])[1]
+    length = _analytic(scene, clearance, change, contact_thresholds(scene.contact)[1])[1]
     # Few asperities reach far: how many changes by a factor over one rms.
     length = STEP * min(length, scene.contact.roughness)
     tilt = length / scene.film.outer_radius
@@ -296,12 +300,12 @@ def _known(stiffness, damping, error) -> Slopes:
     return Slopes(stiffness, damping, error * np.abs(stiffness), error * np.abs(damping))
 
 
-def _analytic(scene, clearance, change) -> tuple[float, float]:
+def _analytic(scene, clearance, coning_change, change) -> tuple[float, float]:
     """The thinnest film (m) of the aligned faces, or the floor of rough ones, and how much of it is left where a law of
     rough faces, which changes at the film thickness `change` (m), does so at an edge nearby: the four steps of
     differences do not reach half as far, unless it is so near that the rounding of the force says more than the
     change."""
-    gaps = [h for _, h in aligned_gaps(scene.film, clearance)]
+    gaps = [h for _, h in aligned_gaps(scene.film, clearance, coning_change)]
     if not scene.contact:
         return min(gaps), min(gaps)
     thinnest = max(min(gaps), contact_thresholds(scene.contact)[0])

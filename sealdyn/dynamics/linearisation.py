@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..scene.coning import follows_speed
 from ..scene.rings import ROTOR, STATOR
 from ..scene.waviness import waves_of
 from .equilibrium import axial_shift
@@ -18,13 +19,14 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
-    **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and no
-    inertia of the fluid, which moves the gap with the speed: such a film is linearised at every speed.
+    **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and neither
+    inertia of the fluid nor coning that follows the speed, which move the gap with it: such a film is linearised at
+    every speed.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     if shift is None:
-        moves = speed is not None and model.scene.film.inertia
+        moves = speed is not None and _moves_with_speed(model.scene.film)
         shift = axial_shift(model, interval, speed)[0] if moves else model.axial_shift(interval)
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
     if linear_in_speed(model, interval):
@@ -66,7 +68,12 @@ def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
     plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
-    return plain and not model.scene.film.inertia and not waves_of(model.scene)
+    return plain and not _moves_with_speed(model.scene.film) and not waves_of(model.scene)
+
+
+def _moves_with_speed(film) -> bool:
+    """Whether the aligned gap of a `Film` is another at another speed."""
+    return film.inertia or follows_speed(film)
 
 
 def whirl_over_speed(model, interval):

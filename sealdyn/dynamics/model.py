@@ -5,6 +5,8 @@ import math
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
+from ..scene.coning import coning_change
+from ..scene.film import aligned_gaps
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
@@ -60,7 +62,7 @@ class Model:
         """Everything that may be a table."""
         scene, film = self.scene, self.scene.film
         return [
-            scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(),
+            scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), film.coning, film.temperature,
             self.closing.spring, scene.rotor.runout, scene.rotor.misalignment, scene.stator.misalignment,
         ]  # fmt: skip
 
@@ -142,6 +144,15 @@ class Model:
             found = self.interface.slopes(interval, mean_spin=0.0, shift=shift, pace=FAST)
             self._still_films[key] = found
         return self._still_films[key]
+
+    def coning_change(self, interval: Interval | None = None, speed: float | None = None) -> float:
+        """By how much (rad) the coning differs from the face block's, at an interval's start and a shaft speed
+        (rad/s), or the scene's own."""
+        return coning_change(self.scene, lambda q: constant_and_slope(q, interval or self.start)[0], speed)
+
+    def aligned_gaps(self, interval: Interval | None = None) -> list[tuple[float, float]]:
+        """(radius, film thickness) in m of the aligned faces at the clearance, at an interval's start."""
+        return aligned_gaps(self.scene.film, self.clearance, self.coning_change(interval))
 
     def speed_at(self, interval: Interval) -> float:
         """Shaft speed (rad/s) at an interval's start."""

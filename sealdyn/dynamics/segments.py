@@ -11,8 +11,8 @@ from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
 from ..faces.waviness import highest_orders
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
-from .fluid import fluid_conditions
-from .imposed_motion import harmonics_of_segment
+from .fluid import fluid_conditions, thermal_coning
+from .imposed_motion import CONING_PER_SPEED_SQUARED, ROTOR_SPEED, coning_at, harmonics_of_segment
 from .intervals import Interval, constant_and_slope, modulo_turn
 from .steady_extremes import common_period
 from .step_bounds import largest_swing
@@ -56,9 +56,11 @@ class Segment:
         film = scene.film
         varying = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values())
         pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
+        pairs.append(thermal_coning(film, interval))
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
-        head = np.array([x for pair in pairs for x in pair] + [*angles, len(rows)])
+        coned = [film.coning_per_speed_squared]
+        head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
         p = np.concatenate([self.model.unknowns.ring_block, head, rows.ravel()])
         for k, held in self.stuck.items():
             at = equations.RING * k
@@ -78,7 +80,10 @@ class Segment:
     def swing(self) -> np.ndarray:
         """How far and how sharply the imposed motion can move the gap (step_bounds.py)."""
         spins = [constant_and_slope(ring, self.interval) for ring in self._speeds()]
-        return largest_swing(self.model.face, self.rows, self.model.unknowns.floats, spins, self.length)
+        floats, leg = self.model.unknowns.floats, self.p[equations.LEG_AT :]
+        # Change of the coning as a parabola in time.
+        bend = leg[CONING_PER_SPEED_SQUARED] * leg[ROTOR_SPEED + 1] ** 2
+        return largest_swing(self.model.face, self.rows, floats, spins, (*coning_at(0.0, leg), bend), self.length)
 
     def _speeds(self):
         """Speeds (rad/s) of stator and rotor."""

@@ -8,6 +8,8 @@ import numpy as np
 
 from ..faces.geometry import (
     CAVITATED,
+    CONING,
+    CONING_CHANGE,
     CONTACT_AREA,
     CONTACT_FORCE,
     CONTACT_PRESSURE,
@@ -32,6 +34,7 @@ from ..faces.geometry import (
     WEAR,
 )
 from ..faces.waviness import wave_parts_along
+from ..scene.coning import changes
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
@@ -169,6 +172,11 @@ CONTACT = (
     Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), MICROMETRES_PER_HOUR,
            tallied=True),
 )  # fmt: skip
+# Of faces whose coning changes.
+CONED = (
+    Signal("coning", "rad", "coning of the gap, positive where it is thicker outwards",
+           lambda at: at.segment.model.face[CONING] + at.gap[:, CONING_CHANGE]),
+)  # fmt: skip
 TALLIED = tuple(signal.name for signal in SHAFT_AND_FILM + CONTACT if signal.tallied)
 # A ring's motion and its secondary seal, in the order of their slots: unit, what it is.
 PARTS = {
@@ -195,12 +203,13 @@ def signal_table(model) -> tuple[Signal, ...]:
         tuple(unknowns.floats[k] for k in range(len(RING_NAMES))),
         tuple(orders),
         model.contact is not None,
+        changes(model.scene.film),
         tuple(unknowns.seals),
     )
 
 
 @cache
-def _table(floats, orders, touching, seals):
+def _table(floats, orders, touching, coned, seals):
     table = []
     for k, ring in enumerate(RING_NAMES):
         at = equations.OWN_STATE + 6 * k
@@ -210,6 +219,7 @@ def _table(floats, orders, touching, seals):
             words = f"{part} part of the gap's wave of order {order:.0f}, from the x axis"
             table.append(Signal(f"gap_{short}_{order:.0f}", "m", words, lambda at, j=j, i=i: at.waves[:, j, i]))
     table += CONTACT if touching else ()
+    table += CONED if coned else ()
     for k in seals:
         table += _of_ring(RING_NAMES[k], SEAL, equations.SEALS + equations.PER_SEAL * k)
         slot, words = equations.RING * k + equations.STUCK, f"1 while the {RING_NAMES[k]} sticks on its secondary seal"

@@ -15,7 +15,7 @@ import math
 
 import numpy as np
 
-from ..faces.geometry import CLEARANCE, OUTER_RADIUS, smallest_gap
+from ..faces.geometry import CLEARANCE, INNER_RADIUS, OUTER_RADIUS, smallest_gap
 from ..faces.waviness import wave_rows
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
@@ -28,17 +28,18 @@ THICKNESS, MINUS_TILT, TILT = range(3)
 # and tilt (rad, rad).
 FROM, TO, RATE_FROM, RATE_TO = range(4)
 # Of a stretch of time: largest imposed axial motion (m), tilt (rad) and sum of waves (m); largest fourth derivatives of
-# the first two (per s^4), second of the waves (per s^2).
-REACH, BEND, SWING = 0, 3, 6
+# the first two (per s^4), second of the waves and of what the cone opens (per s^2); least change of the coning (rad).
+REACH, BEND, LEAST_CONING, SWING = 0, 3, 6, 7
 # What kernels round: of all that moves the gap, per radian of the imposed motion so far; and of the thinnest film of
 # waves, of the clearance.
 ROUNDING, FOUND = 1e-15, 1e-12
 
 
-def largest_swing(face, rows, floats, spins, length: float) -> np.ndarray:
+def largest_swing(face, rows, floats, spins, coning, length: float) -> np.ndarray:
     """How far and how sharply what is imposed can move the gap, (SWING,): `face` block, harmonics `rows`
-    (imposed_motion.py), which of stator and rotor `floats`, `spins` of both (speed, slope; rad/s, rad/s^2), over
-    `length` (s).  A ring that floats does not move with its carrier."""
+    (imposed_motion.py), which of stator and rotor `floats`, `spins` of both (speed, slope; rad/s, rad/s^2), the
+    `coning` (change, rate, half its second derivative; rad, rad/s, rad/s^2), over `length` (s).  A ring that floats
+    does not move with its carrier."""
     out = np.zeros(SWING)
     for ring, kind, a, a_slope, _, _, _, w, half_slope in rows.tolist():
         if kind == OWN or floats[int(ring)]:
@@ -53,6 +54,10 @@ def largest_swing(face, rows, floats, spins, length: float) -> np.ndarray:
         speed, slope = spins[0 if sign > 0.0 else 1]
         out[REACH + 2] += abs(amplitude)
         out[BEND + 2] += abs(amplitude) * ((order * _fastest(speed, slope, length)) ** 2 + order * abs(slope))
+    change, rate, bend = coning
+    vertex = min(max(-0.5 * rate / bend if bend > 0.0 else 0.0, 0.0), length)
+    out[LEAST_CONING] = min(change + tau * (rate + bend * tau) for tau in (0.0, vertex, length))
+    out[BEND + 2] += 2.0 * abs(bend) * (face[OUTER_RADIUS] - face[INNER_RADIUS])
     return out
 
 
@@ -149,7 +154,7 @@ def lowest_possible(f, swing, motion):
     axial, tilt = departures(motion)
     dz = min(motion[FROM, 0], motion[TO, 0]) - axial - swing[REACH]
     tilt += max(tilt_at(motion, FROM), tilt_at(motion, TO)) + swing[REACH + 1]
-    least, _ = smallest_gap(f, dz, tilt)
+    least, _ = smallest_gap(f, dz, tilt, swing[LEAST_CONING])
     return least - swing[REACH + 2]
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.coning import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
 from . import equations
@@ -46,7 +47,9 @@ class Unknowns:
         tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
         shifted = any(v for s in moved for v in (s.z, s.z_rate))
         film = scene.film
-        loads = (film.inner_pressure, film.outer_pressure, film.temperature, closing.spring)
+        # A cone that opens moves the equilibrium.
+        cones = (film.coning, scene.shaft.speed) if follows_speed(film) else (film.coning,)
+        loads = (film.inner_pressure, film.outer_pressure, film.temperature, closing.spring, *cones)
         loaded = any(isinstance(q, PiecewiseLinear) for q in loads)
         others = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values(), scene.rotor.runout)
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)

@@ -35,6 +35,7 @@ from .contact_annulus import (
 )
 from .geometry import (
     COLLAPSE,
+    CONING_CHANGE,
     CONTACT_AREA,
     CONTACT_ENERGY,
     CONTACT_FORCE,
@@ -112,20 +113,20 @@ def _face(k, f, s, complete):
         s[CONTACT_TORQUE] = s[CONTACT_AREA] = s[CONTACT_PRESSURE] = s[CONTACT_ENERGY] = s[WEAR] = 0.0
     tilt = math.hypot(s[GX], s[GY])
     if f[PROFILE] == 0.0:
-        low_i, low_o = edge_gaps(f, s[DZ], tilt)
+        low_i, low_o = edge_gaps(f, s[DZ], tilt, s[CONING_CHANGE])
         low = min(low_i, low_o)
         if low >= k[TOP]:
             return
         r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
         load, arm, along, area, area_arm, energy, _ = annulus(k, r_i, r_o, _mean_arm(f), tilt, low_i, low_o, complete)
     else:
-        low, _ = smallest_gap(f, s[DZ], tilt)
+        low, _ = smallest_gap(f, s[DZ], tilt, s[CONING_CHANGE])
         if low >= k[TOP]:
             return
         load = arm = along = area = area_arm = energy = 0.0
-        low_o = node_gap(f, 0, s[DZ], tilt)
+        low_o = node_gap(f, 0, s[DZ], tilt, s[CONING_CHANGE])
         for node in range(int(f[PROFILE]) - 1):
-            low_i, low_o = low_o, node_gap(f, node + 1, s[DZ], tilt)
+            low_i, low_o = low_o, node_gap(f, node + 1, s[DZ], tilt, s[CONING_CHANGE])
             if min(low_i, low_o) >= k[TOP]:
                 continue
             r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]
@@ -185,7 +186,8 @@ def wear_rates(k, f, s, out):
     out[:] = 0.0
     tilt = math.hypot(s[GX], s[GY])
     for node in range(int(f[PROFILE]) - 1):
-        low_i, low_o = node_gap(f, node, s[DZ], tilt), node_gap(f, node + 1, s[DZ], tilt)
+        low_i = node_gap(f, node, s[DZ], tilt, s[CONING_CHANGE])
+        low_o = node_gap(f, node + 1, s[DZ], tilt, s[CONING_CHANGE])
         if min(low_i, low_o) >= k[TOP]:
             continue
         r_i, r_o = f[PROFILE_RADII + node], f[PROFILE_RADII + node + 1]

@@ -10,6 +10,8 @@ from ..numerics.kernel import inner_kernel, value_kernel
 from .geometry import (
     CLEARANCE,
     CONING,
+    CONING_CHANGE,
+    CONING_RATE,
     DZ,
     DZ_RATE,
     GX,
@@ -52,16 +54,17 @@ def _depth(f, r):
 @inner_kernel()
 def film_thickness(f, s, r, theta):
     """Film thickness (m) at radius r (m) and angle theta (rad, from the x axis)."""
-    aligned = f[CLEARANCE] + s[DZ] + f[CONING] * (r - f[INNER_RADIUS]) + _depth(f, r)
+    aligned = f[CLEARANCE] + s[DZ] + (f[CONING] + s[CONING_CHANGE]) * (r - f[INNER_RADIUS]) + _depth(f, r)
     return aligned + _arm(f, r) * (s[GX] * math.sin(theta) - s[GY] * math.cos(theta)) + waves(f, s, theta)
 
 
 @inner_kernel()
 def film_thickness_rate(f, s, r, theta):
-    """Rate of the film thickness (m/s) at a fixed radius r (m) and angle theta (rad): the rings' own rates, and the
-    waves that pass with them."""
+    """Rate of the film thickness (m/s) at a fixed radius r (m) and angle theta (rad): the rings' own rates, the
+    coning's, and the waves that pass with them."""
     tilting = s[GX_RATE] * math.sin(theta) - s[GY_RATE] * math.cos(theta)
-    return s[DZ_RATE] + _arm(f, r) * tilting + waves_rate(f, s, theta)
+    coned = s[CONING_RATE] * (r - f[INNER_RADIUS])
+    return s[DZ_RATE] + coned + _arm(f, r) * tilting + waves_rate(f, s, theta)
 
 
 def h_min(f, s) -> tuple[float, float, float]:
@@ -78,7 +81,7 @@ def h_min_of(f):
 def thinnest_of_cones(f, s):
     """As `h_min`, of faces without waves."""
     # h = C + dz + ... - r G cos(beta): beta counts from the thinnest place (faces/geometry.py).
-    least, radius = smallest_gap(f, s[DZ], math.hypot(s[GX], s[GY]))
+    least, radius = smallest_gap(f, s[DZ], math.hypot(s[GX], s[GY]), s[CONING_CHANGE])
     theta = math.atan2(s[GY], s[GX]) - 0.5 * math.pi
     if theta < -math.pi:
         theta += 2.0 * math.pi

@@ -6,16 +6,17 @@ rotor`.  Film thickness of two rigid coned faces:
 
     h(r, theta, t) = C + dz + coning (r - r_i) + depth(r) + r (g_x sin(theta) - g_y cos(theta)) + waves(theta, t)
 
-where `depth` is what faces that are not plain cones (worn ones) are wider apart, linear between the radii of a profile,
-0 without one, and `waves` what turns with either ring (faces/waviness.py).  Without waves and with `g = G exp(i alpha)`
-the thinnest place lies at theta = alpha - pi/2, and beta is counted from there: h = C + dz + coning (r - r_i) +
-depth(r) - r G cos(beta).  Here are the slots and the closed forms of such faces; h itself, its rate and its smallest
-value are in faces/film_thickness.py.
+where coning is the block's and its change, `depth` is what faces that are not plain cones (worn ones) are wider apart,
+linear between the radii of a profile, 0 without one, and `waves` what turns with either ring (faces/waviness.py).
+Without waves and with `g = G exp(i alpha)` the thinnest place lies at theta = alpha - pi/2, and beta is counted from
+there: h = C + dz + coning (r - r_i) + depth(r) - r G cos(beta).  Here are the slots and the closed forms of such
+faces; h itself, its rate and its smallest value are in faces/film_thickness.py.
 """
 
 import numpy as np
 
 from ..numerics.kernel import inner_kernel
+from ..numerics.piecewise_linear import initially
 from ..scene.film import MOST_NODES
 from ..scene.waviness import MOST_WAVES
 
@@ -30,7 +31,9 @@ CONTACT_TORQUE, CONTACT_AREA, CONTACT_PRESSURE, CONTACT_ENERGY, WEAR = range(21,
 STATOR_ANGLE, ROTOR_ANGLE = 26, 27
 # Of a gas the temperature (K) of its reservoir; a code of the film's STATUS once it had no solution, 0 before.
 TEMPERATURE, REFUSED = 28, 29
-GAP_STATE_SIZE = 30
+# By how much the coning differs from the block's (rad), and its rate (rad/s).
+CONING_CHANGE, CONING_RATE = 30, 31
+GAP_STATE_SIZE = 32
 
 # Leading slots of every film's block `f`: the faces.  A film's own numbers follow.
 INNER_RADIUS, OUTER_RADIUS, CLEARANCE, CONING, FLOOR, TILT_AT_MEAN, PLANAR, TOUCH, COLLAPSE = range(9)
@@ -54,7 +57,7 @@ def face_parameters(film, clearance: float) -> np.ndarray:
         film.inner_radius,
         film.outer_radius,
         clearance,
-        film.coning,
+        initially(film.coning),
         film.floor * clearance,
         film.tilt_radius == "mean",
         film.geometry == "planar",
@@ -70,10 +73,11 @@ def face_parameters(film, clearance: float) -> np.ndarray:
 
 
 @inner_kernel()
-def edge_gaps(f, dz, tilt):
+def edge_gaps(f, dz, tilt, change):
     """Smallest film thickness (m) over the circle at the inner and at the outer edge.
 
-    `f` a face block, `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad).
+    `f` a face block, `dz` change of the axial gap (m), `tilt` relative misalignment |g| (rad), `change` of the coning
+    (rad).
     **Valid** rigid faces without waves; without a profile the minimum over the face is the smaller of the two.
     """
     r_i, r_o = f[INNER_RADIUS], f[OUTER_RADIUS]
@@ -81,7 +85,7 @@ def edge_gaps(f, dz, tilt):
     if f[TILT_AT_MEAN] != 0.0:
         a_i = a_o = 0.5 * (r_i + r_o)
     inner = f[CLEARANCE] + dz - a_i * tilt
-    outer = f[CLEARANCE] + dz + f[CONING] * (r_o - r_i) - a_o * tilt
+    outer = f[CLEARANCE] + dz + (f[CONING] + change) * (r_o - r_i) - a_o * tilt
     if f[PROFILE] != 0.0:
         inner += f[PROFILE_DEPTHS]
         outer += f[PROFILE_DEPTHS + int(f[PROFILE]) - 1]
@@ -89,26 +93,26 @@ def edge_gaps(f, dz, tilt):
 
 
 @inner_kernel()
-def node_gap(f, node, dz, tilt):
+def node_gap(f, node, dz, tilt, change):
     """As `edge_gaps`, one film thickness (m), at the radius `node` of the profile (counted from 0); between them it is
     linear in r."""
     r_i, r = f[INNER_RADIUS], f[PROFILE_RADII + node]
     arm = 0.5 * (r_i + f[OUTER_RADIUS]) if f[TILT_AT_MEAN] != 0.0 else r
-    return f[CLEARANCE] + dz + f[CONING] * (r - r_i) - arm * tilt + f[PROFILE_DEPTHS + node]
+    return f[CLEARANCE] + dz + (f[CONING] + change) * (r - r_i) - arm * tilt + f[PROFILE_DEPTHS + node]
 
 
 @inner_kernel()
-def smallest_gap(f, dz, tilt):
+def smallest_gap(f, dz, tilt, change):
     """Smallest film thickness over a face without waves (m), and its radius (m); arguments as `edge_gaps`."""
     if f[PROFILE] == 0.0:
-        inner, outer = edge_gaps(f, dz, tilt)
+        inner, outer = edge_gaps(f, dz, tilt, change)
         if inner <= outer:
             return inner, f[INNER_RADIUS]
         return outer, f[OUTER_RADIUS]
     # Linear between the radii of the profile, it is smallest at one of them.
-    least, at = node_gap(f, 0, dz, tilt), 0
+    least, at = node_gap(f, 0, dz, tilt, change), 0
     for node in range(1, int(f[PROFILE])):
-        gap = node_gap(f, node, dz, tilt)
+        gap = node_gap(f, node, dz, tilt, change)
         if gap < least:
             least, at = gap, node
     return least, f[PROFILE_RADII + at]

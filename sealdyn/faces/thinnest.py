@@ -17,6 +17,7 @@ import numpy as np
 from ..numerics.kernel import inner_kernel, value_kernel
 from .geometry import (
     CLEARANCE,
+    CONING_CHANGE,
     DZ,
     GX,
     GY,
@@ -105,10 +106,10 @@ def _radii_of(f, s, radii, bases, arms):
     """Radii (m) at one of which h is smallest, the film there without tilt and waves (m), the arm of the tilt (m)."""
     if f[PROFILE] == 0.0:
         radii[0], radii[1] = f[INNER_RADIUS], f[OUTER_RADIUS]
-        bases[0], bases[1] = edge_gaps(f, s[DZ], 0.0)
+        bases[0], bases[1] = edge_gaps(f, s[DZ], 0.0, s[CONING_CHANGE])
     else:
         for k in range(len(radii)):
-            radii[k], bases[k] = f[PROFILE_RADII + k], node_gap(f, k, s[DZ], 0.0)
+            radii[k], bases[k] = f[PROFILE_RADII + k], node_gap(f, k, s[DZ], 0.0, s[CONING_CHANGE])
     arms[:] = radii
     if f[TILT_AT_MEAN] != 0.0:
         arms[:] = 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
+    CONING_RATE,
     DZ_RATE,
     FLOOR,
     GX,
@@ -107,7 +108,9 @@ def _pressure(f, s, nodes, steps, r, out):
         sin, cos = math.sin(theta), math.cos(theta)
         _thicknesses(f, s, nodes, steps, theta, h)
         tilt_rate = s[GX_RATE] * sin - s[GY_RATE] * cos + s[MEAN_SPIN] * (s[GX] * cos + s[GY] * sin)
-        q, _ = cubic(s[DZ_RATE], tilt_rate, r[0], r[-1], mean, planar)
+        # A cone that grows is a tilting of every radius alike.
+        tilt_rate += s[CONING_RATE]
+        q, _ = cubic(s[DZ_RATE] - s[CONING_RATE] * r[0], tilt_rate, r[0], r[-1], mean, planar)
         for k in range(1, len(r)):
             rule = RULES + RULE_SIZE * points_for(f, h[k - 1], h[k])
             first, points = rule + 2, int(f[rule])

@@ -51,6 +51,8 @@ from ..faces.geometry import (
     regularised_thickness,
 )
 from ..numerics.kernel import value_kernel
+from ..numerics.piecewise_linear import initially
+from ..scene.coning import changes
 from ..scene.film import Coefficients
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
 
@@ -63,6 +65,8 @@ def accepts(film, waves=()) -> str:
         return "plain cones only"
     if film is not None and film.inertia:
         return "a fluid without inertia"
+    if film is not None and changes(film):
+        return "a coning that stays as it is"
     own = film is not None and film.model == "linear" and isinstance(film.coefficients, Coefficients)
     if film is not None and film.gas is not None and not (own and film.clearance is not None):
         return 'a gas with model = "linear", a clearance and a table film.coefficients of your own numbers'
@@ -86,7 +90,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
         inner_radius=film.inner_radius,
         outer_radius=film.outer_radius,
         clearance=clearance,
-        coning=film.coning,
+        coning=initially(film.coning),
     )
     if film.coefficients == "green":
         c = film_coefficients(**faces, viscosity=1.0, pressure_drop=1.0)
@@ -109,7 +113,7 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
 def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     """Opening force (N) of the aligned narrow seal at rest, `force(clearance, inner_pressure, outer_pressure, floor)`;
     pressures absolute (Pa), clearance in m; it has no use for a floor."""
-    faces = dict(inner_radius=film.inner_radius, outer_radius=film.outer_radius, coning=film.coning)
+    faces = dict(inner_radius=film.inner_radius, outer_radius=film.outer_radius, coning=initially(film.coning))
 
     def force(clearance: float, inner_pressure: float, outer_pressure: float, floor: float | None = None) -> float:
         pressures = dict(inner_pressure=inner_pressure, outer_pressure=outer_pressure)

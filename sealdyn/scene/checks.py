@@ -5,16 +5,19 @@ import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..units import Temperature, Viscosity
-from . import contact, secondary_seal
+from . import coning, contact, secondary_seal
 from . import film as film_table
 from .gas import GASES, gas_of
 from .scene import SceneError
 from .waviness import waves_of, waviness_errors
 
+# Of keys that may not step, if not rad.
+UNITS = {"temperature": "K", "speed": "rad/s"}
+
 
 def check_scene(scene, run) -> None:
     """Raises `SceneError` with the first rule that a Scene, or its `run` (the `[run]` table), breaks."""
-    _film(scene.film)
+    _film(scene)
     _profile(scene)
     for key, found, expected in waviness_errors(scene):
         raise SceneError(key, found, expected)
@@ -37,7 +40,9 @@ def check_scene(scene, run) -> None:
         _open_at_start(scene)
 
 
-def _film(film) -> None:
+def _film(scene) -> None:
+    film = scene.film
+    _coning(scene)
     for key in ("inner_radius", "outer_radius", "clearance"):
         value = getattr(film, key)
         if value is not None and value <= 0:
@@ -51,22 +56,38 @@ def _film(film) -> None:
     if not 0 < film.floor < 0.5:
         raise SceneError("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
     if film.clearance is not None and film.profile is None:
-        outer = film.clearance + film.coning * (film.outer_radius - film.inner_radius)
+        slope = coning.coned(scene).coning
+        outer = film.clearance + slope * (film.outer_radius - film.inner_radius)
         if outer <= film.floor * film.clearance:
             raise SceneError(
                 "film.coning",
-                f"{film.coning:g} rad, a film of {outer:g} m at the outer radius",
+                f"{slope:g} rad, a film of {outer:g} m at the outer radius",
                 "an open film",
             )
     _cavitation(film)
     _gas(film) if film.gas is not None else _liquid(film)
 
 
+def _coning(scene) -> None:
+    film = scene.film
+    if film.coning_per_kelvin:
+        for key in ("temperature", "coning_reference_temperature"):
+            if getattr(film, key) is None:
+                found = "nothing, with film.coning_per_kelvin"
+                raise SceneError(f"film.{key}", found, Temperature.__metadata__[0].expected())
+    elif film.coning_reference_temperature is not None:
+        found = "a temperature without film.coning_per_kelvin"
+        raise SceneError("film.coning_reference_temperature", found, "both of them, or none")
+    check_no_step("film", film, ("coning", *(["temperature"] if film.coning_per_kelvin else [])))
+    if coning.follows_speed(film):
+        check_no_step("shaft", scene.shaft, ["speed"])
+
+
 def _liquid(film) -> None:
     if film.viscosity is None:
         raise SceneError("film.viscosity", "nothing", Viscosity.__metadata__[0].expected())
     for key in ("temperature", "gas_dam", "gas_reynolds"):
-        if getattr(film, key) is not None:
+        if getattr(film, key) is not None and not (key == "temperature" and film.coning_per_kelvin):
             raise SceneError(f"film.{key}", "a key of gases, with a liquid", f"nothing, or film.gas = {_names(GASES)}")
 
 
@@ -111,7 +132,7 @@ def _profile(scene) -> None:
     for key, found, expected in film_table.profile_errors(film):
         raise SceneError(f"film.{key}", found, expected)
     if film.clearance is not None and film.profile is not None:
-        least, radius = min((h, r) for r, h in film_table.aligned_gaps(film, film.clearance))
+        least, radius = min((h, r) for r, h in film_table.aligned_gaps(coning.coned(scene), film.clearance))
         if not least > _lowest(scene):
             raise SceneError("film.profile.depth", f"a film of {least:g} m at r = {radius:g} m", "an open film")
 
@@ -177,16 +198,17 @@ def _ring(name: str, ring) -> None:
         raise SceneError(f"{key}.radius", f"{support.radius:g} m", "a length > 0")
 
 
-def check_no_step(name: str, ring) -> None:
-    """Raises `SceneError` if the runout or misalignment (rad) of the ring called `name` has a step in time: a face
-    cannot be somewhere else at once, the film, or the support's damper, would push without bound."""
-    for key in ("runout", "misalignment"):
-        value = getattr(ring, key, 0.0)
+def check_no_step(name: str, table, keys=("runout", "misalignment")) -> None:
+    """Raises `SceneError` if one of the `keys` of the table called `name`, a ring's or one that its coning follows, has
+    a step in time: a face cannot be somewhere else at once, the film, or the support's damper, would push without
+    bound."""
+    for key in keys:
+        value = getattr(table, key, 0.0)
         if not isinstance(value, PiecewiseLinear):
             continue
         for t0, t1, v0, v1 in zip(value.time, value.time[1:], value.value, value.value[1:], strict=False):
             if t0 == t1 and v0 != v1:
-                found = f"a step at {t0:g} s, from {v0:g} to {v1:g} rad"
+                found = f"a step at {t0:g} s, from {v0:g} to {v1:g} {UNITS.get(key, 'rad')}"
                 expected = "a ramp: a face that jumps squeezes the film without bound"
                 raise SceneError(f"{name}.{key}", found, expected)
 
@@ -234,7 +256,7 @@ def _open_at_start(scene) -> None:
         angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
         stator = (0.0, cmath.rect(angle, direction))
     tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
-    thinnest, radius = min((h - tilt * r, r) for r, h in film_table.aligned_gaps(film, gap))
+    thinnest, radius = min((h - tilt * r, r) for r, h in film_table.aligned_gaps(coning.coned(scene), gap))
     lowest = _lowest(scene)
     if not thinnest > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"

@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
+from ..numerics.piecewise_linear import initially
 from ..units import (
     Angle,
     AxialFilmDamping,
     AxialFilmStiffness,
+    ConingPerKelvin,
+    ConingPerSpeedSquared,
     Density,
     Length,
     Pressure,
@@ -107,7 +110,7 @@ class Film:
     gas: GasName | Gas | None = None
     """A gas, by name or as a table of its numbers; without it the film is a liquid."""
     temperature: Varying[Temperature] | None = None
-    """Of a gas: total temperature of the reservoir."""
+    """Of a gas: total temperature of the reservoir.  Of a liquid only what `coning_per_kelvin` follows."""
     model: str = "auto"
     """"auto": the linear film where its estimated error is within the accuracy, else the radial or profiled one; of a
     gas "gas_reynolds"."""
@@ -117,8 +120,14 @@ class Film:
     """Arm of the tilt in film thickness and contact moment: the local radius, or everywhere the mean radius."""
     clearance: Length | None = None
     """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
-    coning: Angle = 0.0
+    coning: Varying[Angle] = 0.0
     """Slope of the faces: the film is thicker outwards where positive."""
+    coning_per_speed_squared: ConingPerSpeedSquared = 0.0
+    """Centrifugal coning: what the shaft speed squared adds to it."""
+    coning_per_kelvin: ConingPerKelvin = 0.0
+    """Thermal coning: what each kelvin of `temperature` above `coning_reference_temperature` adds to it."""
+    coning_reference_temperature: Temperature | None = None
+    """Temperature at which the coning is that of `coning`."""
     density: Density = 1000.0
     """Of a liquid: for mass flow, heating of the leakage, Reynolds numbers and inertia."""
     inertia: bool = False
@@ -168,12 +177,11 @@ def profile_errors(film) -> list[tuple[str, str, str]]:
     return bad
 
 
-def aligned_gaps(film, clearance: float) -> list[tuple[float, float]]:
+def aligned_gaps(film, clearance: float, coning_change: float = 0.0) -> list[tuple[float, float]]:
     """(radius, film thickness) in m at the edges of the aligned faces, or at the radii of the profile of a `Film`, for
-    a `clearance` (m)."""
+    a `clearance` (m); `coning_change` (rad) since time zero."""
+    coning = initially(film.coning) + coning_change
     radii, depths = (film.inner_radius, film.outer_radius), (0.0, 0.0)
     if film.profile is not None:
         radii, depths = film.profile.radius, film.profile.depth
-    return [
-        (r, clearance + film.coning * (r - film.inner_radius) + depth) for r, depth in zip(radii, depths, strict=True)
-    ]
+    return [(r, clearance + coning * (r - film.inner_radius) + depth) for r, depth in zip(radii, depths, strict=True)]

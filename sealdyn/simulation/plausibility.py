@@ -10,7 +10,7 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..numerics.piecewise_linear import initially
 from ..scene.checks import points
-from ..scene.film import Coefficients, aligned_gaps
+from ..scene.film import Coefficients
 from ..scene.gas import density_of, gas_of, viscosity_of
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
@@ -84,7 +84,7 @@ def _turbulence(model, leakage):
     film, scene = model.scene.film, model.scene
     viscosity = min(points(film.viscosity))
     sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
-    gaps = [gap for gap in aligned_gaps(film, model.clearance) if gap[1] > 0.0]
+    gaps = [gap for gap in model.aligned_gaps() if gap[1] > 0.0]
     numbers = [(couette_reynolds(film.density, viscosity, sliding * r, h), r) for r, h in gaps]
     (first, inner), (most, radius) = numbers[0], max(numbers)
     doubt = f"the film counts as laminar, which it is below some {LAMINAR:.0f}"
@@ -107,7 +107,7 @@ def _gas_flow(model, leakage):
     low = min(*points(film.inner_pressure), *points(film.outer_pressure))
     density, viscosity = low / (gas.gas_constant * temperature), min(points(viscosity_of(film)))
     outer_is_high = initially(film.outer_pressure) >= initially(film.inner_pressure)
-    radius, h = aligned_gaps(film, model.clearance)[0 if outer_is_high else -1]
+    radius, h = model.aligned_gaps()[0 if outer_is_high else -1]
     flow = density_of(film) * leakage / (2.0 * math.pi * radius)
     if model.interface.name != "gas_dam" and math.isfinite(flow) and h > 0.0:
         mach = flow / (density * h * sound)
@@ -119,7 +119,7 @@ def _gas_flow(model, leakage):
             yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
     sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
     high = max(*points(film.inner_pressure), *points(film.outer_pressure))
-    thickest, at = max((h, r) for r, h in aligned_gaps(film, model.clearance))
+    thickest, at = max((h, r) for r, h in model.aligned_gaps())
     most = couette_reynolds(high / (gas.gas_constant * temperature), viscosity, sliding * at, thickest)
     if most > LAMINAR:
         found = f"Couette Reynolds number {most:.0f} at r = {at * 1e3:.4g} mm"

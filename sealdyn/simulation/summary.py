@@ -318,7 +318,7 @@ def _contact_margin(segment, linear, tilt):
         return math.nan
     face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)
-    outer = inner + face[3] * (face[1] - face[0])
+    outer = inner + (face[3] + model.coning_change(segment.interval)) * (face[1] - face[0])
     height = max(face[TOUCH], 0.0)
     if min(inner, outer) <= height:
         return 0.0

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.equilibrium import axial_excess, crossing
-from ..dynamics.fluid import set_fluid
+from ..dynamics.fluid import set_conditions
 from ..dynamics.model import Model
 from ..faces.geometry import (
     COLLAPSE,
+    CONING_CHANGE,
     DZ,
     FLOOR,
     GAP_STATE_SIZE,
@@ -24,7 +25,6 @@ from ..faces.geometry import (
     smallest_gap,
 )
 from ..scenario.settings import values_in_si
-from ..scene.film import aligned_gaps
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, seals_that_stick
 from ..units import Angle, Length, Speed
@@ -104,7 +104,7 @@ def matrices(
     stator lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to
     a film that stores only.  Raises ValueError where the faces touch."""
     s = gap_state(model, state, speed)
-    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
+    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt), s[CONING_CHANGE])[0]
     if thinnest <= model.face[COLLAPSE]:
         raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
     # Eight differences reach four steps to either side: stay clear of the other face, which rough ones may pass.
@@ -122,14 +122,14 @@ def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndar
     turning = 1j * state.whirl * state.tilt
     s[GX_RATE], s[GY_RATE] = turning.real, turning.imag
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (w_r + w_s), w_r - w_s
-    set_fluid(s, scene.film, float)
+    set_conditions(s, scene, float, w_r)
     return s
 
 
 def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
     excess = axial_excess(model, gap_state(model, State(0.0, tilt, whirl)), model.closing_force())
-    thinnest = smallest_gap(model.face, 0.0, abs(tilt))[0]
+    thinnest = smallest_gap(model.face, 0.0, abs(tilt), model.coning_change())[0]
     # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
     closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
     low, reach = closed - thinnest, model.clearance
@@ -176,7 +176,7 @@ def _tilted(model, settings, speed) -> dict:
 
 
 def _at(model, state: State, speed) -> dict:
-    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt))[0]
+    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt), model.coning_change(speed=speed))[0]
     return {
         "clearance": model.clearance,
         "axial_opening": state.dz,
@@ -252,7 +252,7 @@ def _against_clearance(scene, model, settings) -> dict:
 
 def _against_tilt(model, settings) -> dict:
     """About a standing tilt up to nearly touching, the faces opening as they tilt."""
-    touch = min(h / r for r, h in aligned_gaps(model.scene.film, model.clearance))
+    touch = min(h / r for r, h in model.aligned_gaps())
     tilts, rows, opening = np.linspace(0.0, 0.95 * touch, max(2, settings.points)), [], []
     for tilt in tilts:
         try:

@@ -14,7 +14,6 @@ from ..dynamics.steady_extremes import steady_extremes
 from ..scenario.settings import si_unit, with_values
 from ..scene import variants
 from ..scene.contact import touch_height
-from ..scene.film import aligned_gaps
 from ..status import Status
 
 REFUSES = ("secondary-seal",)
@@ -125,7 +124,7 @@ def touching_when_aligned(scene, rough: float) -> dict | None:
         return None
     scene = variants.frozen_at_start(scene)
     model, film = Model(scene), scene.film
-    thinnest, radius = min((h, r) for r, h in aligned_gaps(film, model.clearance))
+    thinnest, radius = min((h, r) for r, h in model.aligned_gaps())
     if thinnest >= rough:
         return None
     carried = opening_parts(scene)(model.clearance, film.inner_pressure, film.outer_pressure)
@@ -148,7 +147,8 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
         linear = model.linear_scene()
         answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
         most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
-        inner, outer = model.clearance, model.clearance + model.face[3] * (model.face[1] - model.face[0])
+        coning = model.face[3] + model.coning_change()
+        inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
         inner_left = inner - closing - model.face[0] * most
         outer_left = outer - closing - model.face[1] * most
         return (min(inner_left, outer_left) - rough) / model.clearance, model.face[0 if inner_left <= outer_left else 1]

@@ -22,6 +22,7 @@ from ..dynamics.extrema import MOST
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
+from ..scene.coning import coning_change
 from ..scene.contact import touch_height
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import Scene
@@ -208,8 +209,8 @@ def measured(scene, point: dict) -> dict:
 
 def _amplitude(seal: Arrangement, speed: float) -> float:
     """Forcing (rad) that leaves the film open."""
-    film = seal.scene.film
-    thinnest = min(h for _, h in aligned_gaps(film, film.clearance))
+    film, change = seal.scene.film, coning_change(seal.scene, float, speed)
+    thinnest = min(h for _, h in aligned_gaps(film, film.clearance, change))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
 
@@ -265,7 +266,7 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
         roads["time_domain"][name] = [row.get(q) for q in QUANTITIES]
     for road, both in roads.items():
         for name, values in both.items():
-            values.append(_critical_misalignment(seals[name], values))
+            values.append(_critical_misalignment(seals[name], speed, values))
             values.append(_critical_speed(seals[name], road, by_formula))
     kinds = [*((n, "1") for n in NAMES.values()), ("critical_misalignment", "C/r_o"), ("critical_speed", "rad/s")]
     best = "formula" if by_formula else "linear_algebra"
@@ -276,13 +277,14 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
     ]
 
 
-def _critical_misalignment(seal: Arrangement, values) -> float | None:
+def _critical_misalignment(seal: Arrangement, speed: float, values) -> float | None:
     """Partner's misalignment at first touch, of the asperities of rough faces, in units of C/r_o, with a unit own
     misalignment; None for faces that touch when aligned."""
     if values[0] is None:
         return None
     film, rough = seal.scene.film, touch_height(seal.scene)
-    touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance))
+    change = coning_change(seal.scene, float, speed)
+    touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance, change))
     if touch <= 0.0:
         return None
     own, forcing = (values[1], values[0]) if seal.name == "fmr" else (values[0], values[1])

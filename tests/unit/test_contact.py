@@ -33,6 +33,7 @@ def face(coning=CONING, tilt_radius="local", shape="cylindrical", r_i=R_I):
 
 def rub(law, f, dz, g_x, g_y, spin=SPEED):
     s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[[geometry.CONING_CHANGE, geometry.CONING_RATE]] = 0.0
     s[: geometry.GY + 1], s[geometry.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
     contact.contact_load_and_friction(contact.lay_asperities(law, f), f, s)
     return {name: s[slot] for name, slot in SLOTS.items()}

@@ -51,6 +51,7 @@ def random_state(shape, share, seed, coning=0.0, tilt_radius="local"):
 def kernel(f, state, module=profiled):
     """Force, complex moment, flow in +r at both radii, torque."""
     s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[[geometry.CONING_CHANGE, geometry.CONING_RATE]] = 0.0
     s[:6], s[geometry.MEAN_SPIN], s[geometry.SPIN_DIFFERENCE] = state[:6], state[6], SPEED
     s[geometry.VISCOSITY], s[geometry.INNER_PRESSURE], s[geometry.OUTER_PRESSURE] = MU, P_I, P_O
     module.flow(f, s)

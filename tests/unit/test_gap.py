@@ -5,7 +5,14 @@ import pytest
 from scenes import CLEARANCE, R_I, R_O, film
 
 from sealdyn.faces.film_thickness import h_min
-from sealdyn.faces.geometry import FLOOR, GAP_STATE_SIZE, edge_gaps, face_parameters, regularised_thickness
+from sealdyn.faces.geometry import (
+    CONING_CHANGE,
+    FLOOR,
+    GAP_STATE_SIZE,
+    edge_gaps,
+    face_parameters,
+    regularised_thickness,
+)
 
 CONINGS = {"converging": 3.125e-3, "flat": 0.0, "diverging": -1.1e-3}
 
@@ -14,6 +21,7 @@ def gap(dz=0.0, g_x=0.0, g_y=0.0):
     """A gap state; of faces without waves nothing else is asked."""
     s = np.full(GAP_STATE_SIZE, np.nan)
     s[:3] = dz, g_x, g_y
+    s[CONING_CHANGE] = 0.0
     return s
 
 
@@ -46,7 +54,7 @@ def test_smallest_thickness_against_a_search(coning, mean):
         assert low - 1e-18 <= searched <= low + slack + 1e-18
         assert thickness(radius, at, coning, dz, g_x, g_y, mean) == pytest.approx(low, abs=1e-17)
         assert -np.pi <= at <= np.pi
-        assert low == min(edge_gaps(f, dz, np.hypot(g_x, g_y)))
+        assert low == min(edge_gaps(f, dz, np.hypot(g_x, g_y), 0.0))
         sides.add(radius)
     # With the tilt taken at one radius the coning alone says which edge is thinner.
     assert sides == ({R_I} if coning >= 0.0 and mean else {R_O} if mean or coning <= 0.0 else sides)

@@ -45,6 +45,7 @@ def face(*args, **more):
 
 def state(dz, g_x, g_y, spin=SPEED):
     s = np.full(geometry.GAP_STATE_SIZE, np.nan)
+    s[[geometry.CONING_CHANGE, geometry.CONING_RATE]] = 0.0
     s[: geometry.GY + 1], s[geometry.SPIN_DIFFERENCE] = (dz, g_x, g_y), spin
     return s
 
@@ -130,7 +131,7 @@ def test_smallest_film_is_the_least_of_a_fine_scan(shape, mean, coning):
         assert low - 1e-18 <= scanned <= low + slack + 1e-18
         assert thickness(shape, radius, angle, at, mean, coning) == pytest.approx(low, abs=1e-17)
         edges = [thickness(shape, e, angle, at, mean, coning) for e in (R_I, R_O)]
-        assert geometry.edge_gaps(f, at[0], np.hypot(*at[1:])) == pytest.approx(edges, abs=1e-17)
+        assert geometry.edge_gaps(f, at[0], np.hypot(*at[1:]), 0.0) == pytest.approx(edges, abs=1e-17)
         seen.add(radius)
     assert seen <= set(shape[0])
 

@@ -82,7 +82,8 @@ class RotatingWave:
 
     def least_film(self, q) -> float:
         """Smallest film thickness over the face (m) of displacements (n,)."""
-        return float(smallest_gap(self.model.face, self.opening(q), abs(self.relative(q)))[0])
+        change = self.model.coning_change(speed=self.segment.p[SPEED_AT])
+        return float(smallest_gap(self.model.face, self.opening(q), abs(self.relative(q)), change)[0])
 
     def _accelerations(self, y, speed):
         self.segment.p[SPEED_AT] = speed
@@ -184,9 +185,9 @@ def branch(model: Model, threshold: float, steps: int = 48) -> list[Whirl]:
 
 def contact_tilt_aligned(model: Model) -> float:
     """Relative tilt (rad) at which the faces touch without axial opening."""
-    face = model.face
-    beyond = 2 * (model.clearance / face[0] + abs(face[3]))
-    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0], 0.0, beyond))
+    face, change = model.face, model.coning_change()
+    beyond = 2 * (model.clearance / face[0] + abs(face[3] + change))
+    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt, change)[0], 0.0, beyond))
 
 
 def _ahead(found, amplitude):

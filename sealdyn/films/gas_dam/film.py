@@ -15,6 +15,7 @@ from ...faces.geometry import (
     CAVITATED,
     CLEARANCE,
     CONING,
+    CONING_CHANGE,
     DZ,
     FACE_SIZE,
     FLOOR,
@@ -120,7 +121,7 @@ def _edges(f, s):
     """Mean films (m) at the inner and the outer edge, and their swings around the circle (m)."""
     r_i, r_o, tilt = f[INNER_RADIUS], f[OUTER_RADIUS], math.hypot(s[GX], s[GY])
     h_i = f[CLEARANCE] + s[DZ]
-    h_o = h_i + f[CONING] * (r_o - r_i)
+    h_o = h_i + (f[CONING] + s[CONING_CHANGE]) * (r_o - r_i)
     if f[TILT_AT_MEAN] != 0.0:
         r_i = r_o = 0.5 * (r_i + r_o)
     return h_i, h_o, r_i * tilt, r_o * tilt

@@ -15,6 +15,8 @@ import numpy as np
 from ...faces.film_thickness import film_thickness
 from ...faces.geometry import (
     CLEARANCE,
+    CONING_CHANGE,
+    CONING_RATE,
     DZ,
     DZ_RATE,
     FACE_SIZE,
@@ -123,20 +125,21 @@ def sines(f):
 def thicknesses(f, s, h, bumps):
     """Film thickness `h` (angles, cells + 2) at the nodes (m), as the film's flow sees it, and what the waves have of
     it, `bumps` (angles,) (m)."""
-    rise, arm = table(f, RISE), table(f, ARM)
+    rise, arm, radius = table(f, RISE), table(f, ARM), table(f, RADIUS)
     sin, cos = sines(f)
     for k in range(h.shape[0]):
         bumps[k] = waves(f, s, 2.0 * math.pi * k / h.shape[0])
         aligned, tilt = f[CLEARANCE] + s[DZ] + bumps[k], s[GX] * sin[k] - s[GY] * cos[k]
         for n in range(h.shape[1]):
-            h[k, n] = regularised_thickness(aligned + rise[n] + arm[n] * tilt, f[FLOOR])
+            coned = rise[n] + s[CONING_CHANGE] * (radius[n] - radius[0])
+            h[k, n] = regularised_thickness(aligned + coned + arm[n] * tilt, f[FLOOR])
 
 
 @inner_kernel()
 def thickness_rates(f, s, h, rates):
     """Rates `rates` (angles, cells) of the film thickness `h` of `thicknesses` in the cells (m/s), of the gap state's
     own rates."""
-    arm, floor = table(f, ARM), f[FLOOR]
+    arm, radius, floor = table(f, ARM), table(f, RADIUS), f[FLOOR]
     sin, cos = sines(f)
     for k in range(rates.shape[0]):
         aligned = s[DZ_RATE] + waves_rate(f, s, 2.0 * math.pi * k / rates.shape[0])
@@ -144,4 +147,5 @@ def thickness_rates(f, s, h, rates):
         for j in range(rates.shape[1]):
             # Below the floor its continuation moves less.
             slope = 1.0 if h[k, j + 1] >= floor else (h[k, j + 1] / floor) ** 2
-            rates[k, j] = slope * (aligned + arm[j + 1] * tilting)
+            coned = s[CONING_RATE] * (radius[j + 1] - radius[0])
+            rates[k, j] = slope * (aligned + coned + arm[j + 1] * tilting)

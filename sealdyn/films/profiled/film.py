@@ -16,7 +16,7 @@ import numpy as np
 
 from ...faces.geometry import (
     CAVITATED,
-    DZ,
+    CONING_RATE,
     DZ_RATE,
     FLOW_INNER,
     FLOW_OUTER,
@@ -81,7 +81,10 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
 def _circle(f, s, complete):
     """Integrate over the face.  `complete` asks for leakage and friction torque too."""
     r_i, r_o, mean, planar = f[INNER_RADIUS], f[OUTER_RADIUS], f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
-    mu, p_i, p_o, z_rate, r_m = s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], s[DZ_RATE], 0.5 * (r_i + r_o)
+    mu, p_i, p_o, r_m = s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], 0.5 * (r_i + r_o)
+    # A cone that grows is a tilting of every radius alike.
+    cone_rate = s[CONING_RATE]
+    z_rate = s[DZ_RATE] - cone_rate * r_i
     # In p - g r^2/2 the film is one without inertia.
     g = centrifugal(f, s)
     p_i, p_o = p_i - 0.5 * g * r_i * r_i, p_o - 0.5 * g * r_o * r_o
@@ -92,7 +95,7 @@ def _circle(f, s, complete):
     along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
     across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
 
-    nodes = nodes_of(f, s[DZ])
+    nodes = nodes_of(f, s)
     pieces, points, angles, low = pieces_of(f, nodes, tilt)
     table = np.empty((TABLE, points))
     lay_in_r(f, nodes, pieces, table)
@@ -103,7 +106,7 @@ def _circle(f, s, complete):
     for j in range(angles // 2 + 1):
         cos_b, sin_b = f[COSINES + j * stride], f[SINES + j * stride]
         at_angle(f, nodes, pieces, table, tilt * cos_b, low)
-        even = along * cos_b
+        even = along * cos_b - cone_rate
         a0, ae, a1, b0, be, b1, c0, ce, c1 = sums(table, z_rate, even)
         edge, edge_odd = (drive - ae) / a0, -a1 / a0
         twice = 1.0 if j == 0 or 2 * j == angles else 2.0

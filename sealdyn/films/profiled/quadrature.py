@@ -14,6 +14,8 @@ import numpy as np
 from ...faces.geometry import (
     CLEARANCE,
     CONING,
+    CONING_CHANGE,
+    DZ,
     FLOOR,
     INNER_RADIUS,
     OUTER_RADIUS,
@@ -76,14 +78,14 @@ def plain_ratios(radius_ratio: float, error: float) -> tuple[float, ...]:
 
 
 @inner_kernel()
-def nodes_of(f, dz):
-    """The radii of the profile: rows named above (m), (3, radii); `dz` change of the axial gap (m)."""
+def nodes_of(f, s):
+    """The radii of the profile: rows named above (m), (3, radii), at a gap state."""
     r_i, count, mean = f[INNER_RADIUS], int(f[PROFILE]), f[TILT_AT_MEAN] != 0.0
-    nodes = np.empty((3, count))
+    nodes, coning = np.empty((3, count)), f[CONING] + s[CONING_CHANGE]
     for n in range(count):
         r = f[PROFILE_RADII + n]
         nodes[D, n], nodes[ARM, n] = r - r_i, 0.5 * (r_i + f[OUTER_RADIUS]) if mean else r
-        nodes[ALIGNED, n] = f[CLEARANCE] + dz + f[CONING] * (r - r_i) + f[PROFILE_DEPTHS + n]
+        nodes[ALIGNED, n] = f[CLEARANCE] + s[DZ] + coning * (r - r_i) + f[PROFILE_DEPTHS + n]
     return nodes
 
 

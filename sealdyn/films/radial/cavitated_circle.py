@@ -15,6 +15,8 @@ from ...faces.geometry import (
     CAVITATED,
     CLEARANCE,
     CONING,
+    CONING_CHANGE,
+    CONING_RATE,
     DZ,
     DZ_RATE,
     FLOOR,
@@ -83,7 +85,7 @@ def _edges(f, s):
     across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
     swing_i, swing_o = (r_m * tilt, r_m * tilt) if mean else (r_i * tilt, r_o * tilt)
     thin_i = f[CLEARANCE] + s[DZ] - swing_i
-    thin_o = f[CLEARANCE] + s[DZ] + f[CONING] * width - swing_o
+    thin_o = f[CLEARANCE] + s[DZ] + (f[CONING] + s[CONING_CHANGE]) * width - swing_o
     thick_i, thick_o = (
         regularised_thickness(thin_i + 2.0 * swing_i, floor),
         regularised_thickness(thin_o + 2.0 * swing_o, floor),
@@ -110,10 +112,18 @@ def _line_at(gamma, turn, floor):
 
 
 @inner_kernel()
+def _with_cone(f, s, tilt_rate):
+    """Rates of the gap (m/s) and of the tilt seen at an angle (rad/s), with the coning's, which is a tilting of every
+    radius alike."""
+    return s[DZ_RATE] - s[CONING_RATE] * f[INNER_RADIUS], tilt_rate + s[CONING_RATE]
+
+
+@inner_kernel()
 def _state_at(gamma, turn, f, s, x_k, w_k):
     _, _, _, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
+    z_rate, tilt_rate = _with_cone(f, s, tilt_rate)
     return line_state(
-        x_k, w_k, f[INNER_RADIUS], f[OUTER_RADIUS], h_i, h_o, s[DZ_RATE], tilt_rate, f[TILT_AT_MEAN] != 0.0,
+        x_k, w_k, f[INNER_RADIUS], f[OUTER_RADIUS], h_i, h_o, z_rate, tilt_rate, f[TILT_AT_MEAN] != 0.0,
         f[PLANAR] != 0.0, s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], centrifugal(f, s),
     )  # fmt: skip
 
@@ -227,8 +237,9 @@ def _integrate(panel, turn, f, s, x_k, w_k):
         else:
             gamma, stretch = middle + half * x, half
         cos_b, sin_b, per, h_i, h_o, tilt_rate = _line_at(gamma, turn, f[FLOOR])
+        z_rate, tilt_rate = _with_cone(f, s, tilt_rate)
         load, moment, wet = cavitated_line(
-            x_k, w_k, r_i, r_o, h_i, h_o, s[DZ_RATE], tilt_rate, mean, f[PLANAR] != 0.0, s[VISCOSITY],
+            x_k, w_k, r_i, r_o, h_i, h_o, z_rate, tilt_rate, mean, f[PLANAR] != 0.0, s[VISCOSITY],
             s[INNER_PRESSURE], s[OUTER_PRESSURE], f[CAVITATION], g,
         )  # fmt: skip
         weight = stretch * per * x_h

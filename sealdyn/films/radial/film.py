@@ -28,6 +28,8 @@ from ...faces.geometry import (
     CAVITATED,
     CLEARANCE,
     CONING,
+    CONING_CHANGE,
+    CONING_RATE,
     DZ,
     DZ_RATE,
     FLOOR,
@@ -117,7 +119,8 @@ def edges_of(f, s):
     tilt, mean = math.hypot(s[GX], s[GY]), 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS])
     inner, outer = (mean, mean) if f[TILT_AT_MEAN] != 0.0 else (f[INNER_RADIUS], f[OUTER_RADIUS])
     h_i = f[CLEARANCE] + s[DZ]
-    return h_i, h_i + f[CONING] * (f[OUTER_RADIUS] - f[INNER_RADIUS]), inner * tilt, outer * tilt
+    coning = f[CONING] + s[CONING_CHANGE]
+    return h_i, h_i + coning * (f[OUTER_RADIUS] - f[INNER_RADIUS]), inner * tilt, outer * tilt
 
 
 @inner_kernel()
@@ -202,7 +205,9 @@ def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
     c_a, s_a = (s[GX] / tilt, s[GY] / tilt) if tilt > 0.0 else (1.0, 0.0)
     along = c_a * s[GX_RATE] + s_a * s[GY_RATE]
     across = c_a * s[GY_RATE] - s_a * s[GX_RATE] - s[MEAN_SPIN] * tilt
-    z_rate = s[DZ_RATE]
+    # A cone that grows is a tilting of every radius alike.
+    cone_rate = s[CONING_RATE]
+    z_rate = s[DZ_RATE] - cone_rate * r_i
     h_i0, h_o0, swing_i, swing_o = edges
 
     low = h_i0 - swing_i < floor or h_o0 - swing_o < floor
@@ -232,7 +237,7 @@ def circle(f, s, edges, nodes, first, stride, half, d_beta, complete):
             h_i, h_o = h_i0 - swing_i * cos_b, h_o0 - swing_o * cos_b
             if low:
                 h_i, h_o = regularised_thickness(h_i, floor), regularised_thickness(h_o, floor)
-            at[EVEN, j], at[U_I, j], at[H_G, j] = along * cos_b, h_i, h_o
+            at[EVEN, j], at[U_I, j], at[H_G, j] = along * cos_b - cone_rate, h_i, h_o
         _lines(at, lanes, width)
         # Laid in twice, each without the other's questions, so that the rest is compiled once.
         if complete:

@@ -63,10 +63,11 @@ def thickness(run: Run, radius, angle, first: int, stop: int):
         return values.reshape(-1, *([1] * np.broadcast(radius, angle).ndim))
 
     wedge = rows("relative_tilt_x") * np.sin(angle) - rows("relative_tilt_y") * np.cos(angle)
+    coning = rows("coning") if run.has("coning") else None
     waves = sum(
         rows(f"gap_cos_{n}") * np.cos(n * angle) + rows(f"gap_sin_{n}") * np.sin(n * angle) for n in run.wave_orders
     )
-    return run.clearance + rows("axial_gap_change") + radius * wedge + run.shape(radius) + waves
+    return run.clearance + rows("axial_gap_change") + radius * wedge + run.shape(radius, coning) + waves
 
 
 def around(run: Run) -> np.ndarray:

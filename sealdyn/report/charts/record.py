@@ -128,13 +128,16 @@ class Run:
             wedge = radius * (first["relative_tilt_y"] * np.cos(angle) - first["relative_tilt_x"] * np.sin(angle))
             for n in self.wave_orders:
                 wedge -= first[f"gap_cos_{n}"] * np.cos(n * angle) + first[f"gap_sin_{n}"] * np.sin(n * angle)
-        return first["h_min"] - first["axial_gap_change"] - float(self.shape(radius)) + wedge
+        return first["h_min"] - first["axial_gap_change"] - float(self.shape(radius, first.get("coning"))) + wedge
 
-    def shape(self, radius):
-        """By how much (m) the aligned gap is wider than the clearance at radii: coning, and the faces' profile."""
+    def shape(self, radius, coning=None):
+        """By how much (m) the aligned gap is wider than the clearance at radii: `coning` (rad; without it the
+        scenario's), and the faces' profile."""
         profile = self.resolved.get("film", {}).get("profile")
         depth = np.interp(radius, profile["radius"], profile["depth"]) if profile else 0.0
-        return (self.film("coning") or 0.0) * (radius - (self.film("inner_radius") or 0.0)) + depth
+        if coning is None:
+            coning = self.film("coning") or 0.0
+        return coning * (radius - (self.film("inner_radius") or 0.0)) + depth
 
     @cached_property
     def wave_orders(self) -> list[int]:
@@ -160,7 +163,8 @@ class Run:
             return None
         profile = self.resolved.get("film", {}).get("profile")
         radii = np.array(profile["radius"] if profile else [inner, outer])
-        return float(np.min((self.clearance + self.shape(radii)) / radii))
+        coning = self.values("coning", 0, 1)[0] if self.has("coning") else None
+        return float(np.min((self.clearance + self.shape(radii, coning)) / radii))
 
     @property
     def question(self) -> str:

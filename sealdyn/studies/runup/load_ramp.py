@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...dynamics.fluid import set_fluid
+from ...dynamics.fluid import set_conditions
 from ...dynamics.intervals import constant_and_slope, spins
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.steady_extremes import steady_extremes
 from ...faces.geometry import (
+    CONING_CHANGE,
     DZ,
     FLOW_INNER,
     FLOW_OUTER,
@@ -68,13 +69,13 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     period = _period(harmonics)
     most, _, closing = steady_extremes(linear, [(h, linear.response(h)) for h in harmonics], period)
     source, f = model.observed
-    s, film = np.zeros(GAP_STATE_SIZE), model.scene.film
+    s = np.zeros(GAP_STATE_SIZE)
     s[DZ] = shift
-    set_fluid(s, film, lambda quantity: constant_and_slope(quantity, interval)[0])
+    set_conditions(s, model.scene, lambda quantity: constant_and_slope(quantity, interval)[0])
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
     source.flow(f, s)
     leakage = -s[FLOW_INNER] if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else s[FLOW_OUTER]
-    return float(most), float(min(edge_gaps(model.face, shift - closing, most))), float(leakage)
+    return float(most), float(min(edge_gaps(model.face, shift - closing, most, s[CONING_CHANGE]))), float(leakage)
 
 
 def _period(harmonics):

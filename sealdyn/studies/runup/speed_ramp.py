@@ -28,13 +28,13 @@ WINDOWS = (6, 32)
 def touch_tilt(model) -> float:
     """Relative tilt (rad) at which the faces touch, or the film is at its floor, without axial opening; 0 if they touch
     aligned."""
-    face = model.face
+    face, change = model.face, model.coning_change()
     level = max(face[TOUCH], face[COLLAPSE])
-    if smallest_gap(face, 0.0, 0.0)[0] <= level:
+    if smallest_gap(face, 0.0, 0.0, change)[0] <= level:
         return 0.0
     # Where the aligned faces are nearest, this tilt closes them at any radius.
-    beyond = smallest_gap(face, 0.0, 0.0)[0] / face[0]
-    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt)[0] - level, 0.0, beyond))
+    beyond = smallest_gap(face, 0.0, 0.0, change)[0] / face[0]
+    return float(brentq(lambda tilt: smallest_gap(face, 0.0, tilt, change)[0] - level, 0.0, beyond))
 
 
 class Steady:

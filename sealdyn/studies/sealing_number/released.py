@@ -18,6 +18,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...numerics.piecewise_linear import initially
+from ...scene.coning import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...simulation.method_selection import choose_method
@@ -93,6 +94,7 @@ def ring_of(scene) -> quasi_static.Ring:
     pressures = [initially(f.inner_pressure), initially(f.outer_pressure)]
     seat, none = initially(scene.stator.misalignment), "nothing"
     floor = none if f.cavitation_pressure is None else f"{f.cavitation_pressure:g} Pa"
+    slope = coned(scene).coning
     wanted = (
         (
             "film.cavitation_pressure",
@@ -104,7 +106,7 @@ def ring_of(scene) -> quasi_static.Ring:
         ("rotor.support", rotor.support is not None, none, "a flexible rotor"),
         ("rotor.secondary_seal", rotor.secondary_seal is not None, none, "a secondary seal on the rotor"),
         ("contact", scene.contact is not None, none, "asperities for the ring to land on"),
-        ("film.coning", f.coning == 0.0, f"{f.coning:g} rad", "flat faces"),
+        ("film.coning", slope == 0.0, f"{slope:g} rad", "flat faces"),
         ("stator.misalignment", seat > 0.0, f"{seat:g} rad", "a misaligned seat"),
     )
     for key, there, found, expected in wanted:

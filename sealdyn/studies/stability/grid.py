@@ -17,6 +17,7 @@ from ...dynamics.characteristic import roots
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
+from ...scene.coning import changes
 from ...scene.contact import HALF_HEIGHT
 from ...scene.scene import SceneError
 from ...scene.variants import frozen_at_start
@@ -101,6 +102,7 @@ class Grid:
             or not isinstance(own, str)
             or film.tilt_radius != "local"
             or self.scene.contact
+            or changes(film)
         ):
             return None
         formula, more = (cf.film_coefficients, {}) if own == "green" else (
@@ -196,7 +198,11 @@ def _open(given, clearance):
     r_i, r_o, floor = (given(f"film.{n}") for n in ("inner_radius", "outer_radius", "floor"))
     gap = given("film.clearance")
     gap = clearance if gap is None else gap
-    outer = gap + given("film.coning") * np.subtract(r_o, r_i)
+    slope = given("film.coning") + given("film.coning_per_speed_squared") * np.square(given("shaft.speed"))
+    if given("film.coning_per_kelvin"):
+        warmer = given("film.temperature") - given("film.coning_reference_temperature")
+        slope = slope + given("film.coning_per_kelvin") * warmer
+    outer = gap + slope * np.subtract(r_o, r_i)
     # Rough faces are closed where all their asperities are flat.
     lowest = np.multiply(-HALF_HEIGHT, given("contact.roughness")) if given.scene.contact else np.multiply(floor, gap)
     return np.asarray((r_i > 0) & (r_i < r_o) & (gap > 0) & (outer > lowest))

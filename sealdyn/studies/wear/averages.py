@@ -136,7 +136,7 @@ class ShortRunAverages:
         if here == 0.0:
             return 0.0
         side, near = math.copysign(step, here), 0.0
-        lowest = smallest_gap(run.model.face, 0.0, 0.0)[0]
+        lowest = smallest_gap(run.model.face, 0.0, 0.0, run.model.coning_change())[0]
         while True:
             far = near + side
             if excess(far) * here <= 0.0:

@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from ...scenario.errors import ScenarioError
+from ...scene.coning import coned
 from ...status import Status
 from ...units import Time
 from .averages import ShortRunAverages
@@ -164,7 +165,7 @@ def _answer(runs, hats, wears, rows) -> dict:
     both = sum(wears.values())
     depth = np.array([row["depth"] for row in rows]).reshape(-1, len(hats.radius))
     worn = {face: k / both * depth for face, k in wears.items()}
-    slope = runs.scene.film.coning * (hats.radius - hats.radius[0])
+    slope = coned(runs.scene).coning * (hats.radius - hats.radius[0])
     gap = runs.own + slope + depth
     history = {name: [row["seen"][name] for row in rows] for name in HISTORY if rows and name in rows[0]["seen"]}
     history["time"] = [row["time"] for row in rows]

@@ -8,7 +8,7 @@ import numpy as np
 from ...dynamics import modes
 from ...films import film_module, film_names
 from ...scenario.settings import with_values
-from ...scene.film import Coefficients, aligned_gaps
+from ...scene.film import Coefficients
 from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
@@ -153,7 +153,7 @@ def harmonic_balance(run) -> dict:
         motion += (amplitude[:, None] * np.exp(1j * frequency * t)).real
     tilt = np.hypot(motion[1], motion[2])
     shift = run.model.axial_shift(segment.interval) + motion[0]
-    thinnest = min(np.min(h + shift - r * tilt) for r, h in aligned_gaps(run.model.scene.film, run.model.clearance))
+    thinnest = min(np.min(h + shift - r * tilt) for r, h in run.model.aligned_gaps(segment.interval))
     return {"h_min": float(thinnest), "relative_misalignment": [float(tilt.min()), float(tilt.max())]}
 
 
