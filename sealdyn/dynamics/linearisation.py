@@ -4,6 +4,7 @@ import numpy as np
 
 from ..scene.coning import follows_speed
 from ..scene.rings import ROTOR, STATOR
+from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
@@ -21,13 +22,18 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     another speed it needs no other linearisation.
     **Valid** no floor of the pressure that small motion meets, no waves, which have a wedge of their own, and neither
     inertia of the fluid nor coning that follows the speed, which move the gap with it: such a film is linearised at
-    every speed.
+    every speed.  Raises SceneError at a speed at which no aligned film holds the closing force.
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
     if shift is None:
-        moves = speed is not None and _moves_with_speed(model.scene.film)
-        shift = axial_shift(model, interval, speed)[0] if moves else model.axial_shift(interval)
+        if speed is not None and moves_with_speed(model.scene.film):
+            shift, balanced = axial_shift(model, interval, speed)
+            if not balanced:
+                found = f"{speed:g} rad/s, at which no film holds the closing force"
+                raise SceneError("shaft.speed", found, "a speed at which inertia and coning leave such a film")
+        else:
+            shift = model.axial_shift(interval)
     interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
     if linear_in_speed(model, interval):
         slopes, goes_with = model.still_film(interval, shift), spin
@@ -68,10 +74,10 @@ def linear_in_speed(model, interval=None) -> bool:
     """Whether the matrices at any shaft speed, the rest as at an interval's start, follow from one linearisation of the
     film."""
     plain = model.interface.floor_is_clear(interval) and model.interface.unknowns is None
-    return plain and not _moves_with_speed(model.scene.film) and not waves_of(model.scene)
+    return plain and not moves_with_speed(model.scene.film) and not waves_of(model.scene)
 
 
-def _moves_with_speed(film) -> bool:
+def moves_with_speed(film) -> bool:
     """Whether the aligned gap of a `Film` is another at another speed."""
     return film.inertia or follows_speed(film)
 

@@ -165,6 +165,9 @@ def _stability(stability):
             text += ", again at " + ", ".join(_n(w) for w in every[1:]) + " rad/s"
     else:
         text += ", no critical speed"
+    if stability.get("speeds_held"):
+        low, high = (_n(w) for w in stability["speeds_held"])
+        text += f" (from {low} to {high} rad/s, where a film holds the closing force)"
     if stability["resonance_speeds"]:
         text += ", resonance at " + ", ".join(_n(w) for w in stability["resonance_speeds"]) + " rad/s"
     return text

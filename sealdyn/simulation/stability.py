@@ -5,13 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from ..dynamics import modes, whirl_speeds
-from ..dynamics.linearisation import whirl_over_speed
+from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.neutral_speeds import neutral_speeds
 from ..scene.rings import ROTOR
+from ..scene.scene import SceneError
 
 # How far below the least and above the largest of the shaft's speed and the natural frequency thresholds are looked
 # for, and by how many speeds, where they are not known beforehand; and where they are, to see that none was missed.
 AROUND, POINTS, POINTS_KNOWN = 1e3, 160, 32
+# Steps of the way to the last speed at which a film holds the closing force, and halvings of the last of them.
+STEPS, HALVINGS = 40, 20
 
 
 def stability(model, interval, linear, speeds: bool) -> dict:
@@ -29,6 +32,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
     if speeds:
         every = thresholds(model, interval)
         searched = {
+            "speeds_held": _held(model, interval),
             "critical_speed": min(every, default=None),
             "thresholds": every,
             "resonance_speeds": resonance_speeds(model, interval),
@@ -47,19 +51,28 @@ def stability(model, interval, linear, speeds: bool) -> dict:
     }
 
 
+def _held(model, interval) -> list[float] | None:
+    """The `held_speeds` (rad/s) of what `thresholds` looks through, None where that is all."""
+    low, high = _range(model, interval)
+    whole = low / AROUND, high * AROUND
+    held = held_speeds(model, interval, *whole) if high else whole
+    return None if held == whole else list(held)
+
+
 def thresholds(model, interval=None) -> list[float]:
     """Shaft speeds (rad/s, rising, without sign: in the direction in which the shaft turns) at which the tilts of a
     model lose or regain their damping, the rest as at an interval's start (default: the run's).
 
     **Valid** every speed, where the film's matrices are linear in it (dynamics/neutral_speeds.py); of a film with a
     floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
-    smaller of the shaft's speed and `natural_frequency` to a thousand times the larger."""
+    smaller of the shaft's speed and `natural_frequency` to a thousand times the larger, within `held_speeds`."""
     low, high = _range(model, interval)
     if not high:
         return []
     values, whirl = whirl_over_speed(model, interval)
     neutral, points = ((), POINTS) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
-    return whirl_speeds.thresholds(values, low / AROUND, high * AROUND, points, neutral)
+    low, high = held_speeds(model, interval, low / AROUND, high * AROUND)
+    return whirl_speeds.thresholds(values, low, high, points, neutral)
 
 
 def critical_speed(model, interval=None) -> float | None:
@@ -70,12 +83,44 @@ def critical_speed(model, interval=None) -> float | None:
 def resonance_speeds(model, interval=None) -> list[float]:
     """Shaft speeds (rad/s) at which a forward tilt mode of a model turns with the shaft, likewise.
 
-    **Valid** from a hundredth to a hundred times the `natural_frequency`."""
+    **Valid** from a hundredth to a hundred times the `natural_frequency`, within `held_speeds`."""
     natural = natural_frequency(model, interval)
     if not natural:
         return []
     values, whirl = whirl_over_speed(model, interval)
-    return whirl_speeds.resonance_speeds(values, 1e-2 * natural, 1e2 * natural, whirl=whirl)
+    low, high = held_speeds(model, interval, 1e-2 * natural, 1e2 * natural)
+    return whirl_speeds.resonance_speeds(values, low, high, whirl=whirl)
+
+
+def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]:
+    """The part of [low, high] (rad/s, without sign) around the shaft's speed in which an aligned film holds the closing
+    force: inertia and coning that follow the speed leave none far from it."""
+    if not moves_with_speed(model.scene.film):
+        return low, high
+    spin = model.linear_scene(interval).rings[ROTOR].spin
+    direction, own = -1.0 if spin < 0.0 else 1.0, min(max(abs(spin), low), high)
+
+    def held(speed):
+        try:
+            return bool(model.linear_scene(interval, speed=direction * speed))
+        except SceneError:
+            return False
+
+    def last(end):
+        if held(end):
+            return end
+        inside, outside = own, end
+        for speed in np.geomspace(own, end, STEPS)[1:]:
+            if not held(speed):
+                outside = speed
+                break
+            inside = speed
+        for _ in range(HALVINGS):
+            middle = float(np.sqrt(inside * outside))
+            inside, outside = (middle, outside) if held(middle) else (inside, middle)
+        return inside
+
+    return last(low), last(high)
 
 
 def _range(model, interval) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from scipy.optimize import brentq, linear_sum_assignment
 
 from ..dynamics.model import Model
 from ..scene.variants import frozen_at_start
+from ..simulation.stability import held_speeds
 from ..units import Speed
 
 WITH_WAVES = True
@@ -22,8 +23,8 @@ NOT_OSCILLATING = 1e-9
 
 @dataclass(frozen=True)
 class Settings:
-    """Speeds from `speed_from` to `speed_to` (default six times the scenario's), `points` of them; `unit` of the
-    figure's axes; `lines`: orders of the shaft speed drawn beside the modes, besides 1x and 1/2x."""
+    """Speeds from `speed_from` to `speed_to` (default six times the scenario's, no more than a film holds), `points` of
+    them; `unit` of the figure's axes; `lines`: orders of the shaft speed drawn besides 1x and 1/2x."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -38,7 +39,9 @@ def run(scenario, settings, tools) -> dict:
     """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
     scene = frozen_at_start(scenario.scene)
     model, own = Model(scene), abs(scene.shaft.speed)
-    top = settings.speed_to if settings.speed_to is not None else 6 * own or 6000.0
+    top = settings.speed_to
+    if top is None:
+        _, top = held_speeds(model, model.start, 1e-3 * own, 6 * own or 6000.0)
     speeds = np.linspace(settings.speed_from, top, max(3, settings.points))
 
     def pencil(w):

@@ -21,9 +21,12 @@ from ..analysis.whirl import (
     growth_rate,
     tipping_disturbance,
 )
+from ..dynamics.linearisation import moves_with_speed
 from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
-from ..simulation.stability import critical_speed, natural_frequency
+from ..scene.scene import Closing
+from ..scene.variants import with_values
+from ..simulation.stability import critical_speed, held_speeds, natural_frequency
 from ..status import Status
 
 REFUSES = ("secondary-seal",)
@@ -57,13 +60,17 @@ def run(scenario, settings, tools) -> dict:
     """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
+    if moves_with_speed(scene.film):
+        # At every speed the same closing force, wherever it then puts the gap.
+        force = Closing(balance_ratio=model.closing.balance_ratio, spring_force=initially(model.closing.spring))
+        scene = with_values(scene, {"closing": force, "film.clearance": model.clearance})
     pace = natural_frequency(model) or 1.0
     eigenvalue = critical_speed(model)
     formula, why = by_formula(model)
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
-    answer |= in_time(scene, eigenvalue, how, tools, pace)
+    answer |= in_time(scene, model, eigenvalue, how, tools, pace)
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     return {**answer, "verdict": sentences(answer)}
 
@@ -73,6 +80,8 @@ def by_formula(model) -> tuple[float | None, str]:
     scene = model.scene
     if model.interface.stores:
         return None, "a film that stores: no published formula"
+    if moves_with_speed(scene.film):
+        return None, "a gap that moves with the speed: no published formula"
     if model.unknowns.floats[STATOR] and model.unknowns.floats[ROTOR]:
         return None, "both rings float: no published formula"
     if scene.stator.speed != 0.0:
@@ -101,10 +110,12 @@ def growth(scene, point: dict) -> dict:
     return growth_rate(scene, point["speed"], point["turns"], point["method"], point["accuracy"])
 
 
-def in_time(scene, eigenvalue, how, tools, pace) -> dict:
+def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
     if eigenvalue is None:
-        speeds = [factor * pace for factor in (0.3, 1.0, 3.0, 10.0)]
+        tried = [factor * pace for factor in (0.3, 1.0, 3.0, 10.0)]
+        low, high = held_speeds(model, model.start, min(tried), max(tried))
+        speeds = [min(max(speed, low), high) for speed in tried]
         rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
         signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
         said = "a disturbance grows at some of the speeds tried"

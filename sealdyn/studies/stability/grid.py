@@ -14,6 +14,7 @@ import numpy as np
 
 from ... import closed_form as cf
 from ...dynamics.characteristic import roots
+from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
@@ -152,7 +153,9 @@ class Grid:
         return [k[1, 1], d[1, 1], k[0, 0], d[0, 0]]
 
     def _follows_speed(self) -> bool:
-        """Whether the film's coefficients change with speed (those of liquid films do not)."""
+        """Whether the film's coefficients change with speed (those of liquid films with a cone of its own do not)."""
+        if moves_with_speed(self.scene.film):
+            return True
         ends = [self.model.linear_scene(speed=float(w)) for w in self.axes["shaft.speed"][[0, -1]]]
         return not all(
             np.allclose(getattr(ends[0], m)[i, i], getattr(ends[1], m)[i, i], rtol=1e-6)
