@@ -44,7 +44,8 @@ def table(draw, least, most, end=3 * TURN):
 
 
 def drawn(seed):
-    """A scene whose rings move in every way there is, on faces that are flat, coned, worn or wavy."""
+    """A scene whose rings move in every way there is, on faces that are flat, coned, worn or wavy; the cone of some
+    follows the speed, of some time too."""
     draw = np.random.default_rng(seed)
     tilt = lambda most=4.0: draw.uniform(0, most) * TILT_SCALE / 10  # noqa: E731
     runout = [AxialRunout(draw.uniform(0.5, 5), draw.uniform(0, 0.15) * CLEARANCE, draw.uniform(0, 7))]
@@ -63,6 +64,9 @@ def drawn(seed):
             [Waviness(int(draw.integers(2, 7)), draw.uniform(0, 0.1) * CLEARANCE, draw.uniform(0, 7))] for _ in range(2)
         ]
     speed = table(draw, 0.5 * SPEED, 1.5 * SPEED) if seed % 5 == 3 else SPEED
+    if seed % 4 != 2 and seed % 5 in (0, 3):
+        base = replace(base, coning=draw.uniform(-8e-4, 2e-4), coning_per_speed_squared=draw.uniform(-4e-10, 4e-10))
+        base = replace(base, coning=table(draw, -8e-4, 2e-4)) if seed % 2 else base
     angle = table(draw, 0, 4e-5) if seed % 3 == 1 else tilt()
     if seed % 2:
         rotor, stator = Rotor(runout=angle, axial_runout=runout), Stator(**ring(misalignment=tilt()))
