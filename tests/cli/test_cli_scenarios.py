@@ -112,12 +112,14 @@ def test_leakage_and_friction_are_those_of_the_annulus(run):
             pytest.skip("starts tilted")
         r = np.linspace(film["inner_radius"], film["outer_radius"], 20001)
         middle, dr = 0.5 * (r[1:] + r[:-1]), r[1] - r[0]
-        h = film["clearance"] + film["coning"] * (middle - r[0])
+        coning = float(data.coning[0]) if "coning" in data else film["coning"]
+        h = film["clearance"] + coning * (middle - r[0])
         pressure = initial(film["outer_pressure"]) - initial(film["inner_pressure"])
         viscosity = film["viscosity"]
         if film["gas"] is not None:
             # Of air, U.S. Standard Atmosphere (1976).
-            viscosity = 1.458e-6 * film["temperature"] ** 1.5 / (film["temperature"] + 110.4)
+            temperature = initial(film["temperature"])
+            viscosity = 1.458e-6 * temperature**1.5 / (temperature + 110.4)
         flow = math.pi * pressure / (6 * initial(viscosity)) / np.sum(dr / (middle * h**3))
         torque = 2 * math.pi * viscosity * float(data.shaft_speed[0]) * np.sum(middle**3 * dr / h)
         if found["model"]["film"] == "radial" and not data.cavitated_fraction.any():
