@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.coning import coned
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
+from ..scene.waviness import waves_of
 from .fluid import set_conditions
 from .intervals import Interval, constant_and_slope, spins
 
@@ -99,7 +101,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
         return film.clearance, law, [here], said
 
     law = ClosingForce(area, balance, spring, outer_is_high)
-    roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer)
+    roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, waves_of(scene))
     stable = [root for root in roots if root.stable]
     if not stable:
         raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots))
@@ -109,22 +111,22 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
-def extent(film) -> tuple[float, float]:
+def extent(film, waves=()) -> tuple[float, float]:
     """Difference (m) between the thickest and the thinnest place of the aligned film, and the clearance (m) below which
-    it is closed somewhere, as a diverging one is at its outer edge."""
-    gaps = [h for _, h in aligned_gaps(film, 0.0)]
-    return max(gaps) - min(gaps), max(0.0, -min(gaps))
+    it is closed somewhere, as a diverging one is at its outer edge; waves (Waviness) at their highest at one place."""
+    gaps, bumps = [h for _, h in aligned_gaps(film, 0.0)], sum(wave.amplitude for wave in waves)
+    return max(gaps) - min(gaps) + 2.0 * bumps, max(0.0, bumps - min(gaps))
 
 
-def equilibria(film, opening_force, closing: float, inner: float, outer: float) -> list[Equilibrium]:
+def equilibria(film, opening_force, closing: float, inner: float, outer: float, waves=()) -> list[Equilibrium]:
     """Every clearance where the aligned film's `opening_force(clearance, inner, outer)` (N) equals `closing` (N),
-    increasing; pressures `inner`, `outer` (Pa)."""
-    rise, closed_below = extent(film)
+    increasing; pressures `inner`, `outer` (Pa); `waves` (Waviness) of the faces that the force knows."""
+    rise, closed_below = extent(film, waves)
     reference, least = max(rise, 1e-6), closed_below * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
-    noise = 1e-11 * max(abs(closing), float(np.max(np.abs(excess + closing))))
+    noise = 1e-11 * max(abs(closing), float(np.nanmax(np.abs(excess + closing))))
     roots = []
     for k in range(POINTS - 1):
         if excess[k] * excess[k + 1] < 0 and max(abs(excess[k]), abs(excess[k + 1])) > noise:
@@ -184,13 +186,20 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     if abs(excess(0.0)) < 1e-9 * max(abs(closing), 1e-30):
         return 0.0, True
     grid = model.clearance * np.concatenate([np.geomspace(1e-3, 1.0, 60) - 1.0, np.geomspace(1e-3, 50, 80)])
-    values = [excess(x) for x in grid]
+
+    @cache
+    def value(k):
+        try:
+            return excess(grid[k])
+        except SceneError:
+            # No film there: wavy faces that meet, say.
+            return math.nan
+
     # The stable root nearest to the design clearance: the excess falls through zero.
-    roots = [k for k in range(len(grid) - 1) if values[k] > 0 >= values[k + 1]]
-    if not roots:
-        return 0.0, False
-    k = min(roots, key=lambda k: abs(grid[k]))
-    return crossing(excess, grid[k], grid[k + 1]), True
+    for k in sorted(range(len(grid) - 1), key=lambda k: abs(grid[k])):
+        if value(k) > 0 >= value(k + 1):
+            return crossing(excess, grid[k], grid[k + 1]), True
+    return 0.0, False
 
 
 def _no_equilibrium(film, opening_force, law, inner, outer, roots):

@@ -31,6 +31,7 @@ from ..scene.coning import coned
 from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
+from ..scene.waviness import waves_of
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .fluid import set_conditions
@@ -250,7 +251,11 @@ def opening_parts(scene, film=None):
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
     table = coned(scene)
-    film_force = _lender(scene, film_of(scene, film)).opening_law(table, *spins(scene))
+    module = _lender(scene, film_of(scene, film))
+    wavy = {"waves": (scene.stator.waviness, scene.rotor.waviness)} if waves_of(scene) else {}
+    if not getattr(module, "STANDING_WAVES", False):
+        wavy = {}
+    film_force = module.opening_law(table, *spins(scene), **wavy)
     if not scene.contact:
         return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
     s, face = np.zeros(GAP_STATE_SIZE), face_parameters(table, 1.0)

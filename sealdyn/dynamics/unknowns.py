@@ -58,7 +58,7 @@ class Unknowns:
         self._choose(tilted or _tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
-        if waves_of(scene):
+        if waves_of(scene) and not film_unknowns:
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")

@@ -48,6 +48,7 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
                   compiled: what is left of the film's equations, in any units; returns 0, or a code of STATUS, which
                   ends the run, as does what is not a number.  Finite and smooth at any gap state that a solver may try.
 `STATUS`          {code: sentence}.
+`STANDING_WAVES`  (if any) True where it takes waves of faces that stand still only; its `opening_law` takes them too.
 `halved(film)`    (if any) the `Film` table with half the cells, which err four times as much.
 `jacobian(f, s, x, x_rate, alpha, data)`
                   (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.
@@ -66,7 +67,7 @@ from functools import cache
 
 from ..scene.film import profile_errors
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of, waviness_errors
+from ..scene.waviness import turning_waves, waves_of, waviness_errors
 
 
 def has_unknowns(film) -> bool:
@@ -143,6 +144,10 @@ def film_of(scene, module=None):
         raise SceneError(f"film.{key}", found, expected)
     for error in waviness_errors(scene):
         raise SceneError(*error)
+    turning = turning_waves(scene) if getattr(module, "STANDING_WAVES", False) else ""
+    if turning:
+        expected = f"waves on a face that stands still: {film_name(module)} takes no others"
+        raise SceneError(turning, "waves of a face that turns", expected)
     return module
 
 

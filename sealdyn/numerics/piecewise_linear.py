@@ -34,3 +34,8 @@ class PiecewiseLinear:
 def initially(quantity) -> float:
     """Value at time zero of a number or a function of time, in its own unit."""
     return quantity.at(0.0) if isinstance(quantity, PiecewiseLinear) else float(quantity)
+
+
+def points(quantity) -> tuple[float, ...]:
+    """All values of a function of time, or the number itself, in its own unit."""
+    return quantity.value if isinstance(quantity, PiecewiseLinear) else (quantity,)

@@ -163,6 +163,8 @@ def _stability(stability):
             text += f" (stable {'below' if below else 'above'})"
         if len(every) > 1:
             text += ", again at " + ", ".join(_n(w) for w in every[1:]) + " rad/s"
+    elif stability["thresholds"] is None:
+        text += ", critical speed not looked for (study campbell)"
     else:
         text += ", no critical speed"
     if stability.get("speeds_held"):

@@ -3,7 +3,7 @@
 import cmath
 import math
 
-from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from . import coning, contact, secondary_seal
 from . import film as film_table
@@ -274,11 +274,6 @@ def _open_at_start(scene) -> None:
 
 def _start(ring) -> tuple[float, complex]:
     return ring.z or 0.0, complex(ring.tilt_x or 0.0, ring.tilt_y or 0.0)
-
-
-def points(value) -> tuple[float, ...]:
-    """All values of a function of time, or the number itself."""
-    return value.value if isinstance(value, PiecewiseLinear) else (value,)
 
 
 def turns_of(speed) -> float:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from ..numerics.piecewise_linear import points
 from ..units import Angle, Length
 
 # Most waves of both faces together: kernels keep room for them.
@@ -29,6 +30,14 @@ class Waviness:
 def waves_of(scene) -> list[Waviness]:
     """Waves (Waviness) of both faces of a scene, the stator's first."""
     return [*scene.stator.waviness, *scene.rotor.waviness]
+
+
+def turning_waves(scene) -> str:
+    """Key of the waves of a face that ever turns, "" if all stand still."""
+    for name, ring, speed in (("stator", scene.stator, scene.stator.speed), ("rotor", scene.rotor, scene.shaft.speed)):
+        if any(wave.amplitude for wave in ring.waviness) and any(points(speed)):
+            return f"{name}.waviness"
+    return ""
 
 
 def waviness_errors(scene) -> list[tuple[str, str, str]]:

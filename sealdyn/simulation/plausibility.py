@@ -8,8 +8,7 @@ import numpy as np
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
-from ..numerics.piecewise_linear import initially
-from ..scene.checks import points
+from ..numerics.piecewise_linear import initially, points
 from ..scene.film import Coefficients
 from ..scene.gas import density_of, gas_of, viscosity_of
 

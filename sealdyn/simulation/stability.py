@@ -9,6 +9,7 @@ from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.neutral_speeds import neutral_speeds
 from ..scene.rings import ROTOR
 from ..scene.scene import SceneError
+from ..scene.waviness import waves_of
 
 # How far below the least and above the largest of the shaft's speed and the natural frequency thresholds are looked
 # for, and by how many speeds, where they are not known beforehand; and where they are, to see that none was missed.
@@ -20,7 +21,7 @@ STEPS, HALVINGS = 40, 20
 def stability(model, interval, linear, speeds: bool) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), shaft speed (rad/s)
     and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
-    `thresholds` and `resonance_speeds`."""
+    `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy faces."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     tilt = [mode for mode in found if mode.kind == "tilt"]
@@ -29,7 +30,10 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         sign = -1.0 if tilt[0].direction == "backward" else 1.0
         whirl = sign * tilt[0].value.imag / speed
     searched = {}
-    if speeds:
+    if speeds and model.interface.stores and waves_of(model.scene):
+        # Seconds at every speed: each way that the gap may move meets the film in its own way.
+        searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
+    elif speeds:
         every = thresholds(model, interval)
         searched = {
             "speeds_held": _held(model, interval),

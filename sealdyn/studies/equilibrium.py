@@ -16,9 +16,11 @@ from ..dynamics.equilibrium import (
 )
 from ..dynamics.interface import opening_parts
 from ..numerics.piecewise_linear import initially
+from ..scene.coning import coned
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
+from ..scene.waviness import waves_of
 from ..units import Length
 
 WITH_WAVES = True
@@ -40,7 +42,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = frozen_at_start(scenario.scene)
-    film, parts = scene.film, opening_parts(scene)
+    film, parts = coned(scene), opening_parts(scene)
     inner, outer = film.inner_pressure, film.outer_pressure
 
     def opening(clearance, inner, outer):
@@ -48,14 +50,15 @@ def run(scenario, settings, tools) -> dict:
 
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
-    roots = equilibria(film, opening, closing, inner, outer)
-    low, high = _range(film, roots, settings)
+    waves = waves_of(scene)
+    roots = equilibria(film, opening, closing, inner, outer, waves)
+    low, high = _range(film, waves, roots, settings)
     roots = [root for root in roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
     carried = np.array([parts(c, inner, outer) for c in clearance])
     force, friction = carried.sum(axis=1), breakaway(scene)
     # Steps smaller than the distance to closed faces.
-    steps = 1e-4 * (clearance - extent(film)[1])
+    steps = 1e-4 * (clearance - extent(film, waves)[1])
     stiffness = np.array(
         [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
     )
@@ -125,9 +128,9 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
     return law, "closing force from balance ratio and spring"
 
 
-def _range(film, roots, settings) -> tuple[float, float]:
+def _range(film, waves, roots, settings) -> tuple[float, float]:
     """Clearances to look at, (m): a decade around what was found, open faces only."""
-    rise, least = extent(film)
+    rise, least = extent(film, waves)
     found = [root.clearance for root in roots] or [film.clearance or max(rise, 1e-6)]
     least *= 1 + 1e-6
     low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10

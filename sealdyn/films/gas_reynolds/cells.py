@@ -32,7 +32,7 @@ from ...faces.geometry import (
 )
 from ...faces.waviness import waves, waves_rate
 from ...numerics.kernel import inner_kernel
-from ...scene.checks import points
+from ...numerics.piecewise_linear import points
 from ...scene.gas import GasReynolds, gas_of
 
 # Block after the faces: cells over the radius, angles, scale of an unknown (Pa m), what slip adds to the flow at a

@@ -2,8 +2,8 @@
 
 **Source** balance.py; the cells are in cells.py, the steady film in steady.py.
 **Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
-down to films of some mean free paths; faces with coning, a profile and tilt (the balances know waves too), in
-cylindrical geometry.
+down to films of some mean free paths; faces with coning, a profile, tilt, and waves that stand still
+(passing ones leave no steady film to start from and to linearise about), in cylindrical geometry.
 Leakage is the volume at normal conditions.
 """
 
@@ -21,6 +21,7 @@ from ...faces.geometry import (
     GAP_STATE_SIZE,
     GX,
     GY,
+    MEAN_SPIN,
     MOMENT_X,
     MOMENT_Y,
     SPIN_DIFFERENCE,
@@ -28,6 +29,7 @@ from ...faces.geometry import (
     TORQUE,
     VISCOSITY,
 )
+from ...faces.waviness import lay_waves
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
@@ -54,18 +56,17 @@ from .cells import (
 )
 from .steady import UNSOLVED, start
 
-__all__ = ["FIELDS", "FLUIDS", "RUNG", "STATUS", "accepts", "fields", "flow", "grid", "halved", "jacobian",
-           "opening_law", "parameters", "residual", "start", "unknowns", "wrench", "wrench_jacobian"]  # fmt: skip
+__all__ = ["FIELDS", "FLUIDS", "RUNG", "STANDING_WAVES", "STATUS", "accepts", "fields", "flow", "grid", "halved",
+           "jacobian", "opening_law", "parameters", "residual", "start", "unknowns", "wrench",
+           "wrench_jacobian"]  # fmt: skip
 
-RUNG, FIELDS = 3, (PRESSURE,)
+RUNG, FIELDS, STANDING_WAVES = 3, (PRESSURE,), True
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 
 def accepts(film, waves=()) -> str:
-    """What faces it takes, "" if it can take these.  The balances know waves, but a film with unknowns is started and
-    linearised about a gap that stands still, which passing waves never let it."""
-    plain = film is None or film.geometry == "cylindrical"
-    return "" if plain and not waves else "cylindrical faces without waves only"
+    """What faces it takes, "" if it can take these."""
+    return "" if film is None or film.geometry == "cylindrical" else "cylindrical faces only"
 
 
 def unknowns(f) -> FilmUnknowns:
@@ -89,14 +90,20 @@ def halved(film):
     return replace(film, gas_reynolds=replace(options, cells=cells))
 
 
-def opening_law(film, mean_spin=0.0, spin_difference=0.0):
+def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None):
     """Opening force (N) of the aligned film, `force(clearance, inner_pressure, outer_pressure, floor)`: pressures
     absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m.  It is the sum over the
-    cells of a run, so that rings rest where it balances the closing force; the spins do not matter."""
-    options = film.gas_reynolds or GasReynolds()
-    # All angles are alike.
-    f = parameters(replace(film, gas_reynolds=replace(options, cells=(options.cells[0], 3))), 1.0)
+    cells of a run, so that rings rest where it balances the closing force; the spins (rad/s) matter to `waves` only,
+    those of the stator and of the rotor (lists of Waviness)."""
+    if waves is None:
+        options = film.gas_reynolds or GasReynolds()
+        # All angles are alike.
+        f = parameters(replace(film, gas_reynolds=replace(options, cells=(options.cells[0], 3))), 1.0)
+    else:
+        f = parameters(film, 1.0)
+        lay_waves(f, *waves)
     s, x = np.zeros(GAP_STATE_SIZE), np.empty(int(f[CELLS] * f[ANGLES]))
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = mean_spin, spin_difference
     s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
 
     def solve(f, s):
