@@ -19,6 +19,7 @@ class Concern(StrEnum):
     INERTIA = "inertia of the film"
     THIN_FILM = "thin film"
     TURBULENCE = "turbulence"
+    WIDE_DAM = "wide dam"
     UNITS = "units"
 
 

@@ -10,7 +10,7 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..numerics.piecewise_linear import initially, points
 from ..scene.film import Coefficients
-from ..scene.gas import density_of, gas_of, viscosity_of
+from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
@@ -19,8 +19,8 @@ LAMINAR, WARM = 1000.0, 10.0
 SMOOTH, CONTINUUM, WIDE = 1e-7, 1e-8, 1e-3
 # Mach number from which the inertia of a gas changes its pressure by some 5 %.
 FAST = 0.3
-# Share of the sealed pressure from which the fluid's inertia matters.
-HEAVY = 0.05
+# Share of the sealed pressure from which the fluid's inertia matters; of a dam's gauge force by which it may be off.
+HEAVY, OFF = 0.05, 0.01
 
 
 def cautions(scenario, run, outcome, leakage, temperature_rise, h_min) -> list[Caution]:
@@ -116,6 +116,8 @@ def _gas_flow(model, leakage):
         if 2.0 * flow / viscosity > LAMINAR:
             found = f"Reynolds number {2.0 * flow / viscosity:.0f} of the leakage"
             yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}; the film counts as laminar")
+    if model.interface.name == "gas_dam":
+        yield from _wide_dam(film)
     sliding = max(abs(r - s) for r, s in product(points(scene.shaft.speed), points(scene.stator.speed)))
     high = max(*points(film.inner_pressure), *points(film.outer_pressure))
     thickest, at = max((h, r) for r, h in model.aligned_gaps())
@@ -123,6 +125,26 @@ def _gas_flow(model, leakage):
     if most > LAMINAR:
         found = f"Couette Reynolds number {most:.0f} at r = {at * 1e3:.4g} mm"
         yield Caution(Concern.TURBULENCE, f"perhaps turbulent: {found}, below {LAMINAR:.0f} it is laminar")
+
+
+def _wide_dam(film):
+    """A dam so wide that the friction of its mean radius is not that of its edges: gauge forces of slow flow between
+    parallel faces, p^2 linear in 1/r as the film has it beside ln r."""
+    if (film.gas_dam or GasDam()).width != "radial":
+        return
+    r = np.linspace(film.inner_radius, film.outer_radius, 201)
+    ends = initially(film.inner_pressure) ** 2, initially(film.outer_pressure) ** 2
+    low = min(ends) ** 0.5
+    forces = []
+    for way in (1.0 / r, np.log(r)):
+        p = np.sqrt(ends[0] + (ends[1] - ends[0]) * (way - way[0]) / (way[-1] - way[0]))
+        forces.append(float(np.trapezoid(p - low, r)))
+    off = forces[0] / forces[1] - 1.0 if forces[1] else 0.0
+    if abs(off) > OFF:
+        sentence = (
+            f"the friction is that of the dam's mean radius: the gauge force of so wide a dam is {100 * off:+.2g} %"
+        )
+        yield Caution(Concern.WIDE_DAM, f"{sentence} off where the flow is slow")
 
 
 def _inertia(scene):

@@ -39,7 +39,15 @@ EXACT, COARSE = 1e-10, 0.01
 # Of the larger edge pressure times the area: a gauge force below has no centre; of force and radius: no moment.
 NOTHING = 1e-9
 
+# What is kept of further clearances, beside their profile.
+BESIDE = ("clearance", "force", "gauge_force", "centre_of_pressure", "leakage", "mass_flow", "exit_mach")
+
 units = {
+    "beside/clearance": "m",
+    "beside/force": "N",
+    "beside/gauge_force": "N",
+    "beside/leakage": "m^3/s",
+    "beside/mass_flow": "kg/s",
     "moment": "N*m",
     "integrated/moment": "N*m",
     "pressure/r": "m",
@@ -56,14 +64,37 @@ units = {
 @dataclass(frozen=True)
 class Settings:
     """`at`: the gap state, "clearance=5 um, tilt=0.1 mrad" (either may be left out): clearance at the inner radius of
-    the aligned faces (default: the equilibrium), then tilted by `tilt` about the x axis (default 0); nothing moves."""
+    the aligned faces (default: the equilibrium), then tilted by `tilt` about the x axis (default 0); nothing moves.
+    `beside`: further clearances, "5 um, 6 um", whose profiles over the radius are drawn beside, at the same tilt."""
 
     at: str | float | tuple[str, ...] = ""
+    beside: str | float | tuple[str | float, ...] = ""
 
 
 def run(scenario, settings, tools) -> dict:
-    """Pressure over the film's own grid, what it sums up to, and profiles over the radius and around the circle."""
+    """Pressure over the film's own grid, what it sums up to, and profiles over the radius and around the circle; and
+    what there is of it at further clearances."""
     place = _place(scenario.name, settings.at)
+    answer = _at(scenario, place)
+    others = [_at(scenario, {**place, "clearance": c}) for c in _clearances(scenario.name, settings.beside)]
+    answer["beside"] = [
+        {name: other[name] for name in BESIDE} | {"circle_mean": (other["profiles"] or {}).get("circle_mean")}
+        for other in others
+    ]
+    return answer
+
+
+def _clearances(name: str, beside) -> list[float]:
+    """Clearances (m) of the words `beside`.  Raises ScenarioError that names the scenario `name`."""
+    words = ",".join(map(str, beside)) if isinstance(beside, tuple) else str(beside)
+    try:
+        return [PLACES["clearance"].read(value_of(part)) for part in map(str.strip, words.split(",")) if part]
+    except QuantityError as error:
+        raise ScenarioError(name, "study.pressure.beside", error.found, error.expected) from None
+
+
+def _at(scenario, place) -> dict:
+    """The answer at one place."""
     scene = frozen_at_start(scenario.scene, clearance=place.get("clearance"))
     try:
         interface, tilt = Interface(scene, EXACT), place.get("tilt", 0.0)
@@ -297,12 +328,18 @@ def _is_coarse(answer) -> bool:
 
 
 def tables(answer) -> list:
-    """Profiles over the radius."""
+    """What there is of it at every clearance, where there are more than one, and profiles over the radius."""
+    found = []
+    if answer["beside"]:
+        columns = (("clearance, um", "clearance", 1e6), ("force, N", "force"), ("gauge force, N", "gauge_force"),
+                   ("centre, share of the width", "centre_of_pressure"), ("mass flow, kg/s", "mass_flow"),
+                   ("exit Mach", "exit_mach"))  # fmt: skip
+        found = [([answer, *answer["beside"]], columns)]
     if answer["pressure"] is None:
-        return []
+        return found
     profiles, r = answer["profiles"], answer["pressure"]["r"]
     names = ("thinnest", "thickest", "circle_mean")
     rows = [{"r": r[k], **{name: profiles[name][k] for name in names}} for k in range(len(r))]
     columns = (("radius, mm", "r", 1e3), ("p where thinnest, bar", "thinnest", 1e-5),
                ("where thickest", "thickest", 1e-5), ("mean of the circle", "circle_mean", 1e-5))  # fmt: skip
-    return [(rows, columns)]
+    return [*found, (rows, columns)]

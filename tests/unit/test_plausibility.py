@@ -113,3 +113,32 @@ def test_numbers_without_units():
     assert cautions(change={"shaft.speed": 50.0}) == {}
     far = cautions("film.clearance=1", "film.coning=0", "film.outer_pressure=0.001 Pa", "film.viscosity=1e6 Pa*s")
     assert any("metres" in sentence for sentence in far[Concern.UNITS])
+
+
+GAS = ["film.viscosity=2e-5 Pa*s", "film.coning=0", "stator.misalignment=0", "rotor.runout=0"]
+
+
+def test_a_gas_that_leaves_fast():
+    """Mach number at the low pressure of the isothermal flow between parallel faces, in words of its own."""
+    path = SCENARIOS / "gas_reynolds_reference.toml"
+    wide = [*GAS, "film.clearance=9 um", "film.gas_reynolds.cells=[24, 8]"]
+    found = cautions(*wide, path=path)
+    flow = (9e-6) ** 3 * (11e5**2 - 1e5**2) / (24 * 2e-5 * 296.8 * 313.15 * 0.060 * np.log(70 / 60))
+    sound = np.sqrt(1.4 * 296.8 * 313.15)
+    mach = flow / (1e5 / (296.8 * 313.15) * 9e-6 * sound)
+    (sentence,) = found[Concern.CHOKING]
+    assert mach > 0.5 and numbers(sentence)[0] == pytest.approx(mach, rel=0.02)
+    assert 'film.model = "gas_dam"' in sentence
+    assert Concern.CHOKING not in cautions(*GAS, "film.clearance=4 um", path=path)
+    # The dam has the inertia.
+    assert Concern.CHOKING not in cautions(*wide[:-1], 'film.model="gas_dam"', path=path)
+
+
+def test_a_dam_too_wide_for_the_friction_of_its_mean_radius():
+    path = SCENARIOS / "gas_dam_reference.toml"
+    (sentence,) = cautions(*GAS, "film.inner_radius=2.315 in", path=path)[Concern.WIDE_DAM]
+    # Slow flow with the friction of every radius, and with that of the mean one, integrated apart from the program.
+    assert numbers(sentence) == [pytest.approx(100 * (9331.64 / 9746.03 - 1), abs=0.06)]
+    assert Concern.WIDE_DAM not in cautions(*GAS, path=path)
+    constant = 'film.gas_dam={width="constant"}'
+    assert Concern.WIDE_DAM not in cautions(*GAS, "film.inner_radius=2.315 in", constant, path=path)

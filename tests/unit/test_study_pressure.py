@@ -119,3 +119,22 @@ def test_a_film_without_a_field_has_a_page_that_says_so(tmp_path):
     figure = drawn(study_pressure, found["archive"], tmp_path / "p.png")
     assert any("linear" in text.get_text() for ax in figure.axes for text in ax.texts)
     assert text_trouble(figure) == ([], [])
+
+
+def test_further_clearances_are_those_of_their_own(tmp_path):
+    flags = {"at": "clearance=8 um", "beside": ["9 um", "10um", 1.2e-5]}
+    out = run_study("pressure", REFERENCE, tmp_path / "beside.h5", flags=flags, workers=1)["archive"]
+    found = read_study(out)["answer"]
+    assert [other["clearance"] for other in found["beside"]] == pytest.approx([9e-6, 1e-5, 1.2e-5])
+    for other in found["beside"]:
+        own = answer(f"clearance={other['clearance']}")
+        for name in pressure.BESIDE:
+            assert other[name] == own[name], name
+        assert other["circle_mean"] == pytest.approx(own["profiles"]["circle_mean"])
+    figure = drawn(study_pressure, out, tmp_path / "beside.png")
+    assert text_trouble(figure) == ([], [])
+    axes = panel(figure, "Over the radius")
+    _, mean = curve(axes, "at 12 um")
+    assert mean == pytest.approx(1e-5 * np.array(found["beside"][2]["circle_mean"]))
+    with pytest.raises(ScenarioError, match="beside: found .5 bar"):
+        pressure.run(REFERENCE, Settings("", "5 bar"), None)

@@ -119,6 +119,10 @@ def tilt_panel(ax, run: Run, first: int) -> None:
     _span(ax, run, first)
 
 
+# Leakage (ml/h) from which it is drawn in l/min, as that of gases.
+MUCH = 1e5
+
+
 def leakage_panel(ax, run: Run) -> None:
     """Leakage at both radii; they differ while the film swells and shrinks."""
     sides = [side for side in ("inner", "outer") if run.has(f"leakage_{side}")]
@@ -126,8 +130,11 @@ def leakage_panel(ax, run: Run) -> None:
     if not sides and _lacking(ax, run, title, "leakage_inner"):
         return
     # The outer one wide and pale beneath, so that both are seen where they agree.
-    for side in reversed(sides):
-        x, flow, unit = run.drawn(f"leakage_{side}")
+    flows = {side: run.drawn(f"leakage_{side}") for side in reversed(sides)}
+    large = max(np.nanmax(np.abs(flow)) for _, flow, _ in flows.values()) > MUCH
+    for side, (x, flow, unit) in flows.items():
+        if large:
+            flow, unit = flow / 6e4, "l/min"
         colour, width = (LEAK, 0.8) if side == "inner" else (YELLOW, 2.0)
         ax.plot(x, flow, label=f"at the {side} radius", color=colour, lw=width)
     ax.set(title=title, ylabel=unit)

@@ -56,12 +56,17 @@ def _face(ax, answer, r, theta, p, uneven):
 
 
 def _over_radius(ax, answer, r, uneven):
-    profiles = answer["profiles"]
-    if uneven:
+    profiles, beside = answer["profiles"], answer.get("beside") or []
+    if uneven and not beside:
         for name, colour, dashes in (("thinnest", CONTACT, "-"), ("thickest", GREEN, "--")):
             label = f"where the film is {name}, {np.degrees(profiles['at'][name]):.4g}°"
             ax.plot(r, BAR * np.array(profiles[name]), color=colour, ls=dashes, lw=1.6, label=label)
-    ax.plot(r, BAR * np.array(profiles["circle_mean"]), color=FILM, lw=2.0, label="mean of the circle")
+    label = f"at {1e6 * answer['clearance']:.4g} um, mean of the circle" if beside else "mean of the circle"
+    ax.plot(r, BAR * np.array(profiles["circle_mean"]), color=FILM, lw=2.0, label=label)
+    for k, other in enumerate(beside):
+        # From the film's own colour on, lighter as the clearance grows.
+        colour, label = colormaps[PRESSURE]((k + 1) / (len(beside) + 1)), f"at {1e6 * other['clearance']:.4g} um"
+        ax.plot(r, BAR * np.array(other["circle_mean"]), color=colour, lw=1.6, label=label)
     ax.set(xlabel="radius, mm", ylabel="film pressure, bar", title="Over the radius")
     centre, edges = answer["centre_of_pressure"], [1e3 * answer["edges"][side][0] for side in ("inner", "outer")]
     ax.set_xlim(*edges)
