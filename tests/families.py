@@ -10,10 +10,11 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GASES, GasDam
+from sealdyn.scene.gas import GASES, GasDam, GasReynolds
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
+from sealdyn.scene.waviness import Waviness
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,35 @@ def gas(random) -> Drawn:
         outer_pressure=lifted(film.outer_pressure), inner_pressure=lifted(film.inner_pressure),
     )  # fmt: skip
     return replace(drawn, scene=replace(drawn.scene, film=dam), words=words)
+
+
+def gas_reynolds(random) -> Drawn:
+    """A smooth scene of `wide` whose film is a gas that stores, over a few turns: high pressures and equal ones, thin
+    and thick films, so squeezed slowly and fast; slip, few and many cells, standing waves, cones that follow tables and
+    the speed."""
+    drawn, log = gas(random), partial(logarithmic, random)
+    scene, film, words = drawn.scene, drawn.scene.film, [w for w in drawn.words if w not in ("contact", "o-ring")]
+    cells = int(random.integers(5, 13)), 2 * int(random.integers(8, 19))
+    slip = bool(random.random() < 0.3)
+    film = replace(film, model="gas_reynolds", gas_dam=None, gas_reynolds=GasReynolds(slip=slip, cells=cells))
+    if random.random() < 0.1:
+        film, words = replace(film, outer_pressure=film.inner_pressure), [*words, "equal pressures"]
+    rotor, stator = replace(scene.rotor, secondary_seal=None), replace(scene.stator, secondary_seal=None)
+    speed = scene.shaft.speed.value[0] if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
+    duration = min(drawn.duration, float(random.uniform(2.0, 5.0)) * 2 * math.pi / speed)
+    width = film.outer_radius - film.inner_radius
+    if random.random() < 0.15 and stator.speed == 0.0:
+        wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.2), float(random.uniform(0, 6)))
+        stator, words = replace(stator, waviness=[wave]), [*words, "waves"]
+    if random.random() < 0.15:
+        more = film.coning + 0.5 * film.clearance / width * float(random.uniform(-0.3, 1.0))
+        cone = PiecewiseLinear((0.3 * duration, 0.8 * duration), (film.coning, more))
+        film, words = replace(film, coning=cone), [*words, "coning table"]
+    if random.random() < 0.15:
+        share = film.clearance / width / speed**2 * float(random.uniform(-0.1, 0.5))
+        film, words = replace(film, coning_per_speed_squared=share), [*words, "coning by speed"]
+    made = replace(scene, film=film, rotor=rotor, stator=stator, contact=None, initial=Initial())
+    return Drawn(made, duration, log(1e-3, 3e-2), "rest", (*words, f"{cells[0]} x {cells[1]}"))
 
 
 def wide(random) -> Drawn:

@@ -196,10 +196,11 @@ def certify(
     errors: GlobalErrorEstimate | None = None,
     by_model: float | None = None,
     measured: tuple[np.ndarray, np.ndarray] | None = None,
+    cells: np.ndarray | None = None,
 ) -> Certificate:
     """Certificate of a finished run by this method with this `tolerance`, with the errors of its steps (`errors`) and
     of its film (`by_model`, relative) as far as they have been followed; `measured`: instants (m,) (s) and how
-    far (m,) it is from a sharper run there."""
+    far (m,) it is from a sharper run there; `cells`: error of the film's cells at some instants."""
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_solver is not None and method != "expm":
         by_solver = max(by_solver, LEFT_OUT * run.model.accuracy)
@@ -209,6 +210,7 @@ def certify(
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
     by_cells = cell_error(run)
     if by_cells is not None:
+        by_cells = max(by_cells, float(np.nanmax(cells, initial=0.0)) if cells is not None else 0.0)
         by_model = by_cells
         parts.append(f"cells {by_model:.1e}, by half of them")
     elif by_model is not None:

@@ -1,11 +1,15 @@
 """How wrong a run is, measured: the run once more, sharper or by another method, and how far the two are apart in
 everything that is looked at."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import solve
+from .cell_error import RICHARDSON
 from .looked_at import LookedAt
 
 # Instants at which two runs are compared: per fastest period and at most, and after each start of a stretch, where fast
@@ -51,10 +55,27 @@ class Comparison:
         model = self.run.model
         # A film below its floor has a bend, of which its integrals feel more than of anything else.
         again = self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
+        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
+
+    def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+        """The same of the film's cells, from the run with half of them (cell_error.py); None of a film that has none to
+        halve."""
+        model = self.run.model
+        film = model.observed[0]
+        if not hasattr(film, "halved"):
+            return None
+        coarse = Model(replace(model.scene, film=film.halved(model.scene.film)), model.accuracy, film=model.film)
+        again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
+        again.y0[:rings] = self.run.y0[:rings]
+        apart = self._apart(again, method, tolerance, progress, stop)
+        return None if apart is None else apart / RICHARDSON
+
+    def _apart(self, again, method, tolerance, progress, stop) -> np.ndarray | None:
+        """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
         other = Comparison(again)
-        pair = sharper(method, tolerance, self.run)
+        other.times = self.times
         outcome = solve(
-            again, pair[0], self.run.model.accuracy, Nothing(again, progress, stop), tolerance=pair[1], seen=other
+            again, method, self.run.model.accuracy, Nothing(again, progress, stop), tolerance=tolerance, seen=other
         )
         if outcome.status == Status.INTERRUPTED:
             raise Enough

@@ -156,17 +156,18 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
     none = {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None, "met": None, "horizon": None}
     if outcome.status != Status.OK:
         return {**none, "said": f"no certificate: the run {outcome.status}"}, outcome
-    measured = None
+    measured = cells = None
     if seen:
         try:
-            apart = seen.error_over_time(progress, stop, method=method, tolerance=outcome.tolerance)
+            how = {"method": method, "tolerance": outcome.tolerance}
+            apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
         except Enough:
             said = "no certificate: interrupted while the run was done once more"
             return {**none, "said": said}, replace(
                 outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED, message=str(Cause.INTERRUPTED)
             )
         measured = None if apart is None else (seen.times, apart)
-    found = certify(run, method, outcome.tolerance, errors, by_model, measured)
+    found = certify(run, method, outcome.tolerance, errors, by_model, measured, cells)
     met = None if found.estimated is None else found.estimated <= found.asked
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": met, "horizon": found.horizon, "said": found.said}, outcome  # fmt: skip
