@@ -10,7 +10,7 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film
-from sealdyn.scene.gas import GASES, GasDam
+from sealdyn.scene.gas import GASES, GasDam, GasReynolds
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
@@ -67,7 +67,73 @@ def gas(random) -> Drawn:
     return replace(drawn, scene=replace(drawn.scene, film=dam), words=words)
 
 
-def wide(random) -> Drawn:
+def gas_reynolds(random) -> Drawn:
+    """A scene of `wide` without contact and dry friction whose film is a gas that stores, over few turns: pressures
+    from either side or equal, squeeze numbers from far below to far above one, with and without slip, coarse cells;
+    supports of which some do not damp."""
+    log = partial(logarithmic, random)
+    while not (drawn := wide(random, 5)).smooth:
+        pass
+    scene, film = drawn.scene, drawn.scene.film
+    speed = scene.shaft.speed.value[0] if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
+    cells = tuple(int(count) for count in (random.integers(4, 9), random.integers(8, 17)))
+    slip, name, low = bool(random.random() < 0.3), str(random.choice(sorted(GASES))), log(3e4, 3e5)
+    lifted = [
+        PiecewiseLinear(p.time, tuple(low + min(v, 3e6) for v in p.value))
+        if isinstance(p, PiecewiseLinear)
+        else low + min(p, 3e6)
+        for p in (film.inner_pressure, film.outer_pressure)
+    ]
+    words = [word for word in drawn.words if not word.startswith(("film", "viscosity"))]
+    words, closing = [*words, "gas", name, *(["slip"] if slip else [])], scene.closing
+    if random.random() < 0.15:
+        # Nothing but its wedge and the springs holds such a film.
+        lifted, closing, words = [lifted[0]] * 2, replace(closing, balance_ratio=0.8), [*words, "equal pressures"]
+        lifted = [p.value[0] if isinstance(p, PiecewiseLinear) else p for p in lifted]
+        words = [word for word in words if word != "pressure table"]
+    # The squeeze number over the width, 12 mu speed width^2/(p h^2), sets the clearance.
+    gas, temperature = GASES[name], log(250.0, 590.0)
+    pressure = max(p.value[0] if isinstance(p, PiecewiseLinear) else p for p in lifted)
+    squeeze, width = log(0.03, 300.0), film.outer_radius - film.inner_radius
+    clearance = math.sqrt(12 * gas.viscosity(temperature) * speed * width**2 / (pressure * squeeze))
+    clearance = min(max(clearance, 1e-6), 3e-5)
+    times = clearance / film.clearance
+
+    def resized(part, *keys):
+        """Of a ring or tone, lengths and angles as they are to the clearance."""
+        found = {}
+        for key in keys:
+            value = getattr(part, key, None)
+            if isinstance(value, PiecewiseLinear):
+                found[key] = PiecewiseLinear(value.time, tuple(times * v for v in value.value))
+            elif value is not None:
+                found[key] = times * value
+        return replace(part, **found)
+
+    def ring(part):
+        part = resized(part, "misalignment", "runout")
+        if part.support and random.random() < 0.3:
+            part = replace(part, support=replace(part.support, axial_damping=0.0))
+            words.append("undamped")
+        return part
+
+    rotor = ring(scene.rotor)
+    rotor = replace(rotor, axial_runout=[resized(wave, "amplitude") for wave in rotor.axial_runout])
+    shaken = {kind: [resized(tone, "displacement") for tone in tones] for kind, tones in vars(scene.housing).items()}
+    shaft = replace(scene.shaft, whirl=[resized(whirl, "angle") for whirl in scene.shaft.whirl])
+    table = replace(
+        film, model="gas_reynolds", gas=name, temperature=temperature, viscosity=None, clearance=clearance,
+        coning=times * film.coning, inner_pressure=lifted[0], outer_pressure=lifted[1],
+        gas_reynolds=GasReynolds(slip=slip, cells=cells),
+    )  # fmt: skip
+    scene = replace(
+        scene, shaft=shaft, film=table, housing=replace(scene.housing, **shaken), rotor=rotor,
+        stator=ring(scene.stator), closing=closing,
+    )  # fmt: skip
+    return Drawn(scene, drawn.duration, log(1e-5, 1e-2), drawn.start, tuple(words))
+
+
+def wide(random, most_turns=25) -> Drawn:
     """One scene of all the families: arrangements, light and stiff rings, thin and thick, flat, converging and
     diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, growing into a rub and hit
     by a thrown ring, O-rings."""
@@ -81,7 +147,7 @@ def wide(random) -> Drawn:
 
     words = [str(random.choice(["fms", "fmr", "fmsr"]))]
     arrangement, clearance, outer = words[0], log(5e-7, 5e-5), log(0.015, 0.08)
-    inner, speed, turns = outer * random.uniform(0.7, 0.95), log(50.0, 2500.0), random.integers(2, 25)
+    inner, speed, turns = outer * random.uniform(0.7, 0.95), log(50.0, 2500.0), random.integers(2, most_turns)
     duration, tilt = float(turns) * 2 * math.pi / speed, clearance / outer
 
     def varying(value, share, word, low, high):

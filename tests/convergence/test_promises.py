@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from benchmark.honesty import automatic
-from families import Drawn, gas
-from judge import contact_errors, instants, truth
+from families import Drawn, gas, gas_reynolds
+from judge import contact_errors, instants, truth, truth_in_own_words
 from scenes import film, fms, prepared
 from studies.test_rough_faces_in_studies import PUMP
 
@@ -113,3 +113,22 @@ def test_a_gas_dam_rings_after_every_step_too_long():
     errors = LookedAt(run).errors(columns[: known.rows], known.columns[: known.rows])
     assert outcome.status == "ok" and found["met"] and known.rows == len(times)
     assert errors.max() < drawn.accuracy
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(4))
+def test_gas_that_stores(number):
+    """Drawn scenes with the gas Reynolds film, on the same cells by equations of the tests' own and Radau's method."""
+    drawn = gas_reynolds(np.random.default_rng([2027, number]))
+
+    def anew(accuracy=drawn.accuracy / 100):
+        return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
+
+    reference = anew()
+    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference, 24)
+    known = truth_in_own_words(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
+    assert known.rows == len(times)
+    _, method, found, outcome, columns, *_ = automatic(drawn, times)
+    errors = scales.errors(columns, known.columns).max()
+    assert outcome.status == "ok" and method == "ida" and found["solver"] <= drawn.accuracy
+    assert errors <= drawn.accuracy and found["solver"] > 0.3 * errors

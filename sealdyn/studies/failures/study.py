@@ -1,4 +1,4 @@
-"""Failures: thirteen places where methods fail, each failing method run beside the one that survives it.
+"""Failures: fourteen places where methods fail, each failing method run beside the one that survives it.
 
 The exhibits are small scenes of the reference seal (exhibits/); the scenario is told what the program does with it.
 """
