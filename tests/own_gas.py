@@ -29,7 +29,8 @@ class OwnGas:
         r = r_i + (r_o - r_i) * (0.2 * even + 0.4 * (1.0 - np.cos(math.pi * even)))
         half = 0.5 * (r[1:] + r[:-1])
         a, b = np.array([r_i, *half[1:-1]]), np.array([*half[1:-1], r_o])
-        self.r, self.theta = r, 2.0 * math.pi * np.arange(self.angles) / self.angles
+        self.r, theta = r, 2.0 * math.pi * np.arange(self.angles) / self.angles
+        self.sin, self.cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
         self.step = 2.0 * math.pi / self.angles
         self.log, self.core, self.area = np.log(r[1:] / r[:-1]), (half[1:] ** 2 - half[:-1] ** 2) / 2, (b**2 - a**2) / 2
         # int dr/r of a cell over its area, over the square of the step that is exact for tilt.
@@ -55,9 +56,8 @@ class OwnGas:
     def thickness(self, gap):
         """Film thickness (angles, cells + 2) and its rate (m, m/s) at the nodes."""
         aligned, g_x, g_y, rate, g_x_rate, g_y_rate = gap
-        sin, cos = np.sin(self.theta)[:, None], np.cos(self.theta)[:, None]
-        h = aligned + self.film.coning * (self.r - self.r[0]) + self.r * (g_x * sin - g_y * cos)
-        return h, rate + self.r * (g_x_rate * sin - g_y_rate * cos)
+        h = aligned + self.film.coning * (self.r - self.r[0]) + self.r * (g_x * self.sin - g_y * self.cos)
+        return h, rate + self.r * (g_x_rate * self.sin - g_y_rate * self.cos)
 
     def _pressures(self, now, h, x):
         p = np.empty_like(h)
@@ -81,12 +81,18 @@ class OwnGas:
 
     def rates(self, now, gap, x):
         """dx/dt (Pa m/s)."""
+        return self.rates_and_loads(now, gap, x)[0]
+
+    def rates_and_loads(self, now, gap, x):
+        """The same, and loads (LOADS,) on the stator, see above."""
         h = self.thickness(gap)[0]
         x = np.asarray(x).reshape(self.angles, self.cells)
-        out, on = self._flows(now, h, self._pressures(now, h, x))
+        p = self._pressures(now, h, x)
+        out, on = self._flows(now, h, p)
         wm = 0.5 * (now["spin_s"] + now["spin_r"])
         rates = (out[:, :-1] - out[:, 1:]) / self.core + on[self.before] - on
-        return (rates - wm * self.turning * (x[self.after] - x[self.before])).ravel()
+        rates -= wm * self.turning * (x[self.after] - x[self.before])
+        return rates.ravel(), self._loads(now, gap, h, p, out)
 
     def slopes(self, now, gap, x):
         """d rates / d x (size, size)."""
@@ -110,24 +116,20 @@ class OwnGas:
 
     def loads_by_pressures(self, gap):
         """Force and both moments of each unknown, (3, size)."""
-        h, sin, cos = self.thickness(gap)[0][:, 1:-1], np.sin(self.theta)[:, None], np.cos(self.theta)[:, None]
+        h = self.thickness(gap)[0][:, 1:-1]
         force, moment = self.step * self.pressing[1:-1] / h, self.step * self.tilting[1:-1] / h
-        return np.array([force.ravel(), (moment * sin).ravel(), -(moment * cos).ravel()])
+        return np.array([force.ravel(), (moment * self.sin).ravel(), -(moment * self.cos).ravel()])
 
-    def loads(self, now, gap, x):
-        """Loads (LOADS,) on the stator, see above."""
-        h = self.thickness(gap)[0]
-        p = self._pressures(now, h, x)
-        out, _ = self._flows(now, h, p)
+    def _loads(self, now, gap, h, p, out):
         moments = p @ self.tilting
-        m_x, m_y = self.step * moments @ np.sin(self.theta), -self.step * moments @ np.cos(self.theta)
+        m_x, m_y = self.step * moments @ self.sin[:, 0], -self.step * moments @ self.cos[:, 0]
         # The cell at the edge fills at one rate throughout.
         beyond = self.area[0] / self.core[0] - 1.0
         flow = self.step * np.sum(out[:, 0] + beyond * (out[:, 0] - out[:, 1]))
         couette = self.step * np.sum(self.shearing / h[:, 1:-1]) * now["mu"] * (now["spin_r"] - now["spin_s"])
         torque = couette + 0.5 * (gap[1] * m_y - gap[2] * m_x)
         normal = 273.15 / (self.film.temperature * 101325.0)
-        return np.array([self.step * np.sum(p @ self.pressing), m_x, m_y, normal * flow, torque])
+        return np.array([self.step * (p @ self.pressing).sum(), m_x, m_y, normal * flow, torque])
 
     def steady(self, now, gap):
         """Unknowns whose pressures stand still while the gap moves on: Newton's method."""

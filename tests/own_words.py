@@ -196,9 +196,16 @@ class OwnSeal:
     def _loads(self, now, gap, x):
         """Loads in the order of own_face.py; `x` the unknowns of a gas film."""
         if self.gas:
-            return np.concatenate([self.gas.loads(now, gap, x), np.zeros(9 - LOADS)])
+            return self._rates_and_loads(now, gap, x)[1]
         conditions = (now["mu"], now["p_i"], now["p_o"], now["spin_s"], now["spin_r"])
         return own_face.face_loads(self.face, conditions, gap, self.law, self.touching, self.levels)
+
+    def _rates_and_loads(self, now, gap, x):
+        """Rates of a gas film's unknowns, if there are any, and loads."""
+        if not self.gas:
+            return (), self._loads(now, gap, x)
+        rates, loads = self.gas.rates_and_loads(now, gap, x)
+        return rates, np.concatenate([loads, np.zeros(9 - LOADS)])
 
     # --- what is asked --------------------------------------------------------------------------------
 
@@ -207,13 +214,12 @@ class OwnSeal:
         now = self._at(t, self.piece(t) if piece is None else piece)
         carriers, rings, own = self._motion(t, y, now)
         gap, x = self._gap(rings), y[2 * self.n :]
-        loads = self._loads(now, gap, x)
+        film_rates, loads = self._rates_and_loads(now, gap, x)
         low, high = (now["p_i"], now["p_o"]) if self.outside else (now["p_o"], now["p_i"])
         opening = loads[FORCE] + loads[PRESS] - (high * self.balance + low * (1.0 - self.balance)) * self.area
         opening_moment = complex(loads[MOMENT_X] + loads[PRESS_X], loads[MOMENT_Y] + loads[PRESS_Y])
         out = np.empty(len(y))
-        if self.gas:
-            out[2 * self.n :] = self.gas.rates(now, gap, x)
+        out[2 * self.n :] = film_rates
         out[: self.n] = y[self.n : 2 * self.n]
         for k, (name, ring) in enumerate(self.floating):
             sign, spin, support = 1.0 if name == "stator" else -1.0, now["spin_" + name[0]], ring.support

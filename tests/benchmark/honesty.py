@@ -158,7 +158,7 @@ def judge(number, family="wide"):
         estimated, met = found["solver"], found["solver"] <= drawn.accuracy
     best = math.inf
     if drawn.smooth and outcome.status == "ok":
-        spent = min(spent, *(automatic(drawn, times)[-1] for _ in range(TIMES - 1)))
+        spent = min(spent, *(automatic(drawn, times)[-1] for _ in range(1 if stores else TIMES - 1)))
         best = hindsight(make, drawn, times, scales, known.columns, rows)
     return {**row, "errors": [*errors.tolist(), depth, instant], "contacts_wrong": wrong, "contacts": len(contacts),
             "estimated": estimated, "met": met, "status": str(outcome.status), "method": method,
@@ -201,6 +201,11 @@ def main():
                     rows.append(row)
                     print(said(row), flush=True)
             number += count
+    keep(rows, numbers_of(rows, dropped))
+
+
+def numbers_of(rows, dropped) -> dict:
+    """What a page says of judged scenes; `dropped` counts reasons why others were drawn anew."""
     verdicts = [told(row) for row in rows]
     honest = sum(most <= 1.0 and not row["contacts_wrong"] for row, (most, _) in zip(rows, verdicts, strict=True))
     spoken = sum(
@@ -212,7 +217,7 @@ def main():
         if not said and most > 0.01
     ]
     costs = np.array([row["cost"] / row["best"] for row in rows if math.isfinite(row["best"])])
-    numbers = {
+    return {
         "seed": SEED,
         "scenes": len(rows),
         "honest": honest,
@@ -228,6 +233,10 @@ def main():
         "contacts": sum(row["contacts"] for row in rows),
         "contacts_wrong": sum(row["contacts_wrong"] for row in rows),
     }
+
+
+def keep(rows, numbers):
+    """Print the numbers; into the figure, if one is asked for, and beside it."""
     print(json.dumps(numbers, indent=1))
     if len(sys.argv) > 2 and sys.argv[2] != "-":
         draw(rows, Path(sys.argv[2]))
