@@ -69,35 +69,91 @@ def gas(random) -> Drawn:
 
 
 def gas_reynolds(random) -> Drawn:
-    """A smooth scene of `wide` whose film is a gas that stores, over a few turns: high pressures and equal ones, thin
-    and thick films, so squeezed slowly and fast; slip, few and many cells, standing waves, cones that follow tables and
-    the speed."""
-    drawn, log = gas(random), partial(logarithmic, random)
-    scene, film, words = drawn.scene, drawn.scene.film, [w for w in drawn.words if w not in ("contact", "o-ring")]
-    cells = int(random.integers(5, 13)), 2 * int(random.integers(8, 19))
-    slip = bool(random.random() < 0.3)
-    film = replace(film, model="gas_reynolds", gas_dam=None, gas_reynolds=GasReynolds(slip=slip, cells=cells))
-    if random.random() < 0.1:
-        film, words = replace(film, outer_pressure=film.inner_pressure), [*words, "equal pressures"]
-    rotor, stator = replace(scene.rotor, secondary_seal=None), replace(scene.stator, secondary_seal=None)
+    """A scene of `wide` without contact and dry friction whose film is a gas that stores, over few turns: pressures
+    from either side or equal, squeeze numbers from far below to far above one, with and without slip, few and many
+    cells; supports of which some do not damp; standing waves, cones that follow time or the speed."""
+    log = partial(logarithmic, random)
+    while not (drawn := wide(random, 5)).smooth:
+        pass
+    scene, film = drawn.scene, drawn.scene.film
     speed = scene.shaft.speed.value[0] if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
-    duration = min(drawn.duration, float(random.uniform(2.0, 5.0)) * 2 * math.pi / speed)
-    width = film.outer_radius - film.inner_radius
+    cells = tuple(int(count) for count in (random.integers(5, 13), 2 * random.integers(8, 18)))
+    slip, name, low = bool(random.random() < 0.3), str(random.choice(sorted(GASES))), log(3e4, 3e5)
+    lifted = [
+        PiecewiseLinear(p.time, tuple(low + min(v, 3e6) for v in p.value))
+        if isinstance(p, PiecewiseLinear)
+        else low + min(p, 3e6)
+        for p in (film.inner_pressure, film.outer_pressure)
+    ]
+    words = [word for word in drawn.words if not word.startswith(("film", "viscosity"))]
+    words, closing = [*words, "gas", name, *(["slip"] if slip else [])], scene.closing
+    if random.random() < 0.15:
+        # Nothing but its wedge and the springs holds such a film.
+        lifted, closing, words = [lifted[0]] * 2, replace(closing, balance_ratio=0.8), [*words, "equal pressures"]
+        lifted = [p.value[0] if isinstance(p, PiecewiseLinear) else p for p in lifted]
+        words = [word for word in words if word != "pressure table"]
+    # The squeeze number over the width, 12 mu speed width^2/(p h^2), sets the clearance.
+    gas, temperature = GASES[name], log(250.0, 590.0)
+    pressure = max(p.value[0] if isinstance(p, PiecewiseLinear) else p for p in lifted)
+    squeeze, width = log(0.03, 300.0), film.outer_radius - film.inner_radius
+    clearance = math.sqrt(12 * gas.viscosity(temperature) * speed * width**2 / (pressure * squeeze))
+    clearance = min(max(clearance, 1e-6), 3e-5)
+    times = clearance / film.clearance
+
+    def resized(part, *keys):
+        """Of a ring or tone, lengths and angles as they are to the clearance."""
+        found = {}
+        for key in keys:
+            value = getattr(part, key, None)
+            if isinstance(value, PiecewiseLinear):
+                found[key] = PiecewiseLinear(value.time, tuple(times * v for v in value.value))
+            elif value is not None:
+                found[key] = times * value
+        return replace(part, **found)
+
+    def ring(part):
+        part = resized(part, "misalignment", "runout")
+        if part.support and random.random() < 0.3:
+            part = replace(part, support=replace(part.support, axial_damping=0.0))
+            words.append("undamped")
+        return part
+
+    rotor = ring(scene.rotor)
+    rotor = replace(rotor, axial_runout=[resized(wave, "amplitude") for wave in rotor.axial_runout])
+    shaken = {kind: [resized(tone, "displacement") for tone in tones] for kind, tones in vars(scene.housing).items()}
+    shaft = replace(scene.shaft, whirl=[resized(whirl, "angle") for whirl in scene.shaft.whirl])
+    table = replace(
+        film, model="gas_reynolds", gas=name, temperature=temperature, viscosity=None, clearance=clearance,
+        coning=times * film.coning, inner_pressure=lifted[0], outer_pressure=lifted[1],
+        gas_reynolds=GasReynolds(slip=slip, cells=cells),
+    )  # fmt: skip
+    scene = replace(
+        scene, shaft=shaft, film=table, housing=replace(scene.housing, **shaken), rotor=rotor,
+        stator=ring(scene.stator), closing=closing,
+    )  # fmt: skip
+    scene, stator = _with_other_faces(random, scene, drawn.duration, words), scene.stator
     if random.random() < 0.15 and stator.speed == 0.0:
-        wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.2), float(random.uniform(0, 6)))
-        stator, words = replace(stator, waviness=[wave]), [*words, "waves"]
-    if random.random() < 0.15:
-        more = film.coning + 0.5 * film.clearance / width * float(random.uniform(-0.3, 1.0))
-        cone = PiecewiseLinear((0.3 * duration, 0.8 * duration), (film.coning, more))
-        film, words = replace(film, coning=cone), [*words, "coning table"]
-    if random.random() < 0.15:
-        share = film.clearance / width / speed**2 * float(random.uniform(-0.1, 0.5))
-        film, words = replace(film, coning_per_speed_squared=share), [*words, "coning by speed"]
-    made = replace(scene, film=film, rotor=rotor, stator=stator, contact=None, initial=Initial())
-    return Drawn(made, duration, log(1e-3, 3e-2), "rest", (*words, f"{cells[0]} x {cells[1]}"))
+        wave = Waviness(int(random.integers(2, 5)), clearance * log(0.01, 0.2), float(random.uniform(0, 6)))
+        scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
+    return Drawn(scene, drawn.duration, log(1e-3, 3e-2), drawn.start, (*words, f"{cells[0]} x {cells[1]}"))
 
 
-def wide(random) -> Drawn:
+def _with_other_faces(random, scene, duration, words):
+    """Now and then a cone that follows time, or the speed."""
+    film, speed = scene.film, scene.shaft.speed
+    slope = film.clearance / (film.outer_radius - film.inner_radius)
+    if random.random() < 0.15:
+        cone = film.coning + 0.5 * slope * float(random.uniform(-0.3, 1.0))
+        film = replace(film, coning=PiecewiseLinear((0.3 * duration, 0.8 * duration), (film.coning, cone)))
+        words.append("coning table")
+    if random.random() < 0.15:
+        fastest = max(speed.value) if isinstance(speed, PiecewiseLinear) else speed
+        film = replace(film, coning_per_speed_squared=slope / fastest**2 * float(random.uniform(-0.1, 0.5)))
+        words.append("coning by speed")
+    return replace(scene, film=film)
+
+
+def wide(random, most_turns=25) -> Drawn:
     """One scene of all the families: arrangements, light and stiff rings, thin and thick, flat, converging and
     diverging films, either side high, tables, runouts, whirls, tones, contact of both laws, growing into a rub and hit
     by a thrown ring, O-rings."""
@@ -111,7 +167,7 @@ def wide(random) -> Drawn:
 
     words = [str(random.choice(["fms", "fmr", "fmsr"]))]
     arrangement, clearance, outer = words[0], log(5e-7, 5e-5), log(0.015, 0.08)
-    inner, speed, turns = outer * random.uniform(0.7, 0.95), log(50.0, 2500.0), random.integers(2, 25)
+    inner, speed, turns = outer * random.uniform(0.7, 0.95), log(50.0, 2500.0), random.integers(2, most_turns)
     duration, tilt = float(turns) * 2 * math.pi / speed, clearance / outer
 
     def varying(value, share, word, low, high):

@@ -1,4 +1,5 @@
-"""The scenes of `families.wide` once more, in the tests' own words: nothing of the program but the scene's data.
+"""The scenes of `families.wide` and `families.gas_reynolds` once more, in the tests' own words: nothing of the program
+but the scene's data.
 
 Frames as everywhere: z along the shaft from rotor to stator, tilts complex, `gamma = tilt_x + i tilt_y`, film thickness
 `h = C + z_s - z_r + coning (r - r_i) + r (g_x sin(theta) - g_y cos(theta))` with the relative tilt g of the stator.
@@ -16,7 +17,10 @@ import time
 import numpy as np
 import own_face
 from own_face import DRAG, FLOW, FORCE, MOMENT_X, MOMENT_Y, PRESS, PRESS_X, PRESS_Y, RUB
-from scipy.integrate import DOP853
+from own_gas import LOADS, OwnGas
+from scipy.integrate import DOP853, Radau
+
+from sealdyn.scene.gas import gas_of
 
 
 def value_and_slope(quantity, start, end):
@@ -31,9 +35,9 @@ def value_and_slope(quantity, start, end):
 
 
 class OwnSeal:
-    """Equations of motion of a scene over `duration` (s).  y holds the displacements `names` (n,) (m, rad) and then
-    their rates; `breaks` (s) are the kinks of tables inside the run; `lengths` (n,) and `rate` (rad/s) the scales of
-    `columns`.
+    """Equations of motion of a scene over `duration` (s).  y holds the displacements `names` (n,) (m, rad), then their
+    rates, then the unknowns of a gas film (own_gas.py); `breaks` (s) are the kinks of tables inside the run; `lengths`
+    (n,) and `rate` (rad/s) the scales of `columns`.
 
     Three of its laws are definitions of the program: the film of rough faces that nearly touch (own_face.py), Gaussian
     asperities as polynomials (own_face.py), and the regularised O-ring, of which the whole wrench fades.  Raises
@@ -46,8 +50,14 @@ class OwnSeal:
         self.names = [f"{name}_{part}" for name, _ in self.floating for part in ("z", "tilt_x", "tilt_y")]
         self.n = len(self.names)
         self._refuse()
+        gas = gas_of(film)
+        self.gas = OwnGas(film, gas) if gas else None
+        viscosity = film.viscosity
+        if gas and viscosity is None:
+            hot, cold, s = film.temperature, gas.reference_temperature, gas.sutherland_temperature
+            viscosity = gas.reference_viscosity * (hot / cold) ** 1.5 * (cold + s) / (hot + s)
         varying = {
-            "spin_s": scene.stator.speed, "spin_r": scene.shaft.speed, "mu": film.viscosity,
+            "spin_s": scene.stator.speed, "spin_r": scene.shaft.speed, "mu": viscosity,
             "p_i": film.inner_pressure, "p_o": film.outer_pressure, "tilt_s": scene.stator.misalignment,
             "tilt_r": scene.rotor.misalignment if scene.rotor.support else scene.rotor.runout,
         }  # fmt: skip
@@ -68,9 +78,10 @@ class OwnSeal:
         # Closing area over face area (of the high side) that holds the aligned faces at the clearance at first.
         self.area, first = math.pi * (film.outer_radius**2 - film.inner_radius**2), self._at(0.0, 0)
         self.outside = first["p_o"] >= first["p_i"]
-        loads = self._loads(first, (film.clearance, 0.0, 0.0, 0.0, 0.0, 0.0))
+        at_rest = (film.clearance, 0.0, 0.0, 0.0, 0.0, 0.0)
+        loads = self._loads(first, at_rest, self.gas.steady(first, at_rest) if gas else ())
         low, high = sorted((first["p_i"], first["p_o"]))
-        self.balance = ((loads[FORCE] + loads[PRESS]) / self.area - low) / (high - low)
+        self.balance = ((loads[FORCE] + loads[PRESS]) / self.area - low) / (high - low) if high > low else 1.0
         lengths = [film.clearance if name.endswith("z") else film.clearance / film.outer_radius for name in self.names]
         self.lengths, self.rate = np.array(lengths), self._reference_rate()
 
@@ -81,10 +92,17 @@ class OwnSeal:
                 raise NotImplementedError(f"{name}: an O-ring that sticks")
             if not (ring.mass > 0 and ring.transverse_inertia > 0):
                 raise NotImplementedError(f"{name}: a ring without inertia")
-        plain = film.geometry == "cylindrical" and film.tilt_radius == "local" and film.model in ("auto", "radial")
+        known = ("auto", "radial") if film.gas is None else ("gas_reynolds",)
+        plain = film.geometry == "cylindrical" and film.tilt_radius == "local" and film.model in known
         extra = (film.inertia, film.profile, film.cavitation_pressure is not None, film.clearance is None)
-        given = (scene.closing.balance_ratio is not None, scene.closing.spring_force is not None)
-        if not plain or any(extra) or any(given) or scene.stator.waviness or scene.rotor.waviness:
+        # Between equal pressures the balance ratio is nothing.
+        equal = film.inner_pressure == film.outer_pressure
+        given = (scene.closing.balance_ratio is not None and not equal, scene.closing.spring_force is not None)
+        if film.gas is not None and (hasattr(film.temperature, "time") or scene.contact or film.gas_reynolds is None):
+            raise NotImplementedError("a gas that warms up, touching faces or cells by default")
+        waves = scene.stator.waviness or scene.rotor.waviness
+        coned = hasattr(film.coning, "time") or film.coning_per_speed_squared or film.coning_per_kelvin
+        if not plain or any(extra) or any(given) or waves or coned:
             raise NotImplementedError("a film, waves or a closing force that `wide` does not draw")
 
     def _contact(self):
@@ -177,9 +195,19 @@ class OwnSeal:
         h, h_rate, g, g_rate = (one - other for one, other in zip(rings["stator"], rings["rotor"], strict=True))
         return self.scene.film.clearance + h, g.real, g.imag, h_rate, g_rate.real, g_rate.imag
 
-    def _loads(self, now, gap):
+    def _loads(self, now, gap, x):
+        """Loads in the order of own_face.py; `x` the unknowns of a gas film."""
+        if self.gas:
+            return self._rates_and_loads(now, gap, x)[1]
         conditions = (now["mu"], now["p_i"], now["p_o"], now["spin_s"], now["spin_r"])
         return own_face.face_loads(self.face, conditions, gap, self.law, self.touching, self.levels)
+
+    def _rates_and_loads(self, now, gap, x):
+        """Rates of a gas film's unknowns, if there are any, and loads."""
+        if not self.gas:
+            return (), self._loads(now, gap, x)
+        rates, loads = self.gas.rates_and_loads(now, gap, x)
+        return rates, np.concatenate([loads, np.zeros(9 - LOADS)])
 
     # --- what is asked --------------------------------------------------------------------------------
 
@@ -187,12 +215,14 @@ class OwnSeal:
         """dy/dt at a time (s) of the run; `piece`: of the tables, where t may be its end."""
         now = self._at(t, self.piece(t) if piece is None else piece)
         carriers, rings, own = self._motion(t, y, now)
-        loads = self._loads(now, self._gap(rings))
+        gap, x = self._gap(rings), y[2 * self.n :]
+        film_rates, loads = self._rates_and_loads(now, gap, x)
         low, high = (now["p_i"], now["p_o"]) if self.outside else (now["p_o"], now["p_i"])
         opening = loads[FORCE] + loads[PRESS] - (high * self.balance + low * (1.0 - self.balance)) * self.area
         opening_moment = complex(loads[MOMENT_X] + loads[PRESS_X], loads[MOMENT_Y] + loads[PRESS_Y])
-        out = np.empty(2 * self.n)
-        out[: self.n] = y[self.n :]
+        out = np.empty(len(y))
+        out[2 * self.n :] = film_rates
+        out[: self.n] = y[self.n : 2 * self.n]
         for k, (name, ring) in enumerate(self.floating):
             sign, spin, support = 1.0 if name == "stator" else -1.0, now["spin_" + name[0]], ring.support
             (z_c, v_c, tilt_c, rate_c), (z, v, tilt, rate) = carriers[name], rings[name]
@@ -211,12 +241,45 @@ class OwnSeal:
             out[self.n + 3 * k : self.n + 3 * k + 3] = force / ring.mass, turn.real, turn.imag
         return out
 
+    def jacobian(self, t, y, piece=None):
+        """d rates / d y (size, size), of the rings' unknowns by differences: for Newton's method."""
+        at, m = self.rates(t, y, piece), 2 * self.n
+        matrix, steps = np.zeros((len(y), len(y))), 1e-6 * np.concatenate([self.lengths, self.lengths * self.rate])
+        for i, step in enumerate(steps):
+            moved = y.copy()
+            moved[i] += step
+            matrix[:, i] = (self.rates(t, moved, piece) - at) / step
+        if self.gas:
+            now = self._at(t, self.piece(t) if piece is None else piece)
+            gap = self._gap(self._motion(t, y, now)[1])
+            matrix[m:, m:], loads = self.gas.slopes(now, gap, y[m:]), self.gas.loads_by_pressures(gap)
+            for k, (name, ring) in enumerate(self.floating):
+                inertia = np.array([[ring.mass], [ring.transverse_inertia], [ring.transverse_inertia]])
+                first = self.n + 3 * k
+                matrix[first : first + 3, m:] = (1.0 if name == "stator" else -1.0) * loads / inertia
+        return matrix
+
+    def begun(self, y0):
+        """Unknowns from displacements and rates `y0` (2 n,): those of a gas film are of the steady one."""
+        if not self.gas:
+            return np.array(y0)
+        now = self._at(0.0, 0)
+        return np.concatenate([y0, self.gas.steady(now, self._gap(self._motion(0.0, y0, now)[1]))])
+
+    def scale(self):
+        """Scales (size,) of y."""
+        mechanical = np.concatenate([self.lengths, self.lengths * self.rate])
+        if not self.gas:
+            return mechanical
+        highest = max(piece[side][0] for piece in self.pieces for side in ("p_i", "p_o"))
+        return np.concatenate([mechanical, np.full(self.gas.size, highest * self.scene.film.clearance)])
+
     def columns(self, t, y, piece=None):
         """Row (2 n + 5,) as LookedAt has it: displacements over `lengths`, rates over these times `rate`, film force
         (N), moments about x and y (N m), flow (m^3/s), torque (N m)."""
         now = self._at(t, self.piece(t) if piece is None else piece)
-        loads = self._loads(now, self._gap(self._motion(t, y, now)[1]))
-        motion = [y[: self.n] / self.lengths, y[self.n :] / (self.lengths * self.rate)]
+        loads = self._loads(now, self._gap(self._motion(t, y, now)[1]), y[2 * self.n :])
+        motion = [y[: self.n] / self.lengths, y[self.n : 2 * self.n] / (self.lengths * self.rate)]
         return np.concatenate([*motion, loads[: FLOW + 1], [loads[DRAG] + loads[RUB]]])
 
     def thinnest(self, t, y):
@@ -248,9 +311,9 @@ def own(scene, duration, y0, times, tolerance, kind=DOP853, deadline=math.inf):
     anew at each of them and at each break; fewer rows where the film closes or the solver gives up.  Raises
     TimeoutError after `deadline` (s, of time.process_time)."""
     seal, film = OwnSeal(scene, duration), scene.film
-    scale = np.concatenate([seal.lengths, seal.lengths * seal.rate])
+    scale = seal.scale()
     least = -3.0 * scene.contact.roughness if scene.contact else film.floor * film.clearance
-    u, t, step, rows, wanted = np.asarray(y0) / scale, 0.0, None, [], {float(stop) for stop in times}
+    u, t, step, rows, wanted = seal.begun(y0) / scale, 0.0, None, [], {float(stop) for stop in times}
     for stop in sorted(wanted | {kink for kink in seal.breaks if kink < max(wanted)}):
         if stop > t:
             first, piece = min(step, stop - t) if step else None, seal.piece(t)
@@ -258,9 +321,15 @@ def own(scene, duration, y0, times, tolerance, kind=DOP853, deadline=math.inf):
             def rates(t, u, piece=piece):
                 return seal.rates(t, u * scale, piece) / scale
 
+            def jacobian(t, u, piece=piece):
+                return seal.jacobian(t, u * scale, piece) * scale / scale[:, None]
+
+            options = {"jac": jacobian} if kind is Radau and seal.gas else {}
             with np.errstate(all="ignore"):
                 # A squeezed film pushes by rates far below their scale.
-                solver = kind(rates, t, u, stop, rtol=max(tolerance, 1e-13), atol=0.01 * tolerance, first_step=first)
+                solver = kind(
+                    rates, t, u, stop, rtol=max(tolerance, 1e-13), atol=0.01 * tolerance, first_step=first, **options
+                )
                 while solver.status == "running":
                     solver.step()
                     if time.process_time() > deadline:

@@ -7,6 +7,7 @@ in proportion.  Any other run has the cautious tolerance of solvers/contract.py,
 **Valid** estimates, not bounds.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -208,9 +209,11 @@ def certify(
         by_model = model_error(run)
     said = f", against a sharper run{_since(*measured)}" if measured else ""
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
-    by_cells = cell_error(run)
+    known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
+    by_cells = max((error for error in known if error is not None), default=None)
+    if by_cells is None and hasattr(run.model.observed[0], "halved"):
+        by_cells = math.inf
     if by_cells is not None:
-        by_cells = max(by_cells, float(np.nanmax(cells, initial=0.0)) if cells is not None else 0.0)
         by_model = by_cells
         parts.append(f"cells {by_model:.1e}, by half of them")
     elif by_model is not None:

@@ -3,8 +3,8 @@
     python tests/benchmark/gallery.py
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
-studies), work_precision_all.json (all_scenarios.py), honesty.json and honesty_gas.json (honesty.py).  The captions
-stand in gallery.md.
+studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_gas.json and honesty_gas_reynolds.json
+(honesty.py).  The captions stand in gallery.md.
 """
 
 import json
@@ -22,7 +22,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, honesty, honesty_gas, failures):
+    for rows in (fastest, models, machine, scenarios, honesty, honesty_gas, honesty_gas_reynolds, failures):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -82,6 +82,11 @@ def honesty():
 def honesty_gas():
     """The same with gas dams."""
     yield from _honesty("honesty_gas.json")
+
+
+def honesty_gas_reynolds():
+    """The same with gas that stores."""
+    yield from _honesty("honesty_gas_reynolds.json")
 
 
 def _honesty(name):

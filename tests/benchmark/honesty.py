@@ -143,7 +143,7 @@ def judge(number, family="wide"):
         return {**row, "why": "no scene"}
     scales, times = LookedAt(reference), instants(random, reference)
     chosen = choose_method(reference)[0]
-    own = number % OWN == 0 and highest.film.gas is None
+    own = number % OWN == 0 and highest.film.model != "gas_dam"
     known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if own else None
     known = known or truth(make, scales, times, drawn.accuracy, chosen)
     if known is None:

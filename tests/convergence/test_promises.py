@@ -5,19 +5,26 @@ Every quantity of a run as `sealdyn run` does it, against two other references t
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmark.honesty import automatic
-from families import Drawn, gas
-from judge import contact_errors, instants, truth
+from families import Drawn, gas, gas_reynolds
+from judge import by_steps, contact_errors, instants, truth, truth_in_own_words
 from scenes import film, fms, prepared
 from studies.test_rough_faces_in_studies import PUMP
 
-from sealdyn.numerics.piecewise_linear import PiecewiseLinear
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear, initially
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scene.contact import Contact
+from sealdyn.scene.excitation import Shaft
+from sealdyn.scene.film import Film
+from sealdyn.scene.gas import GasReynolds
+from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.scene import Scene
+from sealdyn.scene.variants import with_values
 from sealdyn.simulation.looked_at import LookedAt
 from sealdyn.simulation.method_selection import choose_method
 
@@ -113,3 +120,49 @@ def test_a_gas_dam_rings_after_every_step_too_long():
     errors = LookedAt(run).errors(columns[: known.rows], known.columns[: known.rows])
     assert outcome.status == "ok" and found["met"] and known.rows == len(times)
     assert errors.max() < drawn.accuracy
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(4))
+def test_gas_that_stores(number):
+    """Drawn scenes with the gas Reynolds film, on the same cells by equations of the tests' own and Radau's method."""
+    drawn = gas_reynolds(np.random.default_rng([2027, number]))
+    gas_film = drawn.scene.film
+    few = replace(gas_film, gas_reynolds=replace(gas_film.gas_reynolds, cells=(6, 12)), coning_per_speed_squared=0.0)
+    few = replace(few, coning=initially(few.coning))
+    drawn = replace(drawn, scene=with_values(drawn.scene, {"film": few, "stator.waviness": []}))
+
+    def anew(accuracy=drawn.accuracy / 100):
+        return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
+
+    reference = anew()
+    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference, 24)
+    known = truth_in_own_words(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
+    assert known.rows == len(times)
+    _, method, found, outcome, columns, *_ = automatic(drawn, times)
+    errors = scales.errors(columns, known.columns).max()
+    assert outcome.status == "ok" and method == "ida" and found["solver"] <= drawn.accuracy
+    assert errors <= drawn.accuracy and found["solver"] > 0.3 * errors
+
+
+def test_cells_too_few_for_a_ring_that_rings_on_trapped_gas_are_told():
+    """The steady film is well known at both ends of the run, but not how fast its gas lets go of what rings: rates of
+    the first tenth of a turn are off by many times what was asked, and the certificate says so."""
+    support = Support(axial_stiffness=1e5, axial_damping=1.0, radius=0.05)
+    ring = dict(mass=0.05, transverse_inertia=6e-5, polar_inertia=1e-4, support=support)
+    gas_film = Film(
+        inner_radius=0.042, outer_radius=0.050, clearance=8e-7, gas="nitrogen", temperature=350.0, inner_pressure=2e5,
+        outer_pressure=3e5, model="gas_reynolds", gas_reynolds=GasReynolds(cells=(7, 16)),
+    )  # fmt: skip
+    scene = Scene(shaft=Shaft(speed=500.0), film=gas_film, stator=Stator(**ring), rotor=Rotor(runout=5e-6))
+    drawn = Drawn(scene, TURN, 1e-2, "rest", ())
+    times = instants(np.random.default_rng(5), prepared(scene, drawn.duration, 1e-4), 60)
+    columns = []
+    for cells in ((7, 16), (28, 16)):
+        table = replace(gas_film, gas_reynolds=GasReynolds(cells=cells))
+        run = prepared(replace(scene, film=table), drawn.duration, 1e-4)
+        columns.append(by_steps(run, LookedAt(run), times, "ida", 1e-5)[0])
+    apart = LookedAt(run).errors(*columns).max()
+    _, _, found, outcome, *_ = automatic(drawn, times)
+    assert outcome.status == "ok" and apart > 3.0 * drawn.accuracy
+    assert found["met"] is False and found["model"] > 0.05 * apart and "cells" in found["said"]

@@ -6,7 +6,7 @@ Between narrow parallel faces at equal pressures p, squeezed at the frequency w,
 
 at slow motion no stiffness and a damping of z^2/3, at fast motion p A/h and hardly any damping: what flows does so in a
 layer at both edges, of a width L/|z|.
-**Source** linear isothermal Reynolds' equation, derived here; Gross, Gas Film Lubrication (1962), for squeeze films.
+**Source** Langlois (1962), Quart. Appl. Math. 20, 131, for a long strip; derived here.
 """
 
 import math
