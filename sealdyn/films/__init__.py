@@ -48,6 +48,7 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
                   compiled: what is left of the film's equations, in any units; returns 0, or a code of STATUS, which
                   ends the run, as does what is not a number.  Finite and smooth at any gap state that a solver may try.
 `STATUS`          {code: sentence}.
+`PADS`            (if any) True where it takes the pads of a `Film` table.
 `STANDING_WAVES`  (if any) True where it takes waves of faces that stand still only; its `opening_law` takes them too.
 `halved(film)`    (if any) the `Film` table with half the cells, which err four times as much.
 `jacobian(f, s, x, x_rate, alpha, data)`
@@ -65,6 +66,7 @@ import importlib
 import pkgutil
 from functools import cache
 
+from ..numerics.piecewise_linear import points
 from ..scene.film import profile_errors
 from ..scene.scene import SceneError
 from ..scene.waviness import turning_waves, waves_of, waviness_errors
@@ -111,6 +113,8 @@ def refused(module, film, waves=()) -> str:
     `Film` table with these waves (Waviness); "" where it can."""
     if film is not None and not _takes_fluid(module, film):
         return "gases only" if film.gas is None else "liquids only"
+    if film is not None and film.pads and not getattr(module, "PADS", False):
+        return "faces without pads"
     return module.accepts(film, waves)
 
 
@@ -144,6 +148,8 @@ def film_of(scene, module=None):
         raise SceneError(f"film.{key}", found, expected)
     for error in waviness_errors(scene):
         raise SceneError(*error)
+    if film.pads and any(points(scene.stator.speed)):
+        raise SceneError("stator.speed", "a face with pads that turns", "0: pads are in the face that stands still")
     turning = turning_waves(scene) if getattr(module, "STANDING_WAVES", False) else ""
     if turning:
         expected = f"waves on a face that stands still: {film_name(module)} takes no others"
@@ -153,7 +159,7 @@ def film_of(scene, module=None):
 
 def _refusal(film, waves, able) -> SceneError:
     plain = "a gas" if film.gas is not None else "a profile" if film.profile is not None else "a liquid"
-    faces = "wavy faces" if waves else "film.inertia" if film.inertia else plain
+    faces = "pads" if film.pads else "wavy faces" if waves else "film.inertia" if film.inertia else plain
     expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
     if not able:
         said = {name: refused(film_module(name), film, waves) for name in all_film_names()}

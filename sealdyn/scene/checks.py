@@ -8,6 +8,7 @@ from ..units import Temperature, Viscosity
 from . import coning, contact, secondary_seal
 from . import film as film_table
 from .gas import GASES, gas_of
+from .pads import pads_errors
 from .scene import SceneError
 from .waviness import waves_of, waviness_errors
 
@@ -43,6 +44,8 @@ def check_scene(scene, run) -> None:
 def _film(scene) -> None:
     film = scene.film
     _coning(scene)
+    for key, found, expected in pads_errors(film):
+        raise SceneError(f"film.{key}", found, expected)
     for key in ("inner_radius", "outer_radius", "clearance"):
         value = getattr(film, key)
         if value is not None and value <= 0:

@@ -2,7 +2,7 @@
 other shape that is the same all around."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
@@ -27,6 +27,7 @@ from ..units import (
     quoted,
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
+from .pads import Pads
 
 # Most radii of a profile: kernels keep room for them.
 MOST_NODES = 65
@@ -144,6 +145,8 @@ class Film:
     """Share of the clearance below which the film counts as collapsed; with [contact] the asperities decide."""
     profile: Profile | None = None
     """Faces that are no plain cones."""
+    pads: list[Pads] = field(default_factory=list)
+    """Rayleigh-step pads in the face that stands still; of "gas_reynolds"."""
     gas_dam: GasDam | None = None
     """Options of model = "gas_dam"."""
     gas_reynolds: GasReynolds | None = None

@@ -9,7 +9,6 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import solve
-from .cell_error import RICHARDSON
 from .looked_at import LookedAt
 
 # Instants at which two runs are compared: per fastest period and at most, and after each start of a stretch, where fast
@@ -58,8 +57,8 @@ class Comparison:
         return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
 
     def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
-        """The same of the film's cells, from the run with half of them (cell_error.py); None of a film that has none to
-        halve."""
+        """The same of the film's cells, from the run with half of them; None of a film that has none to halve.  Three
+        times too much of cells that are small enough (cell_error.py): of those that are not it may be hardly enough."""
         model = self.run.model
         film = model.observed[0]
         if not hasattr(film, "halved"):
@@ -67,8 +66,7 @@ class Comparison:
         coarse = Model(replace(model.scene, film=film.halved(model.scene.film)), model.accuracy, film=model.film)
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
-        apart = self._apart(again, method, tolerance, progress, stop)
-        return None if apart is None else apart / RICHARDSON
+        return self._apart(again, method, tolerance, progress, stop)
 
     def _apart(self, again, method, tolerance, progress, stop) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""

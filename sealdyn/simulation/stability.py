@@ -21,7 +21,8 @@ STEPS, HALVINGS = 40, 20
 def stability(model, interval, linear, speeds: bool) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), shaft speed (rad/s)
     and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
-    `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy faces."""
+    `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy faces, or over
+    pads."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     tilt = [mode for mode in found if mode.kind == "tilt"]
@@ -30,7 +31,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         sign = -1.0 if tilt[0].direction == "backward" else 1.0
         whirl = sign * tilt[0].value.imag / speed
     searched = {}
-    if speeds and model.interface.stores and waves_of(model.scene):
+    if speeds and model.interface.stores and (waves_of(model.scene) or model.scene.film.pads):
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
         searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
     elif speeds:

@@ -102,6 +102,8 @@ def run_study(
     if waves_of(scenario.scene) and not getattr(module, "WITH_WAVES", False):
         key = "rotor.waviness" if scenario.scene.rotor.waviness else "stator.waviness"
         raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
+    if scenario.scene.film.pads and not getattr(module, "WITH_WAVES", False):
+        raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
     studied, left_out = without(scenario, leave_out)
     _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
     settings = study_settings(scenario, name, module.Settings, flags or {})

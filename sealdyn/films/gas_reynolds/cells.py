@@ -34,15 +34,17 @@ from ...faces.waviness import waves, waves_rate
 from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
 from ...scene.gas import GasReynolds, gas_of
+from ...scene.pads import depth_of
 
 # Block after the faces: cells over the radius, angles, scale of an unknown (Pa m), what slip adds to the flow at a
 # temperature of 1 K (m/s, 0 without), and the steps of differences around the circle: 2 sin(d_theta) of a slope,
-# (2 sin(d_theta/2))^2 of a curvature, exact for tilt.
-CELLS, ANGLES, SCALE, SLIP, SLOPE_STEP, CURVATURE_STEP, TABLES = range(FACE_SIZE, FACE_SIZE + 7)
+# (2 sin(d_theta/2))^2 of a curvature, exact for tilt; whether there are pads.
+CELLS, ANGLES, SCALE, SLIP, SLOPE_STEP, CURVATURE_STEP, PADDED, TABLES = range(FACE_SIZE, FACE_SIZE + 8)
 # Tables, each with room for all nodes: radius (m), rise of the aligned film from the clearance (m), arm of the tilt (m)
 # at each node; ln of the ratio of radii from a node to the next; of each cell int r dr (m^2), without what is between
 # its node and the edge of the face, and with it; int dr/r over the latter (1/m^2), int r^3 dr (m^4); what force (m^2)
-# and moment (m^3) have of the pressure of each node, per rad.  Then sines and cosines of the angles.
+# and moment (m^3) have of the pressure of each node, per rad.  Then sines and cosines of the angles, and of pads their
+# depth (m) at each node, angle by angle.
 RADIUS, RISE, ARM, APART, CORE, AREA, AROUND, DRAG, PRESSED, TURNED, ROWS = range(11)
 # How much narrower the cells at the edges are: 0 all alike, 1 as the cosines of equal angles.
 GRADING = 0.8
@@ -77,7 +79,7 @@ def parameters(film, clearance: float, error: float = 1e-8, grading: float = GRA
     options = film.gas_reynolds or GasReynolds()
     cells, angles = options.cells
     nodes = cells + 2
-    f = np.zeros(TABLES + ROWS * nodes + 2 * angles)
+    f = np.zeros(TABLES + ROWS * nodes + 2 * angles + (angles * nodes if film.pads else 0))
     f[:FACE_SIZE] = face_parameters(film, clearance)
     f[CELLS], f[ANGLES] = cells, angles
     f[SCALE] = max(*points(film.inner_pressure), *points(film.outer_pressure)) * clearance
@@ -103,7 +105,10 @@ def parameters(film, clearance: float, error: float = 1e-8, grading: float = GRA
     tables[PRESSED] = weights(r, between, 1)
     tables[TURNED] = mean * tables[PRESSED] if f[TILT_AT_MEAN] else weights(r, between, 2)
     theta = step * np.arange(angles)
-    f[TABLES + ROWS * nodes :] = np.concatenate([np.sin(theta), np.cos(theta)])
+    last = TABLES + ROWS * nodes + 2 * angles
+    f[TABLES + ROWS * nodes : last] = np.concatenate([np.sin(theta), np.cos(theta)])
+    if film.pads:
+        f[PADDED], f[last:] = 1.0, depth_of(film, r, theta[:, None]).ravel()
     return f
 
 
@@ -122,16 +127,27 @@ def sines(f):
 
 
 @inner_kernel()
+def pads(f):
+    """Depth of the pads (angles, cells + 2) (m) of a block that has them."""
+    angles, nodes = int(f[ANGLES]), int(f[CELLS]) + 2
+    first = TABLES + ROWS * nodes + 2 * angles
+    return f[first : first + angles * nodes].reshape(angles, nodes)
+
+
+@inner_kernel()
 def thicknesses(f, s, h, bumps):
     """Film thickness `h` (angles, cells + 2) at the nodes (m), as the film's flow sees it, and what the waves have of
     it, `bumps` (angles,) (m)."""
     rise, arm, radius = table(f, RISE), table(f, ARM), table(f, RADIUS)
     sin, cos = sines(f)
+    deeper = TABLES + ROWS * h.shape[1] + 2 * h.shape[0]
     for k in range(h.shape[0]):
         bumps[k] = waves(f, s, 2.0 * math.pi * k / h.shape[0])
         aligned, tilt = f[CLEARANCE] + s[DZ] + bumps[k], s[GX] * sin[k] - s[GY] * cos[k]
         for n in range(h.shape[1]):
             coned = rise[n] + s[CONING_CHANGE] * (radius[n] - radius[0])
+            if f[PADDED] != 0.0:
+                coned += f[deeper + k * h.shape[1] + n]
             h[k, n] = regularised_thickness(aligned + coned + arm[n] * tilt, f[FLOOR])
 
 

@@ -2,7 +2,7 @@
 
 **Source** balance.py; the cells are in cells.py, the steady film in steady.py.
 **Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
-down to films of some mean free paths; faces with coning, a profile, tilt, and waves that stand still
+down to films of some mean free paths; faces with coning, a profile, tilt, pads, and waves that stand still
 (passing ones leave no steady film to start from and to linearise about), in cylindrical geometry.
 Leakage is the volume at normal conditions.
 """
@@ -44,11 +44,13 @@ from .cells import (
     CELLS,
     CORE,
     DRAG,
+    PADDED,
     PRESSED,
     RADIUS,
     SCALE,
     SLOPE_STEP,
     TURNED,
+    pads,
     parameters,
     sines,
     table,
@@ -56,11 +58,11 @@ from .cells import (
 )
 from .steady import UNSOLVED, start
 
-__all__ = ["FIELDS", "FLUIDS", "RUNG", "STANDING_WAVES", "STATUS", "accepts", "fields", "flow", "grid", "halved",
-           "jacobian", "opening_law", "parameters", "residual", "start", "unknowns", "wrench",
+__all__ = ["FIELDS", "FLUIDS", "PADS", "RUNG", "STANDING_WAVES", "STATUS", "accepts", "fields", "flow", "grid",
+           "halved", "jacobian", "opening_law", "parameters", "residual", "start", "unknowns", "wrench",
            "wrench_jacobian"]  # fmt: skip
 
-RUNG, FIELDS, STANDING_WAVES = 3, (PRESSURE,), True
+RUNG, FIELDS, PADS, STANDING_WAVES = 3, (PRESSURE,), True, True
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 
@@ -95,13 +97,13 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None):
     absolute (Pa), clearance and floor of the film thickness (without it the film's own) in m.  It is the sum over the
     cells of a run, so that rings rest where it balances the closing force; the spins (rad/s) matter to `waves` only,
     those of the stator and of the rotor (lists of Waviness)."""
-    if waves is None:
+    if waves is None and not film.pads:
         options = film.gas_reynolds or GasReynolds()
         # All angles are alike.
         f = parameters(replace(film, gas_reynolds=replace(options, cells=(options.cells[0], 3))), 1.0)
     else:
         f = parameters(film, 1.0)
-        lay_waves(f, *waves)
+        lay_waves(f, *(waves or ((), ())))
     s, x = np.zeros(GAP_STATE_SIZE), np.empty(int(f[CELLS] * f[ANGLES]))
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = mean_spin, spin_difference
     s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
@@ -190,7 +192,12 @@ def flow(f, s, x):
             pressed += p[k, n] * pressing[n]
         for j in range(cells):
             couette += drag[j] / h[k, j + 1]
-        lift -= 0.5 * pressed * (bumps[k + 1 if k < angles - 1 else 0] - bumps[k - 1]) / f[SLOPE_STEP]
+        after = k + 1 if k < angles - 1 else 0
+        lift -= 0.5 * pressed * (bumps[after] - bumps[k - 1]) / f[SLOPE_STEP]
+        if f[PADDED] != 0.0:
+            deeper = pads(f)
+            for n in range(cells + 2):
+                lift -= 0.5 * p[k, n] * pressing[n] * (deeper[after, n] - deeper[k - 1, n]) / f[SLOPE_STEP]
     step = 2.0 * math.pi / angles
     # Of the volume at the film's temperature and 1 Pa.
     normal = step * NORMAL_TEMPERATURE / (s[TEMPERATURE] * NORMAL_PRESSURE)
