@@ -68,10 +68,10 @@ def gas(random) -> Drawn:
     return replace(drawn, scene=replace(drawn.scene, film=dam), words=words)
 
 
-def gas_reynolds(random) -> Drawn:
+def gas_reynolds(random, other_faces=True) -> Drawn:
     """A scene of `wide` without contact and dry friction whose film is a gas that stores, over few turns: pressures
     from either side or equal, squeeze numbers from far below to far above one, with and without slip, few and many
-    cells; supports of which some do not damp; standing waves, cones that follow time or the speed."""
+    cells; supports of which some do not damp; with `other_faces` standing waves and cones that follow time or speed."""
     log = partial(logarithmic, random)
     while not (drawn := wide(random, 5)).smooth:
         pass
@@ -131,8 +131,10 @@ def gas_reynolds(random) -> Drawn:
         scene, shaft=shaft, film=table, housing=replace(scene.housing, **shaken), rotor=rotor,
         stator=ring(scene.stator), closing=closing,
     )  # fmt: skip
-    scene, stator = _with_other_faces(random, scene, drawn.duration, words), scene.stator
-    if random.random() < 0.15 and stator.speed == 0.0:
+    if other_faces:
+        scene = _with_other_faces(random, scene, drawn.duration, words)
+    stator = scene.stator
+    if other_faces and random.random() < 0.15 and stator.speed == 0.0:
         wave = Waviness(int(random.integers(2, 5)), clearance * log(0.01, 0.2), float(random.uniform(0, 6)))
         scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
     return Drawn(scene, drawn.duration, log(1e-3, 3e-2), drawn.start, (*words, f"{cells[0]} x {cells[1]}"))

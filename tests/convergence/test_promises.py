@@ -16,7 +16,7 @@ from judge import by_steps, contact_errors, instants, truth, truth_in_own_words
 from scenes import film, fms, prepared
 from studies.test_rough_faces_in_studies import PUMP
 
-from sealdyn.numerics.piecewise_linear import PiecewiseLinear, initially
+from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
@@ -126,11 +126,9 @@ def test_a_gas_dam_rings_after_every_step_too_long():
 @pytest.mark.parametrize("number", range(4))
 def test_gas_that_stores(number):
     """Drawn scenes with the gas Reynolds film, on the same cells by equations of the tests' own and Radau's method."""
-    drawn = gas_reynolds(np.random.default_rng([2027, number]))
-    gas_film = drawn.scene.film
-    few = replace(gas_film, gas_reynolds=replace(gas_film.gas_reynolds, cells=(6, 12)), coning_per_speed_squared=0.0)
-    few = replace(few, coning=initially(few.coning))
-    drawn = replace(drawn, scene=with_values(drawn.scene, {"film": few, "stator.waviness": []}))
+    drawn = gas_reynolds(np.random.default_rng([2027, number]), other_faces=False)
+    cells = replace(drawn.scene.film.gas_reynolds, cells=(6, 12))
+    drawn = replace(drawn, scene=with_values(drawn.scene, {"film.gas_reynolds": cells}))
 
     def anew(accuracy=drawn.accuracy / 100):
         return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)

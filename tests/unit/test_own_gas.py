@@ -20,7 +20,7 @@ SCENES = tuple(range(12))
 @cache
 def scene_of(number):
     """What is drawn, a run, its scales, and the seal in own words."""
-    drawn = gas_reynolds(np.random.default_rng([SEED, number]))
+    drawn = gas_reynolds(np.random.default_rng([SEED, number]), other_faces=False)
     run = prepared(drawn.scene, drawn.duration, 1e-10)
     return drawn, run, LookedAt(run), OwnSeal(drawn.scene, drawn.duration)
 
