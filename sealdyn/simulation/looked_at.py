@@ -4,7 +4,8 @@ Displacements: the clearance C, of tilts C over the outer radius r_o.  Rates: th
 largest of shaft speed, relative spin and housing frequencies, or the rate itself at that instant where it is larger (a
 squeezed film lets go a million times faster than anything turns).  Film force: F, the largest closing force over the
 run less the lower pressure on the face (if there is none, the largest film force less the same).  Film moment: F r_o.
-Leakage: the larger of its peak and that of the aligned film at C under the largest pressure difference.  Torque: the
+Leakage: the larger of its peak and that of the aligned film at C under the largest pressure difference; between equal
+pressures, where nothing flows through, the volume that the clearance holds, times the reference rate.  Torque: the
 larger of its peak and that of the aligned film at C.
 """
 
@@ -13,10 +14,14 @@ import math
 import numpy as np
 
 from ..dynamics.interface import rest_state
-from ..dynamics.intervals import constant_and_slope, largest_value
+from ..dynamics.intervals import constant_and_slope
 from ..dynamics.signals import samples
 from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT_Y, OUTER_PRESSURE, TORQUE
+from ..numerics.piecewise_linear import initially
+from ..scene.gas import density_of, gas_of
 
+# Share of what the clearance holds below which nothing flows through.
+NOTHING = 1e-9
 QUANTITIES = ("displacement", "rate", "force", "moment", "leakage", "torque")
 
 
@@ -26,10 +31,12 @@ class LookedAt:
 
     def __init__(self, run):
         model = run.model
-        self.n, self.rate = model.unknowns.n, reference_rate(model)
+        self.n, self.rate = model.unknowns.n, reference_rate(run)
         self.lengths, self.outer_radius = model.scales[: self.n], model.scene.film.outer_radius
         ends = [end for interval in run.intervals.few for end in self._ends(model, interval)]
         self.force, self.leakage, self.torque = (max(one[k] for one in ends) for k in range(3))
+        swept = self._held(model) * self.rate
+        self.leakage = swept if self.leakage < NOTHING * swept else self.leakage
 
     def _ends(self, model, interval):
         """Closing force less the lower pressure (N), aligned leakage and torque at both ends of an interval."""
@@ -44,6 +51,15 @@ class LookedAt:
             own = () if model.interface.unknowns is None else (model.interface.steady(f, s),)
             observed.flow(f, s, *own)
             yield closing[0] + closing[1] * tau - min(at) * area, abs(s[FLOW_INNER]), abs(s[TORQUE])
+
+    def _held(self, model) -> float:
+        """Volume (m^3, of a gas at normal conditions) between the faces."""
+        film, gas = model.scene.film, gas_of(model.scene.film)
+        volume = math.pi * (film.outer_radius**2 - film.inner_radius**2) * model.clearance
+        if gas is None:
+            return volume
+        density = initially(film.inner_pressure) / (gas.gas_constant * initially(film.temperature))
+        return volume * density / density_of(film)
 
     def of(self, segment, taus, q, q_rate, x=None) -> np.ndarray:
         """Columns (m, 2 n + 5) at segment times (m,) (s), SI where they have no scale of their own: displacements and
@@ -66,19 +82,16 @@ class LookedAt:
         return np.column_stack([gap[:, :n].max(axis=1), gap[:, n : 2 * n].max(axis=1) / fast, *over])
 
 
-def reference_rate(model) -> float:
+def reference_rate(run) -> float:
     """The largest (rad/s) of shaft speed, relative spin and housing frequencies over a run; where nothing turns or
     shakes that of the model."""
-    scene, breaks = model.scene, [0.0]
-    speeds = scene.shaft.speed, scene.stator.speed
-    breaks += [t for speed in speeds for t in getattr(speed, "time", ())]
-    shaft, stator = (np.array([at(speed, t) for t in breaks]) for speed in speeds)
-    tones = [2 * math.pi * tone.frequency for tone in (*scene.housing.axial, *scene.housing.angular)]
-    return (
-        max([largest_value(scene.shaft.speed), float(np.max(np.abs(shaft - stator))), *tones]) or model.reference_rate
-    )
-
-
-def at(quantity, time: float) -> float:
-    """Value of a number or function of time at `time` (s)."""
-    return quantity.at(time) if hasattr(quantity, "at") else float(quantity)
+    scene, found = run.model.scene, [0.0]
+    for interval in run.intervals.few:
+        (shaft, faster), (stator, turning) = (
+            constant_and_slope(speed, interval) for speed in (scene.shaft.speed, scene.stator.speed)
+        )
+        for tau in (0.0, interval.length):
+            w = shaft + faster * tau
+            found += [abs(w), abs(w - stator - turning * tau)]
+    found += [2 * math.pi * tone.frequency for tone in (*scene.housing.axial, *scene.housing.angular)]
+    return max(found) or run.model.reference_rate
