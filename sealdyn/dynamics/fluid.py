@@ -1,7 +1,6 @@
 """The state of fluid and faces at rest: what of a scene goes into which slots of a gap state."""
 
 from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
-from ..numerics.piecewise_linear import initially
 from ..scene.coning import coning_change
 from ..scene.gas import viscosity_of
 from .intervals import constant_and_slope
@@ -18,15 +17,12 @@ def fluid_conditions(film) -> dict:
     }
 
 
-def thermal_coning(film, interval) -> tuple[float, float]:
-    """Change (rad) of the coning of a `Film` at an interval's start and its slope (rad/s), without what follows the
-    speed."""
-    ends = (constant_and_slope(quantity, interval) for quantity in (film.coning, film.temperature or 0.0))
-    (coning, rate), (temperature, warming) = ends
-    change, share = coning - initially(film.coning), film.coning_per_kelvin
-    if share:
-        change += share * (temperature - film.coning_reference_temperature)
-    return change, rate + share * warming
+def thermal_coning(scene, interval) -> tuple[float, float]:
+    """Change (rad) of the coning at an interval's start and its slope (rad/s), without what follows the speed."""
+    film = scene.film
+    change = coning_change(scene, lambda quantity: constant_and_slope(quantity, interval)[0], speed=0.0)
+    rate, warming = (constant_and_slope(quantity, interval)[1] for quantity in (film.coning, film.temperature or 0.0))
+    return change, rate + film.coning_per_kelvin * warming
 
 
 def set_conditions(s, scene, value, speed=None) -> None:

@@ -56,7 +56,7 @@ class Segment:
         film = scene.film
         varying = (scene.shaft.speed, scene.stator.speed, *fluid_conditions(film).values())
         pairs = [*(constant_and_slope(q, interval) for q in varying), self.model.closing.over(interval, film)]
-        pairs.append(thermal_coning(film, interval))
+        pairs.append(thermal_coning(scene, interval))
         rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
         coned = [film.coning_per_speed_squared]
