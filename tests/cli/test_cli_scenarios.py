@@ -92,7 +92,10 @@ def test_numbers_of_the_summary_are_those_of_the_archive(run):
         assert tilt["max"] >= float(data.relative_misalignment.max()) - slack * TILT_SCALE
         assert tilt["min"] <= float(data.relative_misalignment.min()) + slack * TILT_SCALE
         assert tilt["mean"] == pytest.approx(float(data.relative_misalignment.mean()), rel=1e-12, abs=1e-30)
-        assert found["leakage"]["mean"] == pytest.approx(float(data.leakage_inner.mean()), rel=1e-12)
+        # Where it leaves the film, which a film that stores tells from where it enters.
+        outwards = initial(film["inner_pressure"]) > initial(film["outer_pressure"])
+        leaving = data.leakage_outer if outwards else data.leakage_inner
+        assert found["leakage"]["mean"] == pytest.approx(float(leaving.mean()), rel=1e-12)
         assert found["friction"]["power"] == pytest.approx(float(data.friction_power.mean()), rel=1e-12)
         np.testing.assert_array_less(0, np.diff(data.time))
         assert all(np.isfinite(series).all() for series in data.values())
@@ -106,8 +109,8 @@ def test_leakage_and_friction_are_those_of_the_annulus(run):
         if data.axial_gap_change[0] != 0:
             pytest.skip("starts in motion, away from the design clearance")
         film = scene(data)["film"]
-        if film["clearance"] is None or film["geometry"] == "planar":
-            pytest.skip("clearance found, or a strip for a ring")
+        if film["clearance"] is None or film["geometry"] == "planar" or film["pads"]:
+            pytest.skip("clearance found, a strip for a ring, or pads in it")
         if film["outer_radius"] * float(data.relative_misalignment[0]) > 0.2 * film["clearance"]:
             pytest.skip("starts tilted")
         r = np.linspace(film["inner_radius"], film["outer_radius"], 20001)
