@@ -50,9 +50,20 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
 `STATUS`          {code: sentence}.
 `PADS`            (if any) True where it takes the pads of a `Film` table.
 `STANDING_WAVES`  (if any) True where it takes waves of faces that stand still only; its `opening_law` takes them too.
+`WAVES_TOUCH`     (if any) True where wavy faces may be rough and meet; its `opening_law` takes the contact too.
+`whole(film)`     (if any) the `Film` table of the whole circle where a part of it stands for all.
+`prepared(scene)` (if any) the `Film` table with what the rest of the scene decides of it.
+`grid_accuracy(film)`
+                  (if any) the relative error that its cells may have, beside the accuracy of a run.
 `halved(film)`    (if any) the `Film` table with half the cells, which err four times as much.
 `jacobian(f, s, x, x_rate, alpha, data)`
                   (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.
+`settle(f, s, alpha, base, x)`
+                (optional) compiled: x at the end of a step of an implicit method, where the rates of the differential
+                ones are alpha (x - base); at entry x near by.  Returns 0, or a code of STATUS.  For films whose residual
+                has kinks that no Newton iteration of a library passes.
+`between(f, s, x)`
+                (beside `settle`) compiled: x between two steps, whose differential ones are interpolated, at a gap state.
 `wrench_jacobian(f, s, x, rows)`
                   (optional) compiled: d (force, moments) / d x, (3, n).
 
@@ -148,6 +159,9 @@ def film_of(scene, module=None):
         raise SceneError(f"film.{key}", found, expected)
     for error in waviness_errors(scene):
         raise SceneError(*error)
+    if waves and scene.contact and not getattr(module, "WAVES_TOUCH", False):
+        expected = 'no such table, or film.model = "reynolds": other films do not know wavy faces that touch'
+        raise SceneError("contact", "a table beside wavy faces", expected)
     if film.pads and any(points(scene.stator.speed)):
         raise SceneError("stator.speed", "a face with pads that turns", "0: pads are in the face that stands still")
     turning = turning_waves(scene) if getattr(module, "STANDING_WAVES", False) else ""

@@ -28,6 +28,7 @@ from ..units import (
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
 from .pads import Pads
+from .reynolds import Reynolds
 
 # Most radii of a profile: kernels keep room for them.
 MOST_NODES = 65
@@ -151,6 +152,8 @@ class Film:
     """Options of model = "gas_dam"."""
     gas_reynolds: GasReynolds | None = None
     """Options of model = "gas_reynolds"."""
+    reynolds: Reynolds | None = None
+    """Options of model = "reynolds"."""
 
 
 def profile_errors(film) -> list[tuple[str, str, str]]:
