@@ -43,7 +43,7 @@ def rupture():
 
 def turning():
     """When the front is nearest to the edge: H'/H^3 is largest."""
-    return brentq(lambda t: (_growing(t + 1e-6) - _growing(t - 1e-6)), 0.26, 0.45)
+    return brentq(lambda t: _growing(t + 1e-6) - _growing(t - 1e-6), 0.26, 0.45)
 
 
 def fronts(times):
@@ -59,7 +59,7 @@ def fronts(times):
         kept = np.interp(s, where, left)
         b = height_rate(t) / height(t) ** 3
         slope = -EDGE / s + b * s
-        return [-height(t) ** 3 * slope / (2.0 * (height(t) - kept))]
+        return [-(height(t) ** 3) * slope / (2.0 * (height(t) - kept))]
 
     def closed(t, s):
         return s[0] - 0.5

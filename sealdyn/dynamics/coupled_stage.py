@@ -8,14 +8,14 @@ import numpy as np
 from ..numerics.addresses import call_load, call_settle
 from ..numerics.kernel import inner_kernel, outer_kernel
 from . import equations
-from .coupled_native import CODE, FIRST, KERNELS, NUMBERS, SCALES, WHEN, integer_array, of_film, rows_of_rings
+from .coupled_native import CODE, FIRST, KERNELS, NUMBERS, PACE, SCALES, WHEN, integer_array, of_film, rows_of_rings
 from .film_derivatives import SETTLE
 from .native import CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, array
 
 # Newton's steps with one matrix and in all; a contraction slower than this asks for a fresh matrix.
 WITH_ONE, MOST, SLOW = 4, 24, 0.3
-# Steps of differences, as a share of the scales.
-STEP = 1e-6
+# Steps of differences, as a share of the scales; and of the rate between them that such a step would be.
+STEP, RATE = 1e-6, 1e-2
 # What a stage returns instead of the number of its steps.
 NO_FILM, NOT_CONVERGED = -1, -2
 
@@ -42,11 +42,12 @@ def _matrix(tau, alpha, base, y, yp, matrix, places, block):
     """Derivatives (rings, rings) of the rings' rows by their unknowns at a stage, the film settled for each that moves
     the gap, one of the first `places`; its code."""
     rings, scales, size = block[FIRST], array(block, SCALES), block[SIZE]
+    share = min(STEP, RATE * array(block, NUMBERS)[PACE] / alpha)
     held, near, moved, lower = y.copy(), y.copy(), np.empty(size), np.empty(size)
     code = _rows(tau, alpha, base, near, yp, lower, True, block)
     settled = near.copy()
     for j in range(rings):
-        step = STEP * scales[j]
+        step = share * scales[j]
         near[:] = settled
         near[j] = held[j] + step
         # Forces of another place stay in the gap state: the film of the place itself again.

@@ -32,6 +32,7 @@ from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
+from .cells import with_cells
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .fluid import set_conditions
@@ -262,7 +263,7 @@ def _lender(scene, film):
 
 def prepared(scene, film):
     """The Film table of a scene as its `film` (a module) takes it."""
-    return film.prepared(scene) if hasattr(film, "prepared") else scene.film
+    return with_cells(scene, film) if hasattr(film, "prepared") else scene.film
 
 
 def opening_law(scene, film=None):

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 from typing import Literal
 
-# Cells where the table does not say: over the radius, around a wave (or the circle), and at least around the circle.
-RADIAL, PER_WAVE, AROUND = 12, 48, 64
+# Cells where the table does not say, before they are doubled: over the radius, around the shortest wave, and at least
+# around the circle.
+RADIAL, PER_WAVE, AROUND = 6, 24, 32
 # Most of them.
 MOST_RADIAL, MOST_AROUND = 400, 20000
 
@@ -16,11 +17,12 @@ class Reynolds:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     grid_accuracy: float = 0.01
-    """Relative error that the cells may have; a run says how large it is."""
+    """Relative error that the cells may have, beside the accuracy of a run, which says how large it is; decides how
+    many there are where the table does not say."""
     cells_r: int | None = None
-    """Cells over the radius; without it 12."""
+    """Cells over the radius."""
     cells_theta: int | None = None
-    """Cells around the circle; without it 48 to the shortest wave, at least 64."""
+    """Cells around the circle."""
     cavitation: Literal["mass-conserving", "none"] = "mass-conserving"
     """Where the film tears at `cavitation_pressure`, with its liquid kept; or never."""
     roughness: Literal["christensen", "none"] = "christensen"

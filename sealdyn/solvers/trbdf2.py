@@ -24,9 +24,10 @@ ARRIVED = 1e-2
 
 
 def trbdf2(segment, tau, y, method, tolerance, counts):
-    """Steps with the contract of contract.py; the segment has a `stage(tau, alpha, base, y, small)` (y and rates with
-    the residual zero where these are alpha (y - base); None where there are none) and `stage_error(error, alpha)`,
-    the size of an error (size,) of a step relative to the scales.  **Raises** SolverFailure."""
+    """Steps with the contract of contract.py.  The segment has a `stage(tau, alpha, base, guess, near, small)`:
+    unknowns and rates with the residual zero where these are alpha (y - base), None where there are none; `settled`,
+    how often it settled its film; and `stage_error(error, alpha)`, the size of an error (size,) of a step relative to
+    the scales.  **Raises** SolverFailure."""
     y, yp = segment.start(tau, y.copy())
     h = min(FIRST * segment.shortest_period, segment.longest_step() or math.inf)
     most, end = segment.longest_step() or math.inf, segment.length
@@ -41,7 +42,9 @@ def trbdf2(segment, tau, y, method, tolerance, counts):
                 yield np.array(ts), np.array(ys), np.array(yps)
             reason = segment.failure() or "the step vanishes"
             raise SolverFailure(failure_message(method, f"{reason}.", tau))
+        before = segment.settled
         found = _step(segment, tau, h, y, yp, bend, tolerance)
+        counts.rhs += segment.settled - before
         if found is None:
             counts.unsolved += 1
             h *= 0.25

@@ -36,8 +36,8 @@ def strip(cells):
 
 
 def marched(cells, steps, until=0.8):
-    """Times, unknowns (steps + 1, 2 cells), and what flowed in through both edges less what is there, at most, as a share
-    of it, and the same of their rates at any stage."""
+    """Times, unknowns (steps + 1, 2 cells), and what flowed in through both edges less what is there, at most, as a
+    share of it, and the same of their rates at any stage."""
     f, s = strip(cells)
     x, h = np.empty(2 * cells), until / steps
 

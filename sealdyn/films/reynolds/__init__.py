@@ -4,3 +4,6 @@ mesh.py: cells and what the film thickness makes of them; roughness.py: rough fa
 every cell and its linear system; cavitation.py: which cells are full, at a gap state; balance.py: the same in motion;
 wrench.py: force, moments, leakage, friction; film.py: the film that scenes ask for.
 """
+
+# Costs more than what "auto" chooses for.
+BY_NAME = True

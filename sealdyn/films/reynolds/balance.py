@@ -151,7 +151,7 @@ def jacobian(f, s, x, x_rate, alpha, data):
                     data[at + m] = -back * stored[k, j]
                 data[at + count + m] = -values[m]
             at += 2 * count
-    for i in range(n):
+    for _ in range(n):
         data[at], data[at + 1], at = back, alpha, at + 2
 
 

@@ -17,7 +17,7 @@ from ...faces.geometry import CLEARANCE, FORCE, GAP_STATE_SIZE, MEAN_SPIN, SPIN_
 from ...faces.waviness import lay_waves
 from ...numerics.kernel import outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.reynolds import AROUND, PER_WAVE, RADIAL, Reynolds, cells_of
+from ...scene.reynolds import AROUND, PER_WAVE, Reynolds, cells_of
 from ...scene.symmetry import alike_sectors
 from ...scene.waviness import waves_of
 from .._fields import FILL, PRESSURE
@@ -44,8 +44,10 @@ from .mesh import (
 )
 from .wrench import flow, sum_up, wrench
 
-__all__ = ["FIELDS", "RUNG", "STANDING_WAVES", "STATUS", "WAVES_TOUCH", "accepts", "between", "fields", "flow", "grid",
-           "grid_accuracy",           "halved", "jacobian", "opening_law", "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench", "wrench_jacobian"]  # fmt: skip
+__all__ = ["FIELDS", "RUNG", "STANDING_WAVES", "STATUS", "WAVES_TOUCH", "accepts", "between", "cells_are_given",
+           "doubled", "fields", "flow", "grid", "grid_accuracy", "halved", "jacobian", "opening_law",
+           "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench",
+           "wrench_jacobian"]  # fmt: skip
 
 RUNG, FIELDS, STANDING_WAVES, WAVES_TOUCH = 4, (PRESSURE, FILL), True, True
 
@@ -54,8 +56,6 @@ def accepts(film, waves=()) -> str:
     """What faces it takes, "" if it can take these."""
     if film is None:
         return ""
-    if film.model != "reynolds":
-        return "scenes that ask for it"
     if film.geometry != "cylindrical":
         return "cylindrical faces only"
     return "no inertia of the film" if film.inertia else ""
@@ -71,6 +71,20 @@ def prepared(scene):
         options = replace(options, sectors=alike or around)
     cells_r, cells_theta, sectors = cells_of(replace(film, reynolds=options), orders)
     options = replace(options, cells_r=cells_r, cells_theta=cells_theta * sectors, sectors=sectors)
+    return replace(film, reynolds=options)
+
+
+def cells_are_given(film) -> bool:
+    """Whether a `Film` table says itself how many cells there are."""
+    options = film.reynolds or Reynolds()
+    return options.cells_r is not None and options.cells_theta is not None
+
+
+def doubled(film, times):
+    """The `Film` table of `prepared` with twice its cells so many times; one angle stays one."""
+    cells_r, angles, sectors = cells_of(film)
+    angles = angles * 2**times if angles > 1 else 1
+    options = replace(film.reynolds, cells_r=cells_r * 2**times, cells_theta=angles * sectors)
     return replace(film, reynolds=options)
 
 
