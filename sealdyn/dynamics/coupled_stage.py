@@ -95,8 +95,8 @@ def stage(tau, alpha, base, y, yp, matrix, kept, places, stores, small, block):
         for i in range(rings):
             y[i] -= change[i]
         with_one += 1
-        if size_of <= small:
-            # What the last change did to the film is less than that.
+        # What the next change would be, by how these shrink.
+        if size_of <= small or (before < math.inf and size_of < before and size_of * size_of <= small * before):
             code = _rows(tau, alpha, base, y, yp, res, True, block)
             if code != 0:
                 kept[0] = 0.0

@@ -20,7 +20,7 @@ ERROR = np.array([W - (1.0 - W) / 3.0, W - (3.0 * W + 1.0) / 3.0, D - D / 3.0])
 # First step over the shortest period; limits of a step's change; the least step over its end.
 FIRST, GROW, SHRINK, SAFE, LEAST = 1e-8, 5.0, 0.2, 0.85, 1e-13
 # Newton's last change over the tolerance.
-ARRIVED = 1e-2
+ARRIVED = 3e-2
 
 
 def trbdf2(segment, tau, y, method, tolerance, counts):

@@ -75,7 +75,7 @@ def test_a_lifted_ring_settles_on_its_equilibrium(overrides):
     segment, _, ys, _ = settled_run(scenario)
     # Its displacement counts from there.
     assert ys[0, 0] == pytest.approx(0.3e-6, rel=1e-2)
-    assert abs(ys[-1, 0]) < 1e-4 * segment.model.clearance
+    assert abs(ys[-1, 0]) < 5e-4 * segment.model.clearance
     assert segment.model.clearance == pytest.approx(0.66e-6, rel=0.03)
 
 
