@@ -137,7 +137,7 @@ class Film:
     specific_heat: SpecificHeat = 4180.0
     """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None
-    """Floor of the film pressure, absolute; none without it.  Does not conserve mass."""
+    """Floor of the film pressure, absolute; none without it.  Conserves mass in "reynolds" only."""
     vapour_pressure: Pressure | None = None
     """At the temperature of the film, absolute: a run that falls below it says so."""
     coefficients: Literal["green", "radial"] | Coefficients = "green"

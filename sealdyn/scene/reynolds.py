@@ -17,8 +17,7 @@ class Reynolds:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     grid_accuracy: float = 0.01
-    """Relative error that the cells may have, beside the accuracy of a run, which says how large it is; decides how
-    many there are where the table does not say."""
+    """Relative error that the cells may have beside a run's accuracy; decides how many there are if none are given."""
     cells_r: int | None = None
     """Cells over the radius."""
     cells_theta: int | None = None
@@ -28,8 +27,7 @@ class Reynolds:
     roughness: Literal["christensen", "none"] = "christensen"
     """Whether the film flows between the asperities of [contact]."""
     sectors: int | None = None
-    """So many alike sectors make up the circle, and one is computed; without it as many as the waves have in common
-    where nothing tilts a ring."""
+    """Alike sectors of the circle, one of which is computed; without it what waves have in common if nothing tilts."""
 
 
 def reynolds_errors(film) -> list[tuple[str, str, str]]:

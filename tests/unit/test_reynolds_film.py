@@ -8,7 +8,7 @@ import own_cavities
 import pytest
 from scipy.integrate import dblquad, quad
 
-from sealdyn.faces import contact, roughness
+from sealdyn.faces import contact, geometry, roughness
 from sealdyn.faces.geometry import (
     CAVITATED,
     CONTACT_AREA,
@@ -58,7 +58,7 @@ def gap(film, **slots):
     s[[VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE]] = film.viscosity, film.inner_pressure, film.outer_pressure
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * SPIN, SPIN
     for slot, value in slots.items():
-        s[globals()[slot]] = value
+        s[getattr(geometry, slot)] = value
     return s
 
 
