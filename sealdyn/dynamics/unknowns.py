@@ -63,7 +63,7 @@ class Unknowns:
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
-            self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form (IDA)")
+            self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form")
             if np.any(film_unknowns.differential):
                 self.reasons.append("film that stores: each mode and response meets it at its own frequency")
 
