@@ -14,6 +14,8 @@ from .segments import Segment
 
 # Newton's steps to a consistent start, and the change relative to the scales at which it has arrived.
 MOST_STEPS, ARRIVED = 12, 1e-12
+# Share of the errors of rates that counts in a step of an implicit method.
+RATES = 0.3
 
 
 class CoupledSegment(Segment):
@@ -22,6 +24,8 @@ class CoupledSegment(Segment):
 
     def _bind(self):
         """The equations are functions of this segment's own (coupled_native.py)."""
+        # How often the film was settled.
+        self.settled = 0
 
     @cached_property
     def native(self):
@@ -114,6 +118,72 @@ class CoupledSegment(Segment):
         data = np.empty(self.pattern.nnz)
         self.residual_derivatives(tau, y, yp, alpha, data, by_y)
         return csc_array((data, self.pattern.indices, self.pattern.indptr), shape=self.pattern.shape)
+
+    # --- stages of an implicit method -------------------------------------------------------------
+
+    @property
+    def settles(self) -> bool:
+        """Whether its film settles by itself at a stage."""
+        return hasattr(self.model.interface.film, "settle")
+
+    @cached_property
+    def _stores(self):
+        return np.array(self.model.unknowns.film_unknowns.differential, dtype=bool)
+
+    @cached_property
+    def _newton(self):
+        rings = self.film.start
+        return np.zeros((rings, rings)), np.zeros(1)
+
+    def stage(self, tau, alpha, base, guess, near, small):
+        """Unknowns and rates, each (size,), with the residual zero at segment time `tau` (s) where the rates are
+        `alpha` (1/s) times (unknowns - `base`); the rings start from `guess`, the film from `near`, all (size,).
+        `small`: change relative to the scales after which the rings have arrived.  None where there are none."""
+        from .coupled_stage import stage
+
+        y, yp = guess.copy(), np.zeros(self.size)
+        y[self.film] = near[self.film]
+        matrix, kept = self._newton
+        found = stage(tau, alpha, base, y, yp, matrix, kept, self.n, self._stores, small, self.native.block)
+        if found < 0:
+            return None
+        self.settled += found
+        return y, yp
+
+    def stage_error(self, error, alpha) -> float:
+        """Size of a step's `error` (size,) relative to the scales: of the displacements, a share of that of the rates,
+        and on average of what the film stores; the step had stages of `alpha` (1/s).
+
+        Where a cell of a cavity fills, its pressure jumps, and the rate of a ring that its film holds soon after: what
+        decays faster than a step sees does not count."""
+        rings, stores, (matrix, _) = self.film.start, self._stores, self._newton
+        own, fast = error[:rings], [rate for rate in self.rate_places if rate >= 0]
+        if fast:
+            held = own if np.any(self.lacks_inertia) else self._filtered(own, alpha, matrix)
+            rates = RATES * float(np.max(np.abs(held[fast]) / self.scales[fast]))
+        else:
+            rates = 0.0
+        kept = np.abs(error[self.film][stores] / self.scales[self.film][stores])
+        return max(rates, float(np.max(np.abs(own[: self.n]) / self.scales[: self.n])), float(np.mean(kept)))
+
+    @staticmethod
+    def _filtered(own, alpha, matrix):
+        """An error without what decays fast; twice, since what a stage errs in a held ring's rate goes with its step
+        once."""
+        return alpha**2 * np.linalg.solve(matrix, np.linalg.solve(matrix, own))
+
+    def film_between(self, taus, q, q_rate, x):
+        """The film's unknowns (m, n) at times (m,) (s) between steps, from displacements and rates and from `x`, where
+        they are interpolated: those of a film that settles follow from what it stores."""
+        film, model = self.model.interface.film, self.model
+        if self.settles:
+            rates = np.zeros(self.size)
+            for tau, at, rate, own in zip(taus, q, q_rate, x, strict=True):
+                # Of a ring without mass the rate is no unknown.
+                rates[: self.n] = rate
+                equations.kinematics(tau, model.vector(at, rate), rates, self.p, self.w, self.s)
+                film.between(model.f, self.s, own)
+        return x
 
     # --- stored steps -------------------------------------------------------------------------------
 

@@ -15,6 +15,7 @@ from ..faces.geometry import (
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.coning import coned
+from ..scene.contact import contact_thresholds
 from ..scene.film import aligned_gaps
 from ..scene.scene import Scene, SceneError
 from ..scene.waviness import waves_of
@@ -101,7 +102,8 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
         return film.clearance, law, [here], said
 
     law = ClosingForce(area, balance, spring, outer_is_high)
-    roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, waves_of(scene))
+    surfaces = waves_of(scene), scene.contact
+    roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, *surfaces)
     stable = [root for root in roots if root.stable]
     if not stable:
         raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots))
@@ -111,17 +113,20 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     return stable[-1].clearance, law, roots, said
 
 
-def extent(film, waves=()) -> tuple[float, float]:
+def extent(film, waves=(), contact=None) -> tuple[float, float]:
     """Difference (m) between the thickest and the thinnest place of the aligned film, and the clearance (m) below which
-    it is closed somewhere, as a diverging one is at its outer edge; waves (Waviness) at their highest at one place."""
+    it is closed somewhere, as a diverging one is at its outer edge; waves (Waviness) at their highest at one place,
+    where the asperities of a Contact may be pressed flat."""
     gaps, bumps = [h for _, h in aligned_gaps(film, 0.0)], sum(wave.amplitude for wave in waves)
-    return max(gaps) - min(gaps) + 2.0 * bumps, max(0.0, bumps - min(gaps))
+    flat = contact_thresholds(contact)[2] if contact and bumps else 0.0
+    return max(gaps) - min(gaps) + 2.0 * bumps, max(0.0, bumps - min(gaps) + flat)
 
 
-def equilibria(film, opening_force, closing: float, inner: float, outer: float, waves=()) -> list[Equilibrium]:
-    """Every clearance where the aligned film's `opening_force(clearance, inner, outer)` (N) equals `closing` (N),
-    increasing; pressures `inner`, `outer` (Pa); `waves` (Waviness) of the faces that the force knows."""
-    rise, closed_below = extent(film, waves)
+def equilibria(film, opening_force, closing: float, inner: float, outer: float, waves=(), contact=None):
+    """Every clearance (Equilibrium) where the aligned film's `opening_force(clearance, inner, outer)` (N) equals
+    `closing` (N), increasing; pressures `inner`, `outer` (Pa); `waves` (Waviness) and Contact of the faces that the
+    force knows."""
+    rise, closed_below = extent(film, waves, contact)
     reference, least = max(rise, 1e-6), closed_below * (1 + 1e-9)
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(c, inner, outer) - closing for c in grid])

@@ -19,19 +19,20 @@ from ..numerics.kernel import outer_kernel
 from .function_values import LOAD, Value
 
 # Addresses of a film's kernels, int64; 0 where it has none.
-WRENCH, RESIDUAL, JACOBIAN, WRENCH_JACOBIAN = range(4)
+WRENCH, RESIDUAL, JACOBIAN, WRENCH_JACOBIAN, SETTLE = range(5)
 KINDS = {
     "wrench": LOAD,
     "residual": types.FunctionType(int64(VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
     "jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR)),
     "wrench_jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, MATRIX)),
+    "settle": types.FunctionType(int64(VECTOR, VECTOR, float64, VECTOR, VECTOR)),
 }
 # Steps of differences, as a share of the unknowns' scales.
 STEP = 1e-4
 
 
 def kernels_of(film) -> np.ndarray:
-    """Addresses (4,) of a film's kernels."""
+    """Addresses (5,) of a film's kernels."""
     kernels = ((getattr(film, name, None), kind) for name, kind in KINDS.items())
     return np.array([Value(kernel, kind).address if kernel else 0 for kernel, kind in kernels])
 

@@ -32,6 +32,7 @@ from ..scene.contact import contact_thresholds
 from ..scene.film import Coefficients, aligned_gaps
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
+from .cells import with_cells
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
 from .fluid import set_conditions
@@ -79,7 +80,7 @@ class Interface:
 
     def _table(self):
         """The film's table; a linear film that borrows another film's coefficients gets them here."""
-        table, source = self.scene.film, self._borrowed()
+        table, source = prepared(self.scene, self.film), self._borrowed()
         if source is self.film:
             return table
         edges = initially(table.inner_pressure), initially(table.outer_pressure)
@@ -106,6 +107,16 @@ class Interface:
         return self.unknowns is not None and bool(np.any(self.unknowns.differential))
 
     @property
+    def grid_accuracy(self) -> float | None:
+        """Relative error that the cells of the film may have beside the run's accuracy; None where it counts in that,
+        or there are none."""
+        return self.film.grid_accuracy(self._table_used) if hasattr(self.film, "grid_accuracy") else None
+
+    def halved(self):
+        """The Film table with half the cells of this one's."""
+        return self.film.halved(self._table_used)
+
+    @property
     def film_wrench(self):
         """Function `wrench(f, s)`: force and moments of the film alone; of one with unknowns when it is steady."""
         return self.film.wrench if self.unknowns is None else self._steady_wrench
@@ -124,9 +135,19 @@ class Interface:
         for film, rough in ((FORCE, CONTACT_FORCE), (MOMENT_X, CONTACT_X), (MOMENT_Y, CONTACT_Y)):
             s[film] += s[rough]
 
+    @cached_property
+    def whole(self):
+        """Block and unknowns of the film over the whole circle, whatever part of it stands for all in a run: what tilts
+        that the run does not have do to it."""
+        if not hasattr(self.film, "whole"):
+            return self.f, self.unknowns
+        f = self.film.parameters(self.film.whole(self._table_used), self.clearance)
+        lay_surfaces(f, self.scene)
+        return f, self.film.unknowns(f)
+
     def steady(self, f, s) -> np.ndarray:
         """Unknowns (n,) of the steady film at a gap state.  Raises SceneError if there are none."""
-        x = np.empty(len(self.unknowns.names))
+        x = np.empty(len((self.unknowns if f is self.f else self.film.unknowns(f)).names))
         code = self.film.start(f, s, x)
         if code:
             raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
@@ -207,8 +228,8 @@ class Interface:
         # Sparse matrices are loaded for a film with unknowns only.
         from .film_derivatives import FilmDerivatives
 
-        derivatives = FilmDerivatives(self.film, self.unknowns, self.f)
-        return LinearFilm(derivatives, s, self.steady(self.f, s), steps)
+        f, unknowns = self.whole
+        return LinearFilm(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
 
     def about(self, s, steps, omega=0.0):
         """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in
@@ -240,6 +261,11 @@ def _lender(scene, film):
     return film_module("radial", scene.film, scene.contact is not None) if borrows else film
 
 
+def prepared(scene, film):
+    """The Film table of a scene as its `film` (a module) takes it."""
+    return with_cells(scene, film) if hasattr(film, "prepared") else scene.film
+
+
 def opening_law(scene, film=None):
     """Function `force(clearance, p_i, p_o)` (N): film and asperities together of a scene's aligned faces at rest."""
     parts = opening_parts(scene, film)
@@ -250,12 +276,13 @@ def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
-    table = coned(scene)
     module = _lender(scene, film_of(scene, film))
-    wavy = {"waves": (scene.stator.waviness, scene.rotor.waviness)} if waves_of(scene) else {}
-    if not getattr(module, "STANDING_WAVES", False):
-        wavy = {}
-    film_force = module.opening_law(table, *spins(scene), **wavy)
+    table, surfaces = coned(replace(scene, film=prepared(scene, module))), {}
+    if waves_of(scene) and getattr(module, "STANDING_WAVES", False):
+        surfaces["waves"] = scene.stator.waviness, scene.rotor.waviness
+    if scene.contact and getattr(module, "WAVES_TOUCH", False):
+        surfaces["contact"] = scene.contact
+    film_force = module.opening_law(table, *spins(scene), **surfaces)
     if not scene.contact:
         return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
     s, face = np.zeros(GAP_STATE_SIZE), face_parameters(table, 1.0)
@@ -288,6 +315,14 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     widest, length = (STEP * gap for gap in _analytic(scene, clearance, s[CONING_CHANGE], floor))
     radius, pace = scene.film.outer_radius, max(abs(s[MEAN_SPIN]), 1.0) if pace is None else pace
     return s, (length, length / radius, widest * pace, widest / radius * pace)
+
+
+def flow_at_rest(interface, s) -> None:
+    """Loads, flows and friction of film and asperities at a gap state at rest, into it.  Raises SceneError."""
+    film, f = interface.observed
+    film.flow(f, s, *([interface.steady(f, s)] if interface.unknowns is not None else []))
+    if interface.contact is not None:
+        contact.contact_load_and_friction(interface.contact, f, s)
 
 
 def asperity_steps(scene, clearance, change):

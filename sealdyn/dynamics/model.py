@@ -55,7 +55,9 @@ class Model:
 
     def with_sharper_film(self, share: float) -> "Model":
         """The same with a film whose integrals err by this share of what they do.  **Valid** where the film is the one
-        that is observed."""
+        that is observed; one of cells has no integrals to sharpen, and is the same."""
+        if self.unknowns.film_unknowns:
+            return self
         return Model(self.scene, self.accuracy, None, self.film, share * self.film_error)
 
     def _imposed(self) -> list:

@@ -7,6 +7,7 @@ import numpy as np
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.coning import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.symmetry import tilt_is_given, tilt_is_imposed
 from ..scene.waviness import waves_of
 from . import equations
 from .fluid import fluid_conditions
@@ -44,7 +45,6 @@ class Unknowns:
         self.floats = {k: ring.support is not None for k, ring in rings.items()}
         starts = {STATOR: scene.initial.stator, ROTOR: scene.initial.rotor}
         moved = [start for k, start in starts.items() if self.floats[k]]
-        tilted = any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
         shifted = any(v for s in moved for v in (s.z, s.z_rate))
         film = scene.film
         # A cone that opens moves the equilibrium.
@@ -55,7 +55,7 @@ class Unknowns:
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
-        self._choose(tilted or _tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
+        self._choose(tilt_is_given(scene) or tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
         if waves_of(scene) and not film_unknowns:
@@ -63,7 +63,7 @@ class Unknowns:
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")
         if film_unknowns:
-            self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form (IDA)")
+            self.reasons.append(f"film with {len(film_unknowns.names)} unknowns of its own: residual form")
             if np.any(film_unknowns.differential):
                 self.reasons.append("film that stores: each mode and response meets it at its own frequency")
 
@@ -195,14 +195,6 @@ class Unknowns:
         spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))
         largest = max((spring_z + abs(stiffness[0, 0])) * length**2, (spring_t + abs(stiffness[1, 1])) * tilt**2)
         return max(largest * min(amplitude, 1.0) ** 2, 1e-30)
-
-
-def _tilt_is_imposed(scene) -> bool:
-    """Whether anything but its own start ever tilts a ring."""
-    rotor, stator = scene.rotor, scene.stator
-    tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
-    tilts += [whirl.angle for whirl in scene.shaft.whirl]
-    return any(largest_value(tilt) for tilt in tilts) or any(_moves(shaken) for shaken in scene.housing.angular)
 
 
 def _axial_motion_is_imposed(scene) -> bool:

@@ -2,7 +2,7 @@
 
 **Source** the laws: faces/roughness.py.  Friction as a share of the load or of the touching area and wear by Archard's
 law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
-**Valid** rigid coned faces, rough at a scale far below their width; dry, and without memory.
+**Valid** rigid faces, coned, wavy or with a profile, rough at a scale far below their width; dry, and without memory.
 
 Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and moments are
 minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli between its
@@ -32,6 +32,7 @@ from .contact_annulus import (
     WEAR_PER_LOAD,
     annulus,
     pressed,
+    touching_radius,
 )
 from .geometry import (
     COLLAPSE,
@@ -47,22 +48,29 @@ from .geometry import (
     FLOOR,
     GX,
     GY,
+    HALF_HEIGHT,
     INNER_RADIUS,
+    ORDER_LIST,
+    ORDERS,
     OUTER_RADIUS,
     PROFILE,
     PROFILE_RADII,
     SPIN_DIFFERENCE,
     TILT_AT_MEAN,
     TOUCH,
+    WAVES,
     WEAR,
     edge_gaps,
     node_gap,
     smallest_gap,
 )
 from .roughness import christensen_series, gaussian_series, scaled, stored
+from .waviness import waves
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
+# Even angles to each wave of wavy faces.
+ANGLES_PER_WAVE = 128
 _gauss = lru_cache(maxsize=16)(np.polynomial.legendre.leggauss)
 
 
@@ -82,7 +90,7 @@ def lay_asperities(contact: Contact, face: np.ndarray, points: int | None = None
     radial = (4 + int(load[0]) + 2 + int(face[PROFILE] > 0)) // 2 + 1
     k = np.zeros(NODES + 2 * (radial + points))
     face[FLOOR], top, bottom = contact_thresholds(contact)
-    face[TOUCH], face[COLLAPSE] = top, bottom
+    face[TOUCH], face[COLLAPSE], face[HALF_HEIGHT] = top, bottom, -bottom
     k[TOP], k[SPAN] = top, top - bottom
     k[SHEAR_OF_AREA] = contact.shear_strength or 0.0
     if contact.shear_strength is None:
@@ -108,6 +116,9 @@ def _mean_arm(f):
 @inner_kernel()
 def _face(k, f, s, complete):
     """Write the contact slots.  `complete` asks for friction, area, energy and wear too."""
+    if f[WAVES] != 0.0:
+        _wavy_face(k, f, s, complete)
+        return
     s[CONTACT_FORCE] = s[CONTACT_X] = s[CONTACT_Y] = 0.0
     if complete:
         s[CONTACT_TORQUE] = s[CONTACT_AREA] = s[CONTACT_PRESSURE] = s[CONTACT_ENERGY] = s[WEAR] = 0.0
@@ -142,12 +153,67 @@ def _face(k, f, s, complete):
     if tilt > 0.0:
         s[CONTACT_X], s[CONTACT_Y] = along * s[GX] / tilt, along * s[GY] / tilt
     if complete:
-        shear, spin = k[SHEAR_OF_LOAD] * arm + k[SHEAR_OF_AREA] * area_arm, s[SPIN_DIFFERENCE]
-        s[CONTACT_TORQUE] = math.copysign(shear, spin) if spin != 0.0 else 0.0
-        u = (k[TOP] - low) / k[SPAN]
-        s[CONTACT_PRESSURE] = pressed(k, LOAD, u, u**4)
-        s[CONTACT_AREA], s[CONTACT_ENERGY] = area / k[FACE_AREA], energy
-        s[WEAR] = k[WEAR_PER_LOAD] * abs(spin) * arm / k[FACE_AREA]
+        _complete(k, s, arm, area, area_arm, energy, low)
+
+
+@inner_kernel()
+def _complete(k, s, arm, area, area_arm, energy, low):
+    """Write what follows from the load's and the touching area's integrals with the radius (N m, m^3), that area (m^2),
+    the stored energy (J) and the thinnest film (m)."""
+    shear, spin = k[SHEAR_OF_LOAD] * arm + k[SHEAR_OF_AREA] * area_arm, s[SPIN_DIFFERENCE]
+    s[CONTACT_TORQUE] = math.copysign(shear, spin) if spin != 0.0 else 0.0
+    u = (k[TOP] - low) / k[SPAN]
+    s[CONTACT_PRESSURE] = pressed(k, LOAD, u, u**4)
+    s[CONTACT_AREA], s[CONTACT_ENERGY] = area / k[FACE_AREA], energy
+    s[WEAR] = k[WEAR_PER_LOAD] * abs(spin) * arm / k[FACE_AREA]
+
+
+@inner_kernel()
+def _wavy_face(k, f, s, complete):
+    """As `_face`, of faces with waves: even angles, at each of which the gap is linear in r.
+
+    The laws are smooth three times where they begin: the error falls as the fifth power of the angles.
+    """
+    s[CONTACT_FORCE] = s[CONTACT_X] = s[CONTACT_Y] = 0.0
+    if complete:
+        s[CONTACT_TORQUE] = s[CONTACT_AREA] = s[CONTACT_PRESSURE] = s[CONTACT_ENERGY] = s[WEAR] = 0.0
+    pieces, per_span = max(int(f[PROFILE]) - 1, 1), 1.0 / k[SPAN]
+    radii, gaps = np.empty(pieces + 1), np.empty(pieces + 1)
+    for node in range(pieces + 1):
+        # A tilt of zero: the film of the aligned faces.
+        if f[PROFILE] == 0.0:
+            radii[node] = f[INNER_RADIUS] if node == 0 else f[OUTER_RADIUS]
+            gaps[node] = edge_gaps(f, s[DZ], 0.0, s[CONING_CHANGE])[node]
+        else:
+            radii[node], gaps[node] = f[PROFILE_RADII + node], node_gap(f, node, s[DZ], 0.0, s[CONING_CHANGE])
+    mean, highest = _mean_arm(f), 1
+    for n in range(int(f[ORDERS])):
+        highest = max(highest, int(f[ORDER_LIST + n]))
+    angles, low = ANGLES_PER_WAVE * highest, math.inf
+    load = arm = moment_x = moment_y = area = area_arm = energy = 0.0
+    for n in range(angles):
+        theta = 2.0 * math.pi * n / angles
+        sin, cos = math.sin(theta), math.cos(theta)
+        bump, tilt = waves(f, s, theta), s[GX] * sin - s[GY] * cos
+        for node in range(pieces):
+            r_i, r_o = radii[node], radii[node + 1]
+            h_i = gaps[node] + bump + (mean if mean > 0.0 else r_i) * tilt
+            h_o = gaps[node + 1] + bump + (mean if mean > 0.0 else r_o) * tilt
+            low = min(low, h_i, h_o)
+            if min(h_i, h_o) >= k[TOP]:
+                continue
+            a, b, c, d, e, _ = touching_radius(
+                k, r_i, r_o, (k[TOP] - h_i) * per_span, (k[TOP] - h_o) * per_span, complete
+            )
+            turned = mean * a if mean > 0.0 else b
+            load, arm, area, area_arm, energy = load + a, arm + b, area + c, area_arm + d, energy + e
+            moment_x, moment_y = moment_x + sin * turned, moment_y - cos * turned
+    if low >= k[TOP]:
+        return
+    step = 2.0 * math.pi / angles
+    s[CONTACT_FORCE], s[CONTACT_X], s[CONTACT_Y] = step * load, step * moment_x, step * moment_y
+    if complete:
+        _complete(k, s, step * arm, step * area, step * area_arm, step * energy, low)
 
 
 @value_kernel()

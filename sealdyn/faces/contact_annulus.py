@@ -57,7 +57,7 @@ def _part(k, r_i, r_a, r_b, u_a, u_b, complete):
 
 
 @inner_kernel()
-def _radius(k, r_i, r_o, u_i, u_o, complete):
+def touching_radius(k, r_i, r_o, u_i, u_o, complete):
     """As `_part`, over all of a radius that touches; u is linear between u_i and u_o."""
     # From the less to the more pressed end; going inwards the integrals change sign.
     turn = 1.0 if u_i <= u_o else -1.0
@@ -111,7 +111,7 @@ def annulus(k, r_i, r_o, r_m, tilt, low_i, low_o, complete):
             # 1 - cos beta = 2 sin^2(beta / 2): no cancellation in a narrow arc.
             rise = 2.0 * math.sin(0.5 * (start + k[nodes + n] * (stop - start))) ** 2
             u_i, u_o = (top - low_i - swing_i * rise) * per_span, (top - low_o - swing_o * rise) * per_span
-            a, b, c, d, e, g = _radius(k, r_i, r_o, u_i, u_o, complete)
+            a, b, c, d, e, g = touching_radius(k, r_i, r_o, u_i, u_o, complete)
             w = 2.0 * (stop - start) * k[nodes + points + n]
             load += w * a
             arm += w * b

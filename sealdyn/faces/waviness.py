@@ -78,6 +78,16 @@ def waves_rate(f, s, theta):
 
 
 @inner_kernel()
+def waves_turn(f, s):
+    """Whether the ring of a wave turns."""
+    for k in range(int(f[WAVES])):
+        half = 0.5 * s[SPIN_DIFFERENCE]
+        if s[MEAN_SPIN] + (half if f[WAVE_ROWS + WAVE_ROW * k + SIGN] < 0.0 else -half) != 0.0:
+            return True
+    return False
+
+
+@inner_kernel()
 def wave_parts(f, s, cosines, sines):
     """Waves of both faces together, sum of `cosines[j] cos(n theta) + sines[j] sin(n theta)` (m) over the different
     orders n of the face block, both (orders,)."""

@@ -9,6 +9,7 @@ What every film module offers (the contract):
 `rough()`         (if any) the module that offers the same between rough faces, which may meet.
 `FLUIDS`          (if any) tuple of "liquid" and "gas"; a film without it is one of liquids.  Of a folder also in its
                   `__init__`, so that other films' scenes need not load it.
+`BY_NAME`         (if any) True of a film that scenes have to ask for by name; in its `__init__`.
 `accepts(film, waves)`
                   "" if it can take the faces of a `Film` table with these waves (Waviness of both rings), else what it
                   can take, as words that go after the film's name.
@@ -50,9 +51,23 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
 `STATUS`          {code: sentence}.
 `PADS`            (if any) True where it takes the pads of a `Film` table.
 `STANDING_WAVES`  (if any) True where it takes waves of faces that stand still only; its `opening_law` takes them too.
+`WAVES_TOUCH`     (if any) True where wavy faces may be rough and meet; its `opening_law` takes the contact too.
+`whole(film)`     (if any) the `Film` table of the whole circle where a part of it stands for all.
+`prepared(scene)` (if any) the `Film` table with what the rest of the scene decides of it; beside it
+                  `cells_are_given(film)`, and `doubled(film, times)`, the table with twice the cells so many times, for
+                  the search of how many are needed (dynamics/cells.py).
+`grid_accuracy(film)`
+                  (if any) the relative error that its cells may have, beside the accuracy of a run.
 `halved(film)`    (if any) the `Film` table with half the cells, which err four times as much.
 `jacobian(f, s, x, x_rate, alpha, data)`
                   (optional) compiled: d res / d x + alpha d res / d x_rate in the order of the pattern's values.
+`settle(f, s, alpha, base, x)`
+                (optional) compiled: x at the end of a step of an implicit method, where the rates of the differential
+                ones are alpha (x - base); at entry x near by.  Returns 0, or a code of STATUS.  For films whose
+                residual has kinks that no Newton iteration of a library passes.
+`between(f, s, x)`
+                (beside `settle`) compiled: x between two steps, whose differential ones are interpolated, at a gap
+                state.
 `wrench_jacobian(f, s, x, rows)`
                   (optional) compiled: d (force, moments) / d x, (3, n).
 
@@ -118,6 +133,10 @@ def refused(module, film, waves=()) -> str:
     return module.accepts(film, waves)
 
 
+def _by_name(name) -> bool:
+    return getattr(_outside(name), "BY_NAME", False)
+
+
 def _takes_fluid(module, film) -> bool:
     return ("liquid" if film.gas is None else "gas") in getattr(module, "FLUIDS", ("liquid",))
 
@@ -126,6 +145,8 @@ def film_names(film=None, waves=()) -> list[str]:
     """Names of the films that can take the faces and the fluid of a `Film` table (None: plain cones) with these waves
     (Waviness), sorted, without those that are another one of them once more."""
     named = [name for name in all_film_names() if film is None or _takes_fluid(_outside(name), film)]
+    # What nobody asks for is not even loaded.
+    named = [name for name in named if film is None or film.model == name or not _by_name(name)]
     able = [name for name in named if not refused(film_module(name), film, waves)]
     return [name for name in able if getattr(film_module(name), "GENERALISES", None) not in able]
 

@@ -13,3 +13,4 @@ class Field(NamedTuple):
 
 
 PRESSURE = Field("pressure", "Pa", "film pressure, absolute", ("MPa", 1e-6))
+FILL = Field("fill", "1", "share of the film that is liquid", ("%", 100.0))

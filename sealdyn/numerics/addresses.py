@@ -79,6 +79,12 @@ def call_film_jacobian(context, kernel, f, s, x, x_rate, alpha, data):
 
 
 @intrinsic
+def call_settle(context, kernel, f, s, alpha, base, x):
+    """Call the kernel int64(f, s, alpha, base, x) at an address, arrays but for the number alpha; returns its code."""
+    return _call(int64(ADDRESS, VECTOR, VECTOR, float64, VECTOR, VECTOR))
+
+
+@intrinsic
 def call_wrench_jacobian(context, kernel, f, s, x, rows):
     """Call the kernel void(f, s, x, rows) at an address, three arrays and a matrix."""
     return _call(types.void(ADDRESS, VECTOR, VECTOR, VECTOR, MATRIX))

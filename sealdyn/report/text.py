@@ -48,8 +48,12 @@ def _rows(summary):
     if summary["secondary_seal"]:
         yield from _seal_rows(summary["secondary_seal"])
     if film["max_cavitated_fraction"]:
-        yield "cavitation", (f"up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure "
-                             "(floored after solving: does not conserve mass)")  # fmt: skip
+        floored = summary["model"]["film"] != "reynolds"
+        how = "floored after solving: does not conserve mass" if floored else "its liquid is kept"
+        yield (
+            "cavitation",
+            f"up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure ({how})",
+        )
     yield "stability", _stability(summary["stability"])
     if summary["energy_residual"] is not None:
         yield "energy audit", f"residual {summary['energy_residual']:.1e} of the work exchanged"

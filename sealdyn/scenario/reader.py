@@ -53,7 +53,7 @@ class Run:
     """In all, in place of `samples_per_turn`."""
     accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
     """Asked error of displacements, relative to clearance, and of tilts, to clearance / outer radius."""
-    solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm"] = "auto"
+    solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm", "trbdf2"] = "auto"
     """Method; "auto" chooses by stiffness and inertia."""
     start: Annotated[str, Field(pattern=STARTS)] = "auto"
     """Untilted ("rest"), linear steady response ("steady"), end of an archive; "auto": steady if stable, else rest."""

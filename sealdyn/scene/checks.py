@@ -9,6 +9,7 @@ from . import coning, contact, secondary_seal
 from . import film as film_table
 from .gas import GASES, gas_of
 from .pads import pads_errors
+from .reynolds import reynolds_errors
 from .scene import SceneError
 from .waviness import waves_of, waviness_errors
 
@@ -67,6 +68,9 @@ def _film(scene) -> None:
                 f"{slope:g} rad, a film of {outer:g} m at the outer radius",
                 "an open film",
             )
+    if film.model == "reynolds":
+        for key, found, expected in reynolds_errors(film):
+            raise SceneError(f"film.{key}", found, expected)
     _cavitation(film)
     _gas(film) if film.gas is not None else _liquid(film)
 
@@ -308,6 +312,8 @@ def unused(scene, given: set[str]) -> list[str]:
         leaves += ["rotor.misalignment", "rotor.misalignment_phase"]
     else:
         leaves += ["rotor.runout", "rotor.runout_phase"]
+    if scene.film.model != "reynolds":
+        leaves.append("film.reynolds.")
     if scene.film.gas is not None:
         leaves += [f"film.{key}" for key in ("density", "specific_heat", "vapour_pressure", "coefficients")]
         leaves += [f"film.{name}." for name in ("gas_dam", "gas_reynolds") if scene.film.model not in (name, "auto")]

@@ -28,6 +28,7 @@ from ..units import (
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
 from .pads import Pads
+from .reynolds import Reynolds
 
 # Most radii of a profile: kernels keep room for them.
 MOST_NODES = 65
@@ -136,7 +137,7 @@ class Film:
     specific_heat: SpecificHeat = 4180.0
     """For heating of the leakage only."""
     cavitation_pressure: Pressure | None = None
-    """Floor of the film pressure, absolute; none without it.  Does not conserve mass."""
+    """Floor of the film pressure, absolute; none without it.  Conserves mass in "reynolds" only."""
     vapour_pressure: Pressure | None = None
     """At the temperature of the film, absolute: a run that falls below it says so."""
     coefficients: Literal["green", "radial"] | Coefficients = "green"
@@ -151,6 +152,8 @@ class Film:
     """Options of model = "gas_dam"."""
     gas_reynolds: GasReynolds | None = None
     """Options of model = "gas_reynolds"."""
+    reynolds: Reynolds | None = None
+    """Options of model = "reynolds"."""
 
 
 def profile_errors(film) -> list[tuple[str, str, str]]:

@@ -22,7 +22,7 @@ def cell_error(run) -> float | None:
     film, f = model.observed
     if not hasattr(film, "halved"):
         return None
-    coarse = film.parameters(film.halved(model.scene.film), model.clearance)
+    coarse = film.parameters(model.interface.halved(), model.clearance)
     lay_surfaces(coarse, model.scene)
     scales, worst = LookedAt(run), 0.0
     for index, tau, y in ((0, 0.0, run.y0), run.last or (0, 0.0, run.y0)):

@@ -80,13 +80,22 @@ class Certificate:
     """Estimated errors of all that is looked at (looked_at.py), relative to the scales of `accuracy`: of the solver, of
     the film against the next higher film model (each None where it cannot be estimated, or there is no higher one),
     both together, and a sentence; `horizon` (s): the time up to which a run that is measured is as exact as asked, None
-    where it is to its end."""
+    where it is to its end.  `cells`: error of cells that stand beside, with what is asked of them, `grid`."""
 
     asked: float
     solver: float | None
     model: float | None
     said: str
     horizon: float | None = None
+    cells: float | None = None
+    grid: float | None = None
+
+    @property
+    def met(self) -> bool | None:
+        """Whether all is as exact as asked; None if that is not known."""
+        if self.estimated is None:
+            return None
+        return self.estimated <= self.asked and (self.grid is None or self.cells <= self.grid)
 
     @property
     def estimated(self) -> float | None:
@@ -213,7 +222,10 @@ def certify(
     by_cells = max((error for error in known if error is not None), default=None)
     if by_cells is None and hasattr(run.model.observed[0], "halved"):
         by_cells = math.inf
-    if by_cells is not None:
+    grid = run.model.interface.grid_accuracy
+    if grid is not None:
+        parts.append(f"beside it cells {by_cells:.1e} of {grid:.0e} asked, by half of them")
+    elif by_cells is not None:
         by_model = by_cells
         parts.append(f"cells {by_model:.1e}, by half of them")
     elif by_model is not None:
@@ -233,4 +245,6 @@ def certify(
         if coarse:
             cure = "a higher film rung" if by_cells is None else f"more film.{run.model.interface.name}.cells"
         sentence += f"; NOT met{since}: try {cure}"
-    return Certificate(asked, by_solver, by_model, sentence, until)
+    if grid is not None and not by_cells <= grid:
+        sentence += "; cells NOT as fine as asked: try more cells_r and cells_theta, or a looser grid_accuracy"
+    return Certificate(asked, by_solver, by_model, sentence, until, by_cells if grid is not None else None, grid)

@@ -16,6 +16,8 @@ STIFF = 60.0
 def choose_method(run) -> tuple[str, str]:
     """The method for a run (RunState), by its name in METHODS, and a sentence why."""
     model = run.model
+    if hasattr(model.interface.film, "settle"):
+        return "trbdf2", "cells that tear and fill: TR-BDF2, the film settled at each stage"
     if model.unknowns.massless:
         return "ida", "a massless ring has no rates: IDA, on the residual form"
     if model.unknowns.has_residual_form:
@@ -31,7 +33,10 @@ def choose_method(run) -> tuple[str, str]:
 def check_method(model, method: str) -> None:
     """Raises SceneError where a method cannot integrate a scene."""
     unknowns = model.unknowns
-    if unknowns.has_residual_form and method != "ida":
+    settles = hasattr(model.interface.film, "settle")
+    if method == "trbdf2" and not settles:
+        raise SceneError("run.solver", '"trbdf2"', "another solver: it is for films whose cells tear and fill")
+    if unknowns.has_residual_form and method != "ida" and not (settles and method == "trbdf2"):
         what = "a massless ring" if unknowns.massless else "a film with unknowns of its own"
         raise SceneError("run.solver", f'"{method}" for {what}', '"ida" (or "auto")')
     if method == "expm" and not (unknowns.linear and unknowns.constant):

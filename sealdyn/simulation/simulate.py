@@ -168,9 +168,9 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
             )
         measured = None if apart is None else (seen.times, apart)
     found = certify(run, method, outcome.tolerance, errors, by_model, measured, cells)
-    met = None if found.estimated is None else found.estimated <= found.asked
+    beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
-            "met": met, "horizon": found.horizon, "said": found.said}, outcome  # fmt: skip
+            "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
 
 
 def simulate_in_memory(scenario, speeds: bool = False) -> dict:

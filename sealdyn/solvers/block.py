@@ -88,4 +88,4 @@ class Block:
         x, x_rate = (np.ascontiguousarray(part[first:last, film]) for part in (self.ys, self.yps))
         out, slope = np.empty((len(times), x.shape[1])), np.empty((len(times), x.shape[1]))
         sample(self.t[first:last], x, x_rate, last - first, self.begin - first, self.end - first, times, out, slope)
-        return (out,)
+        return (self.segment.film_between(times, *self.at(times), out),)

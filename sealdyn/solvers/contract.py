@@ -34,10 +34,13 @@ SAFETY = {
     "dop853": (60.0, 3.0),
     "radau": (30.0, 3.0),
     "expm": (1.0, 0.0),
+    "trbdf2": (60.0, 30.0),
 }
 TIGHTEST = 3e-14
 # Steps that observers get at once, at least; where the equations may change between steps.
 MANY, FEW = 192, 12
+# Steps that a method in Python hands over at once.
+BLOCK_OF_STEPS = 64
 # Orders of Adams.
 MOST_ORDERS = 12
 

@@ -20,7 +20,7 @@ CRUMB = 1e-14
 # Steps from one step's start to a point within it, beyond which the equations are not smooth there.
 CRAWLING = 1000
 # Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
-STIFF = ("bdf", "ida")
+STIFF = ("bdf", "ida", "trbdf2")
 
 
 @dataclass

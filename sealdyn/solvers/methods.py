@@ -3,6 +3,7 @@
 from .matrix_exponential import expm
 from .scipy_methods import dop853_or_radau
 from .sundials import cvode, ida
+from .trbdf2 import trbdf2
 
 METHODS = {
     "adams": cvode,
@@ -11,4 +12,5 @@ METHODS = {
     "dop853": dop853_or_radau,
     "radau": dop853_or_radau,
     "expm": expm,
+    "trbdf2": trbdf2,
 }

@@ -1,7 +1,7 @@
 """Equilibria: every clearance at which film and asperities carry the closing force, with stiffness and stability."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,16 +14,20 @@ from ..dynamics.equilibrium import (
     settle,
     support_stiffness,
 )
-from ..dynamics.interface import opening_parts
+from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
+from ..faces.geometry import CAVITATED, CONTACT_TORQUE, FLOW_INNER, TORQUE
 from ..numerics.piecewise_linear import initially
 from ..scene.coning import coned
+from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
-from ..scene.scene import SceneError
+from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..units import Length
 
 WITH_WAVES = True
+# Relative error of the film's integrals.
+FINE = 1e-10
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
 units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/contact_force": "N", "curve/stiffness": "N/m"}
@@ -50,21 +54,21 @@ def run(scenario, settings, tools) -> dict:
 
     law, said = closing_force(scene, opening)
     closing = law.at(inner, outer, initially(law.spring))
-    waves = waves_of(scene)
-    roots = equilibria(film, opening, closing, inner, outer, waves)
-    low, high = _range(film, waves, roots, settings)
+    surfaces = waves_of(scene), scene.contact
+    roots = equilibria(film, opening, closing, inner, outer, *surfaces)
+    low, high = _range(film, surfaces, roots, settings)
     roots = [root for root in roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
     carried = np.array([parts(c, inner, outer) for c in clearance])
     force, friction = carried.sum(axis=1), breakaway(scene)
     # Steps smaller than the distance to closed faces.
-    steps = 1e-4 * (clearance - extent(film, waves)[1])
+    steps = 1e-4 * (clearance - extent(film, *surfaces)[1])
     stiffness = np.array(
         [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
     )
     support = support_stiffness(scene)
     answer = {
-        "roots": [_root(root, parts, law, (inner, outer), friction) for root in roots],
+        "roots": [_root(scene, root, parts, law, (inner, outer), friction) for root in roots],
         "closing_force": float(closing),
         "balance_ratio": float(law.balance_ratio),
         "spring_force": float(initially(law.spring)),
@@ -89,16 +93,32 @@ def breakaway(scene) -> float:
     return min((ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0 for ring in floating), default=0.0)
 
 
-def _root(root, parts, law, pressures, friction) -> dict:
+def _root(scene, root, parts, law, pressures, friction) -> dict:
     """A root with what carries the closing force there, and the clearances (m) at which `friction` (N) holds a ring."""
     film, rough = (float(force) for force in parts(root.clearance, *pressures))
     ambient = min(pressures) * law.area
     carried = film + rough - ambient
     found = {**vars(root), "stable": bool(root.stable), "film_force": film, "contact_force": rough,
              "load_support": (film - ambient) / carried if carried else None}  # fmt: skip
+    found |= _flows(scene, root.clearance, carried)
     if friction:
         found["held"] = _held(root, lambda c: sum(parts(c, *pressures)) - film - rough, friction)
     return found
+
+
+def _flows(scene, clearance, carried) -> dict:
+    """What flows and rubs at a clearance (m) at which the faces carry `carried` (N) beyond the lower pressure: leakage
+    (m^3/s) and mass flow (kg/s) from high to low, friction coefficient at the mean radius, share of the face that
+    cavitates."""
+    film = replace(scene.film, clearance=clearance)
+    interface = Interface(replace(scene, film=film, closing=Closing()), FINE)
+    s, _ = rest_state(interface.scene, clearance)
+    flow_at_rest(interface, s)
+    leakage = math.copysign(1.0, film.inner_pressure - film.outer_pressure) * s[FLOW_INNER]
+    torque, arm = s[TORQUE] + s[CONTACT_TORQUE], 0.5 * (film.inner_radius + film.outer_radius)
+    return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
+            "mass_flow": leakage * density_of(film), "leakage": leakage,
+            "cavitated_fraction": float(s[CAVITATED])}  # fmt: skip
 
 
 def _held(root, excess, friction) -> list:
@@ -128,9 +148,9 @@ def closing_force(scene, opening) -> tuple[ClosingForce, str]:
     return law, "closing force from balance ratio and spring"
 
 
-def _range(film, waves, roots, settings) -> tuple[float, float]:
+def _range(film, surfaces, roots, settings) -> tuple[float, float]:
     """Clearances to look at, (m): a decade around what was found, open faces only."""
-    rise, least = extent(film, waves)
+    rise, least = extent(film, *surfaces)
     found = [root.clearance for root in roots] or [film.clearance or max(rise, 1e-6)]
     least *= 1 + 1e-6
     low = settings.clearance_from if settings.clearance_from is not None else min(found) / 10
@@ -145,7 +165,9 @@ def _range(film, waves, roots, settings) -> tuple[float, float]:
 def tables(answer) -> list:
     """Every clearance of balance."""
     columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/m", "stiffness"), ("stable", "stable"),
-               ("by the film, N", "film_force"), ("by contact, N", "contact_force"))  # fmt: skip
+               ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
+               ("load support, %", "load_support", 100), ("friction", "friction_coefficient"),
+               ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
     return [(answer["roots"], columns)]
 
 

@@ -119,9 +119,8 @@ def failures():
     """The method that fails and the one that survives."""
     yield "place", "method that fails", "its error", "method that survives", "its error", "unit"
     for row in read_study(GALLERY / "failures.h5")["answer"]["rows"]:
-        if not row.get("absent"):
-            yield (f"{row['item']} {row['title']}", row["failing"], number(row["failing_error"]), row["survivor"],
-                   number(row["survivor_error"]), row["unit"])  # fmt: skip
+        yield (f"{row['item']} {row['title']}", row["failing"], number(row["failing_error"]), row["survivor"],
+               number(row["survivor_error"]), row["unit"])  # fmt: skip
 
 
 if __name__ == "__main__":

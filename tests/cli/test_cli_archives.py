@@ -126,7 +126,12 @@ def test_validate_agrees(tmp_path):
     assert answer.code == 0, answer.err
     checks = answer.found["checks"]
     assert len(checks) >= 40 and all(check["verdict"] != "FAILED" for check in checks)
-    assert {check["source"].split(" (")[0] for check in checks} == {"Green", "Ludwig & Allen", "Zuk"}
+    assert {check["source"].split(" (")[0] for check in checks} == {
+        "Green",
+        "Lebeck, Teale & Pierce",
+        "Ludwig & Allen",
+        "Zuk",
+    }
 
 
 def test_validate_takes_one_source(tmp_path):

@@ -10,7 +10,8 @@ What every source offers:
               deviation     what is computed over `published`, less 1; None without one
               roads_apart   largest difference of the methods, relative; None with one method only
               verdict       "agrees" | "rounding" (follows from the digits printed) | "print differs" (the error of the
-                            source itself, explained in `remark`) | "FAILED"
+                            source itself, explained in `remark`) | "unexplained" (not the printed number, though two
+                            independent computations agree) | "FAILED"
               remark        str, "" if there is nothing to say
             and what else tells the rows of this source apart.
 `HEAD`      headings of its table.

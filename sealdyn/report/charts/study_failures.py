@@ -16,19 +16,14 @@ NAMES, NUMBERS = 0.235, 0.715
 def draw(path, out):
     """One line of bars per exhibit, its name and unit to the left, what the program does by default to the right."""
     rows = read_study(path)["answer"]["rows"]
-    shown, waiting = ([row for row in rows if ("absent" in row) == absent] for absent in (False, True))
-    height = 1.4 + 0.42 * len(shown) + 0.12 * len(waiting)
+    height = 1.4 + 0.42 * len(rows)
     figure = sheet(14.5, height)
     heading(figure, "Where methods fail, by how much, and what survives", "")
-    bottom = (0.6 + 0.12 * len(waiting)) / height
+    bottom = 0.6 / height
     ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
-    for at, row in enumerate(shown):
+    for at, row in enumerate(rows):
         _line(ax, row, -at)
-    _frame(figure, ax, len(shown), height)
-    if waiting:
-        words = "not there yet:  " + ";  ".join(f"{r['item']} {r['title']}, {r['absent']}" for r in waiting)
-        words = "\n".join(wrap(words.replace(" (not there yet)", ""), 190))
-        figure.text(0.02, 0.05 / height, words, fontsize=7.5, color=GREY)
+    _frame(figure, ax, len(rows), height)
     return save(figure, out)
 
 

@@ -6,8 +6,7 @@ What every exhibit module offers (the contract):
 `show()`     list of rows, made by running the failing method and the survivor on a small scene of the reference seal
              (Green, 1989); at most some seconds.  A row is a dict: `item`, `title`, `failing` and `survivor` (what each
              is), `failing_error` and `survivor_error` (numbers in `unit`; None: no answer at all), `unit`, and
-             `default`, a sentence on what the program does by itself.  What cannot be shown without a film or a
-             feature that does not exist is a row with `absent`, a sentence, instead of numbers.
+             `default`, a sentence on what the program does by itself.
 
 An exhibit may use a bare library method: the naive use of it is what fails.
 """

@@ -39,11 +39,6 @@ def row(item: int, title: str, failing: tuple, survivor: tuple, unit: str, defau
     }
 
 
-def not_available(item: int, title: str, why: str) -> dict:
-    """A row for what cannot be shown yet."""
-    return row(item, title, ("", None), ("", None), "", "") | {"absent": why}
-
-
 def run_from(scene, duration: float, accuracy: float, **start) -> RunState:
     """A run whose unknowns named in `start` (as in Unknowns.names, or with `_rate`) begin there."""
     run = RunState(Model(scene, accuracy), duration)

@@ -1,0 +1,122 @@
+"""Lebeck, Teale & Pierce (1979), wavy rough seal: load support, friction and leakage at balance, against the film
+"reynolds" and Christensen's asperities.
+
+The report's dimensional numbers contradict its dimensionless ones; these are what is computed, with the half height c
+of the asperities, the outer radius and the speed as units.
+"""
+
+import math
+from dataclasses import dataclass
+
+from ...dynamics.interface import Interface, flow_at_rest, rest_state
+from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FORCE, TORQUE
+from ...scene.contact import HALF_HEIGHT, Contact
+from ...scene.excitation import Shaft
+from ...scene.film import Film
+from ...scene.reynolds import Reynolds
+from ...scene.rings import Stator, Support
+from ...scene.scene import Closing, Scene
+from ...scene.waviness import Waviness
+
+TITLE = "Lebeck, Teale & Pierce (1979), ONR ME-95(79)ONR-414-1, wavy rough seal at balance; reynolds, 24 x 180 a wave"
+HEAD = ("waves", "h_n/c", "quantity", "published", "reynolds", "independent", "deviation", "verdict")
+SOURCE = "Lebeck, Teale & Pierce (1979), Table 3-1"
+# The scene: units of length are the outer radius and the half height of the asperities.
+INNER, OUTER, HALF = 0.045, 0.05, 0.5e-6
+VISCOSITY, SPEED = 3.05e-4, 188.0
+SEALED, STRENGTH, SHEAR, BALANCE = 0.005, 0.5, 0.1, 0.75
+CELLS = 24, 180
+# Share of the number up to which a print agrees, or an independent computation does.
+TOLERANCE = {"load_support": 4e-3, "friction_coefficient": 2e-2, "leakage": 2e-2}
+UNEXPLAINED = "the report's number does not follow from its equations as printed, and no error of it is known"
+
+
+@dataclass(frozen=True)
+class Row:
+    """Number of waves, their amplitude over the half height, and of load support, friction coefficient and leakage
+    (over speed, outer radius squared and half height) the printed number, None where nothing is printed, and that of an
+    independent computation of the same equations, in its digits."""
+
+    order: int
+    amplitude: float
+    load_support: tuple[float | None, float]
+    friction_coefficient: tuple[float | None, float] | None = None
+    leakage: tuple[float | None, float] | None = None
+
+
+ROWS = (Row(3, 0.0, (0.690, 0.690)), Row(3, 0.60, (0.845, 0.847), (0.0178, 0.0177), (0.0878, 0.0866)),
+        Row(6, 0.55, (0.953, 0.958), (0.0065, 0.0066), (None, 0.0874)))  # fmt: skip
+
+
+def scene_of(row: Row, cells=CELLS) -> Scene:
+    """The seal of a row, SI, with `cells` over the radius and around a wave."""
+    unit = VISCOSITY * SPEED * (OUTER / HALF) ** 2
+    options = Reynolds(cells_r=cells[0], cells_theta=cells[1] * row.order)
+    film = Film(
+        inner_radius=INNER, outer_radius=OUTER, outer_pressure=SEALED * unit, inner_pressure=0.0, viscosity=VISCOSITY,
+        cavitation_pressure=0.0, model="reynolds", reynolds=options,
+    )  # fmt: skip
+    rough = Contact(roughness=HALF / HALF_HEIGHT, compressive_strength=100.0 * SEALED * unit,
+                    shear_strength=10.0 * SEALED * unit)  # fmt: skip
+    support = Support(axial_stiffness=0.0, radius=0.5 * (INNER + OUTER))
+    waves = [Waviness(order=row.order, amplitude=row.amplitude * HALF)]
+    return Scene(shaft=Shaft(speed=SPEED), film=film, contact=rough, stator=Stator(support=support, waviness=waves),
+                 closing=Closing(balance_ratio=BALANCE, spring_force=0.0))  # fmt: skip
+
+
+def balance(scene) -> dict[str, float]:
+    """Load support, friction coefficient and leakage, dimensionless, and the clearance (over the half height) where
+    film and asperities of a scene carry its closing force."""
+    interface = Interface(scene, 1e-10)
+    s, _ = rest_state(scene, interface.clearance)
+    flow_at_rest(interface, s)
+    closing = BALANCE * scene.film.outer_pressure * math.pi * (OUTER**2 - INNER**2)
+    return {"load_support": s[FORCE] / closing,
+            "friction_coefficient": (s[TORQUE] + s[CONTACT_TORQUE]) / (0.5 * closing * (INNER + OUTER)),
+            "leakage": -s[FLOW_INNER] / (SPEED * OUTER**2 * HALF), "clearance": interface.clearance / HALF}  # fmt: skip
+
+
+def checks() -> list[dict]:
+    """Each number; besides what every source has order, amplitude (over c), computed and independent."""
+    return [
+        _row(row, quantity, computed[quantity])
+        for row in ROWS
+        for computed in [balance(scene_of(row))]
+        for quantity in TOLERANCE
+        if getattr(row, quantity)
+    ]
+
+
+def _row(row, quantity, computed) -> dict:
+    (published, independent), tolerance = getattr(row, quantity), TOLERANCE[quantity]
+    apart = abs(float(computed / independent - 1.0))
+    deviation = None if published is None else float(computed / published - 1.0)
+    verdict, remark = "agrees", ""
+    if not apart <= tolerance:
+        verdict, remark = "FAILED", "the film and an independent computation disagree"
+    elif deviation is None:
+        remark = "no printed number: the film against an independent computation"
+    elif not abs(deviation) <= tolerance:
+        verdict, remark = "unexplained", UNEXPLAINED
+    return {"source": SOURCE, "order": row.order, "amplitude": row.amplitude, "quantity": quantity,
+            "published": published, "computed": float(computed), "independent": independent, "deviation": deviation,
+            "roads_apart": apart, "verdict": verdict, "remark": remark}  # fmt: skip
+
+
+def cells(row: dict) -> tuple[str, ...]:
+    """A line of the table."""
+    return (
+        str(row["order"]) if row["amplitude"] else "none",
+        f"{row['amplitude']:.2f}",
+        row["quantity"].replace("_", " "),
+        "-" if row["published"] is None else f"{row['published']:.4g}",
+        f"{row['computed']:.4g}",
+        f"{row['independent']:.3g}",
+        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
+        row["verdict"],
+    )
+
+
+def about(row: dict) -> str:
+    """Which line a remark speaks of."""
+    return f"{row['order']} waves, {row['quantity'].replace('_', ' ')}"

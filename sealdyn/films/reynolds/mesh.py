@@ -1,0 +1,164 @@
+"""Cells over radius and angle: the film's parameter block, and what the film thickness makes of the cells.
+
+In ln r and theta Reynolds' equation has constant coefficients but for the film: the cells are all alike there, each
+with its node in its middle.  Film values stand where they are needed: at the nodes (what a cell stores), halfway
+between nodes and at the edges of the face (what flows).  One sector of a face that repeats itself may stand for all.
+"""
+
+import math
+
+import numpy as np
+
+from ...faces.film_thickness import film_thickness
+from ...faces.geometry import (
+    CLEARANCE,
+    CONING_CHANGE,
+    CONING_RATE,
+    DZ,
+    DZ_RATE,
+    FACE_SIZE,
+    FLOOR,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    HALF_HEIGHT,
+    INNER_RADIUS,
+    TILT_AT_MEAN,
+    VISCOSITY,
+    WAVES,
+    face_parameters,
+)
+from ...faces.waviness import waves, waves_rate, waves_turn
+from ...numerics.kernel import inner_kernel
+from ...numerics.piecewise_linear import points
+from ...scene.reynolds import Reynolds, cells_of
+from .roughness import contact_share, mean_cube, mean_film, open_height, open_slope
+
+# Block after the faces: cells over the radius, angles of a sector, sectors of the circle, steps in ln r and theta, the
+# pressure (Pa) that counts as 1, whether the flow sees the asperities, whether the film cavitates, and the cavitation
+# pressure (Pa; 0 without).
+(CELLS, ANGLES, SECTORS, RADIAL_STEP, ANGLE_STEP, SCALE, ROUGH, CAVITATES, CAVITATION, TABLES) = range(
+    FACE_SIZE, FACE_SIZE + 10
+)
+# Tables, each with room for all edges: radius (m), rise of the aligned film (m) and arm of the tilt (m) at the nodes,
+# then rise and arm at the edges; of each cell int r dr (m^2), int of the arm r dr (m^3), int r^3 dr (m^4).
+RADIUS, RISE, ARM, EDGE_RISE, EDGE_ARM, AREA, TURNED, DRAG, ROWS = range(9)
+
+
+def parameters(film, clearance: float, error: float = 1e-8, orders=()) -> np.ndarray:
+    """The film's block of the parameter array: a `Film` table and the design clearance at the inner radius (m); `error`
+    is not needed: the cells are as many as the scene says, or enough for waves of these `orders`."""
+    options = film.reynolds or Reynolds()
+    radial, angles, sectors = cells_of(film, orders)
+    r_i, width = film.inner_radius, film.outer_radius - film.inner_radius
+    # Narrow faces on a large radius keep their digits.
+    step = math.log1p(width / r_i) / radial
+    f = np.zeros(TABLES + ROWS * (radial + 1))
+    f[:FACE_SIZE] = face_parameters(film, clearance)
+    f[CELLS], f[ANGLES], f[SECTORS] = radial, angles, sectors
+    f[RADIAL_STEP], f[ANGLE_STEP] = step, 2.0 * math.pi / (sectors * angles)
+    base = film.cavitation_pressure if options.cavitation == "mass-conserving" else None
+    f[CAVITATES], f[CAVITATION] = base is not None, base or 0.0
+    spread = [abs(p - f[CAVITATION]) for p in (*points(film.inner_pressure), *points(film.outer_pressure))]
+    f[SCALE], f[ROUGH] = max(spread) or 1.0, options.roughness == "christensen"
+
+    nodes = r_i + r_i * np.expm1(step * (np.arange(radial) + 0.5))
+    edges = r_i + r_i * np.expm1(step * np.arange(radial + 1))
+    edges[-1] = film.outer_radius
+    low, high, still = edges[:-1], edges[1:], np.zeros(GAP_STATE_SIZE)
+    mean = r_i + 0.5 * width
+    tables = f[TABLES:].reshape(ROWS, radial + 1)
+    tables[RADIUS, :radial], tables[ARM, :radial] = nodes, mean if f[TILT_AT_MEAN] else nodes
+    tables[EDGE_ARM] = mean if f[TILT_AT_MEAN] else edges
+    # Waves are laid later.
+    tables[RISE, :radial] = [film_thickness(f, still, r, 0.0) - f[CLEARANCE] for r in nodes]
+    tables[EDGE_RISE] = [film_thickness(f, still, r, 0.0) - f[CLEARANCE] for r in edges]
+    area = 0.5 * (high - low) * (high + low)
+    tables[AREA, :radial] = area
+    third = (high - low) * (high * high + high * low + low * low) / 3.0
+    tables[TURNED, :radial] = mean * area if f[TILT_AT_MEAN] else third
+    tables[DRAG, :radial] = 0.5 * area * (high * high + low * low)
+    return f
+
+
+@inner_kernel()
+def table(f, which):
+    """One of the tables of a block, (cells + 1,)."""
+    size = int(f[CELLS]) + 1
+    return f[TABLES + which * size : TABLES + (which + 1) * size]
+
+
+@inner_kernel()
+def half_height(f):
+    """Half the height of the asperities (m) that the flow sees, 0 between smooth faces."""
+    return f[HALF_HEIGHT] if f[ROUGH] != 0.0 else 0.0
+
+
+@inner_kernel()
+def heights(f, s, nodes, between, edges):
+    """Mean film thickness (m), as the flow sees it, at the `nodes` (angles, cells), halfway from each angle to the next
+    at the nodes' radii, `between` (angles, cells), and at the `edges` (angles, cells + 1) of the cells' radii."""
+    rise, arm, edge_rise, edge_arm = table(f, RISE), table(f, ARM), table(f, EDGE_RISE), table(f, EDGE_ARM)
+    radius, c, floor, outwards = table(f, RADIUS), half_height(f), f[FLOOR], s[CONING_CHANGE]
+    first, step = f[INNER_RADIUS], f[RADIAL_STEP]
+    for k in range(nodes.shape[0]):
+        for half in range(2):
+            theta = f[ANGLE_STEP] * (k + 0.5 * half)
+            aligned = f[CLEARANCE] + s[DZ] + waves(f, s, theta)
+            tilt = s[GX] * math.sin(theta) - s[GY] * math.cos(theta)
+            out = nodes if half == 0 else between
+            for j in range(nodes.shape[1]):
+                coned = rise[j] + outwards * (radius[j] - first)
+                out[k, j] = open_height(aligned + coned + arm[j] * tilt, c, floor)
+            if half == 0:
+                for j in range(edges.shape[1]):
+                    coned = edge_rise[j] + outwards * first * math.expm1(step * j)
+                    edges[k, j] = open_height(aligned + coned + edge_arm[j] * tilt, c, floor)
+
+
+@inner_kernel()
+def films(f, s):
+    """What the film thickness at a gap state makes of the cells: mean film (m) at the nodes `stored` and halfway to the
+    next angle `carried`, (angles, cells) both, and the conductances (m^3/(Pa s)) between neighbours over the radius
+    `ways` (angles, cells + 1), the first and the last to the edges of the face, and around `around` (angles, cells)."""
+    angles, cells = int(f[ANGLES]), int(f[CELLS])
+    stored, carried, around = np.empty((angles, cells)), np.empty((angles, cells)), np.empty((angles, cells))
+    ways = np.empty((angles, cells + 1))
+    heights(f, s, stored, carried, ways)
+    c, per = half_height(f), 1.0 / (12.0 * s[VISCOSITY])
+    over, along = per * f[ANGLE_STEP] / f[RADIAL_STEP], per * f[RADIAL_STEP] / f[ANGLE_STEP]
+    for k in range(angles):
+        for j in range(cells):
+            around[k, j] = along * mean_cube(carried[k, j], c)
+            carried[k, j], stored[k, j] = mean_film(carried[k, j], c), mean_film(stored[k, j], c)
+        for j in range(cells + 1):
+            # Half a step from the edges of the face.
+            near = 2.0 if j == 0 or j == cells else 1.0
+            ways[k, j] = near * over * mean_cube(ways[k, j], c)
+    return stored, carried, ways, around
+
+
+@inner_kernel()
+def stored_rates(f, s, rates):
+    """Rates `rates` (angles, cells) of the mean film at the nodes (m/s), of the gap state's own rates and of waves that
+    pass: dE(H)/dt = (1 - contact share) dh/dt."""
+    rise, arm, radius = table(f, RISE), table(f, ARM), table(f, RADIUS)
+    c, floor, outwards, first = half_height(f), f[FLOOR], s[CONING_CHANGE], f[INNER_RADIUS]
+    for k in range(rates.shape[0]):
+        theta = f[ANGLE_STEP] * k
+        sin, cos = math.sin(theta), math.cos(theta)
+        aligned, tilt = f[CLEARANCE] + s[DZ] + waves(f, s, theta), s[GX] * sin - s[GY] * cos
+        moving, tilting = s[DZ_RATE] + waves_rate(f, s, theta), s[GX_RATE] * sin - s[GY_RATE] * cos
+        for j in range(rates.shape[1]):
+            h = aligned + rise[j] + outwards * (radius[j] - first) + arm[j] * tilt
+            slope = open_slope(h, c, floor) * (1.0 - contact_share(open_height(h, c, floor), c))
+            rates[k, j] = slope * (moving + s[CONING_RATE] * (radius[j] - first) + arm[j] * tilting)
+
+
+@inner_kernel()
+def moves(f, s):
+    """Whether the film thickness changes at a gap state."""
+    rates = abs(s[DZ_RATE]) + abs(s[GX_RATE]) + abs(s[GY_RATE]) + abs(s[CONING_RATE])
+    return rates > 0.0 or (f[WAVES] != 0.0 and waves_turn(f, s))

@@ -1,0 +1,128 @@
+"""The flow balance of every cell, and the linear system of its unknowns.
+
+    div( E(H^3)/(12 mu) grad p ) = d(fill E(H))/dt + wm d(fill E(H))/dtheta
+
+**Source** Elrod & Adams (1974), after Jakobsson & Floberg and Olsson: where the film is full (fill 1) the pressure is
+unknown, where it cavitates it is the cavitation pressure and the fill is; the balance of volume is the same everywhere,
+so that nothing is lost at the fronts between them (Elrod (1981), J. Lubr. Tech. 103, 350).
+
+One unknown a cell: u >= 0 is the pressure above cavitation over the scale of the block, u < 0 the void, fill - 1.
+Poiseuille flow by central differences, Couette flow with the film halfway between the nodes and the fill upstream:
+second order in the cells where the film is full, first in the fill.  Every flow leaves one cell and enters another.
+"""
+
+import numpy as np
+
+from ...faces.geometry import INNER_PRESSURE, MEAN_SPIN, OUTER_PRESSURE
+from ...numerics.kernel import inner_kernel
+from .mesh import AREA, CAVITATES, CAVITATION, SCALE, table
+
+
+@inner_kernel()
+def neighbours(k, angles):
+    """The angles before and after angle k, around the circle."""
+    return k - 1 if k > 0 else angles - 1, k + 1 if k < angles - 1 else 0
+
+
+@inner_kernel()
+def split(f, u, p, fill):
+    """Pressures `p` above cavitation (Pa) and `fill` of the unknowns `u`, all (angles, cells); a film that does not
+    cavitate is full everywhere."""
+    lowest = 0.0 if f[CAVITATES] != 0.0 else -np.inf
+    for k in range(u.shape[0]):
+        for j in range(u.shape[1]):
+            p[k, j] = f[SCALE] * max(u[k, j], lowest)
+            fill[k, j] = 1.0 + min(u[k, j] - max(u[k, j], lowest), 0.0)
+
+
+@inner_kernel()
+def place(k, angles):
+    """Place in the band of angle k: the circle folded, so that neighbours are two places apart at most."""
+    return 2 * k - 1 if 0 < k <= angles // 2 else 2 * (angles - k) % (2 * angles)
+
+
+@inner_kernel()
+def room(angles, cells):
+    """Room for the band matrix (n, 2 width + 1) of so many cells, and for its right side (n,)."""
+    n, width = angles * cells, 2 * cells if angles > 2 else cells if angles == 2 else 1
+    return np.empty((n, 2 * width + 1)), np.empty(n)
+
+
+@inner_kernel()
+def lay_out(f, s, carried, ways, around, full, storing, stored, band, y):
+    """Band matrix `band` (n, 2 width + 1) and right side `y` (n,) of the unknowns, in the order of `place`, with the
+    cells that are `full` given: storing fill + stored = what flows in, both (angles, cells) in m^3/s."""
+    angles, cells = full.shape
+    width, scale, area = band.shape[1] // 2, f[SCALE], table(f, AREA)
+    p_i, p_o = s[INNER_PRESSURE] - f[CAVITATION], s[OUTER_PRESSURE] - f[CAVITATION]
+    band[:] = 0.0
+    for k in range(angles):
+        before, after = neighbours(k, angles)
+        here = place(k, angles) * cells
+        to_before, to_after = place(before, angles) * cells - here, place(after, angles) * cells - here
+        for j in range(cells):
+            at, wet = here + j, s[MEAN_SPIN] * area[j]
+            row = band[at]
+            # What all cells full at the cavitation pressure would lack.
+            y[at] = wet * (carried[before, j] - carried[k, j]) - storing[k, j] - stored[k, j]
+            if j == 0:
+                y[at] += ways[k, 0] * p_i
+            if j == cells - 1:
+                y[at] += ways[k, cells] * p_o
+            if full[k, j]:
+                row[width] += scale * (ways[k, j] + ways[k, j + 1] + around[before, j] + around[k, j])
+            else:
+                row[width] += storing[k, j] + (wet * carried[k, j] if wet >= 0.0 else -wet * carried[before, j])
+            if j > 0 and full[k, j - 1]:
+                row[width - 1] -= scale * ways[k, j]
+            if j < cells - 1 and full[k, j + 1]:
+                row[width + 1] -= scale * ways[k, j + 1]
+            if full[before, j]:
+                row[width + to_before] -= scale * around[before, j]
+            elif wet >= 0.0:
+                row[width + to_before] -= wet * carried[before, j]
+            if full[after, j]:
+                row[width + to_after] -= scale * around[k, j]
+            elif wet < 0.0:
+                row[width + to_after] += wet * carried[k, j]
+
+
+@inner_kernel()
+def eliminate(band, y):
+    """Solve with a band matrix (n, 2 width + 1), its diagonal in the middle, and `y` (n,), both of which it spoils; the
+    solution is left in `y`.  Returns whether all pivots are numbers other than 0.
+
+    Without exchanges of rows: every column is dominated by its diagonal, for what a cell loses its neighbours get.
+    """
+    n, width = band.shape[0], band.shape[1] // 2
+    for i in range(n):
+        pivot = band[i, width]
+        if not abs(pivot) > 0.0:
+            return False
+        last = min(width, n - 1 - i)
+        # The row ends where the folded circle does.
+        while last > 0 and band[i, width + last] == 0.0 and band[i + last, width - last] == 0.0:
+            last -= 1
+        head = band[i, width + 1 : width + 1 + last]
+        for down in range(1, last + 1):
+            share = band[i + down, width - down] / pivot
+            if share != 0.0:
+                tail = band[i + down, width - down + 1 : width - down + 1 + last]
+                for across in range(last):
+                    tail[across] -= share * head[across]
+                y[i + down] -= share * y[i]
+    for i in range(n - 1, -1, -1):
+        for across in range(1, min(width, n - 1 - i) + 1):
+            y[i] -= band[i, width + across] * y[i + across]
+        y[i] /= band[i, width]
+    return True
+
+
+@inner_kernel()
+def unfold(y, u):
+    """Unknowns `u` (angles, cells) from their order in the band, `y` (n,)."""
+    angles, cells = u.shape
+    for k in range(angles):
+        here = place(k, angles) * cells
+        for j in range(cells):
+            u[k, j] = y[here + j]

@@ -1,0 +1,352 @@
+"""The two-dimensional film of a liquid: steady pressures and cavities, its derivatives, what it sums up to."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import own_cavities
+import pytest
+from scipy.integrate import dblquad, quad
+
+from sealdyn.faces import contact, geometry, roughness
+from sealdyn.faces.geometry import (
+    CAVITATED,
+    CONTACT_AREA,
+    CONTACT_ENERGY,
+    CONTACT_FORCE,
+    CONTACT_X,
+    DZ,
+    FLOW_INNER,
+    FLOW_OUTER,
+    FORCE,
+    GAP_STATE_SIZE,
+    GY,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    SPIN_DIFFERENCE,
+    TORQUE,
+    VISCOSITY,
+    face_parameters,
+)
+from sealdyn.faces.waviness import lay_waves
+from sealdyn.films import film_module
+from sealdyn.films.reynolds import film as reynolds
+from sealdyn.films.reynolds import roughness as means
+from sealdyn.scene.contact import Contact
+from sealdyn.scene.film import Film
+from sealdyn.scene.reynolds import Reynolds
+from sealdyn.scene.waviness import Waviness
+
+SPIN, VISCOUS = 300.0, 1e-3
+
+
+def wide(**more):
+    """A Film table that cavitates."""
+    given = dict(
+        inner_radius=0.045, outer_radius=0.05, inner_pressure=1e5, outer_pressure=3e5, viscosity=VISCOUS,
+        cavitation_pressure=2e4, clearance=3e-6, model="reynolds", reynolds=Reynolds(cells_r=8, cells_theta=36),
+    )  # fmt: skip
+    return Film(**(given | more))
+
+
+def gap(film, **slots):
+    """Gap state at its pressures, the rotor turning."""
+    s = np.zeros(GAP_STATE_SIZE)
+    s[[VISCOSITY, INNER_PRESSURE, OUTER_PRESSURE]] = film.viscosity, film.inner_pressure, film.outer_pressure
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * SPIN, SPIN
+    for slot, value in slots.items():
+        s[getattr(geometry, slot)] = value
+    return s
+
+
+def block(film, waves=()):
+    f = reynolds.parameters(film, film.clearance)
+    lay_waves(f, list(waves), [])
+    return f
+
+
+def settled(film, waves=(), **slots):
+    """Block, gap state with loads and flows, unknowns of the film at rest."""
+    f, s = block(film, waves), gap(film, **slots)
+    x = np.empty(len(reynolds.unknowns(f).names))
+    assert reynolds.start(f, s, x) == 0
+    reynolds.flow(f, s, x)
+    return f, s, x
+
+
+def cells(film):
+    return film.reynolds.cells_r * film.reynolds.cells_theta
+
+
+THREE = [Waviness(order=3, amplitude=1.5e-6)]
+
+
+# --- pressures and cavities -------------------------------------------------------------------------
+
+
+def test_pressures_and_voids_are_those_of_a_liquid_that_is_a_little_soft():
+    film = wide()
+    _, s, x = settled(film, THREE)
+    p, fill, force = own_cavities.steady(
+        0.045, 0.05, 8e4, 2.8e5, VISCOUS, 0.5 * SPIN, lambda a: 3e-6 + 1.5e-6 * np.cos(3 * a), (8, 36)
+    )
+    u = x[: cells(film)].reshape(36, 8).T
+    scale = 2.8e5
+    assert 0.05 < s[CAVITATED] < 0.6
+    assert scale * np.maximum(u, 0.0) == pytest.approx(p, abs=3e-3 * p.max())
+    assert 1.0 + np.minimum(u, 0.0) == pytest.approx(fill, abs=3e-3)
+    area = math.pi * (0.05**2 - 0.045**2)
+    assert s[FORCE] - 2e4 * area == pytest.approx(force, rel=3e-3)
+
+
+def test_no_pressure_below_cavitation_and_no_fill_above_one():
+    _, _, x = settled(wide(), THREE)
+    u = x[: cells(wide())]
+    # One of the two in each cell: there is no third.
+    assert np.any(u > 0.0)
+    assert np.all(u > -1.0)
+    assert np.any(u < -0.05)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 2e-5])
+def test_what_flows_in_flows_out(tilt):
+    _, s, _ = settled(wide(), THREE, GX=tilt)
+    assert s[FLOW_INNER] == pytest.approx(s[FLOW_OUTER], rel=1e-10)
+
+
+def test_a_film_that_never_cavitates_may_fall_below_zero():
+    film = wide(reynolds=Reynolds(cells_r=8, cells_theta=36, cavitation="none"))
+    _, s, x = settled(film, THREE)
+    assert s[CAVITATED] == 0.0
+    assert x[: cells(film)].min() < -1.0
+
+
+def test_cells_converge():
+    loads = []
+    for size in (1, 2, 4):
+        film = wide(reynolds=Reynolds(cells_r=6 * size, cells_theta=36 * size))
+        _, s, _ = settled(film, THREE)
+        loads.append([s[FORCE], s[TORQUE]])
+    loads = np.array(loads)
+    change = np.abs(np.diff(loads, axis=0)) / np.abs(loads[-1])
+    assert np.all(change[0] < 0.05)
+    assert np.all(change[1] < 0.5 * change[0])
+
+
+def test_cells_of_a_full_film_converge_at_second_order():
+    forces = []
+    for size in (1, 2, 4):
+        options = Reynolds(cells_r=6 * size, cells_theta=36 * size, cavitation="none")
+        _, s, _ = settled(wide(reynolds=options, coning=2e-4), THREE, GX=1e-5)
+        forces.append(s[MOMENT_Y])
+    first, second = np.diff(forces)
+    assert first / second == pytest.approx(4.0, rel=0.15)
+
+
+def test_one_sector_stands_for_all():
+    film = wide(reynolds=Reynolds(cells_r=8, cells_theta=36, sectors=3))
+    _, part, x = settled(film, THREE)
+    _, whole, _ = settled(wide(), THREE)
+    assert len(x) == 2 * 8 * 12
+    for slot in (FORCE, FLOW_INNER, FLOW_OUTER, TORQUE, CAVITATED):
+        assert part[slot] == pytest.approx(whole[slot], rel=1e-9)
+
+
+# --- its neighbour on the ladder --------------------------------------------------------------------
+
+
+def narrow(width, around=64):
+    """A narrow face and its radial film's table."""
+    film = wide(
+        inner_radius=1.0 - width, outer_radius=1.0, cavitation_pressure=None, clearance=1e-5,
+        reynolds=Reynolds(cells_r=120, cells_theta=around, cavitation="none"),
+    )  # fmt: skip
+    return film, replace(film, model="radial", reynolds=None)
+
+
+def test_squeezed_parallel_faces_are_those_of_the_radial_film():
+    film, radial = narrow(0.05)
+    _, s, _ = settled(film, DZ_RATE=-1e-4)
+    other = gap(radial, DZ_RATE=-1e-4)
+    law = film_module("radial", radial)
+    law.flow(law.parameters(radial, 1e-5, 1e-10), other)
+    for slot in (FORCE, FLOW_INNER, FLOW_OUTER, TORQUE):
+        assert s[slot] == pytest.approx(other[slot], rel=5e-4)
+
+
+def test_tilted_narrow_faces_tend_to_those_of_the_radial_film():
+    apart = []
+    for width in (0.1, 0.05):
+        film, radial = narrow(width)
+        tilt = dict(GX=4e-6, GY=1e-6, GX_RATE=1e-4, MEAN_SPIN=50.0)
+        _, s, _ = settled(film, **tilt)
+        other = gap(radial, **tilt)
+        law = film_module("radial", radial)
+        law.flow(law.parameters(radial, 1e-5, 1e-10), other)
+        moments = [np.hypot(s[MOMENT_X] - other[MOMENT_X], s[MOMENT_Y] - other[MOMENT_Y])]
+        apart.append(moments[0] / np.hypot(other[MOMENT_X], other[MOMENT_Y]))
+    # What flows around the circle is of second order in the width.
+    assert apart[1] < 0.02
+    assert apart[1] < 0.4 * apart[0]
+
+
+@pytest.mark.parametrize("inner", [2e4, 1e5])
+def test_waves_that_are_the_same_at_every_radius_leak_as_if_nothing_moved(inner):
+    """Weighted with ln r the balance of all cells leaves the flow of parallel faces of mean h^3, with cavities or
+    without: what is dragged around the circle comes back."""
+    film = wide(inner_pressure=inner, reynolds=Reynolds(cells_r=8, cells_theta=60))
+    _, s, _ = settled(film, THREE)
+    assert s[CAVITATED] > 0.05
+    cube = 3e-6**3 + 1.5 * 3e-6 * 1.5e-6**2
+    leakage = 2.0 * math.pi * cube * (3e5 - inner) / (12.0 * VISCOUS * math.log(0.05 / 0.045))
+    assert -s[FLOW_INNER] == pytest.approx(leakage, rel=1e-11)
+
+
+# --- derivatives and starts -------------------------------------------------------------------------
+
+
+def moving():
+    return settled(wide(), THREE, GX=1e-5, DZ_RATE=-2e-5, GX_RATE=1e-3)
+
+
+@pytest.mark.parametrize("alpha", [0.0, 700.0])
+def test_the_jacobian_is_that_of_the_residual(alpha):
+    f, s, x = moving()
+    pattern = reynolds.unknowns(f).pattern
+    rate, data = np.zeros_like(x), np.empty(pattern.nnz)
+    reynolds.jacobian(f, s, x, rate, alpha, data)
+    found = type(pattern)((data, pattern.indices, pattern.indptr), pattern.shape).toarray()
+    scales = reynolds.unknowns(f).scales
+    high, low = np.empty_like(x), np.empty_like(x)
+    for j in range(0, len(x), 7):
+        step = 1e-6 * scales[j]
+        if abs(x[j]) < 2 * step:
+            continue
+        for sign, out in ((1.0, high), (-1.0, low)):
+            near, near_rate = x.copy(), rate.copy()
+            near[j] += sign * step
+            near_rate[j] += sign * alpha * step
+            reynolds.residual(f, s, near, near_rate, out)
+        numbers = (high - low) / (2.0 * step)
+        assert found[:, j] == pytest.approx(numbers, abs=1e-6 * np.abs(numbers).max())
+
+
+def test_short_circles_have_their_neighbours_once():
+    for angles in (1, 2, 3):
+        film = wide(reynolds=Reynolds(cells_r=4, cells_theta=12, sectors=12 // angles))
+        f, s, x = settled(film, DZ_RATE=-1e-5)
+        unknowns = reynolds.unknowns(f)
+        data, rate, high, low = np.empty(unknowns.pattern.nnz), np.zeros_like(x), np.empty_like(x), np.empty_like(x)
+        reynolds.jacobian(f, s, x, rate, 3.0, data)
+        found = type(unknowns.pattern)((data, unknowns.pattern.indices, unknowns.pattern.indptr)).toarray()
+        for j in range(len(x)):
+            step = 1e-6 * unknowns.scales[j]
+            for sign, out in ((1.0, high), (-1.0, low)):
+                near, near_rate = x.copy(), rate.copy()
+                near[j], near_rate[j] = near[j] + sign * step, 3.0 * sign * step
+                reynolds.residual(f, s, near, near_rate, out)
+            numbers = (high - low) / (2.0 * step)
+            assert found[:, j] == pytest.approx(numbers, abs=1e-6 * np.abs(numbers).max())
+
+
+def test_force_and_moments_by_the_unknowns():
+    f, s, x = moving()
+    rows, loads = np.empty((3, len(x))), []
+    reynolds.wrench_jacobian(f, s, x, rows)
+    for j in (3, 100, 250):
+        for sign in (1.0, -1.0):
+            near = x.copy()
+            near[j] += sign * 1e-6
+            reynolds.wrench(f, s, near)
+            loads.append(s[[FORCE, MOMENT_X, MOMENT_Y]].copy())
+        assert rows[:, j] == pytest.approx((loads[-2] - loads[-1]) / 2e-6, rel=1e-6, abs=1e-9)
+
+
+def test_a_start_in_motion_satisfies_the_equations():
+    f, s, x = moving()
+    rate, res = np.zeros_like(x), np.empty_like(x)
+    reynolds.residual(f, s, x, rate, res)
+    n = len(x) // 2
+    fastest = 2e-5 + 0.05 * 1e-3 + 3e-6 * SPIN
+    # Rows of pressure and void; those of the liquid say how fast it moves.
+    assert np.abs(res[:n]).max() < 1e-5 * fastest
+    assert np.abs(res[n:]).max() < 10.0 * fastest
+
+
+# --- rough faces ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("x", [-0.7, -0.2, 0.0, 0.3, 0.99, 1.0, 1.7])
+def test_means_over_the_asperities(x):
+    assert means.mean_film(x, 1.0) == pytest.approx(float(roughness.mean_film(x)), rel=1e-12)
+    assert means.mean_cube(x, 1.0) == pytest.approx(float(roughness.mean_film_cubed(x)), rel=1e-11)
+    assert means.contact_share(x, 1.0) == pytest.approx(float(roughness.contact_fraction(x)), abs=1e-14)
+
+    def density(d):
+        return 35.0 / 32.0 * (1.0 - d * d) ** 3
+
+    low = max(-1.0, 0.1 - x)
+    reciprocal = quad(lambda d: density(d) / (x + d), low, 1.0, epsrel=1e-12)[0]
+    assert means.mean_reciprocal(x, 1.0) == pytest.approx(reciprocal, rel=1e-9)
+
+
+def touching(order=3, amplitude=0.3e-6, dz=0.0, tilt=0.0):
+    """Contact block, face block and gap state of wavy faces that touch."""
+    film = wide(clearance=0.66e-6, coning=1e-5)
+    face = face_parameters(film, film.clearance)
+    lay_waves(face, [Waviness(order=order, amplitude=amplitude, phase=0.4)], [])
+    given = Contact(roughness=0.16667e-6, compressive_strength=286.7e6, shear_strength=28.67e6)
+    k = contact.lay_asperities(given, face)
+    s = gap(film, DZ=dz, GX=tilt)
+    return k, face, s
+
+
+def test_asperities_of_wavy_faces_are_a_double_integral():
+    k, face, s = touching(dz=-0.1e-6, tilt=2e-6)
+    contact.contact_load_and_friction(k, face, s)
+
+    def pressed(r, theta):
+        h = 0.56e-6 + 1e-5 * (r - 0.045) + 0.3e-6 * math.cos(3 * theta + 0.4) + r * 2e-6 * math.sin(theta)
+        return float(roughness.contact_fraction(h / 0.50001e-6)) * r
+
+    def whole(weight):
+        return dblquad(lambda r, t: pressed(r, t) * weight(r, t), 0.0, 2 * math.pi, 0.045, 0.05, epsabs=1e-13)[0]
+
+    area = math.pi * (0.05**2 - 0.045**2)
+    assert s[CONTACT_FORCE] == pytest.approx(286.7e6 * whole(lambda r, t: 1.0), rel=1e-6)
+    assert s[CONTACT_X] == pytest.approx(286.7e6 * whole(lambda r, t: r * math.sin(t)), rel=1e-6)
+    assert s[CONTACT_AREA] == pytest.approx(whole(lambda r, t: 1.0) / area, rel=1e-6)
+
+
+def test_asperities_of_wavy_faces_have_a_potential():
+    step, stored = 1e-10, []
+    for dz in (-step, step):
+        k, face, s = touching(dz=dz, tilt=1e-6)
+        contact.contact_load_and_friction(k, face, s)
+        stored.append(s[CONTACT_ENERGY])
+    k, face, s = touching(tilt=1e-6)
+    contact.contact_load(k, face, s)
+    assert s[CONTACT_FORCE] == pytest.approx(-(stored[1] - stored[0]) / (2 * step), rel=3e-6)
+
+
+def test_waves_of_nothing_leave_the_contact_of_cones():
+    k, face, s = touching(amplitude=1e-16, dz=-0.3e-6, tilt=2e-6)
+    contact.contact_load(k, face, s)
+    wavy = s[[CONTACT_FORCE, CONTACT_X]].copy()
+    lay_waves(face, [], [])
+    contact.contact_load(k, face, s)
+    assert wavy == pytest.approx(s[[CONTACT_FORCE, CONTACT_X]], rel=1e-6)
+
+
+def test_gap_states_of_any_kind_have_a_finite_residual():
+    f, s, x = moving()
+    for dz in (-2.99e-6, -5e-6, 1e-3):
+        s[DZ], res = dz, np.empty_like(x)
+        reynolds.residual(f, s, x, np.zeros_like(x), res)
+        assert np.all(np.isfinite(res))
+    s[GY] = 1.0
+    reynolds.residual(f, s, x, np.zeros_like(x), res)
+    assert np.all(np.isfinite(res))
