@@ -157,9 +157,8 @@ def _inertia(scene):
     most = max(centrifugal_pressure(film.density, s, r, film.inner_radius, film.outer_radius) for s, r in speeds)
     if most > HEAVY * drop:
         share = f", {100 * most / drop:.3g} % of the sealed pressure" if drop else ""
-        sentence = (
-            f"centrifugal inertia of the film is left out: {most / 1e3:.3g} kPa{share}; film.inertia = true adds it"
-        )
+        cure = f"{film.model} has none" if film.model == "reynolds" else "film.inertia = true adds it"
+        sentence = f"centrifugal inertia of the film is left out: {most / 1e3:.3g} kPa{share}; {cure}"
         yield Caution(Concern.INERTIA, sentence)
 
 

@@ -205,6 +205,35 @@ def test_waves_that_are_the_same_at_every_radius_leak_as_if_nothing_moved(inner)
     assert -s[FLOW_INNER] == pytest.approx(leakage, rel=1e-11)
 
 
+def low_pressure(edges):
+    """Ludwig & Allen's narrow seal, tilted, both edges at a pressure over that of cavities; with the film's floor."""
+    film = wide(
+        inner_radius=0.05949, outer_radius=0.06051, inner_pressure=edges, outer_pressure=edges, viscosity=2e-3,
+        cavitation_pressure=0.0, clearance=5e-6, reynolds=Reynolds(cells_r=16, cells_theta=128),
+    )  # fmt: skip
+    return film, replace(film, model="radial", reynolds=None)
+
+
+def test_beside_the_floored_radial_film_on_a_narrow_seal():
+    film, radial = low_pressure(2e4)
+    _, s, _ = settled(film, GX=6e-5)
+    other, law = gap(radial, GX=6e-5), film_module("radial", radial)
+    law.flow(law.parameters(radial, 5e-6, 1e-8), other)
+    assert 0.03 < s[CAVITATED] < 0.3 and 0.03 < other[CAVITATED] < 0.3
+    assert other[FORCE] == pytest.approx(s[FORCE], rel=0.01)
+    assert other[MOMENT_Y] == pytest.approx(s[MOMENT_Y], rel=0.05)
+    # Between equal pressures the floor leaks as much in as out at each edge; what tears and fills pumps inwards.
+    assert abs(other[FLOW_INNER]) < 1e-3 * abs(s[FLOW_INNER])
+    assert s[FLOW_INNER] < 0.0
+
+
+def test_edges_at_the_cavitation_pressure_starve_the_film():
+    film, _ = low_pressure(0.0)
+    f, s = block(film), gap(film, GX=6e-5)
+    code = reynolds.start(f, s, np.empty(len(reynolds.unknowns(f).names)))
+    assert "starve" in reynolds.STATUS[code]
+
+
 # --- derivatives and starts -------------------------------------------------------------------------
 
 

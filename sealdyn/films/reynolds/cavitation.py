@@ -22,7 +22,9 @@ SHORT, SLOW = 1e-6, 1.0
 # Void below which a cell counts as full that is so at one step, and not at its neighbour.
 ALMOST = 1e-3
 UNSOLVED = 1
-STATUS = {UNSOLVED: "no steady pressures of the cavitating film are found"}
+STATUS = {
+    UNSOLVED: "no pressures of the cavitating film are found (edges that are all at the cavitation pressure starve it)"
+}
 
 
 @inner_kernel()
