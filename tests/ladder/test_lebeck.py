@@ -1,18 +1,22 @@
 """Lebeck's wavy rough seal: the published balance, and runs of a lifted ring that settles on it."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from sealdyn.analysis.sources import lebeck_1979
+from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
+from sealdyn.analysis.truncated_heights import carried, plateaus
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
+from sealdyn.scene.film import Film
+from sealdyn.scene.reynolds import Reynolds
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.waviness import Waviness
 from sealdyn.simulation.method_selection import check_method, choose_method
@@ -54,6 +58,39 @@ def test_too_few_cells_are_not_the_published_seal(monkeypatch):
     monkeypatch.setattr(lebeck_1979, "CELLS", (6, 24))
     monkeypatch.setattr(lebeck_1979.scene_of, "__defaults__", ((3, 18),))
     assert any(row["verdict"] == "FAILED" for row in lebeck_1979.checks())
+
+
+def test_heights_with_plateaus():
+    """Table 2-7: what it prints, an independent computation, and one of its rows that has no balance."""
+    found = {(row["truncation"], row["quantity"]): row for row in lebeck_1979_plateaus.checks()}
+    wanted = {(1.50, "load_support"): 0.903, (1.50, "clearance"): 3.166, (1.50, "leakage"): 0.1070,
+              (1.25, "load_support"): 1.0, (1.25, "clearance"): 3.0873, (1.25, "leakage"): 0.0996}  # fmt: skip
+    for key, value in wanted.items():
+        assert found[key]["computed"] == pytest.approx(value, rel=0.01)
+    assert found[1.50, "friction_coefficient"]["computed"] == pytest.approx(0.0124, rel=0.02)
+    assert found[1.75, "balances"]["computed"] == 0.0
+    odd = {key for key, row in found.items() if row["verdict"] != "agrees"}
+    assert odd == {(1.25, "clearance"), (1.25, "leakage"), (1.25, "friction_coefficient")}
+
+
+@pytest.mark.parametrize(("clearance", "share", "lowest"), [(5e-7, 0.0, 5e-7), (2e-7, 1.0, 1.5 * 1.66e-7 * 2**0.5)])
+def test_plane_faces_with_plateaus(clearance, share, lowest):
+    """The film of parallel faces in closed form, clear of the plateaus and on them."""
+    film = Film(
+        inner_radius=0.045, outer_radius=0.05, inner_pressure=0.0, outer_pressure=1e5, viscosity=1e-3,
+        cavitation_pressure=0.0, model="reynolds", reynolds=Reynolds(cells_r=40, cells_theta=8, sectors=8),
+    )  # fmt: skip
+    faces = plateaus(1.66e-7, 1.5, 1e8, 1e7)
+    found = carried(film, Waviness(order=3, amplitude=1e-15), 100.0, faces, clearance)
+    log, area = math.log(0.05 / 0.045), math.pi * (0.05**2 - 0.045**2)
+    touching = share * (0.5 * math.erfc(1.5 / 2**0.5)) ** 2
+    force = 1e5 * math.pi * (0.05**2 - (0.05**2 - 0.045**2) / (2.0 * log))
+    shear = 1e-3 * 100.0 * math.pi / 2 * (0.05**4 - 0.045**4) / lowest
+    assert found["leakage"] == pytest.approx(math.pi * lowest**3 * 1e5 / (6e-3 * log), rel=1e-6)
+    assert found["film_force"] == pytest.approx(force, rel=1e-3)
+    assert found["contact_force"] == pytest.approx(touching * 1e8 * area, rel=1e-9)
+    rubbed = touching * 1e7 * 2.0 * math.pi / 3.0 * (0.05**3 - 0.045**3)
+    assert found["torque"] == pytest.approx(shear + rubbed, rel=1e-6)
 
 
 def settled_run(scenario, tolerance=1e-4, method="trbdf2", duration=None):

@@ -1,0 +1,116 @@
+"""Lebeck, Teale & Pierce (1979), Table 2-7: the wavy seal with Gaussian heights whose peaks are worn flat."""
+
+import math
+
+from scipy.optimize import brentq
+
+from ...scene.film import Film
+from ...scene.reynolds import Reynolds
+from ...scene.waviness import Waviness
+from ..truncated_heights import carried, plateaus
+from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
+
+TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; film of 24 x 180 a wave"
+HEAD = ("plateau/sigma_1", "quantity", "published", "computed", "independent", "deviation", "verdict")
+SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
+# Units of length are the outer radius and the composite rms roughness; three waves.
+ROUGHNESS = OUTER / 3e5
+ORDER, AMPLITUDE, SEALED, STRENGTH, SHEAR = 3, 1.2, 5.55e-4, 5.55e-2, 5.55e-3
+CELLS = 24, 180
+# Clearances (over the roughness) between which a balance is looked for.
+NEAREST, FARTHEST, STEPS = 1.3, 4.5, 33
+TOLERANCES = TOLERANCE | {"load_support": 1e-2, "leakage": 1e-2, "clearance": 1e-2}
+# Truncation over one face's rms heights: printed number, and that of an independent computation, in its digits; None
+# where there is no balance.
+ROWS = {
+    1.25: {"load_support": (0.998, 1.000), "clearance": (3.0555, 3.0873), "leakage": (0.1022, 0.0996),
+           "friction_coefficient": (0.0019, None)},
+    1.50: {"load_support": (0.895, 0.903), "clearance": (3.140, 3.166), "leakage": (0.1066, 0.1070),
+           "friction_coefficient": (0.0124, 0.0124)},
+    1.75: None,
+}  # fmt: skip
+FRICTION = "viscous shear over all of the film is 0.0027 by itself, more than the print has with contact"
+
+
+def balances(truncation: float, cells=CELLS) -> list[dict[str, float]]:
+    """Every balance of a seal with this truncation: load support, clearance (over the roughness), leakage (over speed,
+    outer radius squared and roughness) and friction coefficient."""
+    unit = VISCOSITY * SPEED * (OUTER / ROUGHNESS) ** 2
+    film = Film(
+        inner_radius=INNER, outer_radius=OUTER, outer_pressure=SEALED * unit, inner_pressure=0.0, viscosity=VISCOSITY,
+        cavitation_pressure=0.0, model="reynolds",
+        reynolds=Reynolds(cells_r=cells[0], cells_theta=cells[1] * ORDER, sectors=ORDER),
+    )  # fmt: skip
+    faces = plateaus(ROUGHNESS, truncation, STRENGTH * unit, SHEAR * unit)
+    waves = Waviness(order=ORDER, amplitude=AMPLITUDE * ROUGHNESS)
+    closing = BALANCE * film.outer_pressure * math.pi * (OUTER**2 - INNER**2)
+
+    def at(clearance):
+        return carried(film, waves, SPEED, faces, clearance * ROUGHNESS)
+
+    def excess(clearance):
+        found = at(clearance)
+        return (found["film_force"] + found["contact_force"]) / closing - 1.0
+
+    steps = [NEAREST + (FARTHEST - NEAREST) * n / (STEPS - 1) for n in range(STEPS)]
+    over, found = [excess(clearance) for clearance in steps], []
+    for n in range(STEPS - 1):
+        if over[n] * over[n + 1] <= 0.0:
+            clearance = brentq(excess, steps[n], steps[n + 1], rtol=1e-10)
+            here = at(clearance)
+            found.append({
+                "load_support": here["film_force"] / closing, "clearance": clearance,
+                "leakage": here["leakage"] / (SPEED * OUTER**2 * ROUGHNESS),
+                "friction_coefficient": here["torque"] / (0.5 * closing * (INNER + OUTER)),
+            })  # fmt: skip
+    return found
+
+
+def checks() -> list[dict]:
+    """Each number of the table; besides what every source has truncation, computed and independent."""
+    rows = []
+    for truncation, numbers in ROWS.items():
+        found = balances(truncation)
+        if numbers is None:
+            rows.append(_row(truncation, "balances", 0.0, (None, 0.0), float(len(found))))
+        else:
+            alone = found[0] if len(found) == 1 else dict.fromkeys(numbers, math.nan)
+            rows += [_row(truncation, name, TOLERANCES[name], print_, alone[name]) for name, print_ in numbers.items()]
+    return rows
+
+
+def _row(truncation, quantity, tolerance, numbers, computed) -> dict:
+    published, independent = numbers
+    expected = published if independent is None else independent
+    apart = None if independent is None else abs(computed - independent) / (abs(independent) or 1.0)
+    deviation = None if published is None else float(computed / published - 1.0)
+    verdict, remark = "agrees", ""
+    if apart is not None and not apart <= tolerance:
+        verdict, remark = "FAILED", "the film and an independent computation disagree"
+    elif deviation is None:
+        remark = "no clearance at which film and plateaus carry the closing force, as the report says"
+    elif not abs(computed / expected - 1.0) <= tolerance:
+        verdict, remark = "unexplained", FRICTION
+    elif not abs(deviation) <= tolerance:
+        verdict, remark = "unexplained", UNEXPLAINED
+    return {"source": SOURCE, "truncation": truncation, "quantity": quantity, "published": published,
+            "computed": float(computed), "independent": independent, "deviation": deviation, "roads_apart": apart,
+            "verdict": verdict, "remark": remark}  # fmt: skip
+
+
+def cells(row: dict) -> tuple[str, ...]:
+    """A line of the table."""
+    return (
+        f"{row['truncation']:.2f}",
+        row["quantity"].replace("_", " "),
+        "-" if row["published"] is None else f"{row['published']:.5g}",
+        f"{row['computed']:.4g}",
+        "-" if row["independent"] is None else f"{row['independent']:.5g}",
+        "-" if row["deviation"] is None else f"{100 * row['deviation']:+.2f} %",
+        row["verdict"],
+    )
+
+
+def about(row: dict) -> str:
+    """Which line a remark speaks of."""
+    return f"{row['truncation']:.2f}, {row['quantity'].replace('_', ' ')}"
