@@ -1,6 +1,7 @@
 """Equilibria: every clearance at which film and asperities carry the closing force, with stiffness and stability."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -43,36 +44,58 @@ class Settings:
     points: int = 241
 
 
-def run(scenario, settings, tools) -> dict:
-    """All equilibria in the range, the opening force over clearance and the closing force."""
-    scene = frozen_at_start(scenario.scene)
+@dataclass(frozen=True)
+class Found:
+    """What holds a scene: its closing-force `law` and the sentence on it, the `opening` forces of its film and
+    asperities (interface.opening_parts), pressures (Pa) at the inner and the outer radius, every root (equilibria)."""
+
+    law: ClosingForce
+    said: str
+    opening: Callable
+    pressures: tuple[float, float]
+    roots: list
+
+    @property
+    def closing(self) -> float:
+        """The closing force (N)."""
+        return float(self.law.at(*self.pressures, initially(self.law.spring)))
+
+
+def find(scene) -> Found:
+    """Every clearance at which film and asperities of a scene carry the closing force."""
     film, parts = coned(scene), opening_parts(scene)
-    inner, outer = film.inner_pressure, film.outer_pressure
+    pressures = film.inner_pressure, film.outer_pressure
 
     def opening(clearance, inner, outer):
         return sum(parts(clearance, inner, outer))
 
     law, said = closing_force(scene, opening)
-    closing = law.at(inner, outer, initially(law.spring))
-    surfaces = waves_of(scene), scene.contact
-    roots = equilibria(film, opening, closing, inner, outer, *surfaces)
-    low, high = _range(film, surfaces, roots, settings)
-    roots = [root for root in roots if low <= root.clearance <= high]
+    found = Found(law, said, parts, pressures, [])
+    return replace(found, roots=equilibria(film, opening, found.closing, *pressures, waves_of(scene), scene.contact))
+
+
+def run(scenario, settings, tools) -> dict:
+    """All equilibria in the range, the opening force over clearance and the closing force."""
+    scene = frozen_at_start(scenario.scene)
+    found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
+    low, high = _range(film, surfaces, found.roots, settings)
+    roots = [root for root in found.roots if low <= root.clearance <= high]
     clearance = np.geomspace(low, high, max(3, settings.points))
-    carried = np.array([parts(c, inner, outer) for c in clearance])
+    carried = np.array([found.opening(c, *found.pressures) for c in clearance])
     force, friction = carried.sum(axis=1), breakaway(scene)
     # Steps smaller than the distance to closed faces.
     steps = 1e-4 * (clearance - extent(film, *surfaces)[1])
-    stiffness = np.array(
-        [film_stiffness(opening, c, inner, outer, step) for c, step in zip(clearance, steps, strict=True)]
-    )
+    stiffness = np.array([
+        film_stiffness(lambda *at: sum(found.opening(*at)), c, *found.pressures, step)
+        for c, step in zip(clearance, steps, strict=True)
+    ])  # fmt: skip
     support = support_stiffness(scene)
     answer = {
-        "roots": [_root(scene, root, parts, law, (inner, outer), friction) for root in roots],
-        "closing_force": float(closing),
-        "balance_ratio": float(law.balance_ratio),
-        "spring_force": float(initially(law.spring)),
-        "closing_said": said,
+        "roots": [root_row(scene, root, found, friction) for root in roots],
+        "closing_force": found.closing,
+        "balance_ratio": float(found.law.balance_ratio),
+        "spring_force": float(initially(found.law.spring)),
+        "closing_said": found.said,
         "support_stiffness": support,
         "friction": friction,
         "range": [float(low), float(high)],
@@ -93,17 +116,17 @@ def breakaway(scene) -> float:
     return min((ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0 for ring in floating), default=0.0)
 
 
-def _root(scene, root, parts, law, pressures, friction) -> dict:
+def root_row(scene, root, found: Found, friction=0.0) -> dict:
     """A root with what carries the closing force there, and the clearances (m) at which `friction` (N) holds a ring."""
-    film, rough = (float(force) for force in parts(root.clearance, *pressures))
-    ambient = min(pressures) * law.area
+    film, rough = (float(force) for force in found.opening(root.clearance, *found.pressures))
+    ambient = min(found.pressures) * found.law.area
     carried = film + rough - ambient
-    found = {**vars(root), "stable": bool(root.stable), "film_force": film, "contact_force": rough,
-             "load_support": (film - ambient) / carried if carried else None}  # fmt: skip
-    found |= _flows(scene, root.clearance, carried)
+    row = {**vars(root), "stable": bool(root.stable), "film_force": film, "contact_force": rough,
+           "load_support": (film - ambient) / carried if carried else None}  # fmt: skip
+    row |= _flows(scene, root.clearance, carried)
     if friction:
-        found["held"] = _held(root, lambda c: sum(parts(c, *pressures)) - film - rough, friction)
-    return found
+        row["held"] = _held(root, lambda c: sum(found.opening(c, *found.pressures)) - film - rough, friction)
+    return row
 
 
 def _flows(scene, clearance, carried) -> dict:

@@ -45,6 +45,7 @@ ANSWERS = {
     "equilibrium": {"closing_force": 100.0, "roots": [],
                     "curve": {"clearance": THREE, "opening_force": THREE, "stiffness": THREE}},
     "failures": {"rows": [{"item": 1, "title": "chaos", **LOST}]},
+    "load_support": {"keys": ["shaft.speed"], "axes": [AXIS], "rows": 3 * [LOST]},
     "neutral_stability": {"damping": [], "reason": WHY, "drift": [], "drift_reason": WHY, "resolved": None,
                           "turns": 60},
     "pressure": {"film": "linear", "pressure": None},
