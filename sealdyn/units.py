@@ -254,6 +254,7 @@ Inertia = Annotated[float, Quantity("inertia", "kg*m^2", '"8e-4 kg*m^2"', (), 0)
 Stiffness = Annotated[float, Quantity("stiffness", "N/m", '"5e5 N/m"', (), 0)]
 LineForce = Annotated[float, Quantity("force per length", "N/m", '"200 N/m"', (), 0)]
 Damping = Annotated[float, Quantity("damping", "N*s/m", '"300 N*s/m"', (), 0)]
+BendingStiffness = Annotated[float, Quantity("bending stiffness", "N*m^2", '"77 N*m^2"', (), 0)]
 TiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",), 0)]
 TiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",), 0)]
 AxialFilmStiffness = Annotated[float, Quantity("film stiffness", "N/m", '"5e7 N/m"')]

@@ -1,102 +1,98 @@
-"""A wavy ring that bends: which waviness it has under load, of the one it was made with.
+"""A wavy ring that bends, let go: film and asperities level its waves, in time.
 
-    h_deflected,n = [ (n^2 + A)/(n^6 - 2 n^4 + n^2) ] (r_c^3/(E J)) [ int (p + p_c) r dr ]_n,   A = E J/(G J_t)
-
-Film and asperities press on the standing ring where the film is thin and so level its waves: what it had at first is
-the waviness that is left (net) less the deflection, which pushes the ring away where the pressure is high.
-**Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), eqs. 3-1 to 3-12; re-derived from the strain energy of
-bending and torsion of a ring of uniform section.
-**Valid** one order n >= 2 of waves, small deflections, a ring thin in its radius, loads that turn no section by
-themselves; static.
+**Source** balance and compliance as in dynamics/elastic_ring.py; the film's own flow, with its cavities in motion,
+decides how fast.
+**Valid** ring and film without inertia, aligned faces, one order of waves on the ring that stands still.
 """
 
-import math
-from dataclasses import dataclass, replace
+import cmath
+import contextlib
+from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
-from ..dynamics.interface import Interface, flow_at_rest, rest_state
-from ..faces.geometry import CONTACT_FORCE, FORCE
-from ..faces.roughness import contact_fraction
-from ..films.reynolds.mesh import ANGLE_STEP, AREA, SCALE, table
-from ..films.reynolds.wrench import of_cells
-from ..scene.contact import HALF_HEIGHT
-from ..scene.waviness import Waviness
+from ..dynamics.elastic_ring import harmonic, order_of, state
+from ..faces import contact
+from ..faces.geometry import CLEARANCE, CONTACT_FORCE, DZ, FORCE
+from ..faces.waviness import lay_waves
+from ..numerics.piecewise_linear import initially
 
-# Angles of a wave for the asperities.
-FINE = 2048
-
-
-@dataclass(frozen=True)
-class ElasticRing:
-    """Bending stiffness E J (N m^2) out of its plane, its ratio A to the torsional one G J_t, radius of its centroid
-    (m)."""
-
-    bending_stiffness: float
-    torsion_ratio: float
-    radius: float
-
-    def compliance(self, order: int) -> float:
-        """Deflection (m) per n-th harmonic (N) of a load int p r dr, with A and the centroid's radius as above, m/N."""
-        bends = order**2 * (order**2 - 1) ** 2
-        return (order**2 + self.torsion_ratio) * self.radius**3 / (self.bending_stiffness * bends)
-
-    def largest_waviness(self, order: int, pressure: float, length: float) -> float:
-        """Largest waviness (m) that a pressure (Pa) between two O-rings `length` (m) apart can give the ring, by a
-        couple that follows cos(n theta): eq. 3-12, length^2 (1 + A) r^3 pressure/(8 E J (n^2 - 1)^2)."""
-        couple = 0.125 * length**2 * pressure * self.radius**3 / self.bending_stiffness
-        return couple * (1.0 + self.torsion_ratio) / (order**2 - 1) ** 2
+# Newton's iterations of a step at most, their differences and what counts as solved, in the wave.
+MOST, APART, SOLVED = 25, 1e-5, 1e-8
+# How often a step without solution is halved.
+HALVINGS = 10
 
 
-@dataclass(frozen=True)
-class OperatingPoint:
-    """Waviness under load, `net`, and that of the ring without, `initial` (m); load support (film over film and
-    asperities), and clearance (m)."""
+def released(scene, net: float, start: float, duration: float, steps: int) -> tuple[np.ndarray, ...]:
+    """What becomes of an operating point when its wave is another one, `start` (m) in place of `net`: times (s), net
+    waves (complex, m) and clearances (m), shapes (steps + 1,); implicit Euler's method with `steps` that grow towards
+    the `duration` (s).
 
-    net: float
-    initial: float
-    load_support: float
-    clearance: float
+    Raises ValueError where a step has no solution."""
+    _, interface, s, _, initial = state(scene, net)
+    soft, order, film = scene.stator.elastic.compliance(order_of(scene)), order_of(scene), interface.film
+    closing = interface.closing.at(initially(scene.film.inner_pressure), initially(scene.film.outer_pressure),
+                                   initially(interface.closing.spring))  # fmt: skip
+    f, wave = interface.f, scene.stator.waviness[0]
 
+    def lay(at):
+        """Clearance and waves of the unknowns into the block and the gap state."""
+        a = complex(at[1], at[2])
+        lay_waves(f, [replace(wave, amplitude=abs(a), phase=-cmath.phase(a), order=order)], [])
+        s[DZ] = at[0] - f[CLEARANCE]
 
-def operating_point(scene, ring: ElasticRing, order: int, net: float) -> OperatingPoint:
-    """Where film and asperities of a scene carry its closing force when the standing ring has a `net` waviness (m) of
-    this order, and the waviness that it was made with.  Raises SceneError where nothing carries it."""
-    waves = [Waviness(order=order, amplitude=net)]
-    interface = Interface(replace(scene, stator=replace(scene.stator, waviness=waves)), 1e-8)
-    s, _ = rest_state(interface.scene, interface.clearance)
-    flow_at_rest(interface, s)
-    deflected = ring.compliance(order) * _harmonic(interface, s, order, net)
-    support = float(s[FORCE] / (s[FORCE] + s[CONTACT_FORCE]))
-    return OperatingPoint(net, abs(net - deflected), support, interface.clearance)
+    def excess(at, dt, held, x):
+        """What the step's end leaves of axial and wave balance."""
+        lay(at)
+        code = film.settle(f, s, 1.0 / dt, held, x)
+        if code:
+            raise ValueError(film.STATUS[code])
+        film.wrench(f, s, x)
+        rough = 0.0
+        if interface.contact is not None:
+            contact.contact_load(interface.contact, f, s)
+            rough = s[CONTACT_FORCE]
+        a = complex(at[1], at[2])
+        left = a - initial - soft * harmonic(interface, x, a, at[0])
+        return np.array([(s[FORCE] + rough) / closing - 1.0, left.real / start, left.imag / start])
 
+    def step(at, dt, held, x):
+        """The unknowns after a step; None where Newton's iterations find none."""
+        for _ in range(MOST):
+            left = excess(at, dt, held, x)
+            jacobian = np.empty((3, 3))
+            for k in range(3):
+                moved = at.copy()
+                moved[k] += APART * start
+                jacobian[:, k] = (excess(moved, dt, held, x.copy()) - left) / (APART * start)
+            change = np.linalg.solve(jacobian, -left)
+            # Not further at once than half the wave.
+            change *= min(1.0, 0.5 * start / max(np.max(np.abs(change)), 1e-300))
+            at = at + change
+            if np.max(np.abs(change)) < SOLVED * start:
+                excess(at, dt, held, x)
+                return at
+        return None
 
-def operating_points(scene, ring, order, initial, nets) -> list[tuple[OperatingPoint, bool]]:
-    """Every operating point of a ring made with an `initial` waviness (m), and whether it holds; `nets` rising (m),
-    between which they are looked for.  It holds where more waviness left would need more to begin with.
+    def advanced(at, dt, x, halvings=0):
+        """As `step`, in halves where it finds none."""
+        before = x.copy()
+        with contextlib.suppress(ValueError, np.linalg.LinAlgError):
+            after = step(at, dt, before, x)
+            if after is not None:
+                return after
+        if halvings == HALVINGS:
+            wave = abs(complex(at[1], at[2]))
+            raise ValueError(f"a step of {dt:.3g} s from a wave of {1e6 * wave:.4g} um has no solution")
+        x[:] = before
+        return advanced(advanced(at, 0.5 * dt, x, halvings + 1), 0.5 * dt, x, halvings + 1)
 
-    **Source** Lebeck et al. (1979), ch. 3: the slope of the initial over the net waviness."""
-    found, before = [], operating_point(scene, ring, order, nets[0])
-    for net in nets[1:]:
-        here = operating_point(scene, ring, order, net)
-        if (before.initial - initial) * (here.initial - initial) <= 0.0 and before.initial != here.initial:
-            at = brentq(lambda h: operating_point(scene, ring, order, h).initial - initial, before.net, net, rtol=1e-6)
-            found.append((operating_point(scene, ring, order, at), here.initial > before.initial))
-        before = here
-    return found
-
-
-def _harmonic(interface, s, order, net) -> complex:
-    """n-th harmonic (N per rad) of the load int (p + p_c) r dr on the ring, cosine part real."""
-    f, contact = interface.f, interface.scene.contact
-    u = of_cells(f, interface.steady(f, s))
-    load = np.maximum(u, 0.0) @ table(f, AREA)[: u.shape[1]] * f[SCALE]
-    film = 2.0 * np.mean(load * np.exp(1j * order * f[ANGLE_STEP] * np.arange(len(load))))
-    if contact is None:
-        return complex(film)
-    # Of one wave, as fine as it takes.
-    theta = 2.0 * math.pi / FINE * np.arange(FINE)
-    touching = contact_fraction((interface.clearance + net * np.cos(theta)) / (HALF_HEIGHT * contact.roughness))
-    faces = 0.5 * (interface.scene.film.outer_radius**2 - interface.scene.film.inner_radius**2)
-    return complex(film + 2.0 * contact.compressive_strength * faces * np.mean(touching * np.cos(theta)))
+    at = np.array([interface.clearance, start, 0.0])
+    lay(at)
+    x = interface.steady(f, s)
+    times, found = np.concatenate([[0.0], np.geomspace(1e-3, 1.0, steps) * duration]), [at]
+    for dt in np.diff(times):
+        at = advanced(at, dt, x)
+        found.append(at)
+    at = np.array(found)
+    return times, at[:, 1] + 1j * at[:, 2], at[:, 0]

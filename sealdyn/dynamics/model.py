@@ -34,6 +34,12 @@ class Model:
     """
 
     def __init__(self, scene: Scene, accuracy: float = 1e-6, observed=None, film=None, film_error=None):
+        made = None
+        if scene.stator.elastic is not None:
+            from .elastic_ring import at_rest
+
+            # Its waves are those at rest, throughout.
+            made, scene = scene, at_rest(scene)
         self.scene, self.accuracy, self.film = scene, accuracy, film
         self.film_error = accuracy / 100 if film_error is None else film_error
         self.interface = Interface(scene, max(self.film_error, 1e-13), film)
@@ -43,6 +49,9 @@ class Model:
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed())
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
+        if made is not None:
+            was, left = (1e6 * seal.stator.waviness[0].amplitude for seal in (made, scene))
+            self.unknowns.reasons.append(f"elastic ring: {left:.4g} um of its {was:.4g} um of waves are left at rest")
         if self.unknowns.film_unknowns and self.unknowns.coulomb_rings:
             # What a stuck ring holds is looked for between steps, from the motion of the rings alone.
             key = f"{RING_NAMES[self.unknowns.coulomb_rings[0]]}.secondary_seal.law"

@@ -7,6 +7,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from . import coning, contact, secondary_seal
 from . import film as film_table
+from .elastic_ring import elastic_errors
 from .gas import GASES, gas_of
 from .pads import pads_errors
 from .reynolds import reynolds_errors
@@ -21,7 +22,7 @@ def check_scene(scene, run) -> None:
     """Raises `SceneError` with the first rule that a Scene, or its `run` (the `[run]` table), breaks."""
     _film(scene)
     _profile(scene)
-    for key, found, expected in waviness_errors(scene):
+    for key, found, expected in (*waviness_errors(scene), *elastic_errors(scene)):
         raise SceneError(key, found, expected)
     _closing(scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):

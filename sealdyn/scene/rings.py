@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from ..units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
+from .elastic_ring import ElasticRing
 from .secondary_seal import SecondarySeal
 from .waviness import Waviness
 
@@ -78,6 +79,8 @@ class Stator:
     """Of a stator that turns with a carrier of its own (counter-rotation: negative)."""
     waviness: list[Waviness] = field(default_factory=list)
     """Waves around its face, which turn with it."""
+    elastic: ElasticRing | None = None
+    """A ring that bends: its waviness is what it was made with, and less is left under load."""
     support: Support | None = None
     """Springs and dampers to the housing: the stator floats."""
     secondary_seal: SecondarySeal | None = None

@@ -76,7 +76,7 @@ def find(scene) -> Found:
 
 def run(scenario, settings, tools) -> dict:
     """All equilibria in the range, the opening force over clearance and the closing force."""
-    scene = frozen_at_start(scenario.scene)
+    scene = kept_waves(frozen_at_start(scenario.scene))
     found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
     low, high = _range(film, surfaces, found.roots, settings)
     roots = [root for root in found.roots if low <= root.clearance <= high]
@@ -107,6 +107,15 @@ def run(scenario, settings, tools) -> dict:
         },
     }
     return answer | {"verdict": _verdict(answer)}
+
+
+def kept_waves(scene):
+    """The scene with the waves that are left at rest of an elastic ring's."""
+    if scene.stator.elastic is None:
+        return scene
+    from ..dynamics.elastic_ring import at_rest
+
+    return at_rest(scene)
 
 
 def breakaway(scene) -> float:

@@ -8,7 +8,7 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
-from .equilibrium import find, root_row
+from .equilibrium import find, kept_waves, root_row
 
 WITH_WAVES = True
 OUTPUTS = {"clearance": "m", "load_support": "", "friction_coefficient": "", "leakage": "m^3/s",
@@ -46,7 +46,7 @@ def balances(scenario, values) -> dict:
     """OUTPUTS of a scenario with other `values`, {dotted key: as written}, where it rests: at the widest stable of its
     `roots`, which are those of the study equilibrium."""
     try:
-        scene = frozen_at_start(with_values(scenario, values).scene)
+        scene = kept_waves(frozen_at_start(with_values(scenario, values).scene))
         found = find(scene)
     except (ScenarioError, SceneError) as error:
         return {"failed": str(error)}

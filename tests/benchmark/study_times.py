@@ -17,6 +17,8 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 COMMANDS = {
     "equilibrium": ["run_in"],
+    "load-support": ["lebeck_n3", "--vary", "contact.roughness=0.1:0.4um:7"],
+    "elastic-ring": ["lebeck_elastic"],
     "pressure": ["fms_reference", "--at", "tilt=0.15mrad"],
     "coefficients": ["fmr_reference"],
     "transmissibility": ["fmr_reference"],

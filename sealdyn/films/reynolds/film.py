@@ -42,10 +42,10 @@ from .mesh import (
     parameters,
     table,
 )
-from .wrench import flow, sum_up, wrench
+from .wrench import flow, line_load, sum_up, wrench
 
 __all__ = ["FIELDS", "RUNG", "STANDING_WAVES", "STATUS", "WAVES_TOUCH", "accepts", "between", "cells_are_given",
-           "doubled", "fields", "flow", "grid", "grid_accuracy", "halved", "jacobian", "opening_law",
+           "doubled", "fields", "flow", "grid", "grid_accuracy", "halved", "jacobian", "line_load", "opening_law",
            "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench",
            "wrench_jacobian"]  # fmt: skip
 

@@ -43,6 +43,15 @@ def of_cells(f, x):
     return x[: angles * cells].reshape(angles, cells)
 
 
+def line_load(f, x) -> np.ndarray:
+    """What the pressure, counted from that of cavities, presses on the faces at each angle of a sector, (angles,) in N
+    per rad; `x` the unknowns."""
+    u = of_cells(f, x)
+    p, fill = np.empty_like(u), np.empty_like(u)
+    split(f, u, p, fill)
+    return p @ table(f, AREA)[: u.shape[1]]
+
+
 @value_kernel()
 def wrench(f, s, x):
     """Force (N) and moments (N m) of the film's absolute pressure on the stator, and the share of the area that is

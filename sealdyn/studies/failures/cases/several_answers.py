@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, newton
 
-from ....analysis.elastic_ring import ElasticRing, operating_point, operating_points
 from ....analysis.sources import lebeck_1979
 from ....analysis.sources.green_1989 import reference_scene
+from ....dynamics.elastic_ring import operating_point, operating_points
 from ....dynamics.model import Model
 from ....scene.contact import Contact
+from ....scene.elastic_ring import ElasticRing
 from ....scene.scene import Closing
 from ._common import cruise_dam, row
 
@@ -85,17 +86,20 @@ def three_wavinesses() -> dict:
     ring = ElasticRing(bending_stiffness=77.0, torsion_ratio=6.0, radius=47.54e-3)
     scene, half = lebeck_1979.scene_of(lebeck_1979.ROWS[1], (6, 36)), lebeck_1979.HALF
     initial = 35.0 * half
-    found = operating_points(scene, ring, 3, initial, np.geomspace(0.1, 20.0, 12) * half)
+    waves = [replace(scene.stator.waviness[0], amplitude=initial)]
+    scene = replace(scene, stator=replace(scene.stator, elastic=ring, waviness=waves))
+    along = [operating_point(scene, net) for net in np.geomspace(0.1, 20.0, 12) * half]
+    found = operating_points(scene, along)
     nets = [point.net for point, _ in found]
     near = (0.2 * half, 0.5 * half)
-    alone = brentq(lambda h: operating_point(scene, ring, 3, h).initial - initial, *near, rtol=1e-6)
+    alone = brentq(lambda h: operating_point(scene, h).initial - initial, *near, rtol=1e-6)
     return row(
         ITEM, "Three waviness states",
         (f"a search from 0.2 to 0.5 c: {alone / half:.3g} c", max(abs(alone / net - 1.0) for net in nets)),
         (f"every waviness searched: {', '.join(f'{net / half:.3g}' for net in nets)} c",
          max(abs(point.initial / initial - 1.0) for point, _ in found)),
         "off another waviness of the same ring, relative",
-        "lists every operating point of an elastic ring and whether it holds (analysis/elastic_ring.py)",
+        "lists every operating point of an elastic ring and whether it holds (study elastic-ring)",
     )  # fmt: skip
 
 
