@@ -10,9 +10,9 @@ import numpy as np
 from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.fluid import set_conditions
 from ..dynamics.model import Model
+from ..faces.film_thickness import h_min
 from ..faces.geometry import (
     COLLAPSE,
-    CONING_CHANGE,
     DZ,
     FLOOR,
     GAP_STATE_SIZE,
@@ -22,13 +22,14 @@ from ..faces.geometry import (
     GY_RATE,
     MEAN_SPIN,
     SPIN_DIFFERENCE,
-    smallest_gap,
 )
 from ..scenario.settings import values_in_si
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, seals_that_stick
+from ..scene.waviness import waves_of
 from ..units import Angle, Length, Speed
 
+WITH_WAVES = True
 # Rows and columns of the matrices.
 ORDER = ("axial", "tilt_x", "tilt_y")
 STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
@@ -92,6 +93,7 @@ def run(scenario, settings, tools) -> dict:
     frequencies = None if asked is None else values_in_si(scenario, str(asked), "rad/s", "--frequency")
     if model.interface.stores:
         answer["against_frequency"] = against_frequency(model, settings, speed, frequencies)
+        answer["synchronous"] = _listed(matrices(model, State(), omega=abs(speed))) if speed else None
     if frequencies is not None:
         answer["table"] = table(model, _speeds(settings, speed), frequencies)
     return answer | {"verdict": _verdict(answer)}
@@ -104,7 +106,7 @@ def matrices(
     stator lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to
     a film that stores only.  Raises ValueError where the faces touch."""
     s = gap_state(model, state, speed)
-    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt), s[CONING_CHANGE])[0]
+    thinnest = h_min(model.face, s)[0]
     if thinnest <= model.face[COLLAPSE]:
         raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
     # Eight differences reach four steps to either side: stay clear of the other face, which rough ones may pass.
@@ -128,8 +130,8 @@ def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndar
 
 def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
-    excess = axial_excess(model, gap_state(model, State(0.0, tilt, whirl)), model.closing_force())
-    thinnest = smallest_gap(model.face, 0.0, abs(tilt), model.coning_change())[0]
+    s = gap_state(model, State(0.0, tilt, whirl))
+    thinnest, excess = h_min(model.face, s)[0], axial_excess(model, s, model.closing_force())
     # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
     closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
     low, reach = closed - thinnest, model.clearance
@@ -176,14 +178,13 @@ def _tilted(model, settings, speed) -> dict:
 
 
 def _at(model, state: State, speed) -> dict:
-    thinnest = smallest_gap(model.face, state.dz, abs(state.tilt), model.coning_change(speed=speed))[0]
     return {
         "clearance": model.clearance,
         "axial_opening": state.dz,
         "tilt_x": state.tilt.real,
         "tilt_y": state.tilt.imag,
         "whirl": state.whirl,
-        "h_min": float(thinnest),
+        "h_min": float(h_min(model.face, gap_state(model, state, speed))[0]),
         "speed": float(speed),
     }
 
@@ -252,7 +253,8 @@ def _against_clearance(scene, model, settings) -> dict:
 
 def _against_tilt(model, settings) -> dict:
     """About a standing tilt up to nearly touching, the faces opening as they tilt."""
-    touch = min(h / r for r, h in model.aligned_gaps())
+    crests = sum(wave.amplitude for wave in waves_of(model.scene))
+    touch = min((h - crests) / r for r, h in model.aligned_gaps())
     tilts, rows, opening = np.linspace(0.0, 0.95 * touch, max(2, settings.points)), [], []
     for tilt in tilts:
         try:
@@ -277,6 +279,22 @@ def _hammer(answer) -> list[str]:
     return said
 
 
+def _table_error(answer) -> list[str]:
+    """What a table of slow motion says wrongly of motion at the shaft's frequency, of a film that stores."""
+    fast = answer.get("synchronous")
+    if not fast:
+        return []
+    ratio = {
+        (name, k): fast[name][k][k] / slow if (slow := answer[name][k][k]) else math.nan
+        for name in ("stiffness", "damping")
+        for k in (0, 1)
+    }
+    axial, tilt = ([ratio[name, k] for name in ("stiffness", "damping")] for k in (0, 1))
+    return [f"Motion at the shaft's frequency meets {axial[0]:.4g} times the axial stiffness of slow motion and "
+            f"{axial[1]:.4g} times its damping, {tilt[0]:.4g} and {tilt[1]:.4g} times in tilt: so far off is a table "
+            "of slow motion."]  # fmt: skip
+
+
 def _verdict(answer) -> list[str]:
     k, d, at, tilted = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"], answer["tilted"]
     pace = d[1, 1] * at["speed"]
@@ -286,7 +304,7 @@ def _verdict(answer) -> list[str]:
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]
-    said += _hammer(answer)
+    said += _table_error(answer) + _hammer(answer)
     if tilted["stiffness"] is None:
         return [*said, f"Tilted: {tilted['said']}."]
     t, where = np.array(tilted["stiffness"]), tilted["at"]

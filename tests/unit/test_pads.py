@@ -124,4 +124,4 @@ def test_the_clearance_of_a_padded_face_is_held_and_studies_speak():
     assert abs(held.axial_shift()) < 1e-9 * CLEARANCE
     scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "rayleigh_pads.toml")
     with pytest.raises(SceneError, match="the same all around"):
-        run_study("coefficients", scenario, None, workers=1)
+        run_study("transmissibility", scenario, None, workers=1)
