@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..analysis.steady_tilt import steady_tilt
 from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.fluid import set_conditions
 from ..dynamics.model import Model
@@ -25,7 +26,7 @@ from ..faces.geometry import (
 )
 from ..scenario.settings import values_in_si
 from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start, seals_that_stick
+from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..units import Angle, Length, Speed
 
@@ -141,28 +142,6 @@ def opened(model: Model, tilt: complex, whirl: float) -> float:
     if excess(low) * excess(high) > 0:
         raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
     return crossing(excess, low, high)
-
-
-def steady_tilt(model: Model) -> tuple[complex, float, str]:
-    """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
-    if seals_that_stick(model.scene):
-        return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
-    linear = model.linear_scene()
-    parts: dict[float, complex] = {}
-    for harmonic in model.segment().harmonics():
-        g = linear.relative(harmonic, linear.response(harmonic))
-        # Re(g e^{iwt}) is a forward and a backward circle.
-        w = harmonic.frequency
-        parts[w] = parts.get(w, 0.0) + (g[1] + 1j * g[2]) / 2
-        parts[-w] = parts.get(-w, 0.0) + ((g[1] - 1j * g[2]) / 2).conjugate()
-    mean = parts.pop(0.0, 0.0)
-    if abs(mean) > 0:
-        return complex(mean), 0.0, "mean tilt of the linear steady state"
-    if parts:
-        w, largest = max(parts.items(), key=lambda item: abs(item[1]))
-        if abs(largest) > 0:
-            return complex(largest), float(w), "turning tilt of the linear steady state, at one instant"
-    return 0.0, 0.0, "no forcing tilts this scene: aligned"
 
 
 def _tilted(model, settings, speed) -> dict:

@@ -1,0 +1,45 @@
+"""What the floor of the pressure costs beside cavities that keep their liquid, as `check` says it."""
+
+from pathlib import Path
+
+import pytest
+
+from sealdyn import read_scenario
+from sealdyn.analysis import floored_film
+from sealdyn.analysis.floored_film import floor_beside_cavities
+from sealdyn.simulation.simulate import prepare_run
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+# A film of 1 bar that a runout of 0.25 mrad tears.
+LOW = ["film.cavitation_pressure=0", "film.outer_pressure=0.2 bar", "film.coning=0", "rotor.runout=0.2 mrad"]
+
+
+def found(name, *overrides):
+    return floor_beside_cavities(prepare_run(read_scenario(SCENARIOS / f"{name}.toml", overrides))[0])
+
+
+def test_ludwig_and_allens_film_carries_half_as_much_again_by_its_floor(monkeypatch):
+    edges = ["film.outer_pressure=0.2 bar", "film.inner_pressure=0.2 bar"]
+    off = found("ludwig_allen", *edges)
+    assert off["force"] == pytest.approx(0.57, abs=0.03) and off["moment"] == pytest.approx(0.40, abs=0.03)
+    assert off["leakage"] == pytest.approx(-1.0, abs=1e-3)
+    # Cells do not matter: a grid with four times as many says the same.
+    monkeypatch.setattr(floored_film, "CELLS", (32, 256))
+    assert found("ludwig_allen", *edges)["force"] == pytest.approx(off["force"], abs=0.02)
+
+
+def test_edges_at_the_cavitation_pressure_starve_what_keeps_its_liquid():
+    off = found("ludwig_allen")
+    assert off["force"] is None and "starve" in off["said"]
+
+
+def test_a_tilt_that_turns_with_the_fluid_tears_nothing():
+    """The rotor's runout is steady in its own frame: the wedge is that of the fluid against it."""
+    assert found("fms_reference", *LOW)["cavitated"][0] > 0.01
+    assert found("fms_reference", *LOW, "stator.speed=1000 rad/s") is None
+
+
+def test_a_film_without_floor_or_clear_of_it_says_nothing():
+    assert found("fms_reference") is None
+    assert found("fms_reference", "film.cavitation_pressure=0") is None
+    assert found("lebeck_n3") is None
