@@ -18,8 +18,11 @@ REACH, SHRINKINGS = 3.0, 6
 # Largest residual, as a share of the answer; what a basis vector adds at least, above the rounding of derivatives;
 # least motion of the rings in a mode, as a share of what it does to the film; answers and rounds at most.
 SOLVED, NEW, STILL, MOST_ANSWERS, MOST_ROUNDS = 1e-8, 1e-10, 1e-9, 40, 12
+# Modes that are made exact: so many of those next to growing; iterations,
+# how exact (relative), and how near they were.
+EXACT, ITERATIONS, CONVERGED, NEAR = 8, 8, 1e-10, 0.05
 # Frequencies of the forced motion at which the residual is watched, over the reach.
-WATCHED = np.geomspace(1e-4, 1.0, 17)
+WATCHED = np.geomspace(1e-10, 1.0, 41)
 
 
 class ReducedFilm:
@@ -74,9 +77,10 @@ class ReducedFilm:
         left = self.residual(at, parts, np.broadcast_to(np.eye(3), (len(p), 3, 3)))
         return np.max(left / np.linalg.norm(parts, axis=1), axis=1)
 
-    def weights(self) -> np.ndarray:
-        """What the three unit motions of the gap do to the film, (3,)."""
-        return np.linalg.norm(self.by_gap, axis=0) + self.pace * np.linalg.norm(self.by_gap_rate, axis=0)
+    def pushed(self, p, gap) -> np.ndarray:
+        """What motions `gap` (3, m) do to the film at the sizes of their frequencies p (m,), (m,)."""
+        still, moving = (np.linalg.norm(by, axis=0) @ np.abs(gap) for by in (self.by_gap, self.by_gap_rate))
+        return still + np.abs(p) * moving
 
     def pencil(self, linear) -> tuple[np.ndarray, ...]:
         """Matrices (N, N) of `left y = p right y` on y = (displacements, rates, parts of the basis), and factors (N,)
@@ -131,7 +135,8 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
 
     `linear` LinearScene with a `film`.  The basis takes up answers along the imaginary axis until none is missed: H is
     analytic to the right of it, so its error there is no larger and no growing mode is missed.  Then it takes up those
-    at the eigenvalues until each has its residual solved.
+    at the eigenvalues until each has its residual solved.  Of modes far slower than the fastest that says little: those
+    next to growing are made exact.
     **Valid** a film that is stable between rings at rest.  Raises SceneError for eigenvalues that do not settle.
     """
     reduced, n, watched = ReducedFilm(linear.film, reach / REACH), len(linear.mass), 1j * reach * WATCHED
@@ -150,7 +155,8 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
         vectors = columns[:, None] * vectors
         q, parts = vectors[:n], vectors[2 * n :]
         # Rings that go together move no film, but would if they did not.
-        moved = reduced.weights() @ np.abs(linear.gap) @ np.abs(q)
+        finite = np.where(np.isfinite(values), values, 0.0)
+        moved = reduced.pushed(finite, np.abs(linear.gap) @ np.abs(q))
         answer = np.linalg.norm(parts, axis=0) + moved
         near = np.isfinite(values) & (np.abs(values) < reach) & (moved > STILL * answer)
         values, q, parts, answer = values[near], q[:, near], parts[:, near], answer[near]
@@ -160,8 +166,48 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
             reduced.add(complex(value))
         # With the answer there in the basis already, it is the basis that has a mode there, not rings and film.
         if reduced.basis.shape[1] == size:
-            return values[solved], q[:, solved], reduced
+            return *_exact(linear, values[solved], q[:, solved]), reduced
     raise _unsettled(values, left)
+
+
+def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
+    """The eigenvalues and shapes, those EXACT with the largest real parts by inverse iteration on rings and film
+    themselves.
+
+    **Source** Ruhe (1973), SIAM J. Numer. Anal. 10, 674: inverse iteration for nonlinear eigenproblems."""
+    film, gap = linear.film, linear.gap
+    stiffness, damping = film.slow
+    stiffness, damping = linear.stiffness - gap.T @ stiffness @ gap, linear.damping - gap.T @ damping @ gap
+
+    def dynamic(p):
+        return linear.mass * p * p + damping * p + stiffness + gap.T @ film.stiffness(p) @ gap
+
+    values, shapes = values.copy(), shapes.copy()
+    upper = [k for k in np.argsort(-values.real) if values[k].imag >= 0.0][:EXACT]
+    for k in upper:
+        partner = int(np.argmin(np.abs(values - values[k].conj())))
+        p, q = complex(values[k]), shapes[:, k] / np.linalg.norm(shapes[:, k])
+        for _ in range(ITERATIONS):
+            step = 1e-5 * abs(p)
+            if not step > 0.0:
+                break
+            slope = (dynamic(p + step) - dynamic(p - step)) / (2.0 * step)
+            try:
+                answer = np.linalg.solve(dynamic(p), slope @ q)
+            except np.linalg.LinAlgError:
+                # Exact already.
+                break
+            change = 1.0 / (q.conj() @ answer)
+            p, q = p - change, answer / np.linalg.norm(answer)
+            if abs(change) < CONVERGED * abs(p):
+                break
+        # One that leads elsewhere was well known, or is none of its own.
+        if abs(p - values[k]) < NEAR * abs(p):
+            if values[k].imag == 0.0:
+                p, q = complex(p.real), q * np.exp(-1j * np.angle(q[np.argmax(np.abs(q))]))
+            values[partner], shapes[:, partner] = np.conj(p), q.conj()
+            values[k], shapes[:, k] = p, q
+    return values, shapes
 
 
 def _unsettled(p, left) -> SceneError:

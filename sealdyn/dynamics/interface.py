@@ -143,6 +143,8 @@ class Interface:
             return self.f, self.unknowns
         f = self.film.parameters(self.film.whole(self._table_used), self.clearance)
         lay_surfaces(f, self.scene)
+        if hasattr(self.film, "for_modes"):
+            self.film.for_modes(f)
         return f, self.film.unknowns(f)
 
     def steady(self, f, s) -> np.ndarray:

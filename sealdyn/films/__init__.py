@@ -54,6 +54,8 @@ Its kernels are `wrench(f, s, x)`, `flow(f, s, x)` and `fields(f, s, x, out)`, a
 `WAVES_TOUCH`     (if any) True where wavy faces may be rough and meet; its `opening_law` takes the contact too.
 `line_load(f, x)` (if any) what the film presses on the faces at each angle of a sector of them, (angles,) in N per rad:
                   what bends a ring.
+`for_modes(f)`    (if any) changes a block for linearising: rates that the film has for a solver's sake are infinite in
+                  it, and no modes.
 `whole(film)`     (if any) the `Film` table of the whole circle where a part of it stands for all.
 `prepared(scene)` (if any) the `Film` table with what the rest of the scene decides of it; beside it
                   `cells_are_given(film)`, and `doubled(film, times)`, the table with twice the cells so many times, for

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.analysis.truncated_heights import carried, plateaus
+from sealdyn.dynamics.film_modes import even
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
@@ -208,3 +210,29 @@ def test_what_cannot_be(override, key):
     with pytest.raises(ScenarioError) as error:
         lebeck(override)
     assert error.value.key == key and "\n" not in str(error.value)
+
+
+def test_modes_of_a_film_with_cavities_are_those_of_all_its_cells():
+    """Rings and cells in one pencil: growth rates far below the fastest squeeze of the film, which the reduced film of
+    dynamics/film_modes.py has to find among what full cells have for a solver's sake."""
+    scene = lebeck("film.reynolds.cells_r=4", "film.reynolds.cells_theta=48", "film.reynolds.grid_accuracy=1").scene
+    linear = Model(scene).linear_scene()
+    film, gap, n = linear.film, linear.gap, len(linear.mass)
+    slow, scales = film.slow, film.scales
+    size = 2 * n + len(scales)
+    left, right = np.zeros((size, size)), np.zeros((size, size))
+    ring, rate, cells = slice(0, n), slice(n, 2 * n), slice(2 * n, size)
+    left[ring, rate] = right[ring, ring] = np.eye(n)
+    left[rate, ring] = -(linear.stiffness - gap.T @ (slow[0] + film.force_by_gap) @ gap)
+    left[rate, rate] = -(linear.damping - gap.T @ (slow[1] + film.force_by_gap_rate) @ gap)
+    left[rate, cells], right[rate, rate] = gap.T @ (film.force_by_x * scales), linear.mass
+    left[cells, ring], left[cells, rate] = -film.by_gap @ gap, -film.by_gap_rate @ gap
+    left[cells, cells], right[cells, cells] = -film.by_x.toarray() * scales, film.by_rate.toarray() * scales
+    rows, columns = even(np.abs(left) + 1e3 * np.abs(right))
+    values = eig(rows[:, None] * left * columns, rows[:, None] * right * columns, right=False)
+    values = values[np.isfinite(values) & (np.abs(values) < 1e9)]
+    exact = sorted(values, key=lambda value: -value.real)[:7]
+    found = sorted(linear.eigen()[0], key=lambda value: -value.real)[:7]
+    for value in exact:
+        assert min(abs(value - other) for other in found) < 1e-6 * abs(value)
+    assert exact[0].real == pytest.approx(-210.0, rel=0.01)

@@ -16,11 +16,11 @@ from scipy.sparse import csc_array
 
 from ...faces.geometry import INNER_PRESSURE, MEAN_SPIN, OUTER_PRESSURE, SPIN_DIFFERENCE
 from ...numerics.kernel import inner_kernel, value_kernel
-from .mesh import ANGLE_STEP, ANGLES, AREA, CAVITATES, CAVITATION, CELLS, SCALE, films, stored_rates, table
+from .mesh import ANGLE_STEP, ANGLES, AREA, CAVITATES, CAVITATION, CELLS, PACE, SCALE, films, stored_rates, table
 from .pressure import neighbours, split
 
-# How much faster than the faces turn a full cell is brought back to its volume, and at least (1/s).
-FASTER, SLOWEST = 30.0, 10.0
+# The least pace (1/s) of faces that counts in bringing full cells back to their volume.
+SLOWEST = 1.0 / 3.0
 # Pressures less than this share of the scale are rounding of a cell that is just full.
 DRIEST = 1e-10
 # What a balance has of its own unknown and of its neighbours', at the same angle and at the same radius.
@@ -96,9 +96,9 @@ def slopes(f, s, u, carried, ways, around, out):
 
 
 @inner_kernel()
-def pace(s):
+def pace(f, s):
     """How fast (1/s) a full cell is brought back to its volume."""
-    return max(FASTER * (abs(s[MEAN_SPIN]) + abs(s[SPIN_DIFFERENCE])), SLOWEST)
+    return f[PACE] * max(abs(s[MEAN_SPIN]) + abs(s[SPIN_DIFFERENCE]), SLOWEST)
 
 
 @value_kernel()
@@ -108,7 +108,7 @@ def residual(f, s, x, x_rate, res):
     n, dry = angles * cells, driest(f)
     u = x[:n].reshape(angles, cells)
     stored, carried, ways, around = films(f, s)
-    rates, arriving, back = np.empty_like(stored), np.empty_like(stored), pace(s)
+    rates, arriving, back = np.empty_like(stored), np.empty_like(stored), pace(f, s)
     stored_rates(f, s, rates)
     inflow(f, s, u, carried, ways, around, arriving)
     for k in range(angles):
@@ -129,7 +129,7 @@ def jacobian(f, s, x, x_rate, alpha, data):
     n, dry = angles * cells, driest(f)
     u = x[:n].reshape(angles, cells)
     stored, carried, ways, around = films(f, s)
-    by, back = np.empty((n, 5)), pace(s)
+    by, back = np.empty((n, 5)), pace(f, s)
     slopes(f, s, u, carried, ways, around, by)
     rows, values, at = np.empty(5, dtype=np.int64), np.empty(5), 0
     for k in range(angles):

@@ -30,9 +30,11 @@ from .mesh import (
     ANGLE_STEP,
     ANGLES,
     AREA,
+    AT_ONCE,
     CAVITATES,
     CAVITATION,
     CELLS,
+    PACE,
     RADIUS,
     SCALE,
     SECTORS,
@@ -45,8 +47,8 @@ from .mesh import (
 from .wrench import flow, line_load, sum_up, wrench
 
 __all__ = ["FIELDS", "RUNG", "STANDING_WAVES", "STATUS", "WAVES_TOUCH", "accepts", "between", "cells_are_given",
-           "doubled", "fields", "flow", "grid", "grid_accuracy", "halved", "jacobian", "line_load", "opening_law",
-           "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench",
+           "doubled", "fields", "flow", "for_modes", "grid", "grid_accuracy", "halved", "jacobian", "line_load",
+           "opening_law", "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench",
            "wrench_jacobian"]  # fmt: skip
 
 RUNG, FIELDS, STANDING_WAVES, WAVES_TOUCH = 4, (PRESSURE, FILL), True, True
@@ -93,6 +95,12 @@ def whole(film):
     cells_r, angles, sectors = cells_of(film)
     around = max(angles * sectors, AROUND)
     return replace(film, reynolds=replace(film.reynolds, cells_r=cells_r, cells_theta=around, sectors=1))
+
+
+def for_modes(f):
+    """Leave the block `f` of a film that is linearised its real modes only: full cells go back to their volume at
+    once."""
+    f[PACE] = AT_ONCE
 
 
 def grid_accuracy(film) -> float:

@@ -37,11 +37,13 @@ from ...scene.reynolds import Reynolds, cells_of
 from .roughness import contact_share, mean_cube, mean_film, open_height, open_slope
 
 # Block after the faces: cells over the radius, angles of a sector, sectors of the circle, steps in ln r and theta, the
-# pressure (Pa) that counts as 1, whether the flow sees the asperities, whether the film cavitates, and the cavitation
-# pressure (Pa; 0 without).
-(CELLS, ANGLES, SECTORS, RADIAL_STEP, ANGLE_STEP, SCALE, ROUGH, CAVITATES, CAVITATION, TABLES) = range(
-    FACE_SIZE, FACE_SIZE + 10
+# pressure (Pa) that counts as 1, whether the flow sees the asperities, whether the film cavitates, the cavitation
+# pressure (Pa; 0 without), and how much faster than the faces turn a full cell is brought back to its volume.
+(CELLS, ANGLES, SECTORS, RADIAL_STEP, ANGLE_STEP, SCALE, ROUGH, CAVITATES, CAVITATION, PACE, TABLES) = range(
+    FACE_SIZE, FACE_SIZE + 11
 )
+# That of a run, and where it must not show: in the modes.
+FASTER, AT_ONCE = 30.0, 1e8
 # Tables, each with room for all edges: radius (m), rise of the aligned film (m) and arm of the tilt (m) at the nodes,
 # then rise and arm at the edges; of each cell int r dr (m^2), int of the arm r dr (m^3), int r^3 dr (m^4).
 RADIUS, RISE, ARM, EDGE_RISE, EDGE_ARM, AREA, TURNED, DRAG, ROWS = range(9)
@@ -60,7 +62,7 @@ def parameters(film, clearance: float, error: float = 1e-8, orders=()) -> np.nda
     f[CELLS], f[ANGLES], f[SECTORS] = radial, angles, sectors
     f[RADIAL_STEP], f[ANGLE_STEP] = step, 2.0 * math.pi / (sectors * angles)
     base = film.cavitation_pressure if options.cavitation == "mass-conserving" else None
-    f[CAVITATES], f[CAVITATION] = base is not None, base or 0.0
+    f[CAVITATES], f[CAVITATION], f[PACE] = base is not None, base or 0.0, FASTER
     spread = [abs(p - f[CAVITATION]) for p in (*points(film.inner_pressure), *points(film.outer_pressure))]
     f[SCALE], f[ROUGH] = max(spread) or 1.0, options.roughness == "christensen"
 
