@@ -247,8 +247,8 @@ class _Progress:
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
+    from .analysis.beside_reynolds import beside_reynolds
     from .analysis.design_rules import followability
-    from .analysis.floored_film import floor_beside_cavities
     from .archive import ArchiveError
     from .report.text import resolved_lines
     from .scene.scene import SceneError
@@ -268,7 +268,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
         "design_rules": followability(run.model),
-        "floor": floor_beside_cavities(run),
+        "beside_reynolds": beside_reynolds(run),
     }
     if as_json:
         print(json.dumps(found))

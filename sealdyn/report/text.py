@@ -202,7 +202,7 @@ def resolved_lines(found: dict) -> list[str]:
         where = f"{_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m"
         out.append(f"# equilibrium clearance {where}, {kind}")
     out += [f"# {'ok' if rule['holds'] else 'WARNING'}: {rule['said']}" for rule in found["design_rules"]]
-    out += [f"# {found['floor']['said']}"] if found.get("floor") else []
+    out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
     return out
