@@ -36,8 +36,8 @@ from .steady_tilt import steady_tilt
 
 # Cells over radius and angle, and the least share of the face that counts as cavitated.
 CELLS, TORN = (40, 96), 1e-3
-# Differences below this are those of the cells.
-FINE = 3e-3
+# Differences below this are those of the cells; a film with less than this share of a force has lost its liquid.
+FINE, STARVED = 3e-3, 1e-6
 
 
 def beside_reynolds(run) -> dict | None:
@@ -72,11 +72,10 @@ def beside_reynolds(run) -> dict | None:
     code = keeps.start(g, other, x)
     if code == 0:
         keeps.flow(g, other, x)
-    if code or other[CAVITATED] > 1.0 - TORN:
-        starved = (
-            f"{what}: a film that keeps its liquid is starved there, edges at the cavitation pressure give it none"
-        )
-        return found | {"said": starved} if torn else None
+    floor_alone = (scene.film.cavitation_pressure or 0.0) * math.pi * (table.outer_radius**2 - table.inner_radius**2)
+    if code or (torn and other[FORCE] - floor_alone < STARVED * (s[FORCE] - floor_alone)):
+        why = "a film that keeps its liquid is starved, edges at the cavitation pressure give it none"
+        return found | {"said": f"{what}: {why}"} if torn else None
     moment = [math.hypot(at[MOMENT_X], at[MOMENT_Y]) for at in (s, other)]
     parts = {"leakage": (s[FLOW_INNER], other[FLOW_INNER]), "force": (s[FORCE], other[FORCE]), "moment": moment}
     if not tilt:
