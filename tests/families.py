@@ -11,6 +11,7 @@ from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.film import Film
 from sealdyn.scene.gas import GASES, GasDam, GasReynolds
+from sealdyn.scene.reynolds import Reynolds
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
@@ -138,6 +139,40 @@ def gas_reynolds(random, other_faces=True) -> Drawn:
         wave = Waviness(int(random.integers(2, 5)), clearance * log(0.01, 0.2), float(random.uniform(0, 6)))
         scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
     return Drawn(scene, drawn.duration, log(1e-3, 3e-2), drawn.start, (*words, f"{cells[0]} x {cells[1]}"))
+
+
+def reynolds(random) -> Drawn:
+    """A scene of `wide` without contact and dry friction whose film is a liquid with cavities, over few turns: sealed
+    pressures from far above that of cavities to hardly above, few cells, standing waves, any arrangement."""
+    log = partial(logarithmic, random)
+    while not (drawn := wide(random, 4)).smooth or drawn.scene.film.inertia:
+        pass
+    scene, film = drawn.scene, drawn.scene.film
+    options = Reynolds(
+        cells_r=int(random.integers(4, 9)), cells_theta=2 * int(random.integers(16, 25)), grid_accuracy=1.0
+    )
+    # Over the pressures that the wedge makes: cavities from none to half of the face.
+    width = film.outer_radius - film.inner_radius
+    speed = max(scene.shaft.speed.value) if isinstance(scene.shaft.speed, PiecewiseLinear) else scene.shaft.speed
+    viscosity = max(film.viscosity.value) if isinstance(film.viscosity, PiecewiseLinear) else film.viscosity
+    over = 6.0 * viscosity * abs(speed) * width**2 / film.clearance**2 * log(1e-3, 1.0)
+    edges = [p.value if isinstance(p, PiecewiseLinear) else (p,) for p in (film.inner_pressure, film.outer_pressure)]
+    cavities = min(min(edge) for edge in edges)
+    lifted = [
+        PiecewiseLinear(p.time, tuple(over + v for v in p.value)) if isinstance(p, PiecewiseLinear) else over + p
+        for p in (film.inner_pressure, film.outer_pressure)
+    ]
+    words = [
+        *(word for word in drawn.words if not word.startswith("film")),
+        f"{options.cells_r} x {options.cells_theta}",
+    ]
+    table = replace(film, model="reynolds", reynolds=options, geometry="cylindrical", cavitation_pressure=cavities,
+                    inner_pressure=lifted[0], outer_pressure=lifted[1])  # fmt: skip
+    scene = replace(scene, film=table)
+    if random.random() < 0.3 and scene.stator.speed == 0.0:
+        wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.3), float(random.uniform(0, 6)))
+        scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
+    return Drawn(scene, drawn.duration, log(1e-3, 3e-2), "rest", tuple(words))
 
 
 def _with_other_faces(random, scene, duration, words):

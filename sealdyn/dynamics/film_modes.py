@@ -182,7 +182,7 @@ def _exact(linear, values, shapes) -> tuple[np.ndarray, np.ndarray]:
     def dynamic(p):
         return linear.mass * p * p + damping * p + stiffness + gap.T @ film.stiffness(p) @ gap
 
-    values, shapes = values.copy(), shapes.copy()
+    values, shapes = values.astype(complex), shapes.astype(complex)
     upper = [k for k in np.argsort(-values.real) if values[k].imag >= 0.0][:EXACT]
     for k in upper:
         partner = int(np.argmin(np.abs(values - values[k].conj())))
