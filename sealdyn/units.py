@@ -23,8 +23,11 @@ class QuantityError(ValueError):
     """A value that is not what its key asks for: what was found, what is expected."""
 
     def __init__(self, found: str, expected: str):
-        super().__init__(f"found {found}; expected {expected}")
+        super().__init__(found, expected)
         self.found, self.expected = found, expected
+
+    def __str__(self):
+        return f"found {self.found}; expected {self.expected}"
 
 
 @dataclass(frozen=True)

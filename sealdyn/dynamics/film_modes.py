@@ -142,11 +142,15 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
     reduced, n, watched = ReducedFilm(linear.film, reach / REACH), len(linear.mass), 1j * reach * WATCHED
     reduced.add(0.0)
     reduced.add(watched[-1])
-    for _ in range(MOST_ANSWERS):
-        left = reduced.forced_residuals(watched)
+    # Where the answer is in the basis already, what is left is rounding.
+    unknown = np.ones(len(watched), bool)
+    for _ in range(MOST_ANSWERS + len(watched)):
+        left = np.where(unknown, reduced.forced_residuals(watched), 0.0)
         if left.max() < SOLVED:
             break
-        reduced.add(watched[np.argmax(left)])
+        worst, size = int(np.argmax(left)), reduced.basis.shape[1]
+        reduced.add(watched[worst])
+        unknown[worst] = reduced.basis.shape[1] > size
     else:
         raise _unsettled(watched, left)
     for _ in range(MOST_ROUNDS):

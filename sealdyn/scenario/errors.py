@@ -16,11 +16,14 @@ class ScenarioError(Exception):
     """A scenario that cannot be run; its text is one line.  `key` is dotted, table first."""
 
     def __init__(self, name: str, key: str, found: str, expected: str):
-        table, _, last = key.rpartition(".")
-        where = f"[{table}] {last}" if table else f"[{last}]" if last else ""
-        line = f"{name}: {where + ': ' if where else ''}found {found}; expected {expected}"
-        super().__init__("".join(c if c.isprintable() else " " for c in line))
+        super().__init__(name, key, found, expected)
         self.name, self.key, self.found, self.expected = name, key, found, expected
+
+    def __str__(self):
+        table, _, last = self.key.rpartition(".")
+        where = f"[{table}] {last}" if table else f"[{last}]" if last else ""
+        line = f"{self.name}: {where + ': ' if where else ''}found {self.found}; expected {self.expected}"
+        return "".join(c if c.isprintable() else " " for c in line)
 
 
 @cache

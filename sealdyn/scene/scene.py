@@ -88,5 +88,8 @@ class SceneError(ValueError):
     """A scene that cannot exist: the key to blame, what was found, what is expected."""
 
     def __init__(self, key: str, found: str, expected: str):
-        super().__init__(f"{key}: found {found}; expected {expected}")
+        super().__init__(key, found, expected)
         self.key, self.found, self.expected = key, found, expected
+
+    def __str__(self):
+        return f"{self.key}: found {self.found}; expected {self.expected}"

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..scene.scene import SceneError
 from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import solve
 from .looked_at import LookedAt
@@ -64,12 +65,17 @@ class Comparison:
         return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
 
     def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
-        """The same of the film's cells, from the run with half of them; None of a film that has none to halve."""
+        """The same of the film's cells, from the run with half of them; None of a film that has none to halve, or that
+        half of them cannot describe."""
         model = self.run.model
         film = model.observed[0]
         if not hasattr(film, "halved"):
             return None
-        coarse = Model(replace(model.scene, film=model.interface.halved()), model.accuracy, film=model.film)
+        try:
+            coarse = Model(replace(model.scene, film=model.interface.halved()), model.accuracy, film=model.film)
+        except SceneError:
+            # The run is done: half its cells tell nothing.
+            return None
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
         apart = self._apart(again, method, tolerance, progress, stop)

@@ -6,6 +6,7 @@ from scipy.linalg import block_diag, eig
 from scipy.sparse import csc_array
 
 from sealdyn.dynamics.condensation import LinearFilm
+from sealdyn.dynamics.film_modes import ReducedFilm
 from sealdyn.dynamics.modes import LinearScene, RingNumbers
 
 N = 40
@@ -68,3 +69,12 @@ def test_state_matrix_of_a_film_that_stores_is_refused():
     film = line_of_pressures(1e-3, 0.0, 0.0)
     with pytest.raises(ValueError):
         LinearScene([STATOR, RIGID], *film.slow, film).state_matrix()
+
+
+def test_answers_that_leave_rounding_and_no_more_are_no_reason_to_give_up(monkeypatch):
+    film = line_of_pressures(1e-3, 2500.0, 1.0)
+    expected = LinearScene([STATOR, RIGID], *film.slow, film).eigen()[0]
+    sharp = ReducedFilm.forced_residuals
+    monkeypatch.setattr(ReducedFilm, "forced_residuals", lambda self, p: np.maximum(sharp(self, p), 2e-8))
+    found = LinearScene([STATOR, RIGID], *film.slow, film).eigen()[0]
+    assert np.sort_complex(found) == pytest.approx(np.sort_complex(expected), rel=1e-7)

@@ -47,8 +47,11 @@ class NoAverage(RuntimeError):
     """A short run that gives no averages: how it ended, and a sentence."""
 
     def __init__(self, kind: Status, said: str):
-        super().__init__(said)
-        self.kind = kind
+        super().__init__(kind, said)
+        self.kind, self.said = kind, said
+
+    def __str__(self):
+        return self.said
 
 
 @dataclass(frozen=True)
