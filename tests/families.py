@@ -142,10 +142,10 @@ def gas_reynolds(random, other_faces=True) -> Drawn:
 
 
 def reynolds(random) -> Drawn:
-    """A scene of `wide` without contact and dry friction whose film is a liquid with cavities, over few turns: sealed
-    pressures from far above that of cavities to hardly above, few cells, standing waves, any arrangement."""
+    """A scene of `wide` without dry friction whose film is a liquid with cavities, over few turns: sealed pressures
+    from far above that of cavities to hardly above, few cells, standing waves, contact, any arrangement."""
     log = partial(logarithmic, random)
-    while not (drawn := wide(random, 4)).smooth or drawn.scene.film.inertia:
+    while "o-ring" in (drawn := wide(random, 4)).words or drawn.scene.film.inertia:
         pass
     scene, film = drawn.scene, drawn.scene.film
     options = Reynolds(
@@ -169,8 +169,8 @@ def reynolds(random) -> Drawn:
     table = replace(film, model="reynolds", reynolds=options, geometry="cylindrical", cavitation_pressure=cavities,
                     inner_pressure=lifted[0], outer_pressure=lifted[1])  # fmt: skip
     scene = replace(scene, film=table)
-    if random.random() < 0.3 and scene.stator.speed == 0.0:
-        wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.3), float(random.uniform(0, 6)))
+    if random.random() < 0.4 and scene.stator.speed == 0.0:
+        wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.6), float(random.uniform(0, 6)))
         scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
     return Drawn(scene, drawn.duration, log(1e-3, 3e-2), "rest", tuple(words))
 

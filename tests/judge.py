@@ -17,6 +17,7 @@ from scipy.sparse import csc_matrix
 
 from sealdyn.faces.film_thickness import h_min_of
 from sealdyn.faces.geometry import COLLAPSE
+from sealdyn.simulation.second_run import beside_jumps
 from sealdyn.solvers.contract import absolute_tolerances
 from sealdyn.solvers.integrate import solve
 
@@ -237,7 +238,8 @@ def truth_by_steps(make, scales, times, accuracy, method, budget=60.0) -> Truth 
     (others, _), (columns, contacts) = found
     if not len(columns) or not len(others):
         return None
-    return Truth(columns, _agreed(scales, columns, others, accuracy, 0.1), contacts, f"{method} twice, sharper")
+    known = _agreed(scales, columns, others, accuracy, 0.1, beside_jumps)
+    return Truth(columns, known, contacts, f"{method} twice, sharper")
 
 
 def truth_in_own_words(make, scales, times, accuracy, chosen, budget=60.0) -> Truth | None:
@@ -262,9 +264,9 @@ def truth_in_own_words(make, scales, times, accuracy, chosen, budget=60.0) -> Tr
     return Truth(columns, _agreed(scales, columns, others, accuracy), contacts, f"own words, {kind.__name__} twice")
 
 
-def _agreed(scales, columns, others, accuracy, share=0.01):
-    """Rows up to which two references are one to a share of the accuracy."""
+def _agreed(scales, columns, others, accuracy, share=0.01, counted=np.asarray):
+    """Rows up to which two references are one to a share of the accuracy, in errors that are `counted`."""
     rows = min(len(columns), len(others))
-    apart = scales.errors(columns[:rows], others[:rows]).max(axis=1)
+    apart = counted(scales.errors(columns[:rows], others[:rows])).max(axis=1)
     bad = np.flatnonzero(apart > accuracy * share)
     return int(bad[0]) if len(bad) else rows

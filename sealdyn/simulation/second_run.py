@@ -12,9 +12,10 @@ from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_f
 from ..solvers.integrate import solve
 from .looked_at import LookedAt
 
-# Instants at which two runs are compared: per fastest period and at most, and after each start of a stretch, where fast
-# parts die away, and before its end, where a step is cut short, by decades of its length.
-PER_PERIOD, MOST, AFTER, DECADES = 12, 3000, 12, 7
+# Instants at which two runs are compared: per fastest period, at least (many of a film whose loads jump: a hundredth of
+# them must be some) and at most, and after each start of a stretch, where fast parts die away, and before its end,
+# where a step is cut short, by decades of its length.
+PER_PERIOD, FEW, MANY, MOST, AFTER, DECADES = 12, 100, 500, 3000, 12, 7
 GOLDEN = 0.6180339887498949
 # By how much sharper the second run is, and at least.
 SHARPER, LEAST_SHARPER = 30.0, 3.0
@@ -97,7 +98,7 @@ class Comparison:
         if both.any():
             errors = self.scales.errors(self.columns[both], other.columns[both])
             if hasattr(self.run.model.interface.film, "settle"):
-                errors[:, 2:] = np.minimum(errors[:, 2:], np.quantile(errors[:, 2:], BESIDE_JUMPS, axis=0))
+                errors = beside_jumps(errors)
             found[both] = errors.max(axis=1)
         if outcome.status != Status.OK:
             # One run ends well, the other does not: from there on nothing is right.
@@ -137,10 +138,18 @@ def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
     return other, tolerance_for(other, max(run.model.accuracy / SHARPER, 2 * attainable(other, run.memory)), run.memory)
 
 
+def beside_jumps(errors: np.ndarray) -> np.ndarray:
+    """Errors of LookedAt (m, 6) with those of loads and flows that so few instants have cut to what the rest has."""
+    if not len(errors):
+        return errors
+    return np.column_stack([errors[:, :2], np.minimum(errors[:, 2:], np.quantile(errors[:, 2:], BESIDE_JUMPS, axis=0))])
+
+
 def instants(run) -> np.ndarray:
     """Times (m,) (s) at which runs are compared: evenly over the run, but in step with nothing, and closer after the
     starts of its stretches and before their ends."""
-    count = int(min(max(PER_PERIOD * run.duration / run.model.shortest_period, 100), MOST))
+    least = MANY if hasattr(run.model.interface.film, "settle") else FEW
+    count = int(min(max(PER_PERIOD * run.duration / run.model.shortest_period, least), MOST))
     evenly = np.mod(GOLDEN * np.arange(1, count + 1), 1.0) * run.duration
     stretches = run.intervals[:: max(1, len(run.intervals) // 30)]
     decades = 10.0 ** -np.linspace(0.3, DECADES, AFTER)
