@@ -247,11 +247,11 @@ class _Progress:
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
-    from .analysis.beside_reynolds import beside_reynolds
     from .analysis.design_rules import followability
     from .archive import ArchiveError
     from .report.text import resolved_lines
     from .scene.scene import SceneError
+    from .simulation.beside_reynolds import beside_reynolds
     from .simulation.simulate import prepare_run
     from .simulation.summary import model_chosen
 

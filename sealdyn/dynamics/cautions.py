@@ -14,6 +14,7 @@ class Concern(StrEnum):
     BLOWN_OPEN = "blown open"
     CONTACT_ARM = "arm of the contact force"
     ENERGY = "energy"
+    FLOOR = "pressure floor"
     FLASHING = "flashing"
     HEATING = "heating"
     INERTIA = "inertia of the film"

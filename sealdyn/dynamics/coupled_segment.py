@@ -144,7 +144,12 @@ class CoupledSegment(Segment):
         y, yp = guess.copy(), np.zeros(self.size)
         y[self.film] = near[self.film]
         matrix, kept = self._newton
-        found = stage(tau, alpha, base, y, yp, matrix, kept, self.n, self._stores, small, self.native.block)
+        try:
+            found = stage(tau, alpha, base, y, yp, matrix, kept, self.n, self._stores, small, self.native.block)
+        except np.linalg.LinAlgError:
+            # So short a step that what moves a ring is lost in rounding.
+            kept[0] = 0.0
+            return None
         if found < 0:
             return None
         self.settled += found

@@ -12,8 +12,8 @@ from .coupled_native import CODE, FIRST, KERNELS, NUMBERS, PACE, SCALES, WHEN, i
 from .film_derivatives import SETTLE
 from .native import CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, array
 
-# Newton's steps with one matrix and in all; a contraction slower than this asks for a fresh matrix.
-WITH_ONE, MOST, SLOW = 4, 24, 0.3
+# Newton's steps in all; a contraction slower than this asks for a fresh matrix; the least share of a step.
+MOST, SLOW, LEAST = 32, 0.3, 1.0 / 64.0
 # Steps of differences, as a share of the scales; and of the rate between them that such a step would be.
 STEP, RATE = 1e-6, 1e-2
 # What a stage returns instead of the number of its steps.
@@ -72,7 +72,7 @@ def stage(tau, alpha, base, y, yp, matrix, kept, places, stores, small, block):
     """
     rings, size, scales = block[FIRST], block[SIZE], array(block, SCALES)
     res, before, settled, with_one = np.zeros(size), math.inf, 0, 0
-    fresh = False
+    last, step, share, fresh, made_there = y[:rings].copy(), np.zeros(rings), 1.0, False, False
     if abs(kept[0] - alpha) > SLOW * alpha:
         kept[0] = 0.0
     for _ in range(MOST):
@@ -89,10 +89,23 @@ def stage(tau, alpha, base, y, yp, matrix, kept, places, stores, small, block):
         change, size_of = np.linalg.solve(matrix, res[:rings]), 0.0
         for i in range(rings):
             size_of = max(size_of, abs(change[i]) / scales[i])
+        if before < math.inf and not size_of < (1.0 - 0.25 * share) * before:
+            # A kink was passed, behind which the way leads back: a part of the step, by the matrix of its start.
+            share = 0.5 * share if made_there else 1.0
+            kept[0] = kept[0] if made_there else 0.0
+            if share < LEAST:
+                break
+            for i in range(rings):
+                y[i] = last[i] - share * step[i] if made_there else last[i]
+            continue
         if not size_of < math.inf:
-            kept[0] = 0.0
-            return NOT_CONVERGED
+            break
+        if share < 1.0:
+            share, kept[0] = 1.0, 0.0
+            continue
+        made_there = fresh and with_one == 0
         for i in range(rings):
+            last[i], step[i] = y[i], change[i]
             y[i] -= change[i]
         with_one += 1
         # What the next change would be, by how these shrink.

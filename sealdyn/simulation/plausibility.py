@@ -11,6 +11,7 @@ from ..dynamics.signals import fields, fields_of, samples
 from ..numerics.piecewise_linear import initially, points
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
+from .beside_reynolds import TORN, beside_reynolds
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
@@ -32,8 +33,18 @@ def cautions(scenario, run, outcome, leakage, temperature_rise, h_min) -> list[C
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
     elif not isinstance(scene.film.coefficients, Coefficients) or model.interface.name != "linear":
-        found += [*_turbulence(model, leakage), *_inertia(scene)]
+        found += [*_turbulence(model, leakage), *_inertia(scene), *_floored(run)]
     return found
+
+
+def _floored(run):
+    """A floor of the pressure where cavities that keep their liquid would push, tilt or leak otherwise."""
+    beside = beside_reynolds(run) if run.model.scene.film.cavitation_pressure is not None else None
+    if beside is None or beside["cavitated"][0] <= TORN:
+        return
+    off = [abs(beside[part]) for part in ("force", "moment", "leakage") if beside[part] is not None]
+    if not off or max(off) > run.model.accuracy:
+        yield Caution(Concern.FLOOR, beside["said"])
 
 
 def _units(scenario, model):

@@ -243,7 +243,7 @@ def _only_with_rates(steps):
 
 
 CHOSEN = {
-    name: steps if name == "ida" else _only_with_rates(steps) for name, steps in METHODS.items()
+    name: steps if name in ("ida", "trbdf2") else _only_with_rates(steps) for name, steps in METHODS.items()
 }  # fmt: skip
 REFERENCE_METHODS = {**CHOSEN, "bdf2": _bdf_of_order_two, "rk45": _scipy, "lsoda": _scipy, "newmark": _newmark,
           "generalised_alpha": _generalised_alpha, "midpoint": _midpoint}  # fmt: skip

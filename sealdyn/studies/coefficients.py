@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..analysis.steady_tilt import steady_tilt
 from ..dynamics.equilibrium import axial_excess, crossing
 from ..dynamics.fluid import set_conditions
 from ..dynamics.model import Model
@@ -28,6 +27,7 @@ from ..scenario.settings import values_in_si
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
+from ..simulation.steady_tilt import steady_tilt
 from ..units import Angle, Length, Speed
 
 WITH_WAVES = True

@@ -3,8 +3,8 @@
     python tests/benchmark/gallery.py
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
-studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_gas.json and honesty_gas_reynolds.json
-(honesty.py).  The captions stand in gallery.md.
+studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_reynolds.json, honesty_gas.json and
+honesty_gas_reynolds.json (honesty.py).  The captions stand in gallery.md.
 """
 
 import json
@@ -22,7 +22,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, honesty, honesty_gas, honesty_gas_reynolds, failures):
+    for rows in (fastest, models, machine, scenarios, *FAMILIES, failures):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -79,6 +79,11 @@ def honesty():
     yield from _honesty("honesty.json")
 
 
+def honesty_reynolds():
+    """The same with films that tear."""
+    yield from _honesty("honesty_reynolds.json")
+
+
 def honesty_gas():
     """The same with gas dams."""
     yield from _honesty("honesty_gas.json")
@@ -122,6 +127,8 @@ def failures():
         yield (f"{row['item']} {row['title']}", row["failing"], number(row["failing_error"]), row["survivor"],
                number(row["survivor_error"]), row["unit"])  # fmt: skip
 
+
+FAMILIES = honesty, honesty_reynolds, honesty_gas, honesty_gas_reynolds
 
 if __name__ == "__main__":
     PAGE.write_text(page())

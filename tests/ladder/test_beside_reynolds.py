@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from sealdyn import read_scenario
-from sealdyn.analysis import beside_reynolds as module
-from sealdyn.analysis.beside_reynolds import beside_reynolds
-from sealdyn.simulation.simulate import prepare_run
+from sealdyn.simulation import beside_reynolds as module
+from sealdyn.simulation.beside_reynolds import beside_reynolds
+from sealdyn.simulation.simulate import prepare_run, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 # A film of 1 bar that a runout of 0.25 mrad tears.
@@ -50,3 +50,13 @@ def test_flow_along_the_circle_matters_in_wide_faces():
 def test_a_film_that_is_none_of_lines_says_nothing():
     assert found("lebeck_n3") is None
     assert found("fms_reference", "film.model=linear", "film.coefficients=radial") is None
+
+
+def test_a_run_with_a_floor_that_acts_says_what_its_cavities_would_change(tmp_path):
+    short = ["run.turns=2", "run.accuracy=1e-3"]
+    torn = simulate(read_scenario(SCENARIOS / "fms_reference.toml", [*LOW, *short]), tmp_path / "torn.h5").summary
+    said = [w for w in torn["warnings"] if w.startswith("floor of the pressure")]
+    assert len(said) == 1 and "leakage" in said[0] and "reynolds" in said[0]
+    full = simulate(read_scenario(SCENARIOS / "fms_reference.toml", ["film.cavitation_pressure=0", *short]),
+                    tmp_path / "full.h5").summary  # fmt: skip
+    assert not [w for w in full["warnings"] if "floor" in w]

@@ -33,8 +33,8 @@ LOOKS = {
     "adams": (BLUE, "-", "o"), "bdf": (GREEN, "-", "s"), "bdf2": (GREEN, "--", "D"), "ida": (PURPLE, "-", "^"),
     "expm": (BLACK, "-", "*"), "dop853": (VERMILLION, "-", "v"), "rk45": (VERMILLION, "--", "<"),
     "lsoda": (SKY, "-", "p"), "radau": (ORANGE, "-", "h"), "newmark": (GREY, "--", "P"),
-    "generalised_alpha": (GREY, ":", "X"), "midpoint": (BLACK, ":", "d"),
+    "generalised_alpha": (GREY, ":", "X"), "midpoint": (BLACK, ":", "d"), "trbdf2": (BLUE, "--", "v"),
 }  # fmt: skip
 SHORT = {"adams": "Adams", "bdf": "BDF", "bdf2": "BDF 2", "ida": "IDA", "dop853": "DOP853", "rk45": "RK45",
          "lsoda": "LSODA", "radau": "Radau", "newmark": "Newmark", "generalised_alpha": "gen.-α",
-         "midpoint": "midpoint", "expm": "expm"}  # fmt: skip
+         "midpoint": "midpoint", "expm": "expm", "trbdf2": "TR-BDF2"}  # fmt: skip

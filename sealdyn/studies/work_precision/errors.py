@@ -8,6 +8,7 @@ import numpy as np
 
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
+from ...simulation.second_run import BESIDE_JUMPS
 from ...solvers.contract import Counts, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
@@ -23,7 +24,7 @@ class Observed:
     """One run as it is looked at: status and reason, wall time (s) of the integration alone, own counts, sample times
     (m,) with `series` (m,) by name, located `steady` extremes over the last forcing period or None, `impulse` (N s)
     or None, and the scales that errors are relative to; `processor` time (s) of the same, less than
-    the wall's on a busy machine."""
+    the wall's on a busy machine; whether its loads `jump`, as those of cells that tear do."""
 
     status: str
     reason: str
@@ -35,6 +36,7 @@ class Observed:
     impulse: float | None
     scales: dict = field(default_factory=dict)
     processor: float = 0.0
+    jump: bool = False
 
 
 class Sampler(Recorder):
@@ -112,7 +114,8 @@ def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
         scales["leakage"] = float(np.max(np.abs(columns[3])))
     if impulse:
         scales["contact_impulse"] = abs(impulse)
-    return Observed(status, reason, wall, counts, columns[0], series, steady, impulse, scales)
+    jump = hasattr(run.model.interface.film, "settle")
+    return Observed(status, reason, wall, counts, columns[0], series, steady, impulse, scales, jump=jump)
 
 
 def errors(found: Observed, exact: Observed) -> dict:
@@ -128,7 +131,9 @@ def errors(found: Observed, exact: Observed) -> dict:
             out["end"][name] = out["over_time"][name] = abs(found.impulse - exact.impulse) / scale
             continue
         away = np.abs(found.series[name] - exact.series[name]) / scale
-        out["end"][name], out["over_time"][name] = float(away[-1]), float(away.max())
+        # Where loads jump, two runs never jump at one instant.
+        largest = np.quantile(away, BESIDE_JUMPS) if exact.jump and name == "leakage" else away.max()
+        out["end"][name], out["over_time"][name] = float(away[-1]), float(largest)
         if found.steady and exact.steady and name in found.steady and name in exact.steady:
             pairs = zip(found.steady[name], exact.steady[name], strict=True)
             out["steady"][name] = float(max(abs(a - b) for a, b in pairs) / scale)

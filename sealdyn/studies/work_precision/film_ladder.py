@@ -6,9 +6,10 @@ import time as clock
 import numpy as np
 
 from ...dynamics import modes
-from ...films import film_module, film_names
+from ...films import film_module, film_names, film_of
 from ...scenario.settings import with_values
 from ...scene.film import Coefficients
+from ...scene.waviness import waves_of
 from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
@@ -29,8 +30,11 @@ def rungs(scenario) -> list[tuple[str, dict]]:
         # The film is these numbers: there is nothing above them.
         return [("linear film, coefficients as given", {"film.model": "linear"})]
     found = []
-    for name in sorted(film_names(scenario.scene.film), key=lambda n: film_module(n).RUNG):
-        if name == "linear":
+    scene = scenario.scene
+    for name in sorted(film_names(scene.film, waves_of(scene)), key=lambda n: film_module(n).RUNG):
+        if hasattr(film_module(name), "halved"):
+            found += _grids(scenario, name)
+        elif name == "linear":
             found += [
                 (f"linear film, {words} coefficients", {"film.model": name, "film.coefficients": source})
                 for source, words in (("green", "Green's"), ("radial", "radial film's"))
@@ -40,21 +44,44 @@ def rungs(scenario) -> list[tuple[str, dict]]:
     return found
 
 
-def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> list[dict]:
+def _grids(scenario, name: str) -> list[tuple[str, dict]]:
+    """(label, overrides) of a film with cells: half of them, its own, and twice as many where it can have them."""
+    film = prepare_run(with_values(scenario, {"film.model": name, **AUTO}))[0].model.scene.film
+    module = film_module(name)
+    tables = {"half the cells": module.halved(film), "its cells": film}
+    tables |= {TWICE: module.doubled(film, 1)} if hasattr(module, "doubled") else {}
+    return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, **_cells(name, table)})
+            for words, table in tables.items()]  # fmt: skip
+
+
+def _cells(name: str, film) -> dict:
+    """Overrides that ask for the cells of a `Film` table."""
+    options = getattr(film, name)
+    if hasattr(options, "cells"):
+        return {f"film.{name}.cells": list(options.cells)}
+    return {f"film.{name}.cells_r": options.cells_r, f"film.{name}.cells_theta": options.cells_theta}
+
+
+def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> tuple[list[dict], str | None]:
     """Rows `{label, error{where}, wall, rhs, failed}` of every rung, cheapest model first, each run with the method
-    and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run."""
+    and tolerance that the program takes for the scenario's accuracy; `exact` the scenario's own exact run.  And the
+    highest rung of all where it could not be run exactly, None where it could."""
     ladder = rungs(scenario)
-    highest, top = exact, ladder[-1]
+    highest, top, last = exact, ladder[-1], ladder[-1][0]
     # The scenario's own film may be the highest, and then its exact run is there already.
-    own = top[1]["film.model"] == scenario.scene.film.model != "linear"
+    own = len(top[1]) == 1 and top[1]["film.model"] == scenario.scene.film.model != "linear"
     if not own or exact is None or exact.status != Status.OK:
         highest, top = _highest(scenario, ladder, samples, longest)
     if highest is None:
-        return []
+        return [], last
+    if last.endswith(TWICE):
+        # That is a judge.
+        ladder, last = ladder[:-1], ladder[-2][0]
     ends = ladder[:1] if top == ladder[0] else [ladder[0], top]
     out = [_balanced(scenario, rung, highest, repeats) for rung in ends]
     out += [_run(scenario, rung, highest, samples, longest, repeats) for rung in ladder]
-    return [row for row in out if row]
+    judged = top[0].startswith(last.partition(",")[0])
+    return [row for row in out if row], None if judged else last
 
 
 def _highest(scenario, ladder, samples, longest):
@@ -64,8 +91,11 @@ def _highest(scenario, ladder, samples, longest):
             run, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": _accuracy(scenario), **AUTO}))
             found = observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
             if found.status not in (Status.OK, Status.COLLAPSED):
-                run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": 1e-9, **AUTO}))
-                tolerance = tolerance_for(method, 1e-9, run.memory)
+                # A film with unknowns of its own is never exact.
+                own = hasattr(film_of(scenario.scene, film_module(rung[1]["film.model"])), "halved")
+                accuracy = scenario.run.accuracy / 30.0 if own else 1e-9
+                run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": accuracy, **AUTO}))
+                tolerance = tolerance_for(method, accuracy, run.memory)
                 found = observe(run, METHODS[method], method, tolerance, longest, samples)
         except ValueError:
             # This film refuses the scene.
@@ -76,6 +106,7 @@ def _highest(scenario, ladder, samples, longest):
 
 
 AUTO = {"run.solver": "auto"}
+TWICE = "twice the cells"
 
 
 def _accuracy(scenario):
@@ -172,4 +203,6 @@ def sentence(answer: dict) -> str:
              for most in (1e-2, 1e-4)]  # fmt: skip
     linear = [error for label, error in errors_of.items() if label.startswith("linear") and error > 0]
     wrong = f"; the linear film is wrong by {min(linear):.1e} whatever the solver" if linear else ""
+    above = answer.get("models_unjudged")
+    wrong += f"; what the {above} would change is not known, it takes too long to run exactly" if above else ""
     return f"Film model needed {WORDS[where]}: {', '.join(needs)}{wrong}."
