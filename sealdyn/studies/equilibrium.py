@@ -16,7 +16,7 @@ from ..dynamics.equilibrium import (
     support_stiffness,
 )
 from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
-from ..faces.geometry import CAVITATED, CONTACT_TORQUE, FLOW_INNER, TORQUE
+from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..scene.coning import coned
 from ..scene.gas import density_of
@@ -150,7 +150,28 @@ def _flows(scene, clearance, carried) -> dict:
     torque, arm = s[TORQUE] + s[CONTACT_TORQUE], 0.5 * (film.inner_radius + film.outer_radius)
     return {"friction_coefficient": abs(torque) / (carried * arm) if carried > 0.0 else None,
             "mass_flow": leakage * density_of(film), "leakage": leakage,
-            "cavitated_fraction": float(s[CAVITATED])}  # fmt: skip
+            "cavitated_fraction": float(s[CAVITATED]), **_wear(scene, s, arm)}  # fmt: skip
+
+
+def _wear(scene, s, radius) -> dict:
+    """Depth rates of wear (m/s) in a gap state, if the faces wear: of both together, mean over the face; and with waves
+    of the stator's alone, where it is highest while its waves stand, and anywhere once they travel around the ring.
+
+    **Source** Archard's law; the machine of Lebeck et al. (1979), ch. 4, lets its waves travel around the ring twice a
+    day.
+    **Valid** travelling waves that pass every place as a whole number of them, slowly against the shaft, and while what
+    is worn is small against the roughness; the highest at the mean `radius` (m)."""
+    k = [getattr(scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES] if scene.contact else []
+    if not any(k):
+        return {}
+    found = {"wear_rate": float(s[WEAR])}
+    own = k[RING_NAMES.index("stator")]
+    if scene.stator.waviness and not scene.rotor.waviness and own:
+        found["stator_wear"] = {
+            "standing": float(own * s[CONTACT_PRESSURE] * abs(s[SPIN_DIFFERENCE]) * radius),
+            "travelling": float(own / sum(k) * s[WEAR]),
+        }
+    return found
 
 
 def _held(root, excess, friction) -> list:
@@ -221,6 +242,12 @@ def _verdict(answer) -> list[str]:
         where, rough = 1e6 * root["clearance"], root["contact_force"]
         if rough:
             said.append(f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N.")
+        if "wear_rate" in root:
+            said.append(f"There both faces wear off {_rate(root['wear_rate'])} on average.")
+        if "stator_wear" in root:
+            standing, even = (_rate(root["stator_wear"][key]) for key in ("standing", "travelling"))
+            said.append(f"The stator's crests wear {standing} while its waves stand; if these travel slowly around the "
+                        f"ring, by whole waves, it wears {even} everywhere: evenly.")  # fmt: skip
         if "held" in root:
             low, high = map(_um, root["held"])
             said.append(f"The secondary seal's friction, {answer['friction']:.4g} N, holds from {low} to {high} too.")
@@ -232,6 +259,11 @@ def _verdict(answer) -> list[str]:
     elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
         said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
     return said
+
+
+def _rate(rate) -> str:
+    """A depth rate (m/s) in words."""
+    return f"{3.6e12 * rate:.4g} nm/h"
 
 
 def _um(clearance) -> str:

@@ -11,6 +11,7 @@ from scipy.linalg import eig
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.analysis.truncated_heights import carried, plateaus
 from sealdyn.dynamics.film_modes import even
+from sealdyn.dynamics.interface import opening_parts
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
@@ -148,6 +149,26 @@ def test_the_study_says_what_carries_and_what_flows():
     assert root["leakage"] == pytest.approx(2.035e-8, rel=0.005)
     assert root["mass_flow"] == pytest.approx(1000.0 * root["leakage"], rel=1e-12)
     assert 0.2 < root["cavitated_fraction"] < 0.35
+
+
+def test_waves_that_travel_wear_evenly_what_standing_ones_wear_at_their_crests():
+    wears = ["contact.stator_wear_coefficient=1e-16 1/Pa", "contact.rotor_wear_coefficient=3e-16 1/Pa"]
+    scenario = lebeck(*COARSE, *wears)
+    answer = equilibrium.run(scenario, equilibrium.Settings(points=5), None)
+    (root,) = answer["roots"]
+    # What the asperities press with at a gap, of plane faces: over a whole wave, and at its crest.
+    plane = replace(scenario.scene, stator=replace(scenario.scene.stator, waviness=[]))
+    parts, area = opening_parts(plane), math.pi * (0.05**2 - 0.045**2)
+    over = 0.3e-6 * np.cos(np.pi * (np.arange(40) + 0.5) / 40)
+    pressed = [parts(root["clearance"] + wave, 0.0, 2.867e6)[1] / area for wave in (*over, -0.3e-6)]
+    # int r p dA = p A (mean radius), nearly: a narrow face.
+    speed, (*around, crest) = 188.0 * 0.0475, pressed
+    assert root["stator_wear"]["travelling"] == pytest.approx(1e-16 * speed * np.mean(around), rel=2e-3)
+    assert root["stator_wear"]["standing"] == pytest.approx(1e-16 * speed * crest, rel=2e-3)
+    assert root["wear_rate"] == pytest.approx(4 * root["stator_wear"]["travelling"], rel=1e-12)
+    assert any("evenly" in line for line in answer["verdict"])
+    flat = equilibrium.run(replace(scenario, scene=plane), equilibrium.Settings(points=3), None)["roots"][0]
+    assert flat["wear_rate"] > 0.0 and "stator_wear" not in flat
 
 
 def test_the_library_does_not_pass_where_cells_tear():
