@@ -439,6 +439,7 @@ def study(
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
     import importlib
 
+    from .archive import ArchiveError
     from .numerics.cluster import ClusterError
     from .report.text import study_lines
     from .scenario.reader import ScenarioError
@@ -463,7 +464,7 @@ def study(
         except (ScenarioError, SceneError) as error:
             where = "" if isinstance(error, ScenarioError) else f"{file}: "
             raise Stop(Status.INVALID, f"{where}{error}") from None
-        except ClusterError as error:
+        except (ClusterError, ArchiveError) as error:
             raise Stop(Status.INVALID, str(error)) from None
         except OSError as error:
             where = error.filename or out

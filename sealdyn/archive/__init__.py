@@ -3,6 +3,7 @@ shows both to xarray."""
 
 from .dataset import as_dataset, open_archive
 from .fields import FIELD_TIME, Fields, Series
+from .lock import only_writer
 from .run import ArchiveError, ArchiveWriter, column, field, last_state, partial_path, read_info
 from .study import is_study, read_study, write_study
 
@@ -17,6 +18,7 @@ __all__ = [
     "field",
     "is_study",
     "last_state",
+    "only_writer",
     "open_archive",
     "partial_path",
     "read_info",

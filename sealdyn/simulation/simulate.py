@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import __version__, archive
-from ..archive import ArchiveWriter, partial_path
+from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import largest_value
@@ -73,10 +73,16 @@ def simulate(
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
     interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
-    Raises SceneError or ArchiveError for a scene or file that cannot be.
+    Raises SceneError or ArchiveError for a scene or file that cannot be, or that another run is writing.
     """
-    begun = clock.perf_counter()
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
+    with only_writer(out):
+        return _simulate(scenario, out, progress, stop, resume)
+
+
+def _simulate(scenario, out, progress, stop, resume) -> Result:
+    """The same, while nobody else writes there."""
+    begun = clock.perf_counter()
     run, method, why, interval, count, by_model = prepare_run(scenario)
     series, fields = what_is_kept(run.model)
     one = Try(method, None, why)

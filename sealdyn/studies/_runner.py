@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from .. import __version__, studies
-from ..archive import write_study
+from ..archive import only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
 from ..scenario.settings import study_settings, without
@@ -95,7 +95,7 @@ def run_study(
     Points are evaluated by `workers` processes (None: all cores), or by the workers of a Dask `scheduler`: its address
     "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
     and for those of other machines.  `leave_out`: "contact" for the film alone, or "secondary-seal".
-    Raises ScenarioError, SceneError, ClusterError (numerics.cluster).
+    Raises ScenarioError, SceneError, ClusterError (numerics.cluster), ArchiveError where another writes the archive.
     """
     name = name.replace("-", "_")
     module = study_module(name)
@@ -110,33 +110,34 @@ def run_study(
     out = archive_of(name, scenario, out)
     plain = json.loads(json.dumps(asdict(settings), default=str))
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain, left_out], sort_keys=True)
-    journal = Checkpoint(journal_of(out), identity)
-    kept = _folder(results) if results else None
-    with _crew(workers, scheduler) as crew:
-        tools = StudyContext(journal, crew, progress, kept)
-        answer = module.run(studied, settings, tools)
-    verdict, failures = list(answer["verdict"]), tools.failures
-    # Unless the study has told it itself.
-    if failures and failures[0] not in " ".join(verdict):
-        verdict.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
-    if left_out:
-        verdict.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
-    answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, "left_out": left_out, **answer,
-              "verdict": verdict}  # fmt: skip
-    libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
-        "python": platform.python_version()
-    }
-    meta = {
-        "version": __version__,
-        "libraries": libraries,
-        "name": scenario.name,
-        "question": scenario.question,
-        "overrides": list(scenario.overrides),
-        "study": name,
-        "settings": plain,
-    }
-    write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
-    journal.done()
+    with only_writer(out):
+        journal = Checkpoint(journal_of(out), identity)
+        kept = _folder(results) if results else None
+        with _crew(workers, scheduler) as crew:
+            tools = StudyContext(journal, crew, progress, kept)
+            answer = module.run(studied, settings, tools)
+        verdict, failures = list(answer["verdict"]), tools.failures
+        # Unless the study has told it itself.
+        if failures and failures[0] not in " ".join(verdict):
+            verdict.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
+        if left_out:
+            verdict.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
+        answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, "left_out": left_out, **answer,
+                  "verdict": verdict}  # fmt: skip
+        libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
+            "python": platform.python_version()
+        }
+        meta = {
+            "version": __version__,
+            "libraries": libraries,
+            "name": scenario.name,
+            "question": scenario.question,
+            "overrides": list(scenario.overrides),
+            "study": name,
+            "settings": plain,
+        }
+        write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
+        journal.done()
     return {**answer, "archive": str(out)}
 
 

@@ -40,6 +40,8 @@ TIGHT, JUDGE = 1e-11, 1e-11
 ASKED = (1e-3, 1e-6, 1e-9)
 # Judges of films with unknowns of their own: tolerances over the accuracy, until two have ended.
 SHARP = (1e-3, 8e-3, 6.4e-2)
+# A method is not judged by itself at tolerances nearer than this to the judge's own.
+CLOSEST = 3.0
 # A wall time below this is measured again.
 BRIEF = 0.3
 # Wall over processor time of a busy machine.
@@ -76,7 +78,9 @@ def run(scenario, settings, tools) -> dict:
     chosen = [m for m in chosen if _can(run.model, m)]
     exact, band, judges = reference(scenario, settings.samples, settings.judging)
     tools.say(0.1)
-    shared = {"tolerances": tolerances(settings), "repeats": settings.repeats, "samples": settings.samples}
+    sharpest = judges.get("least", 0.0)
+    looked_at = [t for t in tolerances(settings) if t >= sharpest] or [settings.loosest]
+    shared = {"tolerances": looked_at, "repeats": settings.repeats, "samples": settings.samples}
     judged = partial(judge, scenario, exact, judges)
     # Runs beside each other would disturb each other's clocks.
     alone = tools.alone()
@@ -184,15 +188,15 @@ def _by_itself(scenario, method: str, samples: int, limit: float):
         tolerance = max(share * scenario.run.accuracy, TIGHT)
         found = observe(ready(scenario), METHODS[method], method, tolerance, limit, samples)
         if found.status in (Status.OK, Status.COLLAPSED):
-            good.append((f"{NAMES[method]} at {tolerance:.0e}", found))
+            good.append((f"{NAMES[method]} at {tolerance:.0e}", found, tolerance))
         if len(good) == 2:
             break
     if not good:
         return found, None, {"exact": None, "second": None, "reason": found.reason}
-    (name, exact), *others = good
+    (name, exact, tolerance), *others = good
     band, second = (worst(errors(others[0][1], exact)), others[0][0]) if others else (None, None)
     return exact, band, {"exact": name, "second": second, "reason": exact.reason, "method": None,
-                         "status": exact.status}  # fmt: skip
+                         "status": exact.status, "least": CLOSEST * tolerance}  # fmt: skip
 
 
 def judge(scenario, exact, judges: dict, point: dict) -> dict:
@@ -287,6 +291,8 @@ def verdict(answer: dict, settings) -> list[str]:
         trust = f"Judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}"
     else:
         trust = f"Judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}"
+    if judges.get("least", 0.0) > settings.tightest:
+        trust += f"; tolerances below {judges['least']:.0e} it cannot judge, and they are left out"
     strained = answer["machine"]["busy"]
     trust += f"; the machine was busy: wall times are {strained:.2g} times the processor's" if strained > BUSY else ""
     return [*lines, f"{trust}."]

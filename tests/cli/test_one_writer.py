@@ -1,0 +1,89 @@
+"""Two runs or studies on one output: the second is turned away, the first is not touched, a dead one holds nothing."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from killed import COMMAND, kill_midway
+
+from sealdyn.archive import ArchiveError, only_writer, read_info
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.simulation.simulate import simulate
+from sealdyn.studies._runner import run_study
+
+SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+RUN = [sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), "--no-plot", "--set", "run.turns=200000", "--out"]
+
+
+def begun(command, there):
+    """A process that has come as far as `there()`."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    until = time.monotonic() + 120
+    while not there():
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.02)
+    return process
+
+
+def turned_away(command, out):
+    """One line, exit code 2."""
+    second = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert second.returncode == 2, second.stderr
+    lines = [line for line in second.stderr.strip().splitlines() if not line.startswith("first run on this machine")]
+    assert len(lines) == 1, lines
+    line = lines[0]
+    assert str(out) in line and "another run or study is writing it" in line and "--out" in line
+
+
+def left(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_the_second_run_is_turned_away_and_a_dead_one_holds_nothing(tmp_path):
+    out = tmp_path / "a.h5"
+    partial = tmp_path / "a.partial.h5"
+    first = begun([*RUN, str(out)], partial.exists)
+    try:
+        turned_away([*RUN, str(out)], out)
+        turned_away([*RUN, str(out), "--continue"], out)
+        turned_away([*COMMAND, "critical-speed", str(SEAL), "--out", str(out), "--workers", "1"], out)
+        with pytest.raises(ArchiveError, match="another run or study"):
+            simulate(read_scenario(SEAL), out)
+        with pytest.raises(ArchiveError, match="another run or study"):
+            run_study("equilibrium", read_scenario(SEAL), out)
+        assert first.poll() is None
+    finally:
+        os.kill(first.pid, signal.SIGKILL)
+        first.wait()
+    kept = read_info(partial)["rows"]
+    assert kept > 0
+    short = subprocess.run([*RUN, str(out), "--set", "run.turns=2"], capture_output=True, text=True, timeout=120)
+    assert short.returncode == 0, short.stderr
+    assert read_info(out)["status"] == "ok" and left(tmp_path) == ["a.h5"]
+
+
+def test_workers_of_a_dead_study_hold_nothing(tmp_path):
+    out = tmp_path / "s.h5"
+    command = [*COMMAND, "sweep", str(SEAL), "--out", str(out), "--no-plot", "--workers", "2",
+               "--vary", "shaft.speed=8000 rpm:12000 rpm:40", "--outputs", "h_min.value"]  # fmt: skip
+    kill_midway(command, tmp_path / "s.partial.jsonl", 1)
+    # At once, whether or not its workers have noticed.
+    again = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert again.returncode == 0, again.stderr
+    assert left(tmp_path) == ["s.h5"]
+
+
+def test_a_lock_is_of_the_file_not_of_its_name(tmp_path):
+    (tmp_path / "link.h5").symlink_to(tmp_path / "a.h5")
+    with only_writer(tmp_path / "a.h5"):
+        with pytest.raises(ArchiveError), only_writer(tmp_path / "link.h5"):
+            pass
+        with only_writer(tmp_path / "b.h5"):
+            pass
+    with only_writer(tmp_path / "a.h5"):
+        pass
+    assert left(tmp_path) == ["link.h5"]
