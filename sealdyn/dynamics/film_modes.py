@@ -21,6 +21,9 @@ SOLVED, NEW, STILL, MOST_ANSWERS, MOST_ROUNDS = 1e-8, 1e-10, 1e-9, 40, 12
 # Modes that are made exact: so many of those next to growing; iterations,
 # how exact (relative), and how near they were.
 EXACT, ITERATIONS, CONVERGED, NEAR = 8, 8, 1e-10, 0.05
+# Beyond so many vectors of the basis only those modes are taken up: fine cells have hundreds that die within a fraction
+# of their period, a crowd that rounding stirs.
+CROWD = 100
 # Frequencies of the forced motion at which the residual is watched, over the reach.
 WATCHED = np.geomspace(1e-10, 1.0, 41)
 
@@ -135,7 +138,8 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
 
     `linear` LinearScene with a `film`.  The basis takes up answers along the imaginary axis until none is missed: H is
     analytic to the right of it, so its error there is no larger and no growing mode is missed.  Then it takes up those
-    at the eigenvalues until each has its residual solved.  Of modes far slower than the fastest that says little: those
+    at the eigenvalues until each has its residual solved (in a crowd: each of those next to growing, and of the others
+    those that are solved are found).  Of modes far slower than the fastest that says little: those
     next to growing are made exact.
     **Valid** a film that is stable between rings at rest.  Raises SceneError for eigenvalues that do not settle.
     """
@@ -166,7 +170,10 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
         values, q, parts, answer = values[near], q[:, near], parts[:, near], answer[near]
         left = reduced.residual(values, parts, linear.gap @ q) / answer
         solved, size = left < SOLVED, reduced.basis.shape[1]
-        for value in values[~solved & (values.imag >= 0)]:
+        wanted = ~solved & (values.imag >= 0)
+        if size > CROWD:
+            wanted[np.argsort(-values.real, kind="stable")[EXACT:]] = False
+        for value in values[wanted]:
             reduced.add(complex(value))
         # With the answer there in the basis already, it is the basis that has a mode there, not rings and film.
         if reduced.basis.shape[1] == size:
