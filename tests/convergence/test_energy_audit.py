@@ -16,6 +16,7 @@ from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_S, D_S = SUPPORT.tilt()
 
 
@@ -90,10 +91,19 @@ def test_long_steps_are_audited_by_what_the_solver_worked_out():
 def test_a_run_that_loses_energy_is_inaccurate(tmp_path, monkeypatch):
     """Status, warning and archive say so, though the run is the exact one of its wrong equations."""
     monkeypatch.setattr(film_selection, "Model", wrong(MISTAKES["spring 1 % stiff"]))
-    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml", ["run.turns=5"])
+    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=5"])
     found = simulate(scenario, tmp_path / "a.h5")
     assert found.status == "inaccurate" == read_info(found.archive)["status"]
     assert "energy audit" in found.message and found.message in found.summary["warnings"]
+
+
+@pytest.mark.parametrize("speed", ["100 rpm", "9550 rpm", "50000 rpm"])
+def test_a_ring_that_stays_stuck_exchanges_nothing(tmp_path, speed):
+    """It turns with its shaft, its springs wound up: a rounding of their work is not measured by another."""
+    sets = ["rotor.secondary_seal={radius='45 mm', friction_force='50 N'}", f"shaft.speed='{speed}'", "run.turns=20"]
+    found = simulate(read_scenario(SCENARIOS / "fmr_reference.toml", sets), tmp_path / "a.h5")
+    assert found.summary["secondary_seal"]["slips"] == 0
+    assert found.status == "ok" and found.summary["energy_residual"] < 1e-9
 
 
 def test_gyroscopic_moment_does_no_work():
