@@ -82,9 +82,16 @@ class StickSlip:
     def sliding_state(self, k: int, tau: float, y) -> tuple[float, float]:
         """Sliding speed (m/s) of ring k and how far what it must hold lies outside the limit surface (dimensionless,
         `secondary_seal.excess`), at segment time `tau` (s) and unknowns `y` (size,)."""
-        self.segment.ring_rates(tau, y, self._yp)
+        self._find_rates(tau, y)
         at = SEALS + PER_SEAL * k
         return self.segment.w[at + SEAL_SPEED], self.segment.w[at + SEAL_EXCESS]
+
+    def _find_rates(self, tau, y):
+        """The derivatives of the unknowns, into `_yp`; a ring without mass moves as the balance of its forces asks."""
+        if np.any(self.segment.lacks_inertia):
+            self._yp[:] = self.segment.start(tau, y)[1]
+        else:
+            self.segment.ring_rates(tau, y, self._yp)
 
     def start(self, segment, tau: float, y) -> dict:
         """The rings that stick at the very start ({ring: bool}): those at rest on a load that they can hold."""
@@ -117,10 +124,10 @@ class StickSlip:
     def accept(self, block, advance) -> Transition | None:
         """The first transition in a block of steps, or None.  `advance(tau, y, until)` integrates from `tau` to `until`
         (s) and returns the unknowns (size,) there, or None where the equations jump between."""
-        found = self._next_transition(block.t, block.ys, block.begin, block.end, advance)
+        found = self._next_transition(block.t, block.ys, block.yps, block.begin, block.end, advance)
         return Transition(found[0], float(found[1]), *found[2:]) if found else None
 
-    def _next_transition(self, t, ys, begin: int, end: int, advance):
+    def _next_transition(self, t, ys, yps, begin: int, end: int, advance):
         """First change in steps [begin, end]: (step, time, unknowns, ring) or None."""
         known = {}
 
@@ -134,7 +141,7 @@ class StickSlip:
             found = None
             for k in self.rings:
                 if self.stuck[k]:
-                    change = self._slip(k, t, ys, step, advance)
+                    change = self._slip(k, t, ys, yps, step, advance)
                 else:
                     change = self._capture(k, t, ys, step, velocity(k, step), velocity(k, step + 1), advance)
                 if change and (found is None or change[0] < found[0]):
@@ -169,9 +176,9 @@ class StickSlip:
 
     # --- a stuck ring -------------------------------------------------------------------------------
 
-    def _slip(self, k, t, ys, step, advance):
+    def _slip(self, k, t, ys, yps, step, advance):
         """When ring k, stuck at the step's start, can no longer be held."""
-        at = self._inside(t, ys, step)
+        at = self._inside(t, ys, yps, step)
         low = t[step]
         for x in np.linspace(0, 1, LOOKS + 1)[1:]:
             high = t[step] + x * (t[step + 1] - t[step])
@@ -186,11 +193,11 @@ class StickSlip:
             low = high
         return None
 
-    def _inside(self, t, ys, step):
+    def _inside(self, t, ys, yps, step):
         """Unknowns inside a step, works as at its start."""
         segment = self.segment
         first, last = max(0, step - NODES), min(len(t), step + NODES + 2)
-        q, q_rate = segment.motion(ys[first:last], None)
+        q, q_rate = segment.motion(ys[first:last], yps[first:last])
         t, k, here, rate = t[first:last], step - first, np.empty((1, segment.n)), np.empty((1, segment.n))
 
         def at(tau):

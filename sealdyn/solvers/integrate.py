@@ -1,6 +1,6 @@
 """Integrate any run with any method, past any observers, into any sink.
 
-A run offers `segment(index) -> Segment` for each of its `intervals`, `y0`, `memory`, `last`, and its observers:
+A run offers `segment(index) -> Segment` for each of its `intervals`, `duration`, `y0`, `memory`, `last`, its observers:
 `stick_slip` (None, or what finds changes of the equations between steps), `extrema` and `contacts`.
 A sink takes what has been integrated.  Nothing here knows of seals or files.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .advance import Advance
 from .block import OVERLAP, Block
 from .contract import FEW, MANY, Cause, Change, Counts, Enough, Retry, SolverFailure, Status, Stop, tolerance_for
 from .energy_audit import EnergyAudit
@@ -62,6 +63,7 @@ def solve(
     if errors:
         errors.tolerance = tolerance
     index, tau, y = resume if resume else (0, 0.0, run.y0.copy())
+    advance = Advance(run.duration, run.segment(index).shortest_period)
     status, cause, message = Status.OK, Cause.DONE, str(Cause.DONE)
     segment = run.segment(index)
     if not resume:
@@ -71,7 +73,7 @@ def solve(
     try:
         while True:
             counts.restarts += 1
-            found = _integrate(run, segment, tau, y, (steps, method, tolerance, counts), observers, sink)
+            found = _integrate(run, segment, tau, y, (steps, method, tolerance, counts, advance), observers, sink)
             index, tau, y = run.last
             if isinstance(found, Stop):
                 status, cause, message = Status.COLLAPSED, found.cause, found.message
@@ -79,6 +81,7 @@ def solve(
             if isinstance(found, Retry):
                 tolerance = found.tolerance
             elif isinstance(found, Change):
+                advance.change(segment.time + tau)
                 segment, y = run.segment(index, found.modes), found.y
                 if found.event:
                     sink.event(segment, tau, found.event)
@@ -101,7 +104,7 @@ def solve(
 
 def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Retry | None:
     """Integrate a segment from `tau`, to its end (None) or to what an observer finds; `run.last` says how far."""
-    steps, method, tolerance, counts = how
+    steps, method, tolerance, counts, advance = how
 
     def method_over(segment, tau, y):
         return steps(segment, tau, y, method, tolerance, counts)
@@ -117,6 +120,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     run.last = (segment.index, tau, y)
     for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else MANY):
         counts.steps += len(block_t)
+        advance.see(segment.time + float(block_t[-1]), counts.steps)
         t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
         if sticking:
@@ -128,7 +132,10 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
             if transition:
                 upto = transition.step + 1
                 t, ys = np.append(t[:upto], transition.time), np.vstack([ys[:upto], transition.y])
-                yps, failed = np.zeros_like(ys), []
+                # A ring without mass moves as its forces ask, at the transition too.
+                there = segment.start(transition.time, transition.y)[1] if np.any(segment.lacks_inertia) else None
+                yps = np.zeros_like(ys) if there is None else np.vstack([yps[:upto], there])
+                failed = []
             looked = len(t) - 1
         count = len(t)
         last_block = t[-1] >= segment.length or bool(failed) or transition is not None

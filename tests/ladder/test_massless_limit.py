@@ -1,6 +1,7 @@
 """A ring that grows lighter tends to the massless ring: an ODE to its first-order limit."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,14 @@ from scenes import INERTIA, TILT_SCALE, film, fmr, fms, ring, run
 from scipy.integrate import solve_ivp
 
 from sealdyn.closed_form import film_coefficients
+from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.simulation.simulate import prepare_run
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TURNS, PER_TURN = 2, 32
 
 
@@ -75,3 +81,38 @@ def test_massless_ring_without_damping_stands_in_balance_at_once(build):
     tilt = found.tilt("rotor" if build is fmr else "stator")
     assert found.ready.model.algebraic == [0, 1]
     assert np.max(np.abs(tilt - expected)) < 1e-8 * TILT_SCALE
+
+
+class Events(Recorder):
+    """What happened: kinds and times (s)."""
+
+    def __init__(self):
+        super().__init__()
+        self.seen = []
+
+    def event(self, segment, tau, event):
+        self.seen.append((event["kind"], segment.time + tau))
+
+
+def test_stick_slip_across_from_a_massless_ring():
+    """A stator that sticks and slips on its O-ring, on a rotor without mass (IDA) and on a light one: the same events
+    at the same times, but for a first slip of the rotor's inertia."""
+
+    def events(share):
+        size = {"mass": f"{share} kg", "transverse_inertia": f"{share * INERTIA} kg*m^2",
+                "polar_inertia": f"{2 * share * INERTIA} kg*m^2"}  # fmt: skip
+        stator = {"mass": "1 kg", "transverse_inertia": f"{INERTIA} kg*m^2", "polar_inertia": f"{2 * INERTIA} kg*m^2"}
+        support = {"axial_stiffness": "5e5 N/m", "axial_damping": "300 N*s/m", "radius": "40 mm"}
+        sets = [*(f"rotor.{key}='{value}'" for key, value in size.items()),
+                *(f"stator.{key}='{value}'" for key, value in stator.items()),
+                *(f"stator.support.{key}='{value}'" for key, value in support.items()),
+                "stator.secondary_seal={radius='45 mm', friction_force='2 N'}", "stator.misalignment='100 urad'",
+                "rotor.misalignment='60 urad'", "run.turns=4"]  # fmt: skip
+        run, method, *_ = prepare_run(read_scenario(SCENARIOS / "fmr_reference.toml", sets))
+        sink = Events()
+        assert solve(run, method, 1e-6, sink).status == "ok" and run.model.unknowns.massless == (share == 0.0)
+        return [seen for seen in sink.seen if seen[1] > 1e-5]
+
+    massless, light = events(0.0), events(1e-3)
+    assert len(massless) > 5 and [kind for kind, _ in massless] == [kind for kind, _ in light]
+    assert np.array([t for _, t in massless]) == pytest.approx(np.array([t for _, t in light]), rel=1e-3)
