@@ -3,6 +3,7 @@ needs it."""
 
 import atexit
 import contextlib
+import errno
 import gc
 import json
 import os
@@ -10,6 +11,7 @@ import shlex
 import sys
 from pathlib import Path
 from threading import Lock, Timer
+from time import monotonic
 from typing import Annotated
 
 import typer
@@ -22,6 +24,8 @@ from .status import Status
 # Before anything loads a BLAS.
 for _threads in VARIABLES:
     os.environ.setdefault(_threads, "1")
+# Figures are files: no screen is asked for, whatever is set.
+os.environ["MPLBACKEND"] = "agg"
 # It would look for plugins in everything that is installed.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
@@ -37,6 +41,10 @@ EXIT = {
 
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
+# Characters of an error.
+LONGEST = 1000
+# Bytes of an archive whose size is worth a line.
+WORTH_SAYING = 1e9
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
 
@@ -56,8 +64,8 @@ Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.
 AsJson = Annotated[bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")]
 
 
-# SIGINT and SIGTERM, and what they find: "words", a function that says what is kept, and whether the verb has already
-# "answered".
+# SIGINT, SIGTERM and SIGHUP, and what they find: "words", a function that says what is kept, and whether the verb has
+# already "answered".
 interruption = Interruption()
 _left = {}
 
@@ -91,17 +99,36 @@ class Stop(Exception):
 
 def _read(path: Path, overrides):
     """Scenario of a TOML file or of an archive; input errors end here."""
-    from .archive import ArchiveError, read_info
+    from .archive import read_info
     from .scenario.reader import ScenarioError, parse_scenario, read_scenario
 
     try:
         if path.suffix == ".h5":
-            info = read_info(path)
-            given = [*info.get("overrides", []), *(overrides or [])]
-            return parse_scenario(info["scenario"], info.get("name", path.stem), given)
+            with _reads(path):
+                info = read_info(path)
+                text, name = str(info["scenario"]), str(info.get("name", path.stem))
+                given = [*map(str, info.get("overrides", [])), *(overrides or [])]
+            return parse_scenario(text, name, given)
         return read_scenario(path, overrides or ())
-    except (ScenarioError, ArchiveError) as error:
+    except ScenarioError as error:
         raise Stop(Status.INVALID, str(error)) from None
+
+
+@contextlib.contextmanager
+def _reads(path):
+    """What is read and drawn of an archive: errors that a file made or changed elsewhere leads to end here."""
+    from .archive import ODD, ArchiveError
+
+    try:
+        yield
+    except ArchiveError as error:
+        raise Stop(Status.INVALID, str(error)) from None
+    except BrokenPipeError:
+        raise
+    except ODD as error:
+        what = " ".join(str(error).split())[:200]
+        line = f"{path}: holds something that sealdyn did not write there ({type(error).__name__}: {what})"
+        raise Stop(Status.INVALID, line) from None
 
 
 @app.command()
@@ -112,6 +139,7 @@ def run(
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the overview figure beside the archive")] = True,
     as_json: AsJson = False,
     resume: Annotated[bool, typer.Option("--continue", help="go on with an interrupted or killed run")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="also a run of days, or of an archive of many gigabytes")] = False,
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
     from .archive import ArchiveError, partial_path
@@ -127,26 +155,25 @@ def run(
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .h5')
     if resume:
         _check_resumable(out, scenario)
+    yes = _large(file, scenario, yes)
     _say_compiling(file=sys.stderr)
     words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
     _leaves(lambda: _kept_of_run(partial_path(out), words))
     with _Progress() as bar, _libraries_on_stderr(), interruption.looks():
         try:
-            result = simulate(scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume)
+            result = simulate(
+                scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume, allow_large=yes
+            )
         except (SceneError, ArchiveError) as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
-            raise Stop(Status.INVALID, f"{out}: cannot be written ({error.strerror or error})") from None
+            raise _not_written(error, out, _left["words"]()) from None
     summary = {**result.summary, "figure": None}
     interrupted = result.status == Status.INTERRUPTED
     complete = f"the run is complete: {result.archive}"
     _leaves(lambda: _kept_of_run(result.archive, words) if interrupted else complete)
     if plot and not interrupted and not interruption.asked:
-        from .report.charts import overview
-
-        figure = result.archive.with_suffix(".png")
-        overview.draw(result.archive, figure)
-        summary["figure"] = str(figure)
+        summary["figure"] = _drawn("overview", result.archive)
     if as_json:
         print(json.dumps(summary))
     else:
@@ -156,13 +183,57 @@ def run(
     raise typer.Exit(EXIT[result.status])
 
 
+def _not_written(error: OSError, where, kept: str) -> Stop:
+    """What ends a verb whose output cannot be written: its place was wrong from the start, or the disk is full."""
+    from .archive import is_full
+
+    line = f"{where}: cannot be written ({error.strerror or error})"
+    return Stop(Status.FAILED, f"{line}; {kept}") if is_full(error) else Stop(Status.INVALID, line)
+
+
+def _drawn(chart: str, archive: Path) -> str | None:
+    """The figure beside an archive that is complete; if it cannot be drawn that is said, and changes nothing."""
+    import importlib
+
+    figure = archive.with_suffix(".png")
+    try:
+        importlib.import_module(f"sealdyn.report.charts.{chart}").draw(archive, figure)
+    except Exception as error:
+        what = " ".join(str(error).split())[:200]
+        line = f"warning: {figure} was not drawn ({type(error).__name__}: {what}); the archive is whole"
+        print(line, file=sys.stderr, flush=True)
+        return None
+    return str(figure)
+
+
+def _large(file, scenario, yes: bool) -> bool:
+    """Whether a large run is wanted: said, or asked on a terminal; what is worth saying of its size is said."""
+    from .scene.scene import SceneError
+    from .simulation.size import refuse_large, size_of
+
+    size = size_of(scenario)
+    try:
+        refuse_large(scenario, yes)
+    except SceneError as error:
+        refused = Stop(Status.INVALID, f"{file}: {error}")
+        if not size.possible or not sys.stdin.isatty():
+            raise refused from None
+        if not typer.confirm(f"{size}.  Run it?", err=True):
+            raise refused from None
+        return True
+    if size.bytes > WORTH_SAYING:
+        print(f"{size}", file=sys.stderr, flush=True)
+    return yes
+
+
 def _check_resumable(out, scenario):
     from .archive import partial_path, read_info
 
     source = partial_path(out) if partial_path(out).exists() else out
     if not source.exists():
         raise Stop(Status.INVALID, f"{source}: nothing to continue; run without --continue first")
-    info = read_info(source)
+    with _reads(source):
+        info = read_info(source)
     if info["status"] not in (Status.RUNNING, Status.INTERRUPTED):
         raise Stop(Status.OK, f"{source}: nothing to continue, the run is complete ({info['status']})")
     if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
@@ -203,6 +274,8 @@ class _Progress:
     def __init__(self):
         self.bar = self.task = None
         self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
+        # Clock (s) and motion (s): two seconds ago or one, and one second ago or less.
+        self.marks = []
         self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
         self.timer.daemon = True
 
@@ -218,10 +291,18 @@ class _Progress:
 
     def __call__(self, done: float, end: float, words: str | None = None):
         """`done` of `end`; without `words` both are times (s)."""
-        words = words or f"t = {done:.4g} of {end:.4g} s"
+        words = words or f"t = {done:.4g} of {end:.4g} s{self._pace(done)}"
         self.now = {"completed": done, "total": end, "words": words}
         if self.bar:
             self.bar.update(self.task, **self.now)
+
+    def _pace(self, done: float) -> str:
+        """How much motion a second of the clock brings: a run that crawls shows it."""
+        now = monotonic()
+        if not self.marks or now - self.marks[-1][0] > PATIENCE:
+            self.marks = [*self.marks[-1:], (now, done)]
+        since, was = self.marks[0]
+        return f", {(done - was) / (now - since):.2g} s each second" if now > since and done > was else ""
 
     def _show(self):
         from rich.console import Console
@@ -253,9 +334,11 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .scene.scene import SceneError
     from .simulation.beside_reynolds import beside_reynolds
     from .simulation.simulate import prepare_run
+    from .simulation.size import size_of
     from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
+    size = size_of(scenario)
     try:
         run, method, why, *_ = prepare_run(scenario)
     except (SceneError, ArchiveError) as error:
@@ -269,12 +352,15 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
         "design_rules": followability(run.model),
         "beside_reynolds": beside_reynolds(run),
+        "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }
     if as_json:
         print(json.dumps(found))
     else:
         for line in resolved_lines(found):
             print(line)
+        if size.bytes > WORTH_SAYING:
+            print(f"  size          {size}")
 
 
 @app.command()
@@ -293,12 +379,12 @@ def show(
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""
-    from .archive import ArchiveError, column, is_study, read_info
+    from .archive import column, is_study, read_info
     from .report.text import archive_lines, csv_rows
 
     if mat is not None and mat.suffix != ".mat":
         raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
-    try:
+    with _reads(file):
         if is_study(file):
             return _show_study(file, csv, mat, as_json)
         info = read_info(file)
@@ -313,8 +399,6 @@ def show(
         else:
             for line in archive_lines(file, info):
                 print(line)
-    except ArchiveError as error:
-        raise Stop(Status.INVALID, str(error)) from None
 
 
 def _show_study(file, csv, mat, as_json):
@@ -360,8 +444,6 @@ def plot(
     """Draw a figure from an archive."""
     import importlib
 
-    from .archive import ArchiveError
-
     kinds = ("overview", "orbit", "film", "spectrum", "poincare")
     if kind not in kinds:
         raise Stop(Status.INVALID, f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
@@ -369,10 +451,12 @@ def plot(
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .png')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
-    try:
-        importlib.import_module(f"sealdyn.report.charts.{kind}").draw(file, out)
-    except ArchiveError as error:
-        raise Stop(Status.INVALID, str(error)) from None
+    chart = importlib.import_module(f"sealdyn.report.charts.{kind}")
+    with _reads(file):
+        try:
+            chart.draw(file, out)
+        except OSError as error:
+            raise _not_written(error, out, "the archive is whole") from None
     print(out)
 
 
@@ -417,7 +501,7 @@ def _about_study(name: str) -> str | None:
     if name.replace("_", "-") not in study_names():
         return None
     module = study_module(name.replace("-", "_"))
-    return escape("\n\n".join(" ".join(part.__doc__.split()) for part in (module, module.Settings)))
+    return escape("\n\n".join(" ".join((part.__doc__ or "").split()) for part in (module, module.Settings)))
 
 
 @app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
@@ -428,7 +512,7 @@ def study(
     set: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>-<study>.h5)")] = None,
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the study's figure beside the archive")] = True,
-    workers: Annotated[int | None, typer.Option(help="processes (default: all cores)")] = None,
+    workers: Annotated[int | None, typer.Option(help="processes (default: all cores)", min=1, max=1024)] = None,
     scheduler: Annotated[str | None, typer.Option(help="Dask scheduler in their place, tcp://host:port")] = None,
     results: Annotated[Path | None, typer.Option(help="folder that keeps finished points for other studies")] = None,
     without: Annotated[
@@ -437,8 +521,6 @@ def study(
     as_json: AsJson = False,
 ):
     """Answer a question about a scenario; any setting of its table study.NAME may be given as --key value."""
-    import importlib
-
     from .archive import ArchiveError
     from .numerics.cluster import ClusterError
     from .report.text import study_lines
@@ -467,13 +549,10 @@ def study(
         except (ClusterError, ArchiveError) as error:
             raise Stop(Status.INVALID, str(error)) from None
         except OSError as error:
-            where = error.filename or out
-            raise Stop(Status.INVALID, f"{where}: cannot be written ({error.strerror or error})") from None
+            raise _not_written(error, error.filename or out, _left["words"]()) from None
     _leaves(lambda: f"the study is complete: {answer['archive']}")
-    if plot:
-        figure = Path(answer["archive"]).with_suffix(".png")
-        importlib.import_module(f"sealdyn.report.charts.study_{answer['study']}").draw(answer["archive"], figure)
-        answer["figure"] = str(figure)
+    if plot and (figure := _drawn(f"study_{answer['study']}", Path(answer["archive"]))):
+        answer["figure"] = figure
     if as_json:
         print(json.dumps(answer))
     else:
@@ -503,7 +582,7 @@ def _flags(words: list[str]) -> dict:
             if not words:
                 raise Stop(Status.INVALID, f"study: --{key} has no value")
             value = words.pop(0)
-        with contextlib.suppress(ValueError):
+        with contextlib.suppress(ValueError, RecursionError):
             value = json.loads(value)
         key = key.replace("-", "_")
         before = flags.get(key, [])
@@ -513,6 +592,7 @@ def _flags(words: list[str]) -> dict:
 
 def main():
     """Entry point: one line for every error, never a traceback."""
+    _open_streams()
     as_json = "--json" in sys.argv
     gc.set_threshold(GARBAGE)
     # Python would look through all that was loaded once more as it ends.
@@ -533,9 +613,27 @@ def main():
         sys.exit(INTERRUPTED)
 
 
+def _open_streams():
+    """Standard streams that were closed lead nowhere: else the first file opened would take their place."""
+    for number in range(3):
+        try:
+            os.write(number, b"") if number else os.fstat(number)
+        except OSError as error:
+            # A full device is found out by what is written.
+            if error.errno != errno.EBADF:
+                continue
+            os.dup2(nowhere := os.open(os.devnull, os.O_RDWR), number)
+            if nowhere != number:
+                os.close(nowhere)
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "r" if name == "stdin" else "w"))  # noqa: SIM115
+
+
 def _run(as_json: bool):
     try:
         code = app(standalone_mode=False)
+        sys.stdout.flush()
         if code == INTERRUPTED:
             # A KeyboardInterrupt comes out as this code, too.
             _tell_interrupted(as_json)
@@ -547,6 +645,12 @@ def _run(as_json: bool):
         # Whoever read us has seen enough; keep the interpreter from complaining at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
+    except OSError as error:
+        # Everything else that is written has its own words.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        line = f"standard output: cannot be written ({error.strerror or error})"
+        print(line, file=sys.stderr)
+        sys.exit(FAILED)
     except KeyboardInterrupt:
         _tell_interrupted(as_json)
         sys.exit(INTERRUPTED)
@@ -576,7 +680,9 @@ def _break_off(as_json: bool, out: int):
 
 
 def _refuse(status: str, message: str, as_json: bool):
-    line = " ".join(message.split())
+    from .units import cut
+
+    line = cut(" ".join(message.split()), LONGEST)
     if as_json:
         print(json.dumps({"status": status, "message": line}))
     else:

@@ -16,6 +16,8 @@ from .numerics.piecewise_linear import PiecewiseLinear
 from .unit_names import dimension_and_factor, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
+# Of a table.
+MOST_POINTS = 20_000
 GAUGE = re.compile(r"gau?ge|\b(?:bar|psi|k?pa|mpa|atm) *\(?g\b", re.IGNORECASE)
 
 
@@ -140,6 +142,11 @@ UNICODE_UNITS = {
 UNICODE_UNITS |= {ord("°"): "deg", ord("\t"): " ", ord("\u00a0"): " ", ord("\u202f"): " "}
 
 
+def cut(words: str, most: int = 160) -> str:
+    """Words of a readable length: of longer ones the beginning and the end."""
+    return words if len(words) <= most else f"{words[: most * 3 // 4]} ... {words[-most // 5 :]}"
+
+
 def quoted(value: Any, most: int = 60) -> str:
     """What a file held, in a few printable words; at most `most` characters."""
     if isinstance(value, dict) or is_dataclass(value):
@@ -186,6 +193,9 @@ class VaryingQuantity:
             if not isinstance(value.get(key), list):
                 found = quoted(value[key]) if key in value else "nothing"
                 raise QuantityError(f"{key} = {found}", form)
+            if len(value[key]) > MOST_POINTS:
+                few = f"at most {MOST_POINTS} points, a run starts anew at each"
+                raise QuantityError(f"a table of {len(value[key])} points", few)
         return self._checked(_entries(SECONDS, value["time"], "time"), _entries(self.quantity, value["value"], "value"))
 
     @staticmethod
@@ -208,8 +218,8 @@ class VaryingQuantity:
 
     def __get_pydantic_json_schema__(self, schema, handler) -> dict:
         constant = self.quantity.__get_pydantic_json_schema__(None, None)
-        column = {"type": "array", "minItems": 2, "items": {"anyOf": constant["anyOf"]}}
-        seconds = {"type": "array", "minItems": 2, "items": SECONDS.__get_pydantic_json_schema__(None, None)}
+        column = {"type": "array", "minItems": 2, "maxItems": MOST_POINTS, "items": {"anyOf": constant["anyOf"]}}
+        seconds = column | {"items": SECONDS.__get_pydantic_json_schema__(None, None)}
         table = {
             "type": "object",
             "properties": {"time": seconds, "value": column},

@@ -4,11 +4,14 @@ shows both to xarray."""
 from .dataset import as_dataset, open_archive
 from .fields import FIELD_TIME, Fields, Series
 from .lock import only_writer
-from .run import ArchiveError, ArchiveWriter, column, field, last_state, partial_path, read_info
+from .run import ODD, ArchiveWriter, column, field, followed, last_state, partial_path, read_info
+from .soundness import ArchiveError
+from .space import is_full
 from .study import is_study, read_study, write_study
 
 __all__ = [
     "FIELD_TIME",
+    "ODD",
     "ArchiveError",
     "ArchiveWriter",
     "Fields",
@@ -16,6 +19,8 @@ __all__ = [
     "as_dataset",
     "column",
     "field",
+    "followed",
+    "is_full",
     "is_study",
     "last_state",
     "only_writer",

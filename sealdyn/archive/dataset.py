@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from .run import ArchiveError, open_run
+from .run import open_run
+from .soundness import ArchiveError
 from .study import is_study, read_study
 
 

@@ -6,14 +6,19 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from .run import ArchiveError
+from .run import followed
+from .soundness import ArchiveError
 
 
 @contextmanager
 def only_writer(path):
     """While the block lasts nobody else writes the archive `path`, its partial file or its journal, in this process or
-    another one of this machine.  Raises ArchiveError where somebody does."""
-    path = Path(os.path.realpath(path))
+    another one of this machine; gives where it really is.  Raises ArchiveError where somebody does, and where no file
+    can be."""
+    place = followed(path)
+    if place.is_symlink() or (place.exists() and not place.is_file()):
+        raise ArchiveError(f"{path}: found what is no file (a folder, a pipe, a device, a link to itself)")
+    path = Path(os.path.realpath(place))
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{path.stem}.lock")
     lock = FileLock(beside, timeout=0)
@@ -24,7 +29,7 @@ def only_writer(path):
             f"{path}: another run or study is writing it; let it end, or choose another file (--out)"
         ) from None
     try:
-        yield
+        yield place
     finally:
         # Before it is free: whoever waits for it sees that it is gone, and makes a new one.
         with suppress(OSError):

@@ -34,6 +34,9 @@ from .fields import (
     reserve,
     scale_of,
 )
+from .seal import is_whole, seal
+from .soundness import ArchiveError, begin_writing, end_writing, is_sound, must_be_sound
+from .space import DATASET, FILE, hdf5_with_room
 
 # Archives of the first format have no fields.
 FORMAT, OLDER = "sealdyn archive 2", ("sealdyn archive 1",)
@@ -42,15 +45,19 @@ SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14
 # Of its room a finished archive fills at least this.
 SHARE = 0.9
+# What reading a file that this program did not write, or somebody has changed, may raise.
+ODD = (KeyError, OSError, ValueError, TypeError, AttributeError, IndexError, RuntimeError, ArithmeticError, EOFError)
 
 
-class ArchiveError(Exception):
-    """A file that cannot be read as an archive, or cannot be continued; one line."""
+def followed(path) -> Path:
+    """Where an archive really is: of a symlink its target."""
+    path = Path(path)
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def partial_path(path) -> Path:
     """Where a run that is to become `path` lives until it is complete."""
-    path = Path(path)
+    path = followed(path)
     return path.with_name(path.stem + ".partial.h5")
 
 
@@ -129,7 +136,14 @@ class ArchiveWriter:
         self._log += b"".join(_to_json(event).encode() + b"\n" for event in events)
 
     def flush(self) -> None:
-        """Hands everything waiting to the operating system; after it, a kill loses nothing."""
+        """Hands everything waiting to the operating system; after it, a kill loses nothing.
+
+        Raises OSError where the disk takes no more: what was written before stays, and the writer has ended.
+        """
+        with self._or_left():
+            self._flush()
+
+    def _flush(self) -> None:
         (rows, instants), state, log = self._appended(), self.state, self._log
         record = self._record(rows, instants, state, log)
         full = rows > self._room or len(record) > self._slot or len(log) > self._log_room
@@ -151,9 +165,14 @@ class ArchiveWriter:
         """Completes the archive and gives it its name; returns where it is.  `status` one of STATUSES, else ValueError.
 
         An interrupted run does not replace a complete archive: it stays at `partial_path(path)`.
+        OSError as of `flush`.
         """
         if status not in STATUSES:
             raise ValueError(f"status {status!r} is none of {', '.join(STATUSES)}")
+        with self._or_left():
+            return self._finish(status, message, summary)
+
+    def _finish(self, status: str, message: str, summary: dict) -> Path:
         if self._file:
             self.flush()
         target = self.path
@@ -173,6 +192,8 @@ class ArchiveWriter:
                 h5py.h5d.open(file.id, name.encode()).write(h5py.h5s.ALL, h5py.h5s.ALL, values)
             file.create_group("restart").attrs["state"] = _to_json(self.state)
             _write_events(file, _read_log(self._log))
+            seal(file)
+        is_sound(target)
         if target != self.partial:
             self.partial.unlink(missing_ok=True)
         self.rows, self.instants, self._waiting, self._ended = rows, instants, [], True
@@ -185,8 +206,19 @@ class ArchiveWriter:
             self._close()
             self._ended = True
 
+    @contextmanager
+    def _or_left(self):
+        """What is written; where the disk takes no more the run is left as it is there, to be continued."""
+        try:
+            yield
+        except OSError:
+            self._close()
+            self._ended = True
+            raise
+
     def _close(self) -> None:
         if self._file:
+            end_writing(self._file)
             self._file.close()
         self._file = None
 
@@ -257,15 +289,17 @@ class ArchiveWriter:
             places["log"] = restart.create_dataset("log", data=np.zeros(self._log_room, "u1"))
             restart["log"][: len(log)] = np.frombuffer(log, "u1")
             restart["record"][self._sequence % 2, : len(record)] = np.frombuffer(record, "u1")
+            seal(file)
             place = {name: _offset(item) for name, item in places.items()}
         self._room, self._place, self._logged, self._sequence = room, place, len(log), self._sequence + 1
         self._written = clock.monotonic()
         self._file = open(self.partial, "r+b", buffering=0)  # noqa: SIM115  kept for the whole run
+        begin_writing(self._file)
 
     @contextmanager
     def _rewritten(self, target: Path, room: int, instants: int, source, attributes: dict, early: bool = False):
         """A complete new file that takes the place of `target` when the block ends; `early` as in `reserve`."""
-        with self._beside(target) as fresh, h5py.File(fresh, "w") as file:
+        with self._beside(target) as fresh, hdf5_with_room(fresh, self._size(room, instants)) as file:
             _write_attributes(file, {"format": FORMAT, **attributes})
             for name, series in self._series.items():
                 reserve(file, name, series, (room,), early)
@@ -286,7 +320,9 @@ class ArchiveWriter:
         ends."""
         with self._beside(target) as fresh:
             shutil.copyfile(self.partial, fresh)
-            with h5py.File(fresh, "r+") as file:
+            # Beside the rows.
+            more = self._size(0, 0)
+            with hdf5_with_room(fresh, fresh.stat().st_size + more, "r+") as file:
                 _write_attributes(file, self._attributes)
                 lengths = dict.fromkeys(self._series, self.rows)
                 lengths |= dict.fromkeys(self._fields.over_time() if self._fields else (), self.instants)
@@ -300,9 +336,24 @@ class ArchiveWriter:
     def _beside(self, target: Path):
         """Where the file is written that takes the place of `target` at once when the block ends."""
         fresh = target.with_name(target.name + ".new")
-        yield fresh
-        self._close()
-        os.replace(fresh, target)
+        try:
+            yield fresh
+            self._close()
+            os.replace(fresh, target)
+        except BaseException:
+            fresh.unlink(missing_ok=True)
+            raise
+
+    def _size(self, rows: int, instants: int) -> int:
+        """Bytes of a file with so many rows and instants, at most."""
+        columns, words = len(self._series), sum(len(str(value)) for value in self._attributes.values())
+        values = rows * columns
+        if self._fields:
+            columns += len(self._fields.series) + len(self._fields.grid)
+            values += instants * (1 + len(self._fields.series) * int(np.prod(self._fields.shape)))
+            values += sum(self._fields.shape)
+        # Words and events are kept as they are, and in a heap.
+        return 8 * values + 4 * (words + self._log_room + len(self._log)) + 3 * self._slot + FILE + DATASET * columns
 
     def _write(self, place: int, data: bytes) -> None:
         self._file.seek(place)
@@ -370,9 +421,31 @@ def _opened(path):
             found = f'a "{made_as}", this program reads up to "{FORMAT}"' if newer else "but not a sealdyn archive"
             raise ArchiveError(f"{path}: an HDF5 file, {found}")
         try:
-            yield file, {"instants": 0} | _read_record(file)
-        except (KeyError, OSError, ValueError) as error:
-            raise ArchiveError(f"{path}: damaged ({error})") from error
+            if not is_whole(file):
+                raise ArchiveError(f"{path}: what it says was altered since it was written")
+            yield file, {"instants": 0} | _checked(file, _read_record(file))
+        except ODD as error:
+            words = " ".join(str(error).split())[:200]
+            raise ArchiveError(f"{path}: damaged ({words or type(error).__name__})") from error
+
+
+def _checked(file, record: dict) -> dict:
+    """The record of an archive; raises ValueError where that cannot be."""
+    room = {"rows": file["time"].shape[0], "instants": file[FIELD_TIME].shape[0] if FIELD_TIME in file else 0}
+    for name, most in room.items():
+        if not 0 <= record.get(name, 0) <= most:
+            raise ValueError(f"{record[name]} {name} where there is room for {most}")
+    for name in names_over(file, "time"):
+        if file[name].shape != file["time"].shape or file[name].dtype.kind != "f":
+            raise ValueError(f"{name} is no series of numbers over time")
+    for name in ("status", "message", "scenario"):
+        if not isinstance(file.attrs[name], str):
+            raise TypeError(f"{name} is no text")
+    if file.attrs["status"] not in (*STATUSES, Status.RUNNING):
+        raise ValueError(f"status {file.attrs['status'][:40]}")
+    if not isinstance(record["state"], dict):
+        raise TypeError("what it goes on from is no table")
+    return record
 
 
 def _read_record(file) -> dict:
@@ -388,6 +461,7 @@ def _open_file(path: Path):
         # A run may finish between two looks: then what was partial has its final name.
         if candidate.is_file():
             try:
+                must_be_sound(candidate)
                 return h5py.File(candidate, "r")
             except FileNotFoundError:
                 continue
@@ -485,7 +559,10 @@ def open_run(path):
 
     with _opened(path) as (file, record):
         name = file.filename
-    dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
+    try:
+        dataset = xarray.open_dataset(name, engine="h5netcdf", decode_times=False)
+    except ODD as error:
+        raise ArchiveError(f"{path}: damaged ({' '.join(str(error).split())[:200]})") from error
     counts = {"time": record["rows"], FIELD_TIME: record["instants"]}
     dataset = dataset.isel({name: slice(0, count) for name, count in counts.items() if name in dataset.dims})
     return dataset.assign_attrs(rows=record["rows"])

@@ -8,7 +8,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .run import ArchiveError
+from .run import ODD
+from .seal import is_whole, seal
+from .soundness import ArchiveError, is_sound, must_be_sound
+from .space import DATASET, FILE, hdf5_with_room
 
 FORMAT = "sealdyn study 1"
 
@@ -20,24 +23,34 @@ def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: di
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
-    with h5py.File(fresh, "w") as file:
-        file.attrs["format"] = FORMAT
-        file.attrs["program"] = "sealdyn"
-        file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
-        for name, value in meta.items():
-            file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
-        for name, text in (
-            ("scenario", scenario_text),
-            ("resolved", json.dumps(resolved)),
-            ("answer", json.dumps(answer)),
-        ):
-            file.create_dataset(name, data=text, dtype=h5py.string_dtype())
-        for key, values in _columns(answer):
-            column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
-            column.attrs["units"] = units.get(key, "")
-            column.attrs["long_name"] = key
-    os.replace(fresh, path)
+    texts = {"scenario": scenario_text, "resolved": json.dumps(resolved), "answer": json.dumps(answer)}
+    columns = list(_columns(answer))
+    size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(values.nbytes for _, values in columns)
+    try:
+        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * len(columns)) as file:
+            _write(file, meta, texts, columns, units)
+        os.replace(fresh, path)
+    except BaseException:
+        fresh.unlink(missing_ok=True)
+        raise
+    is_sound(path)
     return path
+
+
+def _write(file, meta, texts, columns, units) -> None:
+    """All of a study, into an open file."""
+    file.attrs["format"] = FORMAT
+    file.attrs["program"] = "sealdyn"
+    file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
+    for name, value in meta.items():
+        file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
+    for name, text in texts.items():
+        file.create_dataset(name, data=text, dtype=h5py.string_dtype())
+    for key, values in columns:
+        column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
+        column.attrs["units"] = units.get(key, "")
+        column.attrs["long_name"] = key
+    seal(file)
 
 
 def _columns(tree, key=""):
@@ -66,9 +79,10 @@ def _numbers(entry):
 def is_study(path) -> bool:
     """Whether there is the file of a study at `path`."""
     try:
+        must_be_sound(path)
         with h5py.File(path, "r") as file:
-            return file.attrs.get("format") == FORMAT
-    except OSError:
+            return str(file.attrs.get("format")) == FORMAT
+    except (ArchiveError, OSError, RuntimeError):
         return False
 
 
@@ -79,9 +93,12 @@ def read_study(path) -> dict:
     if not path.is_file():
         raise ArchiveError(f"{path}: no such file")
     try:
+        must_be_sound(path)
         with h5py.File(path, "r") as file:
-            if file.attrs.get("format") != FORMAT:
+            if str(file.attrs.get("format")) != FORMAT:
                 raise ArchiveError(f"{path}: an HDF5 file, but not a sealdyn study")
+            if not is_whole(file):
+                raise ArchiveError(f"{path}: what it says was altered since it was written")
             info = {}
             for name, value in file.attrs.items():
                 value = value.item() if hasattr(value, "item") else value
@@ -91,6 +108,9 @@ def read_study(path) -> dict:
             info["scenario"] = file["scenario"].asstr()[()]
             info["resolved"] = json.loads(file["resolved"].asstr()[()])
             info["answer"] = json.loads(file["answer"].asstr()[()])
+            if not isinstance(info["answer"], dict) or not isinstance(info["study"], str):
+                raise TypeError("its answer is no table")
             return info
-    except OSError as error:
-        raise ArchiveError(f"{path}: not an HDF5 file, or damaged") from error
+    except ODD as error:
+        words = " ".join(str(error).split())[:200]
+        raise ArchiveError(f"{path}: damaged ({words or type(error).__name__})") from error

@@ -1,4 +1,4 @@
-"""SIGINT and SIGTERM end a command within GRACE: in order where that can be, else at once.
+"""SIGINT, SIGTERM and SIGHUP end a command within GRACE: in order where that can be, else at once.
 
 Python hears a signal only between two of its own instructions, and compiled code, compilers and libraries keep it
 waiting; what they call back may even swallow the KeyboardInterrupt.  So a thread watches what the system's handler
@@ -13,15 +13,15 @@ import sys
 from contextlib import contextmanager
 from threading import Thread, current_thread, main_thread
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
 # Seconds from the signal to the end, and the exit code.
 GRACE, CODE = 1.5, 130
 
 
 class Interruption:
-    """A context that hears SIGINT and SIGTERM: the first raises KeyboardInterrupt, unless somebody `looks` by himself;
-    others change nothing.  `asked` lists the first one; `last_words()` is called if the process is ended at once.
-    **Valid** in the main thread; entered elsewhere it hears nothing."""
+    """A context that hears SIGINT, SIGTERM and SIGHUP: the first raises KeyboardInterrupt, unless somebody `looks` by
+    himself; others change nothing.  `asked` lists the first one; `last_words()` is called if the process is ended at
+    once.  **Valid** in the main thread; entered elsewhere it hears nothing."""
 
     def __init__(self):
         self.asked, self.last_words, self._looking = [], None, False
@@ -33,7 +33,9 @@ class Interruption:
             ours, theirs = self._wire = socket.socketpair()
             theirs.setblocking(False)
             self._wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
-            self._handlers = {number: signal.signal(number, self._hear) for number in SIGNALS}
+            # nohup: a closed terminal is to change nothing.
+            heard = [n for n in SIGNALS if n in SIGNALS[:2] or signal.getsignal(n) != signal.SIG_IGN]
+            self._handlers = {number: signal.signal(number, self._hear) for number in heard}
             Thread(target=self._watch, args=(ours,), daemon=True).start()
         return self
 
@@ -94,13 +96,13 @@ def stop_children(spared=()):
 
 
 def serve():
-    """Make this process one that others start and end: it hears no Ctrl-C, which is its parent's, and does not outlive
-    the parent."""
+    """Make this process one that others start and end: it hears no Ctrl-C and no closed terminal, which are its
+    parent's, and does not outlive the parent."""
     from multiprocessing import parent_process
 
     signal.set_wakeup_fd(-1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_DFL if number == signal.SIGTERM else signal.SIG_IGN)
     Thread(target=_end_with, args=(parent_process(),), daemon=True).start()
 
 

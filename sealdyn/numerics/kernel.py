@@ -10,6 +10,9 @@ from functools import partial
 from numba import cfunc, njit
 from numba.extending import register_jitable
 
+from .kept_kernels import check_kept_kernels
+
+check_kept_kernels()
 OPTIONS = {"cache": True, "error_model": "numpy"}
 
 # Each is compiled with no more ways in than it needs: those from Python and from C take a quarter of a kernel's time.

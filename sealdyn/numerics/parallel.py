@@ -9,8 +9,10 @@ import hashlib
 import json
 import os
 import time
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
@@ -24,6 +26,8 @@ from .threads import one_thread
 
 # Points that a process gets at once where that pays: so many at most, and for so long (s).
 AT_ONCE, PIECE = 64, 0.5
+# How often a point may be among those whose processes are killed before it is given one of its own.
+ENDED = 2
 
 
 @dataclass(frozen=True)
@@ -78,7 +82,11 @@ class Checkpoint:
         # No file before the first point: a refused study leaves nothing behind.
         if not self.rows:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            self.path.write_text(json.dumps({"identity": self.identity}) + "\n")
+            try:
+                self.path.write_text(json.dumps({"identity": self.identity}) + "\n")
+            except OSError:
+                self.path.unlink(missing_ok=True)
+                raise
         self.rows[key] = row
         with self.path.open("a") as file:
             file.write(json.dumps({"key": key, "row": row}) + "\n")
@@ -126,8 +134,26 @@ def _on_processes(count: int, function, todo: dict, what: str):
         return
     # Forked workers inherit the compiled kernels; where there is no fork they load them.
     way = get_context("fork" if "fork" in get_all_start_methods() else "spawn")
-    others, waiting = active_children(), {}
-    with ProcessPoolExecutor(min(count, len(todo)), mp_context=way, initializer=_begin) as pool:
+    broke = Counter()
+    while True:
+        waiting = {}
+        try:
+            yield from _with_pool(way, min(count, len(todo)), function, todo, pieces, waiting)
+            return
+        except BrokenProcessPool:
+            # A process was killed, and the others with it: what they had is begun again, each point by itself.
+            lost = [key for some in waiting.values() for key in some]
+            broke.update(lost)
+            pieces.again += [[key] for key in lost if broke[key] <= ENDED]
+            for key in lost:
+                if broke[key] > ENDED:
+                    yield key, *_by_itself(way, function, todo[key])
+
+
+def _with_pool(way, count: int, function, todo: dict, pieces, waiting: dict):
+    """The same, while no process is killed; `waiting` {future: keys} is what has been handed out."""
+    others = active_children()
+    with ProcessPoolExecutor(count, mp_context=way, initializer=_begin) as pool:
         try:
             while True:
                 # No process waits for its next piece.
@@ -136,12 +162,22 @@ def _on_processes(count: int, function, todo: dict, what: str):
                 if not waiting:
                     return
                 for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+                    timed = future.result()
                     some = waiting.pop(future)
-                    yield from _with_keys(some, pieces.took(some, future.result()))
+                    yield from _with_keys(some, pieces.took(some, timed))
         finally:
             if waiting:
                 # The reader has left, or was interrupted: nobody waits for what is being done.
                 stop_children(spared=others)
+
+
+def _by_itself(way, function, point: dict) -> tuple[dict, bool]:
+    """`row_of` a point that may kill whoever works on it, in a process of its own."""
+    with ProcessPoolExecutor(1, mp_context=way, initializer=_begin) as pool:
+        try:
+            return pool.submit(row_of, function, point).result()
+        except BrokenProcessPool:
+            return {"failed": "its process was ended from outside, or crashed: too little memory?"}, False
 
 
 def _begin():
@@ -155,11 +191,13 @@ class _Pieces:
     them Together.  What is killed loses no more."""
 
     def __init__(self, function, todo: dict, count: int):
-        self.keys, self.left, self.count = iter(todo), len(todo), count
+        self.keys, self.left, self.count, self.again = iter(todo), len(todo), count, []
         self.together, self.size = isinstance(function, Together), 1
 
     def next(self) -> list:
         """Keys of the next piece; none at the end.  The last ones are small, so that all processes end together."""
+        if self.again:
+            return self.again.pop()
         some = list(islice(self.keys, min(self.size, max(self.left // (2 * self.count), 1))))
         self.left -= len(some)
         return some

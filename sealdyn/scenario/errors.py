@@ -7,9 +7,11 @@ import typing
 from functools import cache
 from typing import Any
 
-from ..units import Quantity, QuantityError, VaryingQuantity, quoted
+from ..units import Quantity, QuantityError, VaryingQuantity, cut, quoted
 
 NOTHING = object()
+# Characters of what was expected: it may list names.
+LONGEST = 600
 
 
 class ScenarioError(Exception):
@@ -22,7 +24,8 @@ class ScenarioError(Exception):
     def __str__(self):
         table, _, last = self.key.rpartition(".")
         where = f"[{table}] {last}" if table else f"[{last}]" if last else ""
-        line = f"{self.name}: {where + ': ' if where else ''}found {self.found}; expected {self.expected}"
+        where = f"{cut(where)}: " if where else ""
+        line = f"{cut(self.name)}: {where}found {cut(self.found)}; expected {cut(self.expected, LONGEST)}"
         return "".join(c if c.isprintable() else " " for c in line)
 
 

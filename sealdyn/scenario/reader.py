@@ -4,6 +4,7 @@ import dataclasses
 import difflib
 import math
 import re
+import stat
 import tomllib
 from dataclasses import dataclass, field
 from functools import cache
@@ -29,6 +30,10 @@ __all__ = [
 ]
 
 
+# Numbers in SI units beyond which nothing of this world is.
+SMALLEST, LARGEST = 1e-25, 1e15
+# Of a file.
+MOST_BYTES = 1 << 21
 STARTS = r"^(auto|rest|steady|.+\.h5)$"
 
 
@@ -108,6 +113,7 @@ def read_scenario(path, overrides=()) -> Scenario:
     """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
     path = Path(path)
     try:
+        _must_be_readable(path)
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
         near = difflib.get_close_matches(path.name, _neighbours(path), 3, 0.5)
@@ -121,6 +127,16 @@ def read_scenario(path, overrides=()) -> Scenario:
         why = getattr(error, "strerror", None) or str(error)
         raise ScenarioError(quoted(str(path)), "", f"an unreadable file ({why})", "a scenario file (TOML)") from None
     return parse_scenario(text, path.name, overrides, path)
+
+
+def _must_be_readable(path):
+    """Raises ScenarioError for what has no end, or would take long."""
+    found = path.stat()
+    if not stat.S_ISREG(found.st_mode) and not path.is_dir():
+        raise ScenarioError(quoted(str(path)), "", "a pipe or a device", "a scenario file (TOML)")
+    if found.st_size > MOST_BYTES:
+        few = f"a scenario file (TOML) of at most {MOST_BYTES} bytes"
+        raise ScenarioError(quoted(str(path)), "", f"{found.st_size} bytes", few)
 
 
 def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None) -> Scenario:
@@ -149,6 +165,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     _check_run_and_study(raw, name)
     try:
         file = _reader().validate_python(raw)
+        refuse_extremes(file, name)
         _check_film_name(file.film.model)
         check_scene(file, file.run)
         film_of(file)
@@ -213,6 +230,23 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
         table, _, last = without_indices(key).rpartition(".")
         if tables(ScenarioFile).get(table, {}).get(last) is not bool:
             raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+
+
+def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
+    """Not a number, infinite, and numbers so large or small that products of a few of them are (in SI); whole numbers
+    are at most `counted`.  Raises ScenarioError that names the key below `key`."""
+    if dataclasses.is_dataclass(value):
+        below = [(f.name, getattr(value, f.name)) for f in dataclasses.fields(value) if f.name != "study"]
+    else:
+        below = enumerate(value) if isinstance(value, (list, tuple)) else ()
+    for step, part in below:
+        # Of a table, its columns.
+        refuse_extremes(part, name, key if isinstance(step, int) else f"{key}.{step}" if key else step, counted)
+    if isinstance(value, int) and abs(value) > counted:
+        raise ScenarioError(name, key, quoted(value), f"at most {counted:g}")
+    if isinstance(value, int | float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
+        found = f"{value:.3g}" if isinstance(value, float) else quoted(value)
+        raise ScenarioError(name, key, f"{found} (SI)", f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size")
 
 
 def given_keys(tree: dict, key: str = "") -> list[str]:

@@ -19,9 +19,11 @@ from ..unit_names import dimension_and_factor
 from ..units import quoted
 from .errors import ScenarioError
 from .overrides import as_written, opened, override_of, set_value, value_of
-from .reader import Scenario, given_keys, read_tables
+from .reader import Scenario, given_keys, read_tables, refuse_extremes
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+# Points of a grid, and any count that a study is given.
+MOST = 1_000_000
 AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
 
 
@@ -41,7 +43,9 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
             expected = f"one of {', '.join(known)}{hint}" if known else "no settings"
             raise ScenarioError(scenario.name, f"study.{name}.{key}", "an unknown key", expected)
     try:
-        return TypeAdapter(kind).validate_python(raw)
+        settings = TypeAdapter(kind).validate_python(raw)
+        refuse_extremes(settings, scenario.name, f"study.{name}", MOST)
+        return settings
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(str(part) for part in first["loc"] if isinstance(part, str) and part in known)
@@ -49,6 +53,8 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
         found = getattr(context, "found", repr(first.get("input")))
         expected = getattr(context, "expected", first["msg"])
         raise ScenarioError(scenario.name, f"study.{name}.{key}", found, expected) from None
+    except RecursionError:
+        raise ScenarioError(scenario.name, f"study.{name}", "lists too deep", "values") from None
 
 
 def _listed(flags: dict[str, Any], kind: type) -> dict[str, Any]:
@@ -147,6 +153,8 @@ def axis(words: str, name: str, where: str) -> dict:
         (low, high), unit = _in_one_unit(ends)
         if even_ratio and not low * high > 0:
             raise ScenarioError(name, where, repr(words), "ends of one sign, not zero, for log")
+        if len(count[0]) > 20 or int(count[0]) > MOST:
+            raise ScenarioError(name, where, f"{quoted(count[0].strip())} values", f"at most {MOST}")
         spread = np.geomspace if even_ratio else np.linspace
         # Twelve digits: 0.3 mrad is written so, not as 0.30000000000000004 mrad.
         values = [float(f"{v:.12g}") for v in spread(low, high, int(count[0]))]

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from ..units import Angle, Force, Length, Speed, Varying, Velocity
+from ..units import Angle, Force, Length, Speed, Varying, Velocity, cut
 from .contact import Contact
 from .excitation import Housing, Shaft
 from .film import Film
@@ -92,4 +92,4 @@ class SceneError(ValueError):
         self.key, self.found, self.expected = key, found, expected
 
     def __str__(self):
-        return f"{self.key}: found {self.found}; expected {self.expected}"
+        return f"{cut(self.key)}: found {cut(self.found)}; expected {cut(self.expected, 600)}"

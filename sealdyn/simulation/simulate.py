@@ -6,6 +6,7 @@ import os
 import platform
 import time as clock
 from collections.abc import Callable
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
@@ -30,6 +31,7 @@ from .film_selection import select_film
 from .method_selection import check_method, choose_method
 from .second_run import Comparison
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
+from .size import refuse_large
 from .start_selection import Start, choose_start
 from .summary import parts, plain, summarise
 
@@ -67,16 +69,19 @@ def simulate(
     progress: Callable[[float, float], None] | None = None,
     stop: Callable[[], bool] | None = None,
     resume: bool = False,
+    allow_large: bool = False,
 ) -> Result:
     """Run a scenario into an archive.
 
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
     interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
+    `allow_large`: also a run of a day or of an archive of gigabytes (simulation/size.py).
     Raises SceneError or ArchiveError for a scene or file that cannot be, or that another run is writing.
     """
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
-    with only_writer(out):
+    refuse_large(scenario, allow_large)
+    with only_writer(out) as out:
         return _simulate(scenario, out, progress, stop, resume)
 
 
@@ -104,10 +109,13 @@ def _simulate(scenario, out, progress, stop, resume) -> Result:
         restart = _resumed(run, writer, sink, audit) if resume and writer.rows else None
         if restart and "start" in writer.state:
             # A run begun is not begun elsewhere, whatever would be chosen now.
-            _start(run, scenario, Start(**writer.state["start"]))
+            with _own_state(writer):
+                begin = Start(**writer.state["start"])
+            _start(run, scenario, begin)
         trial, sink.errors = one.start(run)
         if restart and sink.errors and writer.state.get("errors"):
-            sink.errors.restore(writer.state["errors"])
+            with _own_state(writer):
+                sink.errors.restore(writer.state["errors"])
         seen = Comparison(run) if sink.errors is None and one.method != "expm" else None
         try:
             outcome = solve(
@@ -200,6 +208,7 @@ def prepare_run(scenario):
     """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
     number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""
+    refuse_large(scenario, allowed=True)
     settings = scenario.run
     chosen = []
 
@@ -240,18 +249,10 @@ def _start(run, scenario, begun: Start):
     if start == "steady":
         run.y0, run.extrema.steady = run.steady_start(), True
     elif start != "rest":
-        state = archive.last_state(start)
-        if not state:
-            raise archive.ArchiveError(f"{start}: holds no last state to start from")
         rates = unknowns.n + np.arange(unknowns.n_mechanical - unknowns.n)
-        if list(state["names"]) != unknowns.names or len(state["y"]) != unknowns.size:
-            raise SceneError(
-                "run.start",
-                f"{start} with unknowns {', '.join(state['names'])}",
-                f"an archive with the unknowns {', '.join(unknowns.names)}",
-            )
-        run.y0[: unknowns.n] = state["y"][: unknowns.n]
-        run.y0[rates] = state["y"][rates]
+        y = _last_unknowns(start, unknowns)
+        run.y0[: unknowns.n] = y[: unknowns.n]
+        run.y0[rates] = y[rates]
     for k, ring in ((0, scenario.scene.initial.stator), (1, scenario.scene.initial.rotor)):
         for part in PARTS:
             given = getattr(ring, part)
@@ -265,15 +266,48 @@ def _start(run, scenario, begun: Start):
     run.check_start()
 
 
+def _last_unknowns(start, unknowns) -> np.ndarray:
+    """The unknowns (size,) that the archive `start` ends with."""
+    state = archive.last_state(start)
+    if not state:
+        raise archive.ArchiveError(f"{start}: holds no last state to start from")
+    try:
+        names, y = [str(name) for name in state["names"]], np.array(state["y"], float)
+    except archive.ODD as error:
+        raise archive.ArchiveError(f"{start}: its last state is none of this program's ({error})") from None
+    if names != unknowns.names or y.shape != (unknowns.size,):
+        found, wanted = (", ".join(one)[:200] for one in (names, unknowns.names))
+        raise SceneError("run.start", f"{start} with unknowns {found}", f"an archive with the unknowns {wanted}")
+    if not np.all(np.isfinite(y)):
+        raise archive.ArchiveError(f"{start}: its last state is no number")
+    return y
+
+
+@contextmanager
+def _own_state(writer):
+    """Reading the state that a run goes on from; ArchiveError where it is none of such a run."""
+    try:
+        yield
+    except archive.ODD as error:
+        raise archive.ArchiveError(
+            f"{writer.path}: cannot be continued, its state is none of this run ({error})"
+        ) from None
+
+
 def _resumed(run, writer, sink, audit):
+    """Where a run goes on: segment, time in it (s), unknowns (size,)."""
     state = writer.state
-    run.extrema.restore(state["records"])
-    tally = state["tally"]
-    sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
-    audit.restore(state["audit"])
-    run.restore_modes(state["modes"])
-    sink.logged = int(state["modes"]["logged"])
-    return int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
+    with _own_state(writer):
+        run.extrema.restore(state["records"])
+        tally = state["tally"]
+        sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
+        audit.restore(state["audit"])
+        run.restore_modes(state["modes"])
+        sink.logged = int(state["modes"]["logged"])
+        leg, tau, y = int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
+        if not 0 <= leg < len(run.intervals) or y.shape != run.y0.shape or not np.all(np.isfinite([tau, *y])):
+            raise ValueError("unknowns of another kind or number")
+    return leg, tau, y
 
 
 @cache

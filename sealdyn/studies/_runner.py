@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from .. import __version__, studies
-from ..archive import only_writer, write_study
+from ..archive import followed, only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
 from ..scenario.settings import study_settings, without
@@ -34,7 +34,7 @@ def study_tables(name: str, answer: dict) -> list:
 
 def archive_of(name: str, scenario, out=None) -> Path:
     """Where study `name` (hyphens or underscores) of a scenario puts its archive, if it is not told (`out`)."""
-    return Path(out) if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5"
+    return followed(out if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5")
 
 
 def journal_of(out: Path) -> Path:
@@ -110,7 +110,7 @@ def run_study(
     out = archive_of(name, scenario, out)
     plain = json.loads(json.dumps(asdict(settings), default=str))
     identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain, left_out], sort_keys=True)
-    with only_writer(out):
+    with only_writer(out) as out:
         journal = Checkpoint(journal_of(out), identity)
         kept = _folder(results) if results else None
         with _crew(workers, scheduler) as crew:

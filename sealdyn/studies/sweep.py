@@ -2,17 +2,20 @@
 
 import contextlib
 import itertools
+import math
 from dataclasses import dataclass
 from functools import partial
 
 from ..numerics.parallel import Together
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import axis
+from ..scenario.settings import MOST, axis
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, run_many
 from ..simulation.outputs import unit_of
 
 WITH_WAVES = True
+# Seconds of a run at least, bytes of its row.
+LEAST, ROW = 2e-3, 500
 OUTPUTS = (
     "h_min.value",
     "h_min.of_clearance",
@@ -45,6 +48,10 @@ def run(scenario, settings, tools) -> dict:
     keys = [a["key"] for a in axes]
     if len(set(keys)) < len(keys):
         raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
+    count = math.prod(len(a["given"]) for a in axes)
+    if count > MOST:
+        size = f"a grid of {count:.3g} runs: {count * LEAST / 3600:.2g} h at least, {count * ROW / 1e9:.2g} GB"
+        raise ScenarioError(scenario.name, "study.sweep.vary", size, f"at most {MOST:g} runs; sweep a part at a time")
     grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
     # What is wrong with every point is found before any is run; a point that cannot run is a row.
     with contextlib.suppress(SceneError):

@@ -58,10 +58,13 @@ def interrupted(tmp_path_factory):
     seen = {"complete": archive.read_bytes(), "folder": folder, "archive": archive}
     process = started("run", REFERENCE, *LONG, "--json", cwd=folder)
     until(lambda: rows(partial_path(archive)) > 300, process)
+    # Held while it is looked at: a fast machine would be done before.
+    process.send_signal(signal.SIGSTOP)
     seen["show"] = sealdyn("show", partial_path(archive), cwd=folder)
     seen["show json"] = sealdyn("show", partial_path(archive), "--json", cwd=folder)
     seen["csv"] = sealdyn("show", partial_path(archive), "--csv", cwd=folder)
     process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGCONT)
     seen["answer"] = finished(process)
     return seen
 

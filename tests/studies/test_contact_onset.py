@@ -167,7 +167,7 @@ def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
         assert below[1] == {"failed": "no orbit at 3.0, True"}
     else:
         assert not any("floored" in row for row in answer["curve"])
-    meta = {"name": "x", "question": "?"}
+    meta = {"study": "contact_onset", "name": "x", "question": "?"}
     path = write_study(tmp_path / "c.h5", scenario.text, {}, meta, answer, contact_onset.units)
     assert study_contact_onset.draw(path, tmp_path / "c.png").exists()
 
@@ -183,5 +183,7 @@ def test_a_failed_onset_leaves_its_curve(tmp_path):
     answer = contact_onset.run(scenario, Settings(over="film.coning", values=(2.0,)), Broken())
     assert answer["status"] == "failed" and answer["nonlinear"] is None and answer["verdict"][0] == "no orbit"
     assert answer["curve"][0]["nonlinear"] == 4.0
-    path = write_study(tmp_path / "c.h5", "", {}, {"name": "x", "question": "?"}, answer, contact_onset.units)
+    path = write_study(
+        tmp_path / "c.h5", "", {}, {"study": "contact_onset", "name": "x", "question": "?"}, answer, contact_onset.units
+    )
     assert study_contact_onset.draw(path, tmp_path / "c.png").exists()

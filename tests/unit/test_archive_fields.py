@@ -162,7 +162,7 @@ def make_older(path):
     """The file as the first format had it."""
     with h5py.File(path, "r+") as file:
         file.attrs["format"] = "sealdyn archive 1"
-        for name in file.attrs.keys() & {"instants"}:
+        for name in file.attrs.keys() & {"instants", "seal"}:
             del file.attrs[name]
         if "record" in file["restart"]:
             for slot, text in enumerate(file["restart/record"]):

@@ -329,7 +329,7 @@ def test_study_charts_are_legible(tmp_path, modules, name, overrides, settings):
     study, chart = modules
     scenario = read_scenario(SCENARIOS / f"{name}.toml", overrides)
     answer = study.run(scenario, study.Settings(**settings), InProcess())
-    meta = {"name": name, "question": scenario.question}
+    meta = {"study": study.__name__.split(".")[-1], "name": name, "question": scenario.question}
     path = write_study(tmp_path / "s.h5", scenario.text, {}, meta, answer, study.units)
     figure = drawn(chart, path, tmp_path / "s.png", written=False)
     assert text_trouble(figure) == ([], [])

@@ -98,11 +98,19 @@ ANSWERS = {
 @pytest.mark.parametrize("name", ANSWERS)
 def test_a_study_without_an_answer_has_a_page_that_says_why(name, tmp_path):
     settings = {"repeats": 1, "tolerances": 1, "loosest": 1.0, "tightest": 1.0}
-    meta = {"name": "seal", "question": "Does it ride?", "overrides": [], "version": "1", "settings": settings}
+    study = name.split()[0]
+    meta = {
+        "study": study,
+        "name": "seal",
+        "question": "Does it ride?",
+        "overrides": [],
+        "version": "1",
+        "settings": settings,
+    }
     path = write_study(tmp_path / "s.h5", "", {}, meta, {**NOTHING, **ANSWERS[name]}, {})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = drawn(import_module(f"sealdyn.report.charts.study_{name.split()[0]}"), path, tmp_path / "s.png")
+        figure = drawn(import_module(f"sealdyn.report.charts.study_{study}"), path, tmp_path / "s.png")
     assert text_trouble(figure) == ([], [])
     said = " ".join(text.get_text() for text in [*figure.texts, *(t for ax in figure.axes for t in ax.texts)])
     assert WHY[1:] in " ".join(said.split()) or name in (

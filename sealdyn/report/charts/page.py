@@ -106,8 +106,12 @@ def save(figure, path) -> Path:
     # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
     pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
     few = pixels.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    few.save(fresh, format="PNG", dpi=(DPI, DPI))
-    os.replace(fresh, path)
+    try:
+        few.save(fresh, format="PNG", dpi=(DPI, DPI))
+        os.replace(fresh, path)
+    except BaseException:
+        fresh.unlink(missing_ok=True)
+        raise
     return path
 
 
