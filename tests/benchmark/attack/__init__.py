@@ -1,0 +1,1 @@
+"""What comes from outside and wishes the program ill; each file one kind of it, all run by robustness.py."""

@@ -1,0 +1,139 @@
+"""How an attack went: counted, and each way through told once."""
+
+import collections
+import contextlib
+import os
+import signal
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from pathlib import Path
+
+from sealdyn.archive import ArchiveError
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scene.scene import SceneError
+
+# Longest time that anything may take without a word (s), longest line of an error.
+PATIENCE, LONGEST = 10, 500
+# How a process that was ended for its slowness counts.
+SLOW = -99
+
+
+class Ledger:
+    """`counts` of what happened, by its name; `ways` of what came through, each with an example."""
+
+    def __init__(self):
+        self.counts, self.ways = collections.Counter(), {}
+
+    def add(self, counts: dict, ways: dict) -> None:
+        """What another counted."""
+        self.counts.update(counts)
+        for how, example in ways.items():
+            self.ways.setdefault(how, example)
+
+    def note(self, what: str, outcome: str, how: str = "", example="") -> None:
+        """One attempt."""
+        self.counts[f"{what}: {outcome}"] += 1
+        if how:
+            self.ways.setdefault(f"{what}: {how}", example)
+
+
+class TooLong(BaseException):
+    """Nothing was said for too long."""
+
+
+def _late(*_):
+    raise TooLong
+
+
+def tried(action, patience=PATIENCE):
+    """What an action of this process gives; whether it is "done", "refused" or "escaped"; and how it escaped."""
+    signal.signal(signal.SIGALRM, _late)
+    signal.alarm(patience)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return action(), "done", ""
+    except (ScenarioError, SceneError, ArchiveError) as refused:
+        return None, "refused", one_line(refused)
+    except (Exception, TooLong) as escaped:
+        return None, "escaped", place(escaped)
+    finally:
+        signal.alarm(0)
+
+
+def one_line(error) -> str:
+    """What is wrong with the words of an error of the program's own; "" if nothing."""
+    line = str(error)
+    return f"{len(line)} characters: {line[:80]!r}" if "\n" in line or len(line) > LONGEST else ""
+
+
+def place(error) -> str:
+    """An error that came through, and where it rose."""
+    frames = traceback.extract_tb(error.__traceback__)
+    where = [frame for frame in frames if "sealdyn" in frame.filename] or frames
+    place = f"{Path(where[-1].filename).name}:{where[-1].lineno}"
+    return f"{type(error).__name__}: {str(error)[:90]} ({place})"
+
+
+def command(*words, patience=PATIENCE) -> tuple[int, str, str]:
+    """Exit code (negative: the signal that ended it), standard output and error of a verb, in a fork of this process
+    without a terminal."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as error:
+        child = os.fork()
+        if child == 0:
+            _be_the_command(words, out, error)
+        code, end = None, time.monotonic() + patience
+        while code is None:
+            done, status = os.waitpid(child, os.WNOHANG)
+            if done:
+                code = os.waitstatus_to_exitcode(status)
+            elif time.monotonic() > end:
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+                code = SLOW
+            else:
+                time.sleep(0.005)
+        texts = []
+        for stream in (out, error):
+            stream.seek(0)
+            texts.append(stream.read().decode(errors="replace"))
+    return code, *texts
+
+
+def _be_the_command(words, out, error):
+    code = 70
+    try:
+        os.setsid()
+        for number, stream in enumerate((os.open(os.devnull, os.O_RDONLY), out.fileno(), error.fileno())):
+            os.dup2(stream, number)
+        from sealdyn import cli
+
+        sys.argv = ["sealdyn", *map(str, words)]
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+    except BaseException:
+        traceback.print_exc()
+    with contextlib.suppress(Exception):
+        sys.stdout.flush()
+        sys.stderr.flush()
+    os._exit(code)
+
+
+def judged(code: int, error: str, allowed=(0, 2, 3, 4, 5)) -> tuple[str, str]:
+    """Outcome and, of what came through, how, of a command that ended so."""
+    lines = error.strip().splitlines()
+    if code == SLOW:
+        return "escaped", "no end"
+    if code < 0:
+        return "escaped", f"signal {-code}"
+    if "Traceback" in error or code not in allowed:
+        return "escaped", f"exit {code}: {' '.join(lines[-1:])[:150]}"
+    if any(len(line) > LONGEST for line in lines) or (code == 2 and len(lines) > 2):
+        return "a long line", f"{len(lines)} lines, {max(map(len, lines))} characters: {lines[0][:80]!r}"
+    return ("refused" if code == 2 else "done"), ""

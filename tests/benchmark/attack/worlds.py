@@ -1,0 +1,210 @@
+"""The world around a run: streams that are closed or full, names, folders, limits and settings that nobody foresaw."""
+
+import os
+import random
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from sealdyn.archive import ArchiveError, read_info
+
+from .outcome import SLOW, judged
+
+SEAL = Path(__file__).parents[3] / "scenarios" / "fms_reference.toml"
+COMMAND = [sys.executable, "-m", "sealdyn.cli"]
+# Longest time (s); where kernels are compiled anew; where there is an end to be waited for.
+PATIENCE, COMPILING = 60, 400
+SHORT = ("--set", "run.turns=4", "--set", "run.samples_per_turn=16")
+
+
+def worlds(ledger, seed, numbers, folder: Path) -> None:
+    """A run in each of them: done, or refused in one line; of what is done the archive is whole."""
+    every = sorted(WORLDS.items())
+    random.Random(seed).shuffle(every)
+    for number in numbers:
+        name, place = every[number]
+        here = folder / f"world-{number}"
+        here.mkdir()
+        code, error, out = place(here)
+        outcome, how = judged(code, error)
+        if not how and code == 0 and out is not None:
+            outcome, how = _whole(out, here, outcome)
+        ledger.note("hostile world", outcome, how and f"{name}: {how}", error)
+        shutil.rmtree(here, ignore_errors=True)
+
+
+def _whole(out, here, outcome):
+    try:
+        rows = read_info(out)["rows"]
+    except ArchiveError as error:
+        return "escaped", f"no whole archive: {error}"
+    left = [path.name for path in here.iterdir() if path.suffix in (".new", ".lock") or ".partial" in path.name]
+    return ("escaped", f"left behind: {left}") if rows != 65 or left else (outcome, "")
+
+
+def ran(here, *words, env=None, patience=PATIENCE, out="a.h5", scenario=SEAL, verb="run", **how):
+    """Exit code, standard error, and the archive of a run."""
+    # A whole path stays one.
+    out = here / out
+    given = [verb, scenario, *SHORT, *words] + (["--out", out] if verb == "run" else [])
+    how = {"stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, **how}
+    among = {**os.environ, **(env or {})}
+    among = {name: value for name, value in among.items() if value is not None}
+    try:
+        done = subprocess.run([*COMMAND, *given], env=among, timeout=patience, **how)
+    except subprocess.TimeoutExpired:
+        return SLOW, "", None
+    return done.returncode, (done.stderr or b"").decode(errors="replace"), out if verb == "run" else None
+
+
+def _with(**env):
+    return lambda here: ran(here, env=env)
+
+
+def _limited(what, most):
+    return lambda here: ran(here, preexec_fn=lambda: resource.setrlimit(what, (most, most)))
+
+
+def _shell(words):
+    """The command within a line of a shell, in place of %s."""
+
+    def place(here):
+        command = " ".join([sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), *SHORT, "--out", str(here / "a.h5")])
+        try:
+            done = subprocess.run(
+                ["sh", "-c", words.replace("%s", command)], timeout=PATIENCE, stdin=subprocess.DEVNULL, cwd=here,
+                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            )  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return SLOW, "", None
+        return done.returncode, done.stderr.decode(errors="replace"), here / "a.h5" if done.returncode == 0 else None
+
+    return place
+
+
+def symlink(here):
+    """Its target is written."""
+    (here / "there").mkdir()
+    (here / "there" / "b.h5").write_bytes(b"")
+    (here / "a.h5").symlink_to(here / "there" / "b.h5")
+    code, error, _ = ran(here)
+    whole = (here / "a.h5").is_symlink() and (here / "there" / "b.h5").stat().st_size > 1000
+    return code if whole else 70, error + ("" if whole else "the symlink was replaced"), here / "there" / "b.h5"
+
+
+def fifo(here):
+    os.mkfifo(here / "a.h5")
+    code, error, _ = ran(here)
+    return code if code != 0 else 70, error, None
+
+
+def endless(here):
+    os.mkfifo(here / "a.toml")
+    return ran(here, scenario=here / "a.toml")
+
+
+def huge(here):
+    with open(here / "a.toml", "wb") as file:
+        file.truncate(3 << 30)
+    return ran(here, scenario=here / "a.toml")
+
+
+def unicode_name(env):
+    return lambda here: ran(here, scenario=shutil.copyfile(SEAL, here / "Gleitring ±µ 密封 😀.toml"), env=env,
+                            out="Läufer ± 密封 😀.h5")  # fmt: skip
+
+
+def no_utf8(here):
+    name = os.path.join(os.fsencode(here), b"a\xff\xfe.toml")
+    shutil.copyfile(SEAL, name)
+    return ran(here, scenario=name, out=Path(os.fsdecode(os.path.join(os.fsencode(here), b"b\xff.h5"))))
+
+
+def lost_folder(here):
+    gone = here / "gone"
+    gone.mkdir()
+    return ran(here, cwd=gone, preexec_fn=lambda: os.rmdir(gone))
+
+
+def damaged_kernels(here):
+    """Kept kernels, half of them cut, half of them nonsense."""
+    from sealdyn.kernel_cache import kernel_folders
+
+    kept = here / "kernels"
+    code, error, _ = ran(here, env={"NUMBA_CACHE_DIR": str(kept)}, patience=COMPILING)
+    files = [path for path in kept.rglob("*") if path.is_file() and path.suffix in (".nbi", ".nbc")]
+    if code or not files:
+        return 70, f"{error}no kernels in {kernel_folders()[:1]}", None
+    for number, path in enumerate(sorted(files)):
+        data = path.read_bytes()
+        path.write_bytes(data[: len(data) // 2] if number % 2 else bytes(255 - byte for byte in data))
+    return ran(here, env={"NUMBA_CACHE_DIR": str(kept)}, patience=COMPILING)
+
+
+def immutable(here):
+    """Where the system knows such files and we may make them."""
+    (here / "a.h5").write_bytes(b"mine")
+    made = (
+        subprocess.run(["chattr", "+i", here / "a.h5"], capture_output=True).returncode == 0
+        if shutil.which("chattr")
+        else False
+    )
+    try:
+        code, error, out = ran(here)
+        left = [path.name for path in here.iterdir() if path.name != "a.h5"]
+        return (70, f"left: {left}", None) if made and [n for n in left if "partial" not in n] else (code, error, out)
+    finally:
+        if made:
+            subprocess.run(["chattr", "-i", here / "a.h5"])
+
+
+WORLDS = {
+    "C locale": _with(LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0"),
+    "ascii streams": _with(PYTHONIOENCODING="ascii"),
+    "nonsense locale": _with(LC_ALL="xx_YY.nonsense"),
+    "unicode names": unicode_name({}),
+    "unicode names, C locale": unicode_name({"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
+    "names without UTF-8": no_utf8,
+    "a name of 240 characters": lambda here: ran(here, out="a" * 237 + ".h5"),
+    "a name of 400 characters": lambda here: ran(here, out="a" * 400 + ".h5"),
+    "a name of two lines": lambda here: ran(here, out="a\nb.h5"),
+    "figures for a screen that is none": _with(MPLBACKEND="nonsense"),
+    "no folder for matplotlib": _with(MPLCONFIGDIR="/proc/nothing"),
+    "no home": _with(HOME=None),
+    "a home that is not there": _with(HOME="/nothing", XDG_CACHE_HOME="/proc/nothing"),
+    "no temporary folder": _with(TMPDIR="/nothing"),
+    "a terminal of one column": _with(COLUMNS="1", LINES="1", TERM="dumb"),
+    "no terminal at all": _with(TERM=None, COLUMNS="nonsense"),
+    "warnings are errors": _with(PYTHONWARNINGS="error"),
+    "no docstrings": _with(PYTHONOPTIMIZE="2"),
+    "threads that are no number": _with(OMP_NUM_THREADS="nonsense", NUMBA_NUM_THREADS="1"),
+    "a time zone that is none": _with(TZ="nonsense"),
+    "output closed": _shell("%s >&-"),
+    "errors closed": _shell("%s 2>&-"),
+    "all closed": _shell("%s <&- >&- 2>&-"),
+    "output full": _shell("%s >/dev/full"),
+    "errors full": _shell("%s 2>/dev/full"),
+    "output read by nobody": _shell("%s | true"),
+    "a umask that forbids all": _shell("umask 777; %s"),
+    "16 open files": _limited(resource.RLIMIT_NOFILE, 16),
+    "files of 64 kB at most": _limited(resource.RLIMIT_FSIZE, 1 << 16),
+    "files of nothing": _limited(resource.RLIMIT_FSIZE, 0),
+    "3 GB of memory": _limited(resource.RLIMIT_AS, 3 << 30),
+    "a symlink": symlink,
+    "a symlink to nothing": lambda here: ((here / "a.h5").symlink_to(here / "b.h5"), ran(here))[1],
+    "a symlink to itself": lambda here: ((here / "a.h5").symlink_to(here / "a.h5"), ran(here))[1],
+    "a FIFO as output": fifo,
+    "a folder as output": lambda here: ((here / "a.h5").mkdir(), ran(here))[1],
+    "a folder that is a file": lambda here: ((here / "b").write_text(""), ran(here, out="b/a.h5"))[1],
+    "a folder in /proc": lambda here: ran(here, out=Path("/proc/nothing/a.h5")),
+    "a device as output": lambda here: ran(here, out=Path("/dev/null/a.h5")),
+    "immutable output": immutable,
+    "endless scenario": lambda here: ran(here, scenario="/dev/zero"),
+    "a FIFO as scenario": endless,
+    "a scenario of 3 GB": huge,
+    "a folder as scenario": lambda here: ran(here, scenario=here),
+    "a folder that is gone": lost_folder,
+    "damaged kernels": damaged_kernels,
+}  # fmt: skip
