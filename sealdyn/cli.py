@@ -663,11 +663,14 @@ def _run(as_json: bool):
 
 
 def _tell_interrupted(as_json: bool):
-    """What is kept, in a line, and as JSON unless that has been printed."""
+    """What is kept, in a line, and as JSON unless that has been printed.  Nothing is imported any more: an import that
+    was broken off would begin anew, and some libraries say so."""
+    # Python ends itself with the signal, not with our code, if a text was being executed; the next one undoes that.
+    exec("")
     line = f"interrupted: {_left['words']()}"
     print(line, file=sys.stderr)
     if as_json and not _left["answered"]:
-        _refuse(Status.INTERRUPTED, line, as_json)
+        print(json.dumps({"status": Status.INTERRUPTED, "message": line}))
 
 
 def _break_off(as_json: bool, out: int):

@@ -95,9 +95,14 @@ def describe(item, attributes: dict):
     for name, value in attributes.items():
         if h5a.exists(item, name.encode()):
             h5a.delete(item, name.encode())
-        data = np.array(value, TEXT_TYPE if isinstance(value, str) else None)
+        data = np.array(sayable(value), TEXT_TYPE) if isinstance(value, str) else np.array(value)
         kind = TEXT if isinstance(value, str) else h5t.py_create(data.dtype)
         h5a.create(item, name.encode(), kind, ONE).write(data)
+
+
+def sayable(text: str) -> str:
+    """A text as HDF5 takes it: of a name that is no UTF-8 the odd bytes are spelt out."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def attach_scale(file, scale: str, names, dimension: int = 0):

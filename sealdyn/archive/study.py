@@ -8,6 +8,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from .fields import sayable
 from .run import ODD
 from .seal import is_whole, seal
 from .soundness import ArchiveError, is_sound, must_be_sound
@@ -43,9 +44,10 @@ def _write(file, meta, texts, columns, units) -> None:
     file.attrs["program"] = "sealdyn"
     file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
     for name, value in meta.items():
+        value = sayable(value) if isinstance(value, str) else value
         file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
     for name, text in texts.items():
-        file.create_dataset(name, data=text, dtype=h5py.string_dtype())
+        file.create_dataset(name, data=sayable(text), dtype=h5py.string_dtype())
     for key, values in columns:
         column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
         column.attrs["units"] = units.get(key, "")

@@ -83,6 +83,16 @@ def film_slopes(wrench, f: np.ndarray, s: np.ndarray, steps: tuple[float, float,
     return Slopes(0.0 - jacobian[:, :3], 0.0 - jacobian[:, 3:], error[:, :3], error[:, 3:])
 
 
+def factored(matrix):
+    """The factors of a film's sparse matrix (n, n), ready to `solve`.  Raises SceneError where it has none."""
+    from scipy.sparse.linalg import splu
+
+    try:
+        return splu(matrix.tocsc())
+    except RuntimeError:
+        raise SceneError("film", "a film whose equations are singular", "thicknesses that one flow can pass") from None
+
+
 class LinearFilm:
     """A film with unknowns about a gap state `s` and its unknowns `x` (n,).
 
@@ -113,9 +123,7 @@ class LinearFilm:
     @cached_property
     def slow(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness K and damping D (3, 3) of slow motion: value and slope of H at p = 0."""
-        from scipy.sparse.linalg import splu
-
-        solved = splu(self.by_x.tocsc())
+        solved = factored(self.by_x)
         moved = -solved.solve(self.by_gap)
         stiffness = -(self.force_by_x @ moved + self.force_by_gap)
         damping = self.force_by_x @ solved.solve(self.by_gap_rate + self.by_rate @ moved) - self.force_by_gap_rate
@@ -123,10 +131,7 @@ class LinearFilm:
 
     def unknowns(self, p: complex) -> np.ndarray:
         """Unknowns (n, 3) of the film per unit of the gap's three amplitudes, moving as exp(p t)."""
-        from scipy.sparse.linalg import splu
-
-        pushed = self.by_gap + p * self.by_gap_rate
-        return -splu((self.by_x + p * self.by_rate).tocsc()).solve(pushed)
+        return -factored(self.by_x + p * self.by_rate).solve(self.by_gap + p * self.by_gap_rate)
 
     def stiffness(self, p: complex) -> np.ndarray:
         """Dynamic stiffness H(p) (3, 3), complex."""

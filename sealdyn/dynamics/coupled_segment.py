@@ -4,12 +4,12 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from ..faces import contact
 from ..faces.film_thickness import h_min
 from ..solvers.contract import SolverFailure
 from . import coupled_native, equations
+from .condensation import factored
 from .segments import Segment
 
 # Newton's steps to a consistent start, and the change relative to the scales at which it has arrived.
@@ -105,7 +105,7 @@ class CoupledSegment(Segment):
             by_y, by_rate = (self._matrix(tau, y, yp, *weights) for weights in ((0.0, 1.0), (self.reference_rate, 0.0)))
             mixed = by_y.multiply(scale * kept) + by_rate.multiply(scale / self.reference_rate * (1.0 - kept))
             self.residual(tau, y, yp, res)
-            change = splu(csc_array(mixed.tocsc()[np.ix_(free, free)])).solve(-res[free])
+            change = factored(csc_array(mixed.tocsc()[np.ix_(free, free)])).solve(-res[free])
             step = np.zeros(self.size)
             step[free] = change * scale[free]
             y += step * kept

@@ -135,7 +135,11 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float, 
     roots = []
     for k in range(POINTS - 1):
         if excess[k] * excess[k + 1] < 0 and max(abs(excess[k]), abs(excess[k + 1])) > noise:
-            root = crossing(lambda c: opening_force(c, inner, outer) - closing, grid[k], grid[k + 1])
+            try:
+                root = crossing(lambda c: opening_force(c, inner, outer) - closing, grid[k], grid[k + 1])
+            except ValueError:
+                found = f"one without a solution between clearances of {grid[k]:.3g} and {grid[k + 1]:.3g} m"
+                raise SceneError("film", found, "a film that has one at every clearance") from None
             stiffness = film_stiffness(opening_force, root, inner, outer, STEP * root)
             roots.append(Equilibrium(root, stiffness, stiffness > 0))
     return roots

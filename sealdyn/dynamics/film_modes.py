@@ -8,9 +8,9 @@ one core: 16 ms with 400 unknowns, 43 ms with 1920, of which rings move some twe
 
 import numpy as np
 from scipy.linalg import block_diag, eig
-from scipy.sparse.linalg import splu
 
 from ..scene.scene import SceneError
+from .condensation import factored
 
 # How far modes are looked for, in the fastest eigenvalue of the rings on the film's stiffness and damping at that very
 # frequency: right of the imaginary axis a film that delays its forces is no stiffer, so nothing faster than this grows.
@@ -39,9 +39,11 @@ class ReducedFilm:
 
     def __init__(self, film, pace: float):
         self.film, self.pace = film, pace
-        self.solver = splu((film.by_x + pace * film.by_rate).tocsc())
+        self.solver = factored(film.by_x + pace * film.by_rate)
         self.by_gap, self.by_gap_rate = self._scaled(film.by_gap), self._scaled(film.by_gap_rate)
-        self.basis = self.stored = np.empty((len(film.scales), 0))
+        self.basis = self.stored = self._span = np.empty((len(film.scales), 0))
+        self._triangle, self._turns = np.empty((0, 0)), []
+        self._watch(self.by_gap, self.by_gap_rate)
 
     def _scaled(self, right):
         return self.solver.solve(right) / self.film.scales[:, None]
@@ -61,15 +63,34 @@ class ReducedFilm:
         self.basis = np.hstack([basis, new])
         stored = self._scaled(self.film.by_rate @ (self.film.scales[:, None] * new))
         self.stored = np.hstack([self.stored, stored])
-        # Every residual is in the span of these columns: its norm needs their triangle only.
-        columns = [self.basis, self.stored, self.by_gap, self.by_gap_rate]
-        self._triangle = np.linalg.qr(np.hstack(columns), mode="r")
+        self._watch(new, stored)
+
+    def _watch(self, one, other):
+        """Every residual is in the span of the columns of `one` and `other` (n, m) of all calls: its norm needs their
+        triangle only, which grows by columns."""
+        new, span = np.hstack([one, other]), self._span
+        self._turns.append(one.shape[1])
+        if span is not None and span.shape[1] + new.shape[1] > len(new):
+            # More columns than there are directions: as they are.
+            self._triangle, self._span = span @ self._triangle, None
+        if self._span is None:
+            self._triangle = np.hstack([self._triangle, new])
+            return
+        first = span.T @ new
+        own, left = np.linalg.qr(new - span @ first)
+        # Twice: of a column that lies in the span the first time leaves a rounding, which points anywhere.
+        again = span.T @ own
+        own, corner = np.linalg.qr(own - span @ again)
+        self._span = np.hstack([span, own])
+        below = np.zeros((len(corner), self._triangle.shape[1]))
+        self._triangle = np.block([[self._triangle, first + again @ left], [below, corner @ left]])
 
     def residual(self, p, parts, gap) -> np.ndarray:
         """Norms (..., m) of what `parts` (..., r, m) of the basis leave of the film's equations, for gaps (..., 3, m)
         moving as exp(p t), p (..., 1, m)."""
-        every = np.concatenate([parts, (p - self.pace) * parts, gap, p * gap], axis=-2)
-        return np.linalg.norm(self._triangle @ every, axis=-2)
+        each = np.split(parts, np.cumsum(self._turns[1:-1]), axis=-2)
+        own = [part for turn in each for part in (turn, (p - self.pace) * turn)]
+        return np.linalg.norm(self._triangle @ np.concatenate([gap, p * gap, *own], axis=-2), axis=-2)
 
     def forced_residuals(self, p) -> np.ndarray:
         """The largest residual (m,) of the projected answers to the three unit motions of the gap, moving as exp(p t),

@@ -155,15 +155,15 @@ class StickSlip:
         what carries the ring sees it: what the friction turns to heat."""
         k, tau, y = transition.what, transition.time, transition.y
         name = RING_NAMES[k]
-        velocity, _, outside = self._velocity(k, tau, y)
+        velocity, _ = self._velocity(k, tau, y)
         if self.stuck[k]:
             self.stuck[k], self.leaving[k] = False, True
             self.onset[k] = self._onset(k, tau, y)
             self.slips += 1
             event = {"kind": "slip", "value": 0.0, "text": f"the {name} slips on its secondary seal"}
             return Change(y, self.held(), event)
-        after, ring = self._carried_along(k, tau, y), self.segment.p[RING * k : RING * (k + 1)]
-        if not outside < -self._margin(k):
+        after, ring = self._at_rest(k, tau, y), self.segment.p[RING * k : RING * (k + 1)]
+        if not self._is_held(k, tau, after):
             self.onset[k] = self._onset(k, tau, after)
             return Change(after, self.held(), None)
         inertia = ring[INERTIA] / ring[SEAL_RADIUS] ** 2
@@ -178,17 +178,17 @@ class StickSlip:
 
     def _slip(self, k, t, ys, yps, step, advance):
         """When ring k, stuck at the step's start, can no longer be held."""
-        at = self._inside(t, ys, yps, step)
-        low = t[step]
+        inside, low = self._inside(t, ys, yps, step), t[step]
+
+        def is_held(tau):
+            return self.sliding_state(k, tau, self._at_rest(k, tau, inside(tau)))[1] <= 0.0
+
         for x in np.linspace(0, 1, LOOKS + 1)[1:]:
             high = t[step] + x * (t[step + 1] - t[step])
-            if self.sliding_state(k, high, at(high))[1] > 0.0:
+            if not is_held(high):
                 for _ in range(60):
                     middle = 0.5 * (low + high)
-                    if self.sliding_state(k, middle, at(middle))[1] > 0.0:
-                        high = middle
-                    else:
-                        low = middle
+                    low, high = (middle, high) if is_held(middle) else (low, middle)
                 return (high, advance(t[step], ys[step], high)) if high > t[step] else (high, ys[step].copy())
             low = high
         return None
@@ -209,10 +209,10 @@ class StickSlip:
     # --- a sliding ring -----------------------------------------------------------------------------
 
     def _velocity(self, k, tau, y):
-        """Sliding speeds (m/s) of ring k against what it slides on, axial and along the circle about both axes;
-        their rates (m/s^2); and how far what it must hold lies outside the limit surface."""
+        """Sliding speeds (m/s) of ring k against what it slides on, axial and along the circle about both axes; and
+        their rates (m/s^2)."""
         segment, ring = self.segment, RING * k
-        _, outside = self.sliding_state(k, tau, y)
+        self._find_rates(tau, y)
         p, w = segment.p, segment.w
         c, x, follow = PER_RING * k, OWN_STATE + 6 * k, SEALS + PER_SEAL * k + FOLLOWING
         z_rate, tilt_rate = int(p[ring + AT_Z_RATE]), int(p[ring + AT_TILT_RATE])
@@ -225,10 +225,11 @@ class StickSlip:
             v[1] = radius * (w[x + TILT_X_RATE] - w[c + TILT_X_RATE] + spin * d_y)
             v[2] = radius * (w[x + TILT_Y_RATE] - w[c + TILT_Y_RATE] - spin * d_x)
             a[1:] = radius * (self._yp[tilt_rate : tilt_rate + 2] - w[follow + 1 : follow + 3])
-        return v, a, outside
+        return v, a
 
-    def _margin(self, k):
-        return WITHDRAWN if self.leaving[k] else INSIDE
+    def _is_held(self, k, tau, rest) -> bool:
+        """Whether the load on ring k, at rest in unknowns `rest`, lies inside the limit surface."""
+        return self.sliding_state(k, tau, rest)[1] < -(WITHDRAWN if self.leaving[k] else INSIDE)
 
     def _onset(self, k, tau, y, velocity=None):
         """The velocity (3,) of the onset of ring k: in the direction in which its load makes it slide, or of its
@@ -255,9 +256,9 @@ class StickSlip:
         onset[1:] /= radius
         return onset
 
-    def _reverses(self, k, tau, y):
-        """Whether the load on ring k, nearly at rest, makes it slide another way than it has begun to."""
-        now, then = self.onset[k].copy(), self._onset(k, tau, y)
+    def _reverses(self, k, tau, rest) -> bool:
+        """Whether the load on ring k, at rest in unknowns `rest`, makes it slide another way than it has begun to."""
+        now, then = self.onset[k].copy(), self._onset(k, tau, rest)
         for onset in (now, then):
             onset[1:] *= self.segment.p[RING * k + SEAL_RADIUS]
         return float(now @ then) < SAME * float(then @ then)
@@ -266,10 +267,11 @@ class StickSlip:
         leg, at = self.segment.p[LEG_AT:], STATOR_SPEED if k == 0 else ROTOR_SPEED
         return leg[at] + leg[at + 1] * tau
 
-    def _carried_along(self, k, tau, y):
-        """The unknowns with ring k moving as its carrier does."""
+    def _at_rest(self, k, tau, y):
+        """The unknowns with ring k moving as its carrier does.  Only there its load tells whether it is held and which
+        way it slides: a film that damps much makes a force of the least speed, and of the error of one."""
         segment, ring, y = self.segment, RING * k, y.copy()
-        velocity, _, _ = self._velocity(k, tau, y)
+        velocity, _ = self._velocity(k, tau, y)
         z_rate, tilt_rate = (int(segment.p[ring + i]) for i in (AT_Z_RATE, AT_TILT_RATE))
         if z_rate >= 0:
             # Subtracting from itself: at rest the rate is zero, not a rounding.
@@ -287,7 +289,6 @@ class StickSlip:
         change = b - a
         length = float(change @ change)
         nearest = float(np.clip(-(a @ change) / length, 0.0, 1.0)) if length > 0 else 1.0
-        inside = self._margin(k)
         self.leaving[k] = self.leaving[k] and float(np.linalg.norm(b)) < band
         if float(np.linalg.norm(a + nearest * change)) > band + 0.5 * length**0.5:
             return None
@@ -298,10 +299,11 @@ class StickSlip:
         tau, y, part, latest = t[step], ys[step].copy(), APPROACH_FACTOR, t[step + 1]
         before = (tau, y)
         for _ in range(60):
-            v, rate, outside = self._velocity(k, tau, y)
+            v, rate = self._velocity(k, tau, y)
             speed = float(np.linalg.norm(v))
             if speed < band:
-                return (tau, y) if outside < -inside or self._reverses(k, tau, y) else None
+                rest = self._at_rest(k, tau, y)
+                return (tau, y) if self._is_held(k, tau, rest) or self._reverses(k, tau, rest) else None
             slowing = -float(v @ rate) / speed
             if slowing <= 0.0:
                 # Past the slowest place: again, with a shorter stride.
@@ -309,7 +311,7 @@ class StickSlip:
                 if tau == t[step] or part < SHORTEST:
                     return None
                 tau, y = before
-                v, rate, _ = self._velocity(k, tau, y)
+                v, rate = self._velocity(k, tau, y)
                 speed = float(np.linalg.norm(v))
                 slowing = -float(v @ rate) / speed
             until = tau + min(part * speed, speed - ABOVE * band) / slowing

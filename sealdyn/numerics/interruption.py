@@ -36,6 +36,7 @@ class Interruption:
             # nohup: a closed terminal is to change nothing.
             heard = [n for n in SIGNALS if n in SIGNALS[:2] or signal.getsignal(n) != signal.SIG_IGN]
             self._handlers = {number: signal.signal(number, self._hear) for number in heard}
+            self._unraised, sys.unraisablehook = sys.unraisablehook, self._swallowed
             Thread(target=self._watch, args=(ours,), daemon=True).start()
         return self
 
@@ -47,6 +48,7 @@ class Interruption:
             signal.set_wakeup_fd(self._wakeup)
             for number, handler in self._handlers.items():
                 signal.signal(number, handler)
+            sys.unraisablehook = self._unraised
             self._wire[1].close()
             self._wire = None
 
@@ -64,6 +66,11 @@ class Interruption:
             self.asked.append(number)
             if not self._looking:
                 raise KeyboardInterrupt
+
+    def _swallowed(self, what):
+        """A KeyboardInterrupt raised where Python calls back without a caller: nothing to tell, the watch ends it."""
+        if not issubclass(what.exc_type, KeyboardInterrupt):
+            self._unraised(what)
 
     def _watch(self, wire):
         while (heard := wire.recv(1)) and heard[0] not in SIGNALS:

@@ -3,6 +3,7 @@ other values."""
 
 import contextlib
 import dataclasses
+import difflib
 import json
 import re
 import typing
@@ -36,8 +37,6 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
     for key in raw:
         if key not in known:
-            import difflib
-
             near = difflib.get_close_matches(key, known, 1)
             hint = f"; nearest {near[0]}" if near else ""
             expected = f"one of {', '.join(known)}{hint}" if known else "no settings"
@@ -82,7 +81,7 @@ def _alternatives(annotation):
 
 def _plain(words: str):
     """A number where it is one, as a flag's single value would be."""
-    with contextlib.suppress(ValueError):
+    with contextlib.suppress(ValueError, RecursionError):
         return json.loads(words)
     return words
 
@@ -170,6 +169,20 @@ def si_unit(scene, key: str) -> str:
         for meta in getattr(told, "__metadata__", ()):
             return getattr(meta, "quantity", meta).unit
     return "SI"
+
+
+def must_be_number(scenario: Scenario, key: str, where: str) -> None:
+    """Raises ScenarioError, that names the setting `where`, unless `key` is one of the scenario's scene that has a
+    number."""
+    try:
+        si_unit(scenario.scene, key)
+        odd = isinstance(variants.part(scenario.scene, key), str | bool | tuple | list | dict)
+    except (AttributeError, KeyError, IndexError, TypeError, ValueError):
+        odd = True
+    if odd or dataclasses.is_dataclass(variants.part(scenario.scene, key)):
+        near = difflib.get_close_matches(key, scenario.given, 1)
+        hint = f'; nearest "{near[0]}"' if near and near != [key] else ""
+        raise ScenarioError(scenario.name, where, quoted(key), f"the key of a number of the scene{hint}")
 
 
 def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[float]:

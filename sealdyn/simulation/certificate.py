@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.run_state import RunState
+from ..solvers.advance import Advance
 from ..solvers.block import Block
 from ..solvers.contract import Counts, SolverFailure, tolerance_for
 from ..solvers.energy_audit import EnergyAudit
@@ -154,9 +155,12 @@ def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun 
     segment = run.segment(0)
     length = min(TRIAL_PERIODS * model.shortest_period, segment.length)
     short, y, parts = segment.until(length), run.y0.copy(), []
+    advance, steps = Advance(length, model.shortest_period), 0
     try:
         for t, ys, _ in METHODS[method](short, 0.0, y, method, tolerance, counts):
             parts.append((t, ys))
+            steps += len(t)
+            advance.see(float(t[-1]), steps)
     except SolverFailure:
         return None
     t, ys = (np.concatenate([part[i] for part in parts]) for i in range(2))

@@ -18,6 +18,8 @@ from ..scene.waviness import waves_of
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
+# Least eigenvalue of a scene whose rings are all held, as a share of the largest.
+HELD = 1e-12
 
 
 def model_error(run, higher: str = "radial", enough: float = math.inf) -> float | None:
@@ -42,8 +44,10 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     segment = run.segment(0)
     _, answers, linear = segment.steady_motion()
     matrix = linear.state_matrix()
-    slowest = float(np.max(np.linalg.eigvals(matrix).real))
-    if slowest > 0:
+    values = np.linalg.eigvals(matrix)
+    slowest, sizes = float(np.max(values.real)), np.abs(values)
+    # A ring that nothing brings back has no steady motion.
+    if slowest > 0 or np.min(sizes) < HELD * np.max(sizes):
         return None
     film = film_module(higher, model.scene.film)
     block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)

@@ -18,6 +18,8 @@ from .methods import METHODS
 
 # A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
+# A step (s) in which nothing moves: powers of it, which interpolation divides by, are nothing.
+LEAST_STEP = 1e-25
 # Steps from one step's start to a point within it, beyond which the equations are not smooth there.
 CRAWLING = 1000
 # Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
@@ -120,6 +122,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     run.last = (segment.index, tau, y)
     for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else MANY):
         counts.steps += len(block_t)
+        _must_move(segment, np.diff(block_t, prepend=t[-1]), block_y)
         advance.see(segment.time + float(block_t[-1]), counts.steps)
         t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
@@ -162,6 +165,16 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
         keep = max(0, upto - OVERLAP)
         t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep
     return None
+
+
+def _must_move(segment, steps, ys):
+    """Raises SolverFailure for `steps` (m,) (s) that lead nowhere, and unknowns (m, size) that are no numbers."""
+    least = float(np.min(steps[steps > 0.0], initial=np.inf))
+    if least < LEAST_STEP or not np.isfinite(ys).all():
+        raise SolverFailure(
+            f"steps of {least:.1e} s, with which nothing moves: forces that large on rings that light; look at "
+            "the units of radii, pressures, stiffnesses, masses and inertias"
+        )
 
 
 def _advanced(method_over, segment, tau, y, until):

@@ -11,7 +11,7 @@ from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.steady_extremes import steady_extremes
-from ..scenario.settings import si_unit, with_values
+from ..scenario.settings import must_be_number, si_unit, with_values
 from ..scene import variants
 from ..scene.contact import touch_height
 from ..status import Status
@@ -42,6 +42,7 @@ class Settings:
 def run(scenario, settings, tools) -> dict:
     """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
     key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
+    must_be_number(scenario, key, "study.contact_onset.key")
     base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance, "most": settings.most}
     # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
     floors = [False, True] if settings.floor else [False]

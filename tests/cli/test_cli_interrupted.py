@@ -175,6 +175,19 @@ def test_what_has_finished_nothing_says_so(tmp_path, words, number):
     assert not (tmp_path / "outputs").exists()
 
 
+def test_an_interruption_at_any_moment_of_loading(tmp_path):
+    """Half-loaded libraries keep quiet, and the exit code is ours (moments in s; a check takes about one)."""
+    for moment in (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6):
+        process = started("check", REFERENCE, "--json", cwd=tmp_path)
+        until(lambda process=process: hears(process), process)
+        time.sleep(moment)
+        answer, after = ended_by(signal.SIGINT, process)
+        if answer.code == 0:
+            break
+        assert answer.code == 130 and answer.found["status"] == "interrupted" and after < SOON, moment
+        assert answer.err.splitlines() == [answer.found["message"]], moment
+
+
 def hears(process) -> bool:
     """Whether a process has a handler of its own for SIGTERM."""
     status = Path(f"/proc/{process.pid}/status")

@@ -10,6 +10,9 @@ import platform
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
+from typing import Annotated, Literal
+
+from pydantic import Field
 
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
@@ -56,15 +59,15 @@ class Settings:
     verdict looks: "end", "over_time" or "steady"; `models`: also compare the film models."""
 
     tolerances: int = 10
-    loosest: float = 1e-2
-    tightest: float = 1e-11
+    loosest: Annotated[float, Field(gt=0, le=1)] = 1e-2
+    tightest: Annotated[float, Field(gt=0, le=1)] = 1e-11
     repeats: int = 3
     longest: float = 60.0
     slowest: float = 100.0
     samples: int = 400
     methods: tuple[str, ...] = ()
     judging: float = 120.0
-    where: str = "over_time"
+    where: Literal["end", "over_time", "steady"] = "over_time"
     models: bool = True
 
 

@@ -33,8 +33,8 @@ WORDS = {
     "load-support": ("--vary", "contact.roughness=0.1:0.4um:7"),
     "sweep": ("--vary", "rotor.runout=0:1mrad:21"),
 }
-# Latest moment of a kill (s), longest wait for one that goes on.
-LATEST, PATIENCE = 8.0, 60
+# Latest moment of a kill (power of ten, s), longest wait for one that goes on.
+LATEST, PATIENCE = 0.9, 60
 EACH = 20
 
 
@@ -44,14 +44,14 @@ def kills(ledger, seed, numbers, folder: Path) -> None:
         chance, out = random.Random(f"kill {seed} {number}"), folder / f"kill-{number}.h5"
         how, seen = "", 0
         for _ in range(chance.choice((1, 1, 2, 3))):
-            code, _ = _killed(("run", SEAL, *SETTINGS, "--continue", "--out", out), chance.uniform(0.2, 4.0))
+            code, _ = _killed(("run", SEAL, *SETTINGS, *_on(out), "--out", out), chance.uniform(0.2, 4.0))
             rows = _rows(out)
             how = how or (f"{seen - rows} rows lost" if rows < seen else "")
             seen = rows
             if code == 0:
                 break
-        code, _, error = ended(("run", SEAL, *SETTINGS, "--continue", "--out", out))
-        how = how or judged(code, error)[1] or unsound(out) or unlike(out, folder)
+        code, _, error = ended(("run", SEAL, *SETTINGS, *_on(out), "--out", out))
+        how = how or judged(code, error)[1] or unsound(out) or unlike(out, folder, ROWS)
         ledger.note("run killed", "escaped" if how else "gone on with", how, error)
         clear(folder, f"kill-{number}")
 
@@ -64,7 +64,7 @@ def study_kills(ledger, seed, numbers, folder: Path) -> None:
         out = folder / f"study-{number}.h5"
         scene = SCENARIOS / f"{SCENES.get(name, 'fms_reference')}.toml"
         words = ("study", name, scene, *WORDS.get(name, ()), "--no-plot", "--workers", 2, "--out", out)
-        code, group = _killed(words, chance.uniform(0.3, LATEST))
+        code, group = _killed(words, 10 ** chance.uniform(-0.6, LATEST))
         how = _orphans(group)
         if not how and code == 0:
             ledger.note("study killed", "done before")
@@ -105,6 +105,11 @@ def ended(words):
     return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
 
+def _on(out) -> tuple:
+    """Before its first write a run has nothing to go on from."""
+    return ("--continue",) if out.exists() or partial_path(out).exists() else ()
+
+
 def _rows(out) -> int:
     for path in (partial_path(out), out):
         try:
@@ -128,13 +133,13 @@ def _orphans(group) -> str:
     return "workers were left behind"
 
 
-def unlike(out, folder) -> str:
-    """How a run that went on is unlike a whole one; "" if it is alike."""
+def unlike(out, folder, rows: int) -> str:
+    """How a run that went on is unlike a whole one of so many rows; "" if it is alike."""
     if not out.exists():
         return "no archive"
-    left = [path.name for path in folder.glob(f"{out.stem}*") if path != out]
-    if read_info(out)["rows"] != ROWS:
-        return f"{read_info(out)['rows']} rows instead of {ROWS}"
+    left = [path.name for path in folder.glob(f"{out.stem}.*") if path != out]
+    if read_info(out)["rows"] != rows:
+        return f"{read_info(out)['rows']} rows instead of {rows}"
     return f"left {left}" if left else ""
 
 

@@ -12,9 +12,9 @@ from .outcome import tried
 
 SCENARIOS = Path(__file__).parents[3] / "scenarios"
 # Longest time (s) for making ready: a film may choose many cells.
-READY = 60
+READY = 120
 # Of the scenarios that are read one in so many is made ready.
-EVERY = 3
+EVERY = 30
 # Numbers that hurt; strings and other things that do.
 NUMBERS = (
     "0", "-0.0", "-1", "1", "2", "nan", "inf", "-inf", "1e308", "-1e308", "1e200", "1e100", "1e30", "1e14", "1e-24",
