@@ -4,7 +4,7 @@
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
 studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_reynolds.json, honesty_gas.json and
-honesty_gas_reynolds.json (honesty.py).  The captions stand in gallery.md.
+honesty_gas_reynolds.json (honesty.py), robustness.json (robustness.py).  The captions stand in gallery.md.
 """
 
 import json
@@ -22,7 +22,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, *FAMILIES, failures):
+    for rows in (fastest, models, machine, scenarios, *FAMILIES, failures, robustness):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -126,6 +126,19 @@ def failures():
     for row in read_study(GALLERY / "failures.h5")["answer"]["rows"]:
         yield (f"{row['item']} {row['title']}", row["failing"], number(row["failing_error"]), row["survivor"],
                number(row["survivor_error"]), row["unit"])  # fmt: skip
+
+
+def robustness():
+    """What came from outside, and how it went."""
+    found = json.loads((GALLERY / "robustness.json").read_text())
+    yield "attack", "attempts", "how they went", "came through"
+    kinds = {}
+    for name, count in found["counts"].items():
+        what, outcome = name.split(": ", 1)
+        kinds.setdefault(what, {})[outcome] = count
+    for what, outcomes in kinds.items():
+        went = ", ".join(f"{outcome} {count}" for outcome, count in outcomes.items() if outcome != "escaped")
+        yield what, str(sum(outcomes.values())), went, str(outcomes.get("escaped", 0))
 
 
 FAMILIES = honesty, honesty_reynolds, honesty_gas, honesty_gas_reynolds

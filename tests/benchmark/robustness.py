@@ -1,6 +1,6 @@
 """The attack on everything that comes from outside, counted.
 
-    python tests/benchmark/robustness.py [--quick] [--only NAME] [--jobs 2]
+    python tests/benchmark/robustness.py [--quick] [--only NAME] [--jobs 2] [--table outputs/gallery/robustness.json]
 
 What is attacked and how stands in attack/, a file for each.  Anything but an answer or one of the program's own
 errors in one line came through: a traceback, a warning of Python, a signal, a line too long to read, ten seconds
@@ -55,6 +55,7 @@ def main():
     words.add_argument("--jobs", type=int, default=2)
     words.add_argument("--seed", type=int, default=2026)
     words.add_argument("--journal", help="finished batches (default: outputs/robustness.jsonl; none if quick)")
+    words.add_argument("--table", type=Path, help="where to write what was counted, for the gallery")
     words.add_argument("--batch", nargs=3, help=argparse.SUPPRESS)
     asked = words.parse_args()
     if asked.batch:
@@ -72,9 +73,13 @@ def main():
             if journal:
                 with open(journal, "a") as file:
                     file.write(json.dumps({"batch": batch, "seed": asked.seed, **found}) + "\n")
-            words = f"{', '.join(found['ways'])}"[:2000]
-            print(f"{batch[0]} {batch[1]}-{batch[2]} {found['seconds']:.0f} s {words}", flush=True)
+            ways = f"{', '.join(found['ways'])}"[:2000]
+            print(f"{batch[0]} {batch[1]}-{batch[2]} {found['seconds']:.0f} s {ways}", flush=True)
     spent = sum(batch["seconds"] for batch in done.values())
+    if asked.table:
+        seconds = spent + asked.jobs * (time.monotonic() - begun)
+        counted = {"seed": asked.seed, "seconds": seconds, "counts": ledger.counts, "ways": ledger.ways}
+        asked.table.write_text(json.dumps(counted, indent=1, sort_keys=True) + "\n")
     for name, count in sorted(ledger.counts.items()):
         print(f"{name:40s} {count}")
     for how in ledger.ways:

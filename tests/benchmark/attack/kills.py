@@ -26,7 +26,7 @@ SCENES = {
     "load-support": "lebeck_n3",
     "elastic-ring": "lebeck_elastic",
     "wear": "run_in",
-    "runup": "runup",
+    "runup": "runup_past_threshold",
     "tolerance": "tolerance",
 }
 WORDS = {

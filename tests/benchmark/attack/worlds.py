@@ -27,12 +27,18 @@ def worlds(ledger, seed, numbers, folder: Path) -> None:
         name, place = every[number]
         here = folder / f"world-{number}"
         here.mkdir()
-        code, error, out = place(here)
-        outcome, how = judged(code, error)
-        if not how and code == 0 and out is not None:
-            outcome, how = _whole(out, here, outcome)
+        outcome, how, error = world(place, here)
         ledger.note("hostile world", outcome, how and f"{name}: {how}", error)
         shutil.rmtree(here, ignore_errors=True)
+
+
+def world(place, here) -> tuple[str, str, str]:
+    """Outcome of one of them in the empty folder `here`, how it came through, and what was said."""
+    code, error, out = place(here)
+    outcome, how = judged(code, error)
+    if not how and code == 0 and out is not None:
+        outcome, how = _whole(out, here, outcome)
+    return outcome, how, error
 
 
 def _whole(out, here, outcome):
