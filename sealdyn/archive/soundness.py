@@ -7,6 +7,7 @@ prints nothing and ends with 0 for a sound file, else says what is wrong with it
 """
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,8 +15,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-# Longest time (s) and most memory (bytes) that looking through takes; objects, attributes and depth of groups at most.
-PATIENCE, MEMORY, MOST, DEEPEST = 10, 8 << 30, 10_000, 8
+# Longest time (s), processor time (s) and most memory (bytes) that looking through takes; objects, attributes and depth
+# of groups at most.  The system ends what runs in circles, even if whoever asked is gone.
+PATIENCE, WORK, MEMORY, MOST, DEEPEST = 30, 4, 8 << 30, 10_000, 8
+# How a process ends that the system has ended for its work, where it does.
+ENDLESS = -getattr(signal, "SIGXCPU", 1000)
 # Bytes that a dataset may have beyond those it holds in the file.
 UNHELD = 1 << 26
 # Kinds of numbers (numpy's letters) in an archive; words besides.
@@ -55,8 +59,11 @@ def must_be_sound(path) -> None:
     among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     try:
         found = subprocess.run(words, capture_output=True, timeout=PATIENCE, env=among, stdin=subprocess.DEVNULL)
+        endless = found.returncode == ENDLESS
     except subprocess.TimeoutExpired:
-        raise ArchiveError(f"{path}: damaged (HDF5 does not come to an end with it in {PATIENCE} s)") from None
+        endless = True
+    if endless:
+        raise ArchiveError(f"{path}: damaged (HDF5 does not come to an end with it)")
     if found.returncode < 0:
         raise ArchiveError(f"{path}: damaged (HDF5 crashes on it)")
     if found.returncode and not os.path.exists(path):
@@ -145,6 +152,7 @@ def main():
 
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
     except (ImportError, ValueError, OSError):
         pass
     path = Path(sys.argv[1])

@@ -91,7 +91,8 @@ def command(*words, patience=PATIENCE) -> tuple[int, str, str]:
             if done:
                 code = os.waitstatus_to_exitcode(status)
             elif time.monotonic() > end:
-                os.kill(child, signal.SIGKILL)
+                # With whatever it has begun.
+                os.killpg(child, signal.SIGKILL)
                 os.waitpid(child, 0)
                 code = SLOW
             else:
