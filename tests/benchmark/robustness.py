@@ -10,6 +10,7 @@ was stopped (--journal); --quick takes two minutes.
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -30,15 +31,17 @@ from benchmark.attack.settings import settings
 from benchmark.attack.soak import soak
 from benchmark.attack.worlds import WORLDS, worlds
 
+from sealdyn.numerics.threads import VARIABLES
+
 ROOT = Path(__file__).parents[2]
 # Each with its cases: all, a quick sample; and how many make a batch.
 PARTS = {
     "scenarios": (scenarios, 100_000, 2000, 2500),
-    "runs": (runs, 2000, 20, 50),
+    "runs": (runs, 2000, 20, 100),
     "archives": (archives, 1000, 12, 50),
     "settings": (settings, 2000, 20, 100),
     "kills": (kills, 100, 1, 5),
-    "study_kills": (study_kills, 340, 2, 17),
+    "study_kills": (study_kills, 400, 2, 20),
     "worlds": (worlds, len(WORLDS), 4, 6),
     "disks": (disks, 100, 3, 10),
     "soak": (soak, 30, 0, 30),
@@ -108,7 +111,10 @@ def _batch(batch, seed) -> dict:
     begun, found = time.monotonic(), Ledger()
     words = [sys.executable, __file__, "--seed", str(seed), "--batch", *map(str, batch)]
     try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL)
+        alone = {**os.environ, **dict.fromkeys(VARIABLES, "1")}
+        done = subprocess.run(
+            words, capture_output=True, text=True, timeout=PATIENCE, stdin=subprocess.DEVNULL, env=alone
+        )
         found.add(**json.loads(done.stdout.splitlines()[-1]))
     except subprocess.TimeoutExpired:
         found.note(batch[0], "escaped", "a batch without an end", str(batch))

@@ -24,6 +24,8 @@ from .scenarios import SCENARIOS, mutated
 # Longest making ready without a word (s): films of many cells, kernels; a run that advances is broken off after LONG.
 READY, LONG = 120, 5
 TURNS, SAMPLES = 0.5, 24
+# Share of the scenes of very many cells that are run with fewer.
+FEWER = 0.8
 WARM, SHORT = ("fms_reference", "rub", "lebeck_elastic", "rayleigh_pads"), ("run.turns=1e-3",)
 
 
@@ -56,10 +58,17 @@ def _valid(chance, texts):
             if end is not None:
                 share = TURNS / turns if turns > TURNS else 1.0
                 short = [f"run.duration='{end * min(share, 1.0)!r} s'"]
+            if _many_cells(whole) and chance.random() < FEWER:
+                short += ["film.reynolds.cells_r=8", "film.reynolds.cells_theta=72"]
             samples = "run.samples=40" if whole.run.samples is not None else f"run.samples_per_turn={SAMPLES}"
             return text, parse_scenario(text, "attack", [*short, samples])
         except (ScenarioError, SceneError):
             continue
+
+
+def _many_cells(scenario) -> bool:
+    cells = scenario.scene.film.reynolds and scenario.scene.film.reynolds.cells_theta
+    return bool(cells) and cells > 72
 
 
 def _watched(scenario, out) -> tuple[str, str]:
