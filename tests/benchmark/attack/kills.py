@@ -26,7 +26,9 @@ SCENES = {
     "load-support": "lebeck_n3",
     "elastic-ring": "lebeck_elastic",
     "wear": "run_in",
+    "rub": "rub_chaotic",
     "runup": "runup_past_threshold",
+    "sealing-number": "ludwig_allen",
     "tolerance": "tolerance",
 }
 WORDS = {
