@@ -17,7 +17,7 @@ from typing import Annotated
 import typer
 from typer.core import TyperCommand
 
-from .numerics.interruption import CODE, Interruption
+from .numerics.interruption import CODE, Interruption, deafen
 from .numerics.threads import VARIABLES
 from .status import Status
 
@@ -461,6 +461,33 @@ def plot(
 
 
 @app.command()
+def animate(
+    file: Annotated[Path, typer.Argument(help="archive (HDF5) of a run")],
+    out: Annotated[Path | None, typer.Option(help="GIF, MP4 or a still PNG (default GIF beside the archive)")] = None,
+    turns: Annotated[float, typer.Option(help="last turns of the shaft (at rest: ms)", min=1e-6)] = 4.0,
+    per_turn: Annotated[int, typer.Option(help="pictures of a turn (at rest: of a ms)", min=1)] = 36,
+):
+    """Show the motion: both rings with enlarged tilts, the film over the face, the orbit, and the time line."""
+    from .archive import is_study
+    from .report.animation import animate
+
+    out = out or file.with_suffix(".gif")
+    with _Progress() as bar, _reads(file):
+        if is_study(file):
+            raise Stop(Status.INVALID, f"{file}: the archive of a study; expected that of a run")
+        try:
+            animate(file, out, turns, per_turn, progress=bar)
+        except ImportError:
+            line = f'--out: found "{out}"; expected .gif, or the package imageio-ffmpeg: pip install "sealdyn[video]"'
+            raise Stop(Status.INVALID, line) from None
+        except ValueError as error:
+            raise Stop(Status.INVALID, f"animate: found {error}") from None
+        except OSError as error:
+            raise _not_written(error, out, "the archive is whole") from None
+    print(out)
+
+
+@app.command()
 def validate(
     source: Annotated[str | None, typer.Argument(help="one source, e.g. zuk-1972 (default all)")] = None,
     as_json: AsJson = False,
@@ -597,6 +624,8 @@ def main():
     gc.set_threshold(GARBAGE)
     # Python would look through all that was loaded once more as it ends.
     atexit.register(gc.freeze)
+    # What is done by then is done, and the exit code says how.
+    atexit.register(deafen)
     _leaves(lambda: "nothing is kept")
     try:
         with interruption:

@@ -4,10 +4,11 @@
 
 The tables are computed from the data beside the pictures: work_precision_fmr.h5 and failures.h5 (archives of their
 studies), work_precision_all.json (all_scenarios.py), honesty.json, honesty_reynolds.json, honesty_gas.json and
-honesty_gas_reynolds.json (honesty.py), robustness.json (robustness.py).  The captions stand in gallery.md.
+honesty_gas_reynolds.json (honesty.py), robustness.jsonl (robustness.py).  The captions stand in gallery.md.
 """
 
 import json
+from collections import Counter
 from pathlib import Path
 
 from sealdyn.archive import read_study
@@ -130,15 +131,17 @@ def failures():
 
 def robustness():
     """What came from outside, and how it went."""
-    found = json.loads((GALLERY / "robustness.json").read_text())
-    yield "attack", "attempts", "how they went", "came through"
-    kinds = {}
-    for name, count in found["counts"].items():
-        what, outcome = name.split(": ", 1)
-        kinds.setdefault(what, {})[outcome] = count
+    yield "attack", "attempts", "how they went", "came through", "hours"
+    kinds, hours = {}, {}
+    for line in (GALLERY / "robustness.jsonl").read_text().splitlines():
+        batch = json.loads(line)
+        for name, count in batch["counts"].items():
+            what, outcome = name.split(": ", 1)
+            kinds.setdefault(what, Counter())[outcome] += count
+            hours[what] = hours.get(what, 0.0) + batch["seconds"] / 3600 / len(batch["counts"])
     for what, outcomes in kinds.items():
         went = ", ".join(f"{outcome} {count}" for outcome, count in outcomes.items() if outcome != "escaped")
-        yield what, str(sum(outcomes.values())), went, str(outcomes.get("escaped", 0))
+        yield what, str(outcomes.total()), went, str(outcomes["escaped"]), number(hours[what])
 
 
 FAMILIES = honesty, honesty_reynolds, honesty_gas, honesty_gas_reynolds

@@ -1,11 +1,11 @@
 """The attack on everything that comes from outside, counted.
 
-    python tests/benchmark/robustness.py [--quick] [--only NAME] [--jobs 2] [--table outputs/gallery/robustness.json]
+    python tests/benchmark/robustness.py [--quick] [--only NAME] [--jobs 2]
 
 What is attacked and how stands in attack/, a file for each.  Anything but an answer or one of the program's own
 errors in one line came through: a traceback, a warning of Python, a signal, a line too long to read, ten seconds
 without a word, a number that is none, a row lost.  The whole takes some two hours with two jobs and goes on where it
-was stopped (--journal); --quick takes two minutes.
+was stopped: what is done stands in a journal, which the gallery shows; --quick takes two minutes.
 """
 
 import argparse
@@ -33,7 +33,7 @@ from benchmark.attack.worlds import WORLDS, worlds
 
 from sealdyn.numerics.threads import VARIABLES
 
-ROOT = Path(__file__).parents[2]
+JOURNAL = Path(__file__).parents[2] / "outputs" / "gallery" / "robustness.jsonl"
 # Each with its cases: all, a quick sample; and how many make a batch.
 PARTS = {
     "scenarios": (scenarios, 100_000, 2000, 2500),
@@ -57,14 +57,13 @@ def main():
     words.add_argument("--only", choices=PARTS)
     words.add_argument("--jobs", type=int, default=2)
     words.add_argument("--seed", type=int, default=2026)
-    words.add_argument("--journal", help="finished batches (default: outputs/robustness.jsonl; none if quick)")
-    words.add_argument("--table", type=Path, help="where to write what was counted, for the gallery")
+    words.add_argument("--journal", help="finished batches (default: that of the gallery; none if quick)")
     words.add_argument("--batch", nargs=3, help=argparse.SUPPRESS)
     asked = words.parse_args()
     if asked.batch:
         name, first, last = asked.batch
         return _be_the_batch(name, asked.seed, range(int(first), int(last)))
-    journal = Path(asked.journal) if asked.journal else None if asked.quick else ROOT / "outputs" / "robustness.jsonl"
+    journal = Path(asked.journal) if asked.journal else None if asked.quick else JOURNAL
     ledger, begun, done = Ledger(), time.monotonic(), _kept(journal, asked.seed)
     for batch in done.values():
         ledger.add(batch["counts"], batch["ways"])
@@ -79,10 +78,6 @@ def main():
             ways = f"{', '.join(found['ways'])}"[:2000]
             print(f"{batch[0]} {batch[1]}-{batch[2]} {found['seconds']:.0f} s {ways}", flush=True)
     spent = sum(batch["seconds"] for batch in done.values())
-    if asked.table:
-        seconds = spent + asked.jobs * (time.monotonic() - begun)
-        counted = {"seed": asked.seed, "seconds": seconds, "counts": ledger.counts, "ways": ledger.ways}
-        asked.table.write_text(json.dumps(counted, indent=1, sort_keys=True) + "\n")
     for name, count in sorted(ledger.counts.items()):
         print(f"{name:40s} {count}")
     for how in ledger.ways:

@@ -188,6 +188,16 @@ def test_an_interruption_at_any_moment_of_loading(tmp_path):
         assert answer.err.splitlines() == [answer.found["message"]], moment
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_in_the_last_moments_changes_nothing(number):
+    """It ended a study that was complete by the signal itself."""
+    asked = (
+        f"import atexit, os, sys; atexit.register(os.kill, os.getpid(), {int(number)}); from sealdyn.cli import main\n"
+    )
+    asked += "sys.argv = ['sealdyn', '--help']; main()"
+    assert subprocess.run([sys.executable, "-c", asked], capture_output=True, timeout=60).returncode == 0
+
+
 def hears(process) -> bool:
     """Whether a process has a handler of its own for SIGTERM."""
     status = Path(f"/proc/{process.pid}/status")

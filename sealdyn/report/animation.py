@@ -1,0 +1,275 @@
+"""The motion as a film: both rings, tilts enlarged, the gap over the face, the orbit, and where on the time line."""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from matplotlib import colormaps
+from PIL import Image
+
+from ..archive import ArchiveError
+from .charts.face import annulus, in_the_middle
+from .charts.film import around, thickness
+from .charts.orbit import contact_circle
+from .charts.page import absent, header, look, sheet
+from .charts.palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
+from .charts.record import Run
+
+# Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
+PER_TURN, PER_SECOND, MOST, SIZE, DPI = 36, 15, 2000, (11.0, 6.2), 80
+# Radii of the face in the map; colours of the map and of the whole picture.
+RADII, STEPS, COLOURS = 5, 24, 128
+# Height of a ring in the section, as a share of what is drawn.
+THICK = 0.22
+# Share of the gap that enlarged tilts leave open, and what they may lift a ring's edge by, in the thickest film.
+OPEN, LEANING = 0.15, 0.5
+RINGS = ("stator", "rotor")
+SUFFIXES = (".gif", ".mp4", ".png")
+
+
+def animate(archive_path, out_path, turns: float = 4.0, per_turn: int = PER_TURN, progress=None) -> Path:
+    """Write the last `turns` turns of a run (of a shaft at rest, milliseconds) as a GIF or an MP4 (which needs the
+    package imageio-ffmpeg), or the last picture as a PNG.
+
+    `per_turn` pictures of a turn, between samples by straight lines; `progress(done, end, words)`.  Returns the path.
+    **Raises** ArchiveError for a run without a film thickness, ValueError for more than MOST pictures or another kind
+    of file, ImportError where MP4 cannot be made."""
+    out_path = Path(out_path)
+    if out_path.suffix not in SUFFIXES:
+        raise ValueError(f'"{out_path.name}"; expected a file name ending in {", ".join(SUFFIXES)}')
+    run = Run(archive_path)
+    if run.clearance is None or not run.has("h_min", "axial_gap_change"):
+        raise ArchiveError(f"{archive_path}: holds no film thickness over time")
+    moments = _moments(run, turns, per_turn)
+    if out_path.suffix != ".png" and len(moments) > MOST:
+        raise ValueError(f"{len(moments)} pictures; expected at most {MOST}: fewer --turns or --per-turn")
+    pictures = _pictures(run, moments, out_path.suffix == ".png", progress)
+    fresh = out_path.with_name(f"{out_path.stem}.new{out_path.suffix}")
+    out_path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        (_write_mp4 if out_path.suffix == ".mp4" else _write)(pictures, fresh)
+        os.replace(fresh, out_path)
+    except BaseException:
+        fresh.unlink(missing_ok=True)
+        raise
+    return out_path
+
+
+def _moments(run: Run, turns: float, per_turn: int) -> np.ndarray:
+    """Progress (m,) at which a picture is drawn."""
+    end = run.progress[-1]
+    begin = max(run.progress[0], end - turns)
+    count = max(2, 1 + round((end - begin) * per_turn))
+    return np.linspace(begin, end, count)
+
+
+def _write(pictures: Iterator[Image.Image], path: Path) -> None:
+    """One palette for all, so that only what moves is stored."""
+    few, palette = [], None
+    for picture in pictures:
+        palette = palette or picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
+        few.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
+    more = {"save_all": True, "append_images": few[1:], "duration": round(1000 / PER_SECOND), "loop": 0}
+    few[0].save(path, **(more if path.suffix == ".gif" else {}))
+
+
+def _write_mp4(pictures: Iterator[Image.Image], path: Path) -> None:
+    from imageio_ffmpeg import write_frames
+
+    writer = None
+    for picture in pictures:
+        if writer is None:
+            # The codec wants even numbers.
+            width, height = (length - length % 2 for length in picture.size)
+            writer = write_frames(str(path), (width, height), fps=PER_SECOND, macro_block_size=2)
+            writer.send(None)
+        writer.send(np.ascontiguousarray(np.asarray(picture)[:height, :width]))
+    writer.close()
+
+
+def _pictures(run: Run, moments: np.ndarray, still: bool, progress) -> Iterator[Image.Image]:
+    """One after the other, or the last one; nothing but what moves is drawn anew."""
+    with look():
+        figure = sheet(*SIZE)
+        figure.set_dpi(DPI)
+        movers = _panels(figure, run, moments, header(figure, run))
+    moments = moments[-1:] if still else moments
+    for k, moment in enumerate(moments):
+        for move in movers:
+            move(moment)
+        figure.canvas.draw()
+        if progress:
+            progress(k + 1, len(moments), f"picture {k + 1} of {len(moments)}")
+        yield Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+
+
+def _panels(figure, run: Run, moments: np.ndarray, top: float) -> list:
+    """Axes and what stands still in them; returns functions of the progress that move the rest."""
+    first = max(0, int(np.searchsorted(run.progress, moments[0])) - 1)
+    section = figure.add_axes((0.06, 0.32, 0.31, top - 0.39))
+    face = figure.add_axes((0.41, 0.31, 0.24, top - 0.41), projection="polar")
+    orbit = figure.add_axes((0.78, 0.32, 0.2, top - 0.39))
+    line = figure.add_axes((0.06, 0.09, 0.915, 0.13))
+    rows = _Rows(run, first)
+    return [_section(section, run, rows), _face(face, run, rows), _orbit(orbit, run, rows), _line(line, run, rows)]
+
+
+class _Rows:
+    """The drawn stretch of a run, held in memory, between its samples by straight lines; for `thickness` a run."""
+
+    def __init__(self, run: Run, first: int):
+        self.at, self.rows, self.clearance = run.progress[first:], run.rows - first, run.clearance
+        self.shape, self.wave_orders, self.has = run.shape, run.wave_orders, run.has
+        self.held = {name: run.values(name, first) for name in run.info["series"] if run.has(name)}
+
+    def values(self, name: str, first: int = 0, stop: int | None = None) -> np.ndarray:
+        """Rows of a series; zeros of one that is not there: nothing of that kind moves."""
+        return self.held[name][first:stop] if name in self.held else np.zeros(self.rows)[first:stop]
+
+    def when(self, name: str, moment: float) -> float:
+        """A series at a progress."""
+        return float(np.interp(moment, self.at, self.values(name)))
+
+    def thickness(self, radius, angle, moment: float) -> np.ndarray:
+        """Film thickness (m) over the face at a progress."""
+        k = int(np.clip(np.searchsorted(self.at, moment) - 1, 0, self.rows - 2))
+        one, other = thickness(self, radius, angle, k, k + 2)
+        share = np.clip((moment - self.at[k]) / (self.at[k + 1] - self.at[k]), 0.0, 1.0)
+        return one + share * (other - one)
+
+
+def _radii(run: Run) -> tuple[float, float]:
+    return run.film("inner_radius"), run.film("outer_radius")
+
+
+def _section(ax, run: Run, rows: _Rows):
+    """Both rings cut by the plane through the shaft and the x axis: heights in micrometres beside millimetres, tilts
+    enlarged as far as the gap stays open."""
+    radii, sides = np.linspace(*_radii(run), RADII), (0.0, np.pi)
+    looked = rows.at[:: max(1, len(rows.at) // 200)]
+    # In this plane the tilt about the x axis is not seen.
+    over = np.array([[rows.thickness(radii, angle, moment) for angle in sides] for moment in looked])
+    lean = np.array([rows.when("relative_tilt_y", moment) for moment in looked])[:, None, None]
+    wedge = -lean * radii * np.cos(sides)[:, None]
+    leans = [np.abs(rows.values(f"{name}_tilt_y")).max() for name in ("relative", "rotor", "stator")]
+    times = _enlarged(over - wedge, wedge, max(leans) * radii[-1])
+
+    def heights(moment, angle):
+        rotor = rows.when("rotor_z", moment) - times * radii * rows.when("rotor_tilt_y", moment) * np.cos(angle)
+        more = -(times - 1) * radii * rows.when("relative_tilt_y", moment) * np.cos(angle)
+        return 1e6 * rotor, 1e6 * (rotor + rows.thickness(radii, angle, moment) + more)
+
+    ends = np.array([heights(moment, angle) for moment in looked for angle in sides])
+    low, high = ends.min(), ends.max()
+    thick = THICK * max(high - low, 1e-3)
+    bodies = []
+    for k, angle in enumerate(sides):
+        two = [ax.fill([0], [0], color=RING[ring], alpha=0.75, lw=0, label="_" * k + ring)[0] for ring in RINGS]
+        bodies.append((angle, two))
+    width = 1e3 * radii[-1]
+    ax.set(xlim=(-1.08 * width, 1.08 * width), ylim=(low - thick, high + thick))
+    ax.set_title("Section" if times == 1 else f"Section, tilts {times:g} times enlarged")
+    ax.set(xlabel="along the x axis, mm", ylabel="along the shaft, µm")
+    ax.axvline(0, color=GREY, lw=0.8, ls="-.")
+    ax.legend(loc="center")
+
+    def move(moment):
+        for angle, (stator, rotor) in bodies:
+            below, above = heights(moment, angle)
+            across = 1e3 * radii * np.cos(angle)
+            stator.set_xy(_closed(across, above, high + 2 * thick))
+            rotor.set_xy(_closed(across, below, low - 2 * thick))
+
+    return move
+
+
+def _enlarged(level, wedge, lean: float) -> float:
+    """How many times tilts are enlarged: to a share of the gap, which must stay open; a 1, 2 or 5 of a decade."""
+    if not lean > 0:
+        return 1.0
+    with np.errstate(divide="ignore"):
+        room = np.where(wedge < 0, (1.0 - OPEN) * level / -wedge, np.inf).min()
+    most = min(room, LEANING * level.max() / lean)
+    if not most >= 2.0:
+        return 1.0
+    decade = 10.0 ** np.floor(np.log10(most))
+    return float(decade * max(step for step in (1, 2, 5) if step * decade <= most * (1 + 1e-9)))
+
+
+def _closed(across, face, back: float) -> np.ndarray:
+    return np.column_stack([[*across, across[-1], across[0]], [*face, back, back]])
+
+
+def _face(ax, run: Run, rows: _Rows):
+    """Film thickness over the face, where it is thinnest, and a mark on the rotor."""
+    inner, outer = _radii(run)
+    radius, angle = np.linspace(inner, outer, RADII)[:, None], around(run)[None, :]
+    shown = run.shown("h_min")
+    every = np.array([rows.thickness(radius, angle, moment) for moment in rows.at[:: max(1, len(rows.at) // 60)]])
+    low, high = shown[1] * every.min(), shown[1] * max(every.max(), every.min() * (1 + 2e-3))
+    image = ax.pcolormesh(
+        angle[0], 1e3 * radius[:, 0], shown[1] * every[0], shading="nearest", vmin=low, vmax=high,
+        cmap=colormaps[THICKNESS].resampled(STEPS),
+    )  # fmt: skip
+    in_the_middle(ax, annulus(ax, 1e3 * inner, 1e3 * outer))
+    ax.set_title("Film thickness over the face", pad=16, loc="center")
+    figure, box = ax.figure, ax.get_position()
+    place = figure.add_axes((box.x1 + 0.022, box.y0, 0.009, box.height))
+    figure.colorbar(image, cax=place).ax.set_title(shown[0], fontsize=8, weight="normal", loc="center")
+    (thinnest,) = ax.plot([], [], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+    (mark,) = ax.plot([], [], "v", ms=7, color=MARK, clip_on=False)
+
+    # The angle of the shaft, wrapped at 2 pi, is not interpolated: its turns are.
+    start = run.values("shaft_angle", 0, 1)[0] if run.has("shaft_angle") else 0.0
+
+    def move(moment):
+        over = rows.thickness(radius, angle, moment)
+        image.set_array((shown[1] * over).ravel())
+        at = np.unravel_index(np.argmin(over), over.shape)
+        thinnest.set_data([angle[0][at[1]]], [1e3 * radius[at[0]][0]])
+        turned = 2 * np.pi * moment if run.turning else 0.0
+        mark.set_data([start + turned], [1e3 * (outer + 0.06 * (outer - inner))])
+
+    return move
+
+
+def _orbit(ax, run: Run, rows: _Rows):
+    """The relative tilt, and what lies behind it."""
+    title = "Orbit of the relative tilt"
+    if not np.hypot(rows.values("relative_tilt_x"), rows.values("relative_tilt_y")).any():
+        absent(ax, title, "faces aligned throughout")
+        return lambda moment: None
+    unit, per = run.shown("relative_tilt_x")
+    x, y = (per * rows.values(f"relative_tilt_{axis}") for axis in "xy")
+    reach = np.hypot(x, y).max()
+    limit = 1.15 * max(reach, contact_circle(ax, per * (run.contact_tilt or 0.0), reach))
+    ax.plot(x, y, color=TILT, lw=0.6, alpha=0.35)
+    (tail,) = ax.plot([], [], color=TILT, lw=1.4)
+    (dot,) = ax.plot([], [], "o", color=TILT, ms=6)
+    ax.set(xlim=(-limit, limit), ylim=(-limit, limit), aspect="equal", title=title)
+    ax.set(xlabel=f"about x, {unit}", ylabel=f"about y, {unit}")
+    length = 1.0 if run.turning else 0.1 * (rows.at[-1] - rows.at[0])
+
+    def move(moment):
+        behind = np.linspace(max(rows.at[0], moment - length), moment, 120)
+        trail = [np.interp(behind, rows.at, part) for part in (x, y)]
+        tail.set_data(*trail)
+        dot.set_data([trail[0][-1]], [trail[1][-1]])
+
+    return move
+
+
+def _line(ax, run: Run, rows: _Rows):
+    """Thinnest film over all of the stretch, and now."""
+    unit, per = run.shown("h_min")
+    ax.plot(rows.at, per * rows.values("h_min"), color=FILM)
+    if run.touch_at or run.touches:
+        ax.axhline(per * run.touch_at, color=CONTACT, lw=0.9, ls="--")
+    now = ax.axvline(rows.at[0], color=MARK, lw=1.2)
+    ax.set(xlabel=run.progress_label, ylabel=f"h_min, {unit}", xlim=(rows.at[0], rows.at[-1]))
+
+    def move(moment):
+        now.set_xdata([moment, moment])
+
+    return move
