@@ -488,6 +488,35 @@ def animate(
 
 
 @app.command()
+def report(
+    files: Annotated[list[Path], typer.Argument(help="archives (HDF5) of runs and studies")],
+    out: Annotated[Path, typer.Option(help="page to write")] = Path("report.html"),
+    title: Annotated[str, typer.Option(help="its heading")] = "",
+):
+    """Write one page for a design review: it opens anywhere, without a network."""
+    from .report.review import review
+    from .studies._runner import study_tables
+
+    if out.suffix not in (".html", ".htm"):
+        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .html')
+    for file in files:
+        with _reads(file):
+            _must_be_archive(file)
+    with _reads(files[0]):
+        try:
+            review(files, out, title, tables=study_tables)
+        except OSError as error:
+            raise _not_written(error, out, "the archives are whole") from None
+    print(out)
+
+
+def _must_be_archive(file):
+    from .archive import is_study, read_info, read_study
+
+    (read_study if is_study(file) else read_info)(file)
+
+
+@app.command()
 def validate(
     source: Annotated[str | None, typer.Argument(help="one source, e.g. zuk-1972 (default all)")] = None,
     as_json: AsJson = False,

@@ -11,7 +11,7 @@ MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     message = "" if summary["status"] == Status.OK else summary["message"]
-    return _table(scenario.name, summary["status"], message, _rows(summary))
+    return _table(scenario.name, summary["status"], message, run_rows(summary))
 
 
 def _table(title, status, message, rows) -> list[str]:
@@ -19,7 +19,7 @@ def _table(title, status, message, rows) -> list[str]:
     return [ended, *(f"  {name:<14}{words}" for name, words in rows)]
 
 
-def _rows(summary):
+def run_rows(summary):
     """(name, words) of every line; a line that goes on has no name."""
     model, film, closing = (summary[k] for k in ("model", "film", "closing"))
     yield "model", (f"{model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "

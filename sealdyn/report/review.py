@@ -1,0 +1,128 @@
+"""One page for a design review: question, scene, sketch, model, accuracy, figures, verdicts, rules, provenance; of any
+number of archives, with nothing loaded from elsewhere."""
+
+import base64
+import importlib
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..archive import is_study, read_info, read_study
+from ..toml_line import toml_line
+from .text import run_rows, study_lines
+
+TEMPLATE = Path(__file__).with_name("review.html")
+# Figures of a run and what they show.
+FIGURES = {
+    "sketch": "The seal",
+    "overview": "Overview of the run",
+    "film": "Film thickness",
+    "orbit": "Orbits",
+}
+
+
+def review(archives, out_path, title: str = "", rules=None, tables=None) -> Path:
+    """Write the page of some archives (paths) of runs and studies.
+
+    `rules(path, info)` gives the rows of the design rules of a run (`findings` of analysis/design_rules.py),
+    `tables(name, answer)` those of a study (`study_tables` of studies).  Returns the path.  **Raises** ArchiveError for
+    what is no archive."""
+    from jinja2 import Environment, StrictUndefined
+
+    parts = [_study(path, tables) if is_study(path) else _run(path, rules) for path in map(Path, archives)]
+    page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+        title=title or f"Design review: {', '.join(part['name'] for part in parts)}", parts=parts
+    )
+    out_path = Path(out_path)
+    out_path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = out_path.with_name(out_path.name + ".new")
+    try:
+        fresh.write_text(words, encoding="utf-8")
+        os.replace(fresh, out_path)
+    except BaseException:
+        fresh.unlink(missing_ok=True)
+        raise
+    return out_path
+
+
+def _run(path: Path, rules) -> dict:
+    info = read_info(path)
+    summary = info["summary"]
+    rows = list(run_rows(summary)) if summary else []
+    return {
+        "kind": "run",
+        "name": info["name"],
+        **_asked(info),
+        "status": str(info["status"]),
+        "message": info.get("message", ""),
+        "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
+        "warnings": [words for name, words in rows if name == "WARNING"],
+        "figures": [(words, _drawn(path, chart)) for chart, words in FIGURES.items()],
+        "rules": rules(path, info) if rules else [],
+        "verdict": [],
+        "table": "",
+        "scene": list(_scene(info["resolved"])),
+        "scenario": info["scenario"],
+        "made": _made(path, info),
+    }
+
+
+def _study(path: Path, tables) -> dict:
+    study = read_study(path)
+    answer = study["answer"]
+    lines = study_lines({**answer, "verdict": []}, tables(study["study"], answer) if tables else ())
+    return {
+        "kind": f"study {study['study']}",
+        "name": study["name"],
+        **_asked(study),
+        "status": str(answer["status"]),
+        "message": answer.get("message", ""),
+        "rows": [],
+        "warnings": [],
+        "figures": [(f"Study {study['study']}", _drawn(path, f"study_{study['study']}"))],
+        "rules": [],
+        "verdict": answer["verdict"],
+        "table": "\n".join(lines),
+        "scene": list(_scene(study["resolved"])),
+        "scenario": study["scenario"],
+        "made": _made(path, study),
+    }
+
+
+def _asked(info: dict) -> dict:
+    """The scenario's opening question, and what else its comment says."""
+    question, mark, more = (info.get("question") or "").partition("?")
+    return {"question": (question or info["name"]) + mark, "more": more.strip()}
+
+
+def _drawn(path: Path, chart: str) -> str:
+    """A chart as the address of an image that stands in the page."""
+    with tempfile.TemporaryDirectory() as folder:
+        figure = Path(folder) / "figure.png"
+        importlib.import_module(f"{__package__}.charts.{chart}").draw(path, figure)
+        return f"data:image/png;base64,{base64.b64encode(figure.read_bytes()).decode()}"
+
+
+def _scene(table: dict, name: str = "") -> Iterator[tuple[str, str]]:
+    """Keys and values in SI, what is not given left out."""
+    for key, value in table.items():
+        where = f"{name}.{key}" if name else key
+        if isinstance(value, dict) and set(value) != {"time", "value"}:
+            yield from _scene(value, where)
+        elif value is not None and value != []:
+            yield where, toml_line(value)
+
+
+def _made(path: Path, info: dict) -> list[tuple[str, str]]:
+    libraries = info.get("libraries") or {}
+    overrides = info.get("overrides") or []
+    rows = [
+        ("archive", path.name),
+        ("made", f"{info.get('created', '?')} by sealdyn {info.get('version', '?')}"),
+        ("changed on the command line", ", ".join(map(str, overrides)) or "nothing"),
+    ]
+    if isinstance(libraries, dict) and libraries:
+        rows.append(("libraries", ", ".join(f"{name} {number}" for name, number in libraries.items())))
+    return rows
