@@ -510,6 +510,27 @@ def report(
     print(out)
 
 
+@app.command()
+def compare(
+    one: Annotated[Path, typer.Argument(help="archive (HDF5) of a run")],
+    other: Annotated[Path, typer.Argument(help="archive of another run")],
+    as_json: AsJson = False,
+):
+    """Say what two runs have different: of their scenes, and of their results."""
+    from .report.comparison import comparison, comparison_lines
+
+    for file in (one, other):
+        with _reads(file):
+            _must_be_archive(file)
+    with _reads(other):
+        found = comparison(one, other)
+    if as_json:
+        print(json.dumps(found))
+    else:
+        for line in comparison_lines(found):
+            print(line)
+
+
 def _must_be_archive(file):
     from .archive import is_study, read_info, read_study
 

@@ -1,0 +1,122 @@
+"""Two runs side by side: what was changed in the scene, and what that changed in the results."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..archive import ArchiveError, column, is_study, read_info
+
+# Of the larger value: what differs by less differs by rounding.
+ROUNDING = 1e-12
+# Of a summary: what tells of the computation and not of the seal.
+OWN = ("wall_time", "counts", "archive", "figure", "model.reasons", "warnings")
+# Quantities that are printed (JSON has all): key, heading, factor.
+FIRST = (
+    ("h_min.value", "h_min, um", 1e6),
+    ("h_min.steady", "h_min settled, um", 1e6),
+    ("relative_misalignment.max", "misalignment max, urad", 1e6),
+    ("relative_misalignment.steady_max", "misalignment settled, urad", 1e6),
+    ("leakage.mean_ml_per_h", "leakage, ml/h", 1.0),
+    ("friction.power", "friction, W", 1.0),
+    ("film.clearance", "clearance, um", 1e6),
+    ("film.axial_stiffness", "axial stiffness, N/m", 1.0),
+    ("film.tilt_stiffness", "tilt stiffness, N m/rad", 1.0),
+    ("closing.force", "closing force, N", 1.0),
+    ("stability.whirl_ratio", "whirl ratio", 1.0),
+    ("stability.critical_speed", "critical speed, rad/s", 1.0),
+    ("contact_margin", "margin to contact", 1.0),
+    ("contact.touches", "contacts", 1.0),
+    ("contact.wear_rate", "wear rate, um/h", 3.6e9),
+)
+
+
+def comparison(one, other) -> dict:
+    """`scene` and `summary`, lists of {key, values: [one, other], change (relative, None of what is no number)} of what
+    differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have.
+    **Raises** ArchiveError for what is no archive of a run."""
+    infos = [_read(path) for path in (one, other)]
+    scenes, summaries = ([dict(_leaves(info[key])) for info in infos] for key in ("resolved", "summary"))
+    return {
+        "names": [str(one), str(other)],
+        "status": [str(info["status"]) for info in infos],
+        "scene": _different(*scenes),
+        "summary": [row for row in _different(*summaries) if not row["key"].startswith(OWN)],
+        "same": [key for key, *_ in FIRST if key in summaries[0] and not _differ(*(s.get(key) for s in summaries))],
+        "series": list(_series(one, other, infos)),
+    }
+
+
+def comparison_lines(found: dict) -> list[str]:
+    """The same for people."""
+    out = [f"A  {found['names'][0]}: {found['status'][0]}", f"B  {found['names'][1]}: {found['status'][1]}"]
+    out += [
+        f"  scene         {row['key']}: {_word(row['values'][0])} -> {_word(row['values'][1])}"
+        for row in found["scene"]
+    ]
+    out += [] if found["scene"] else ["  scene         the same"]
+    rows = {row["key"]: row for row in found["summary"]}
+    shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
+    for heading, factor, row in shown:
+        words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
+        change = "" if row["change"] is None else f"  ({100 * row['change']:+.3g} %)"
+        out.append(f"  {heading:<28}{words}{change}")
+    if not shown:
+        out.append("  results       the same")
+    for row in found["series"]:
+        out.append(f"  at the same instants {row['name']} differs by up to {row['most']:.3g} {row['unit']}")
+    return out
+
+
+def _read(path) -> dict:
+    if is_study(path):
+        raise ArchiveError(f"{path}: the archive of a study; expected that of a run")
+    info = read_info(path)
+    if not info["summary"]:
+        raise ArchiveError(f"{path}: the run is not complete ({info['status']})")
+    return info
+
+
+def _leaves(tree, name="") -> Iterator[tuple[str, object]]:
+    """Dotted keys and values."""
+    if isinstance(tree, dict):
+        for key, value in tree.items():
+            yield from _leaves(value, f"{name}.{key}" if name else key)
+    else:
+        yield name, tree
+
+
+def _different(one: dict, other: dict) -> list[dict]:
+    keys = [*one, *(key for key in other if key not in one)]
+    pairs = ((key, one.get(key), other.get(key)) for key in keys)
+    return [{"key": key, "values": [a, b], "change": _change(a, b)} for key, a, b in pairs if _differ(a, b)]
+
+
+def _differ(a, b) -> bool:
+    if _is_number(a) and _is_number(b):
+        return abs(a - b) > ROUNDING * max(abs(a), abs(b))
+    return a != b
+
+
+def _change(a, b) -> float | None:
+    return b / a - 1.0 if _is_number(a) and _is_number(b) and a else None
+
+
+def _is_number(value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _word(value) -> str:
+    return f"{value:.6g}" if _is_number(value) else "not given" if value is None else str(value)[:60]
+
+
+def _series(one, other, infos) -> Iterator[dict]:
+    """The largest differences of the thinnest film and the tilts at common instants."""
+    times = [column(path, "time") for path in (one, other)]
+    _, rows, others = np.intersect1d(*times, assume_unique=False, return_indices=True)
+    if len(rows) < 2:
+        return
+    for name in ("h_min", "relative_misalignment"):
+        if all(name in info["series"] for info in infos):
+            apart = np.abs(column(one, name)[rows] - column(other, name)[others])
+            yield {"name": name, "unit": infos[0]["series"][name].units, "most": float(np.nanmax(apart))}

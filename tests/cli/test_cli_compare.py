@@ -1,0 +1,50 @@
+"""Two runs side by side."""
+
+import numpy as np
+import pytest
+from command import REFERENCE, sealdyn
+
+from sealdyn.archive import column, read_info
+
+SHORT = ["--set", "run.turns=2", "--set", "run.samples_per_turn=16", "--no-plot"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("two")
+    for name, more in (("a", []), ("again", []), ("b", ["--set", "stator.misalignment=50 urad"])):
+        assert sealdyn("run", REFERENCE, *SHORT, *more, "--out", f"{name}.h5", cwd=folder).code == 0
+    sealdyn("study", "equilibrium", REFERENCE, "--no-plot", "--out", "study.h5", cwd=folder)
+    return folder
+
+
+def test_what_differs(folder):
+    found = sealdyn("compare", "a.h5", "b.h5", "--json", cwd=folder).found
+    before = read_info(folder / "a.h5")["resolved"]["stator"]["misalignment"]
+    (scene,) = found["scene"]
+    assert scene["key"] == "stator.misalignment" and scene["values"] == pytest.approx([before, 50e-6])
+    tilts = [read_info(folder / f"{name}.h5")["summary"]["relative_misalignment"]["max"] for name in "ab"]
+    (row,) = [row for row in found["summary"] if row["key"] == "relative_misalignment.max"]
+    assert row["values"] == tilts and row["change"] == pytest.approx(tilts[1] / tilts[0] - 1)
+    (film,) = [row for row in found["series"] if row["name"] == "h_min"]
+    apart = np.abs(column(folder / "a.h5", "h_min") - column(folder / "b.h5", "h_min")).max()
+    assert film["most"] == pytest.approx(apart)
+
+
+def test_people_read_it(folder):
+    lines = sealdyn("compare", "a.h5", "b.h5", cwd=folder).out.splitlines()
+    assert any("stator.misalignment" in line and "5e-05" in line for line in lines)
+    assert any("misalignment max, urad" in line and "%" in line for line in lines)
+
+
+def test_a_run_and_itself(folder):
+    lines = sealdyn("compare", "a.h5", "again.h5", cwd=folder).out.splitlines()
+    assert "the same" in lines[2] and "the same" in lines[3]
+    assert all("up to 0 " in line for line in lines[4:])
+
+
+@pytest.mark.parametrize("words", [["a.h5", "nothing.h5"], ["study.h5", "a.h5"], ["a.h5", "study.h5"]])
+def test_bad_input_is_one_line(words, folder):
+    answer = sealdyn("compare", *words, cwd=folder)
+    assert answer.code == 2 and len(answer.err.strip().splitlines()) == 1
+    assert any(word in answer.err for word in ("nothing.h5", "study"))
