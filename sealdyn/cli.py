@@ -364,6 +364,29 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
 
 @app.command()
+def new(
+    kind: Annotated[str, typer.Argument(help="fms, fmr, fmsr, gas or wavy")],
+    out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
+):
+    """Write a commented scenario to begin with."""
+    from .scenario.templates import kinds, template
+
+    if kind not in kinds():
+        raise Stop(
+            Status.INVALID, f'new: found "{kind}"; expected one of {", ".join(kinds())}{_nearest(kind, kinds())}'
+        )
+    out = out or Path(f"{kind}.toml")
+    try:
+        with open(out, "x", encoding="utf-8") as file:
+            file.write(template(kind))
+    except FileExistsError:
+        raise Stop(Status.INVALID, f"{out}: is there already; expected --out with another name") from None
+    except OSError as error:
+        raise _not_written(error, out, "nothing is kept") from None
+    print(f"{out}: try  sealdyn check {out}  and  sealdyn run {out}")
+
+
+@app.command()
 def schema():
     """Print the JSON schema of scenario files, for editors."""
     from .scenario.schema import json_schema
