@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..archive import is_study, read_info, read_study
 from ..toml_line import toml_line
-from .text import run_rows, study_lines
+from .text import question_of, run_rows, study_lines
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -93,8 +93,9 @@ def _study(path: Path, tables) -> dict:
 
 def _asked(info: dict) -> dict:
     """The scenario's opening question, and what else its comment says."""
-    question, mark, more = (info.get("question") or "").partition("?")
-    return {"question": (question or info["name"]) + mark, "more": more.strip()}
+    words = info.get("question") or ""
+    question = question_of(words)
+    return {"question": question or info["name"], "more": words[len(question) :].strip(". ")}
 
 
 def _drawn(path: Path, chart: str) -> str:

@@ -14,6 +14,13 @@ def lines(scenario, summary: dict) -> list[str]:
     return _table(scenario.name, summary["status"], message, run_rows(summary))
 
 
+def question_of(comment: str) -> str:
+    """What a scenario asks: its comment up to the question mark, or without one its first sentence."""
+    if "?" in comment:
+        return comment[: comment.index("?") + 1]
+    return comment.split(". ")[0]
+
+
 def _table(title, status, message, rows) -> list[str]:
     ended = f"{title}: {status}" + (f" - {message}" if message else "")
     return [ended, *(f"  {name:<14}{words}" for name, words in rows)]

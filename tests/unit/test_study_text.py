@@ -5,7 +5,7 @@ import re
 
 import pytest
 
-from sealdyn.report.text import MOST_ROWS, study_lines
+from sealdyn.report.text import MOST_ROWS, question_of, study_lines
 from sealdyn.studies._runner import study_module, study_names
 
 COLUMNS = (("motion", "class"), ("film, um", "film.least", 1e6), ("touch", "touch"), ("of no row", "period"))
@@ -46,3 +46,15 @@ def test_every_study_has_a_chart(name):
     study = study_module(name.replace("-", "_"))
     assert study.run.__doc__ and study.Settings.__doc__
     assert importlib.import_module(f"sealdyn.report.charts.study_{name.replace('-', '_')}").draw
+
+
+@pytest.mark.parametrize(
+    ("comment", "question"),
+    [
+        ("Does it ride?  Expected: yes.", "Does it ride?"),
+        ("A pump seal. With a cone.", "A pump seal"),
+        ("", ""),
+    ],
+)
+def test_a_comment_without_a_question_gets_no_mark(comment, question):
+    assert question_of(comment) == question

@@ -12,6 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from PIL import Image
 
 from ...status import Status
+from ..text import question_of
 from .palette import BLACK, GREY, PALE, STATUS
 
 LOOK = {
@@ -46,7 +47,7 @@ def study_page(study, width: float, height: float, mosaic, title: str = "", belo
     is by default the scenario's question; below it stand `below`, by default name and question, and in bold letters, of
     a failed study in its colour, `bold`."""
     figure, question = sheet(width, height), study["question"]
-    title = title or question.partition("?")[0] + "?"
+    title = title or question_of(question) or study["name"]
     status = study["answer"].get("status", Status.OK)
     colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
     below = below or shortened(f"{study['name']}: {question}", int(14 * width))

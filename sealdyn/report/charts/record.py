@@ -7,6 +7,7 @@ from itertools import takewhile
 import numpy as np
 
 from ...archive import column, read_info
+from ..text import question_of
 
 BLOCK = 1 << 16
 POINTS = 20_000
@@ -171,9 +172,7 @@ class Run:
         """The scenario's opening question, or the opening comment, or the archive's name."""
         comment = takewhile(lambda line: line.startswith("#"), self.info.get("scenario", "").splitlines())
         words = " ".join(line.lstrip("# ").strip() for line in comment).strip()
-        if "?" in words:
-            return words[: words.index("?") + 1]
-        return words.split(". ")[0] or self.info.get("title", "")
+        return question_of(words) or self.info.get("title", "")
 
     @property
     def description(self) -> str:
