@@ -347,6 +347,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     size = size_of(scenario)
     try:
         run, method, why, *_ = prepare_run(scenario)
+        rules = findings(scenario, run.model)
     except (SceneError, ArchiveError) as error:
         raise Stop(Status.INVALID, f"{file}: {error}") from None
     found = {
@@ -356,7 +357,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "design_rules": findings(scenario, run.model),
+        "design_rules": rules,
         "beside_reynolds": beside_reynolds(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }

@@ -5,8 +5,8 @@ import importlib
 import pkgutil
 from dataclasses import replace
 
+from ..scenario.errors import ScenarioError
 from ..scene.application import Application
-from ..scene.scene import SceneError
 from . import rules
 
 GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
@@ -18,15 +18,14 @@ def rule_names() -> list[str]:
 
 
 def refuse_unknown_rules(scenario) -> None:
-    """Raises SceneError if the scenario acknowledges a rule that there is not."""
-    known = rule_names() if scenario.application else []
-    for name in scenario.application.acknowledge if scenario.application else ():
+    """Raises ScenarioError if the scenario acknowledges a rule that there is not."""
+    known, application = rule_names(), scenario.application or Application()
+    for name in application.acknowledge:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1, 0.0)
-            key = "application.acknowledge"
-            raise SceneError(
-                f"{key}.{name}", "an unknown design rule", f"one of {', '.join(known)}; nearest '{near[0]}'"
-            )
+            file = scenario.path.name if scenario.path else scenario.name
+            expected = f"one of {', '.join(known)}; nearest '{near[0]}'"
+            raise ScenarioError(file, f"application.acknowledge.{name}", "an unknown design rule", expected)
 
 
 def findings(scenario, model) -> list[dict]:
@@ -34,13 +33,14 @@ def findings(scenario, model) -> list[dict]:
     | "acknowledged" | "not applicable"), `value`, `unit`, `least` and `most` (SI, None where there are none), `guide`
     and `source` in it, `said` (a sentence), `command` that tests it ("" if none does), `reason` with which it is
     acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
-    Raises SceneError for an unknown rule."""
+    Raises ScenarioError for an unknown rule, SceneError where the film has no solution."""
     # Whoever asks for names alone does not wait for arrays.
+    from ..simulation.summary import plain
     from .rules._seal import Seal
 
     refuse_unknown_rules(scenario)
     seal = Seal(scenario.scene, scenario.application or Application(), model)
-    return [_row(name, seal) for name in rule_names()]
+    return [plain(_row(name, seal)) for name in rule_names()]
 
 
 def _row(name: str, seal) -> dict:

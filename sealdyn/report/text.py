@@ -218,9 +218,10 @@ def _rule_lines(rows) -> list[str]:
     out = [f"design rules of {rows[0]['guide']}: {counts}"]
     for row in sorted(rows, key=lambda row: order.index(row["verdict"])):
         words = f"{row['said']} ({row['source']})" if row["verdict"] != order[-1] else row["said"]
-        words += f"; reason: {row['reason']}" if row["verdict"] == "acknowledged" else ""
+        words += f"; reason: {row['reason']}" if row["reason"] else ""
         words += f"; try {row['command']}" if row["command"] and row["verdict"] in order[:3] else ""
-        out.append(" ".join(f"  {row['verdict']:<15}{row['rule']}: {words}".splitlines()))
+        line = f"  {row['verdict']:<15}{row['rule']}: {words}"
+        out.append("".join(c if c.isprintable() else " " for c in line))
     return out
 
 

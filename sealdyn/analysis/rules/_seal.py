@@ -43,7 +43,7 @@ class Seal:
 
     @property
     def sliding_speed(self) -> float:
-        """Highest sliding speed (m/s) at the mean diameter, of the scene or in service: pi D N."""
+        """Highest sliding speed pi D N (m/s) at the mean diameter, of the scene or in service."""
         spin = _apart(self.scene.shaft.speed, self.scene.stator.speed)
         return 0.5 * self.mean_diameter * max(spin, self.application.highest_speed or 0.0)
 
@@ -52,9 +52,8 @@ class Seal:
         """Lowest and highest shaft speed (rad/s, either way) of the scene and in service."""
         signed = points(self.scene.shaft.speed)
         low = 0.0 if min(signed) < 0.0 < max(signed) else min(map(abs, signed))
-        at_rest, fastest = self.application.lowest_speed, self.application.highest_speed
-        lowest = low if at_rest is None else min(low, at_rest)
-        return lowest, max(largest_value(self.scene.shaft.speed), fastest or 0.0)
+        lowest, highest = self.application.lowest_speed, self.application.highest_speed
+        return min(low, low if lowest is None else lowest), max(largest_value(self.scene.shaft.speed), highest or 0.0)
 
     @property
     def sealed_pressure(self) -> float:

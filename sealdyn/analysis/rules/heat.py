@@ -2,7 +2,7 @@
 
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import viscosity_of
-from ._finding import noted
+from ._finding import noted, other_seals
 
 SOURCE = "full film mu A (w D/2)^2/h, dry pi f F D N, carbon-graphite f 0.1 to 0.25"
 COMMAND = "sealdyn run FILE"
@@ -14,6 +14,9 @@ def finding(seal):
     """A note: watts at the highest sliding speed, of the film at the start, and of faces that carry the closing force
     above the lower pressure."""
     speed, film = seal.sliding_speed, seal.film_thickness
+    if film <= 0.0:
+        # Rough faces may carry a cone that closes their mean planes.
+        return other_seals(f"the mean film is {1e6 * film:.4g} um: the asperities carry the faces")
     full = initially(viscosity_of(seal.scene.film)) * seal.face_area * speed**2 / film
     dry = [f * seal.face_load * speed for f in FRICTION]
     said = (
