@@ -266,3 +266,18 @@ def test_rules_of_oil_are_not_for_gases():
 def test_travel_between_the_kinds_of_spring_asks_for_the_kind():
     assert rows("application.axial_displacement=1 mm")["axial_travel"]["needs"] == ["application.spring"]
     assert rows("application.axial_displacement=2 mm")["axial_travel"]["verdict"] == "fail"
+
+
+def test_a_ring_without_inertia_has_no_resonance():
+    row = rows("stator.mass=0", "stator.transverse_inertia=0")["shaft_resonance"]
+    assert row["verdict"] == "not applicable" and "stator.mass" in row["needs"]
+
+
+def test_faces_that_ride_on_their_asperities_have_no_full_film():
+    """Worn so that their mean planes cross at the mean radius, within the height of the asperities."""
+    worn = 'film.profile={radius=["25 mm","30 mm"],depth=["0 um","-3 um"]}'
+    row = rows(
+        worn, "film.model=profiled", "film.coning=0", ROUGH.format("0.8 um"), "closing={}", 'film.clearance="1 um"'
+    )
+    assert row["film_thickness"]["value"] == pytest.approx(-0.5e-6, rel=1e-9)
+    assert row["heat"]["verdict"] == "not applicable" and row["heat"]["value"] is None
