@@ -219,7 +219,7 @@ def _rule_lines(rows) -> list[str]:
     for row in sorted(rows, key=lambda row: order.index(row["verdict"])):
         words = f"{row['said']} ({row['source']})" if row["verdict"] != order[-1] else row["said"]
         words += f"; reason: {row['reason']}" if row["reason"] else ""
-        words += f"; try {row['command']}" if row["command"] and row["verdict"] in order[:3] else ""
+        words += f"; try {row['command']}" if row["command"] and row["verdict"] != order[-1] else ""
         line = f"  {row['verdict']:<15}{row['rule']}: {words}"
         out.append("".join(c if c.isprintable() else " " for c in line))
     return out

@@ -7,12 +7,11 @@ import re
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
-from ..units import Frequency, Quantity, QuantityError, Temperature, VolumeFlow, quoted
+from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, VolumeFlow, quoted
 
 Size = Annotated[float, Quantity("length", "m", '"40 mm"', (), 0, True)]
 Offset = Annotated[float, Quantity("length", "m", '"0.1 mm"', (), 0)]
 SpeedSize = Annotated[float, Quantity("speed of rotation", "rad/s", '"9550 rpm", "150 Hz"', (), 0)]
-SealedPressure = Annotated[float, Quantity("absolute pressure", "Pa", '"5 bar"', (), 0)]
 Life = Annotated[float, Quantity("time", "s", '"1500 h"', (), 0, True)]
 FREQUENCY = Frequency.__metadata__[0]
 # Ranges of the data sheet: "lowest_" and "highest_" of these, and their SI units.
@@ -103,9 +102,9 @@ class Application:
     """Lowest temperature in service of the sealed fluid."""
     highest_temperature: Temperature | None = None
     """Highest temperature in service of the sealed fluid."""
-    lowest_pressure: SealedPressure | None = None
+    lowest_pressure: Pressure | None = None
     """Lowest sealed pressure in service, absolute."""
-    highest_pressure: SealedPressure | None = None
+    highest_pressure: Pressure | None = None
     """Highest sealed pressure in service, absolute."""
     secondary_seal_material: Literal["nitrile", "fluoroelastomer", "other"] | None = None
     """Of the O-ring or the like on which the ring slides."""
