@@ -108,10 +108,16 @@ def _read(path: Path, overrides):
                 info = read_info(path)
                 text, name = str(info["scenario"]), str(info.get("name", path.stem))
                 given = [*map(str, info.get("overrides", [])), *(overrides or [])]
-            return parse_scenario(text, name, given)
-        return read_scenario(path, overrides or ())
+            scenario = parse_scenario(text, name, given)
+        else:
+            scenario = read_scenario(path, overrides or ())
+        if scenario.application is not None:
+            from .analysis.design_rules import refuse_unknown_rules
+
+            refuse_unknown_rules(scenario)
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error)) from None
+    return scenario
 
 
 @contextlib.contextmanager
@@ -328,7 +334,7 @@ class _Progress:
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
-    from .analysis.design_rules import followability
+    from .analysis.design_rules import findings
     from .archive import ArchiveError
     from .report.text import resolved_lines
     from .scene.scene import SceneError
@@ -341,6 +347,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     size = size_of(scenario)
     try:
         run, method, why, *_ = prepare_run(scenario)
+        rules = findings(scenario, run.model)
     except (SceneError, ArchiveError) as error:
         raise Stop(Status.INVALID, f"{file}: {error}") from None
     found = {
@@ -350,7 +357,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "design_rules": followability(run.model),
+        "design_rules": rules,
         "beside_reynolds": beside_reynolds(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }

@@ -283,6 +283,7 @@ Temperature = Annotated[float, TemperatureScale("temperature", "K", '"300 K", "2
 Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0, True)]
 SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True)]
 Force = Annotated[float, Quantity("force", "N", '"50 N"')]
+VolumeFlow = Annotated[float, Quantity("volume flow", "m^3/s", '"5 cc/h", "1 l/min"', (), 0, True)]
 
 
 @cache

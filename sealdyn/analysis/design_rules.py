@@ -1,59 +1,66 @@
-"""Rules of thumb that a scene can be held against before it runs.
+"""A seal held against design rules (rules/), all of them."""
 
-**Source** Hayden & Keller, Design Guide for Helicopter Transmission Seals, NASA CR-120997 (1974).
-"""
+import difflib
+import importlib
+import pkgutil
+from dataclasses import replace
 
-import math
+from ..scenario.errors import ScenarioError
+from ..scene.application import Application
+from . import rules
 
-import numpy as np
-
-from ..dynamics.intervals import constant_and_slope
-from ..scene.rings import RING_NAMES
-
-# Looks at one turn of the runout, and turns looked at when an order is no integer.
-POINTS, TURNS = 2000, 20
+GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
 
 
-def followability(model) -> list[dict]:
-    """Whether the spring keeps a flexible stator on a rotor that runs out axially (hang-up).
+def rule_names() -> list[str]:
+    """Names of the rules there are."""
+    return sorted(m.name for m in pkgutil.iter_modules(rules.__path__) if m.name[0] != "_")
 
-    The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its
-    inertia and the change of its support springs at every angle: F > -m z_r'' - k z_r + F_f where it moves away.
-    **Source** Hayden & Keller (1974): the spring load must exceed secondary-seal friction plus the inertia of following
-    the runout.  **Valid** balanced or absent pressures, no film force, constant speed, only the stator floats.
-    Returns one dict, or none where there is nothing to follow: `rule`, `ring`, `available` (spring, N), `needed` (N),
-    `friction`, `inertia` (N), `holds`, `said`.
-    """
-    scene = model.scene
-    floating = [k for k, floats in model.unknowns.floats.items() if floats]
-    if len(floating) != 1 or not scene.rotor.axial_runout or scene.closing.spring_force is None:
-        return []
-    k = floating[0]
-    ring = (scene.stator, scene.rotor)[k]
-    spring = constant_and_slope(scene.closing.spring_force, model.start)[0]
-    speed = constant_and_slope(scene.shaft.speed, model.start)[0]
-    friction = ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0
-    whole = all(float(r.order).is_integer() for r in scene.rotor.axial_runout)
-    phi = np.linspace(0, 2 * math.pi * (1 if whole else TURNS), POINTS * (1 if whole else TURNS))
-    z, rate, acceleration = (np.zeros_like(phi) for _ in range(3))
-    for runout in scene.rotor.axial_runout:
-        w = runout.order * speed
-        angle = runout.order * phi + runout.phase
-        z += runout.amplitude * np.cos(angle)
-        rate -= runout.amplitude * w * np.sin(angle)
-        acceleration -= runout.amplitude * w * w * np.cos(angle)
-    # A rotor that carries the runout itself has nothing to follow.
-    if k != 0:
-        return []
-    pull = -ring.mass * acceleration - ring.support.axial_stiffness * z
-    needed = float(np.max(np.where(rate <= 0, pull + friction, pull - friction)))
-    inertia = float(np.max(ring.mass * np.abs(acceleration)))
-    holds = spring > needed
-    text = (
-        f"spring {spring:.4g} N {'exceeds' if holds else 'does not exceed'} the {needed:.4g} N that the "
-        f"{RING_NAMES[k]} needs to follow the axial runout (secondary-seal friction {friction:.4g} N, inertia "
-        f"{inertia:.4g} N, support springs; NASA CR-120997): "
-        + ("the faces stay together" if holds else "the faces part (hang-up)")
-    )
-    return [{"rule": "hang-up", "ring": RING_NAMES[k], "available": spring, "needed": needed, "friction": friction,
-             "inertia": inertia, "holds": holds, "said": text}]  # fmt: skip
+
+def refuse_unknown_rules(scenario) -> None:
+    """Raises ScenarioError if the scenario acknowledges a rule that there is not."""
+    known, application = rule_names(), scenario.application or Application()
+    for name in application.acknowledge:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1, 0.0)
+            file = scenario.path.name if scenario.path else scenario.name
+            expected = f"one of {', '.join(known)}; nearest '{near[0]}'"
+            raise ScenarioError(file, f"application.acknowledge.{name}", "an unknown design rule", expected)
+
+
+def findings(scenario, model) -> list[dict]:
+    """What every rule says of a scenario and its `model`, one dict a rule: `rule`, `verdict` ("pass" | "fail" | "note"
+    | "acknowledged" | "not applicable"), `value`, `unit`, `least` and `most` (SI, None where there are none), `guide`
+    and `source` in it, `said` (a sentence), `command` that tests it ("" if none does), `reason` with which it is
+    acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
+    Raises ScenarioError for an unknown rule, SceneError where the film has no solution."""
+    # Whoever asks for names alone does not wait for arrays.
+    from ..simulation.summary import plain
+    from .rules._seal import Seal
+
+    refuse_unknown_rules(scenario)
+    seal = Seal(scenario.scene, scenario.application or Application(), model)
+    return [plain(_row(name, seal)) for name in rule_names()]
+
+
+def _row(name: str, seal) -> dict:
+    from .rules._finding import Verdict
+
+    rule = importlib.import_module(f"{rules.__name__}.{name}")
+    found, reason = rule.finding(seal), seal.application.acknowledge.get(name)
+    if reason is not None and found.verdict in (Verdict.FAIL, Verdict.NOTE):
+        found = replace(found, verdict=Verdict.ACKNOWLEDGED)
+    return {
+        "rule": name,
+        "verdict": str(found.verdict),
+        "value": found.value,
+        "unit": found.unit,
+        "least": found.least,
+        "most": found.most,
+        "guide": GUIDE,
+        "source": rule.SOURCE,
+        "said": found.said,
+        "command": rule.COMMAND,
+        "reason": reason,
+        **found.numbers,
+    }

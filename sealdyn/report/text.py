@@ -208,10 +208,27 @@ def resolved_lines(found: dict) -> list[str]:
         kind = "stable" if root["stable"] else "not stable by the film alone"
         where = f"{_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m"
         out.append(f"# equilibrium clearance {where}, {kind}")
-    out += [f"# {'ok' if rule['holds'] else 'WARNING'}: {rule['said']}" for rule in found["design_rules"]]
     out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
+    return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
+
+
+def _rule_lines(rows) -> list[str]:
+    """How many design rules came out how, then one line a rule: those that failed first, those that could not tell
+    last."""
+    if not rows:
+        return []
+    order = ("fail", "acknowledged", "note", "pass", "not applicable")
+    count = [row["verdict"] for row in rows].count
+    counts = ", ".join(f"{count(verdict)} {verdict}" for verdict in order if count(verdict))
+    out = [f"design rules of {rows[0]['guide']}: {counts}"]
+    for row in sorted(rows, key=lambda row: order.index(row["verdict"])):
+        words = f"{row['said']} ({row['source']})" if row["verdict"] != order[-1] else row["said"]
+        words += f"; reason: {row['reason']}" if row["reason"] else ""
+        words += f"; try {row['command']}" if row["command"] and row["verdict"] != order[-1] else ""
+        line = f"  {row['verdict']:<15}{row['rule']}: {words}"
+        out.append("".join(c if c.isprintable() else " " for c in line))
     return out
 
 

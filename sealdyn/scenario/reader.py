@@ -15,6 +15,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.application import Application, application_errors
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
 from ..units import Length, QuantityError, Time, quoted
@@ -35,6 +36,8 @@ SMALLEST, LARGEST = 1e-25, 1e15
 # Of a file.
 MOST_BYTES = 1 << 21
 STARTS = r"^(auto|rest|steady|.+\.h5)$"
+# Tables on which no number of a run hangs.
+BESIDE_THE_RUN = ("study", "application")
 
 
 @dataclass(frozen=True)
@@ -66,12 +69,15 @@ class Run:
 
 @dataclass(frozen=True)
 class ScenarioFile(Scene):
-    """A scenario file: the scene, how to run it, and settings of studies (each study knows its own)."""
+    """A scenario file: the scene, how to run it, what the seal is for, and settings of studies (each study knows its
+    own)."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     run: Run = field(default_factory=Run)
     """How long, how exact, by which method."""
+    application: Application | None = None
+    """What the seal is asked to do: for design rules, no number of a run hangs on it."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Settings of studies, one table [study.NAME] each."""
 
@@ -84,7 +90,8 @@ class Scenario:
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
     `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
     keys of speeds that were written without a unit.
-    Scenarios that run alike are equal, wherever they came from and whatever studies are to ask of them.
+    Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
+    seal is for (`application`, None without that table).
     """
 
     scene: Scene
@@ -98,10 +105,13 @@ class Scenario:
     given: frozenset[str] = frozenset()
     reading: Any = None
     bare: frozenset[str] = field(default=frozenset(), compare=False)
+    application: Application | None = field(default=None, compare=False)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
         tree = dataclasses.asdict(self.scene) | {"run": dataclasses.asdict(self.run), "study": self.study}
+        if self.application is not None:
+            tree["application"] = dataclasses.asdict(self.application)
         return _plain(tree)
 
     def unused(self) -> list[str]:
@@ -153,13 +163,13 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
 
 
 def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
-    """What a Scenario holds (`scene`, `run`, `study`, `given`, `reading`) of tables whose values are written as in a
-    file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told, without
-    those of studies.
+    """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
+    written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
+    told, without those on which no run hangs.
     Raises `ScenarioError`."""
     _refuse_odd_numbers(raw, name)
     given = given_keys(raw) if given is None else given
-    given = frozenset(key for key in given if key.partition(".")[0] != "study")
+    given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     _check_run_and_study(raw, name)
@@ -169,6 +179,8 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         _check_film_name(file.film.model)
         check_scene(file, file.run)
         film_of(file)
+        for key, found, expected in application_errors(file.application) if file.application else ():
+            raise SceneError(f"application.{key}", found, expected)
     except ValidationError as error:
         raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
     except SceneError as error:
@@ -176,7 +188,8 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
-    return {"scene": scene, "run": file.run, "study": file.study, "given": given, "reading": reading}
+    parts = {"run": file.run, "application": file.application, "study": file.study}
+    return {"scene": scene, **parts, "given": given, "reading": reading}
 
 
 def film_choices() -> list[str]:
@@ -222,7 +235,7 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
     below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
-        if path != "study":
+        if path not in ("study", "application.acknowledge"):
             _refuse_odd_numbers(value, name, path, depth + 1)
     if isinstance(tree, float) and not math.isfinite(tree):
         raise ScenarioError(name, key, str(tree), "a finite number")

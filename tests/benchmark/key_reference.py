@@ -31,6 +31,8 @@ JSON schema (`sealdyn schema`), which editors read too.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
   the rotor (FMR), both make both float (FMSR).
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
+- `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` ([README](../README.md)): no
+  number of a run hangs on it.
 - Axes: the shaft axis z points from the rotor to the stator; angles are counted from the x axis.
 """
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sealdyn.analysis.design_rules import followability
+from sealdyn.analysis.rules.hang_up import followability
 from sealdyn.archive import column
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import prepare_run, simulate

@@ -8,6 +8,7 @@ import pytest
 
 import sealdyn
 from sealdyn import studies
+from sealdyn.analysis.design_rules import rule_names
 from sealdyn.scenario.reader import parse_scenario
 
 README = (Path(__file__).parents[2] / "README.md").read_text()
@@ -35,3 +36,8 @@ def test_every_study_has_its_question_in_the_readme():
     for module in pkgutil.iter_modules(studies.__path__):
         if not module.name.startswith("_"):
             assert f"| `{module.name.replace('_', '-')}`, " in README
+
+
+def test_every_rule_is_in_the_table_of_the_readme():
+    section = README.split("## Design rules")[1].split("\n## ")[0]
+    assert re.findall(r"^\| `(\w+)`", section, re.MULTILINE) == rule_names()

@@ -1,0 +1,26 @@
+"""Heat of friction: with a full film, and dry."""
+
+from ...numerics.piecewise_linear import initially
+from ...scene.gas import viscosity_of
+from ._finding import noted, other_seals
+
+SOURCE = "full film mu A (w D/2)^2/h, dry pi f F D N, carbon-graphite f 0.1 to 0.25"
+COMMAND = "sealdyn run FILE"
+
+FRICTION = (0.1, 0.25)
+
+
+def finding(seal):
+    """A note: watts at the highest sliding speed, of the film at the start, and of faces that carry the closing force
+    above the lower pressure."""
+    speed, film = seal.sliding_speed, seal.film_thickness
+    if film <= 0.0:
+        # Rough faces may carry a cone that closes their mean planes.
+        return other_seals(f"the mean film is {1e6 * film:.4g} um: the asperities carry the faces")
+    full = initially(viscosity_of(seal.scene.film)) * seal.face_area * speed**2 / film
+    dry = [f * seal.face_load * speed for f in FRICTION]
+    said = (
+        f"heat {full:.4g} W of a full film of {1e6 * film:.4g} um at {60 * speed:.4g} m/min; faces that run dry would "
+        f"make {dry[0]:.4g} to {dry[1]:.4g} W"
+    )
+    return noted(said, full, "W", dry=dry)
