@@ -45,6 +45,8 @@ PATIENCE = 1.0
 LONGEST = 1000
 # Bytes of an archive whose size is worth a line.
 WORTH_SAYING = 1e9
+# What figures are written as.
+FIGURES = (".png", ".svg", ".pdf")
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
 
@@ -439,7 +441,7 @@ def _write_mat(path, columns):
 def plot(
     file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
     kind: Annotated[str, typer.Option(help="overview, orbit, film, spectrum or poincare")] = "overview",
-    out: Annotated[Path | None, typer.Option(help="figure to write (default beside the archive)")] = None,
+    out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
     """Draw a figure from an archive."""
     import importlib
@@ -447,8 +449,8 @@ def plot(
     kinds = ("overview", "orbit", "film", "spectrum", "poincare")
     if kind not in kinds:
         raise Stop(Status.INVALID, f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
-    if out is not None and out.suffix != ".png":
-        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .png')
+    if out is not None and out.suffix not in FIGURES:
+        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in {", ".join(FIGURES)}')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     chart = importlib.import_module(f"sealdyn.report.charts.{kind}")
