@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from .archive import ArchiveError, open_archive
     from .scenario.errors import ScenarioError
     from .scenario.reader import Scenario, read_scenario
+    from .scenario.shipped import example, examples
     from .simulation.batch import simulate_many, sweep
     from .simulation.result import Result
     from .simulation.run import RunEnded, evaluate, run
@@ -31,6 +32,8 @@ __all__ = [
     "Scenario",
     "ScenarioError",
     "evaluate",
+    "example",
+    "examples",
     "open_archive",
     "read_scenario",
     "run",
@@ -46,6 +49,7 @@ _PLACES = {
     "archive": ("ArchiveError", "open_archive"),
     "scenario.errors": ("ScenarioError",),
     "scenario.reader": ("Scenario", "read_scenario"),
+    "scenario.shipped": ("example", "examples"),
     "simulation.batch": ("simulate_many", "sweep"),
     "simulation.result": ("Result",),
     "simulation.run": ("RunEnded", "evaluate", "run"),

@@ -1,4 +1,4 @@
-"""The verbs: run, check, schema, show, plot, validate, study.  Everything heavy is imported by the verb that
+"""The verbs: run, check, schema, list, show, plot, validate, study.  Everything heavy is imported by the verb that
 needs it."""
 
 import atexit
@@ -51,7 +51,7 @@ FIGURES = (".png", ".svg", ".pdf")
 GARBAGE = 100_000
 
 app = typer.Typer(
-    add_completion=False,
+    add_completion=True,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -60,6 +60,25 @@ app = typer.Typer(
         "Exit codes: 0 done, 2 bad input, 3 film collapsed, 4 solver failed, 5 a check failed, 130 interrupted."
     ),
 )
+
+
+def _say_version(asked: bool):
+    if asked:
+        from . import __version__
+
+        print(f"sealdyn {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+):
+    # What belongs to no verb; what the program is for stands above.
+    pass
+
 
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
@@ -371,6 +390,22 @@ def schema():
     from .scenario.schema import json_schema
 
     print(json.dumps(json_schema(), indent=2))
+
+
+@app.command("list")
+def list_scenarios(as_json: AsJson = False):
+    """Name the scenarios that come with the program, and what each asks."""
+    from .scenario.shipped import examples, shipped_folder
+
+    folder, found = shipped_folder(), examples()
+    if as_json:
+        rows = [{"name": n, "question": q, "file": str(folder / f"{n}.toml")} for n, q in found.items()]
+        print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
+        return
+    print(f"scenarios in {folder}:")
+    width = max(map(len, found), default=0)
+    for name, question in found.items():
+        print(f"  {name:{width}}  {question}")
 
 
 @app.command()
