@@ -3,10 +3,11 @@
 import dataclasses
 import difflib
 import math
+import os
 import re
 import stat
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -136,7 +137,7 @@ class Scenario:
         return unused(self.scene, self.given)
 
 
-def read_scenario(path, overrides=()) -> Scenario:
+def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
     """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
     path = Path(path)
     try:

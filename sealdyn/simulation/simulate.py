@@ -20,6 +20,7 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import largest_value
 from ..dynamics.signals import PARTS
+from ..scenario.reader import Scenario
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..solvers.contract import Cause, Counts, Enough, Status, attainable
@@ -53,7 +54,7 @@ def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
 
 
 def simulate(
-    scenario,
+    scenario: Scenario,
     out: str | os.PathLike | None = None,
     *,
     progress: Callable[[float, float], None] | None = None,

@@ -33,7 +33,7 @@ def test_a_scenario_is_read_by_its_name():
     for name in NAMES:
         assert example(name) == read_scenario(SCENARIOS / f"{name}.toml")
         assert example(name).question.split()[:3] == examples()[name].split()[:3]
-    for wrong in ("fms_referense", "../README", ""):
+    for wrong in ("fms_referense", "../scenarios/fms_reference", ""):
         with pytest.raises(ScenarioError) as refused:
             example(wrong)
         assert "sealdyn list" in str(refused.value) and "\n" not in str(refused.value)

@@ -1,5 +1,6 @@
 """The names of the package: runs with and without an archive, single numbers, tables, figures."""
 
+import inspect
 import io
 import math
 from pathlib import Path
@@ -34,6 +35,18 @@ def test_all_names_are_listed():
     assert set(sealdyn.__all__) < set(dir(sealdyn)) and "__version__" in dir(sealdyn)
     with pytest.raises(AttributeError, match="no attribute 'simulat'"):
         sealdyn.simulat  # noqa: B018
+
+
+def test_all_arguments_and_answers_have_types():
+    functions = [function for name in sealdyn.__all__ if inspect.isfunction(function := getattr(sealdyn, name))]
+    methods = ("from_dict", "to_dict", "to_toml", "with_", "resolved", "unused")
+    functions += [getattr(sealdyn.Scenario, name) for name in methods]
+    assert len(functions) > 12
+    for function in functions:
+        signature = inspect.signature(function)
+        assert signature.return_annotation is not inspect.Signature.empty, function
+        for argument in signature.parameters.values():
+            assert argument.annotation is not inspect.Parameter.empty or argument.name == "self", (function, argument)
 
 
 @pytest.fixture(scope="module")
