@@ -61,11 +61,13 @@ _PLACES = {
 clear_stale_kernels()
 
 
-def __getattr__(name: str):
-    for place, names in _PLACES.items():
-        if name in names:
-            return getattr(import_module(f"{__name__}.{place}"), name)
-    raise AttributeError(f"module 'sealdyn' has no attribute {name!r}")
+if not TYPE_CHECKING:
+    # Unseen by type checkers, which would take any name for one of the package's.
+    def __getattr__(name: str):
+        for place, names in _PLACES.items():
+            if name in names:
+                return getattr(import_module(f"{__name__}.{place}"), name)
+        raise AttributeError(f"module 'sealdyn' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
