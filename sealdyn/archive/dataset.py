@@ -57,7 +57,8 @@ def as_dataset(answer: dict) -> xarray.Dataset:
 
 
 def tables_as_dataset(answer: dict, units: dict[str, str], along: dict[str, tuple[str, ...]]) -> xarray.Dataset:
-    """Every list of numbers in the answer of a study as an `xarray.Dataset`: "curve/h_min" is the variable curve.h_min.
+    """Every list of numbers in the answer of a study as an `xarray.Dataset`: "curve/h_min" is the variable curve.h_min,
+    and the column of a list of rows, "modes/frequency", lies along the dimension of its rows, modes.
 
     `units` {"curve/h_min": unit}; `along` {table: names of columns along which its others lie, in the order of their
     axes, its own columns or those of the answer itself}, which become dimensions with coordinates.  Axes that are not
@@ -65,22 +66,37 @@ def tables_as_dataset(answer: dict, units: dict[str, str], along: dict[str, tupl
     """
     import xarray
 
+    answer, of_rows = _with_columns(answer)
     columns = {key: values for key, values in number_columns(answer) if key not in NO_NUMBERS}
     told = {}
     for table, names in along.items():
         pairs = [(f"{table}/{name}", name) for name in names]
         told[table] = [own if own in columns else above for own, above in pairs]
-    axes = {key for keys in told.values() for key in keys}
+    axes = {key for keys in told.values() for key in keys if key in columns and columns[key].ndim == 1}
     variables = {}
     for key, values in columns.items():
-        name, unit = key.replace("/", "."), units.get(key, "")
+        table, name, unit = key.rpartition("/")[0], key.replace("/", "."), units.get(key, "")
         dimensions = [name] if key in axes else [f"{name}.{axis}" for axis in range(values.ndim)]
-        for axis, other in enumerate(told.get(key.rpartition("/")[0], ())):
-            if key not in axes and other in columns and values.shape[axis : axis + 1] == columns[other].shape:
+        others = [*([table] if table in of_rows else []), *told.get(table, ())]
+        for axis, other in enumerate(others if key not in axes else ()):
+            fits = other in axes and values.shape[axis : axis + 1] == columns[other].shape
+            if fits or other in of_rows:
                 dimensions[axis] = other.replace("/", ".")
         variables[name] = (dimensions, values, {"units": unit} if unit else {})
     attributes = {name: str(answer[name]) for name in ("study", "status", "message") if name in answer}
     return xarray.Dataset(variables, attrs=attributes)
+
+
+def _with_columns(answer: dict) -> tuple[dict, set[str]]:
+    """The answer with a table of columns for each list of rows, and the names of these."""
+    lists = {key: held for key, held in answer.items() if isinstance(held, list) and held}
+    rows = {key for key, held in lists.items() if all(isinstance(entry, dict) for entry in held)}
+    columns = {}
+    for key in rows:
+        # A row that failed has other names.
+        names = dict.fromkeys(name for row in answer[key] for name in row)
+        columns[key] = {name: [row.get(name) for row in answer[key]] for name in names}
+    return {**answer, **columns}, rows
 
 
 def columns_of(rows: list[dict], outputs: list[str]) -> dict[str, np.ndarray]:
