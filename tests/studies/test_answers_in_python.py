@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import sealdyn
@@ -87,6 +87,7 @@ VALUES = st.recursive(
 
 
 @settings(max_examples=200, deadline=None)
+@example({"speed": [[1.0]], "one": [1.0]}, {"one": ("speed",)})
 @given(st.dictionaries(NAMES, VALUES, max_size=4), st.dictionaries(NAMES, st.tuples(NAMES, NAMES), max_size=3))
 def test_any_answer_can_be_shown(answer, along):
     data = tables_as_dataset(answer, {"speed": "rad/s"}, along)
