@@ -1,30 +1,74 @@
 """sealdyn: time-domain rotor dynamics of flexibly mounted mechanical face seals.
 
-scenario = sealdyn.read_scenario("scenarios/fmr_reference.toml")
-result = sealdyn.simulate(scenario, "outputs/fmr_reference.h5")
-data = sealdyn.open_archive(result.archive)          # xarray Dataset
+result = sealdyn.run("scenarios/fmr_reference.toml", {"rotor.runout": "50 urad"})
+result.summary["h_min"]["value"]                     # m
+result.data                                          # xarray Dataset
+result.plot.overview()                               # matplotlib Figure
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 from .kernel_cache import clear_stale_kernels
 
+if TYPE_CHECKING:
+    from .archive import ArchiveError, open_archive
+    from .scenario.errors import ScenarioError
+    from .scenario.reader import Scenario, read_scenario
+    from .scenario.shipped import example, examples
+    from .simulation.batch import simulate_many, sweep
+    from .simulation.result import Result
+    from .simulation.run import RunEnded, evaluate, run
+    from .simulation.simulate import simulate
+    from .studies._answer import Answer, study
+    from .studies._runner import run_study
+
 __version__ = "0.1.0"
-__all__ = ["open_archive", "read_scenario", "run_study", "simulate", "simulate_many"]
+__all__ = [
+    "Answer",
+    "ArchiveError",
+    "Result",
+    "RunEnded",
+    "Scenario",
+    "ScenarioError",
+    "evaluate",
+    "example",
+    "examples",
+    "open_archive",
+    "read_scenario",
+    "run",
+    "run_study",
+    "simulate",
+    "simulate_many",
+    "study",
+    "sweep",
+]
+
+# Where each name stands; loaded on first use, so that `sealdyn --help` answers at once.
+_PLACES = {
+    "archive": ("ArchiveError", "open_archive"),
+    "scenario.errors": ("ScenarioError",),
+    "scenario.reader": ("Scenario", "read_scenario"),
+    "scenario.shipped": ("example", "examples"),
+    "simulation.batch": ("simulate_many", "sweep"),
+    "simulation.result": ("Result",),
+    "simulation.run": ("RunEnded", "evaluate", "run"),
+    "simulation.simulate": ("simulate",),
+    "studies._answer": ("Answer", "study"),
+    "studies._runner": ("run_study",),
+}
 
 clear_stale_kernels()
 
 
-def __getattr__(name):
-    # Loaded on first use, so that `sealdyn --help` answers at once.
-    if name == "read_scenario":
-        from .scenario.reader import read_scenario as found
-    elif name == "simulate":
-        from .simulation.simulate import simulate as found
-    elif name == "simulate_many":
-        from .simulation.batch import simulate_many as found
-    elif name == "run_study":
-        from .studies._runner import run_study as found
-    elif name == "open_archive":
-        from .archive import open_archive as found
-    else:
+if not TYPE_CHECKING:
+    # Unseen by type checkers, which would take any name for one of the package's.
+    def __getattr__(name: str):
+        for place, names in _PLACES.items():
+            if name in names:
+                return getattr(import_module(f"{__name__}.{place}"), name)
         raise AttributeError(f"module 'sealdyn' has no attribute {name!r}")
-    return found
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -1,4 +1,4 @@
-"""The verbs: run, check, schema, show, plot, validate, study.  Everything heavy is imported by the verb that
+"""The verbs: run, check, schema, list, show, plot, validate, study.  Everything heavy is imported by the verb that
 needs it."""
 
 import atexit
@@ -45,11 +45,13 @@ PATIENCE = 1.0
 LONGEST = 1000
 # Bytes of an archive whose size is worth a line.
 WORTH_SAYING = 1e9
+# What figures are written as.
+FIGURES = (".png", ".svg", ".pdf")
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
 
 app = typer.Typer(
-    add_completion=False,
+    add_completion=True,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -58,6 +60,25 @@ app = typer.Typer(
         "Exit codes: 0 done, 2 bad input, 3 film collapsed, 4 solver failed, 5 a check failed, 130 interrupted."
     ),
 )
+
+
+def _say_version(asked: bool):
+    if asked:
+        from . import __version__
+
+        print(f"sealdyn {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+):
+    # What belongs to no verb; what the program is for stands above.
+    pass
+
 
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
 Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.g. rotor.runout="0.2 mrad"')]
@@ -401,6 +422,22 @@ def schema():
     print(json.dumps(json_schema(), indent=2))
 
 
+@app.command("list")
+def list_scenarios(as_json: AsJson = False):
+    """Name the scenarios that come with the program, and what each asks."""
+    from .scenario.shipped import examples, shipped_folder
+
+    folder, found = shipped_folder(), examples()
+    if as_json:
+        rows = [{"name": n, "question": q, "file": str(folder / f"{n}.toml")} for n, q in found.items()]
+        print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
+        return
+    print(f"scenarios in {folder}:")
+    width = max(map(len, found), default=0)
+    for name, question in found.items():
+        print(f"  {name:{width}}  {question}")
+
+
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
@@ -469,7 +506,7 @@ def _write_mat(path, columns):
 def plot(
     file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
     kind: Annotated[str, typer.Option(help="overview, orbit, film, spectrum or poincare")] = "overview",
-    out: Annotated[Path | None, typer.Option(help="figure to write (default beside the archive)")] = None,
+    out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
     """Draw a figure from an archive."""
     import importlib
@@ -477,8 +514,8 @@ def plot(
     kinds = ("overview", "orbit", "film", "spectrum", "poincare")
     if kind not in kinds:
         raise Stop(Status.INVALID, f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
-    if out is not None and out.suffix != ".png":
-        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .png')
+    if out is not None and out.suffix not in FIGURES:
+        raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in {", ".join(FIGURES)}')
     if out is None:
         out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
     chart = importlib.import_module(f"sealdyn.report.charts.{kind}")

@@ -1,4 +1,4 @@
-"""Values written on one line of TOML: for overrides, and for scenarios printed as they were resolved."""
+"""Values written as TOML: on one line for overrides and for scenarios printed as they were resolved, or as a file."""
 
 from typing import Any
 
@@ -8,6 +8,11 @@ import tomlkit
 def toml_line(value: Any) -> str:
     """A dict, list, number, string or truth value on one line of TOML.  TOML has no null: keys of None are left out."""
     return _item(value).as_string()
+
+
+def toml_text(tables: dict[str, Any]) -> str:
+    """Tables as the text of a TOML file.  Raises TypeError or ValueError for what TOML cannot hold."""
+    return tomlkit.dumps(tables)
 
 
 def _item(value: Any):

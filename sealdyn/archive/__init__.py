@@ -1,7 +1,7 @@
 """HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies; dataset.py
 shows both to xarray."""
 
-from .dataset import as_dataset, open_archive
+from .dataset import as_dataset, columns_of, open_archive, tables_as_dataset
 from .fields import FIELD_TIME, Fields, Series
 from .lock import only_writer
 from .run import ODD, ArchiveWriter, column, field, followed, last_state, partial_path, read_info
@@ -18,6 +18,7 @@ __all__ = [
     "Series",
     "as_dataset",
     "column",
+    "columns_of",
     "field",
     "followed",
     "is_full",
@@ -28,5 +29,6 @@ __all__ = [
     "partial_path",
     "read_info",
     "read_study",
+    "tables_as_dataset",
     "write_study",
 ]

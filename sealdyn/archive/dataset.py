@@ -1,13 +1,24 @@
 """What an archive holds as an xarray Dataset: series over time, or the answer of a study over what it varies."""
 
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .run import open_run
 from .soundness import ArchiveError
-from .study import is_study, read_study
+from .study import is_study, number_columns, read_study
+
+if TYPE_CHECKING:
+    import xarray
+
+# Lists of an answer that are no numbers where they are empty.
+NO_NUMBERS = ("left_out", "verdict")
 
 
-def open_archive(path):
+def open_archive(path: str | os.PathLike) -> xarray.Dataset:
     """The archive as an `xarray.Dataset`.
 
     Of a run, lazily loaded: series over `time` with units, fields over `field_time` and their grid; `attrs` hold the
@@ -23,7 +34,7 @@ def open_archive(path):
     return as_dataset(study["answer"]).assign_attrs({name: study[name] for name in ("name", "version", "scenario")})
 
 
-def as_dataset(answer: dict):
+def as_dataset(answer: dict) -> xarray.Dataset:
     """The answer of a sweep as an `xarray.Dataset`.
 
     Dimensions are the keys that were varied, in their order, coordinates their values as they were given; variables are
@@ -37,16 +48,64 @@ def as_dataset(answer: dict):
     coordinates = {axis["key"]: (axis["key"], axis["values"], _units(axis["unit"])) for axis in axes}
     # A key that is varied and asked for is the coordinate already.
     outputs = [output for output in answer["outputs"] if output not in coordinates]
-    columns = {output: [row.get(output) for row in rows] for output in outputs}
-    columns["status"] = [str(row.get("status", "not possible")) for row in rows]
-    columns["message"] = [row.get("failed", row.get("message", "")) for row in rows]
     variables = {}
-    for name, column in columns.items():
-        values = _values(column).reshape(shape)
+    for name, values in columns_of(rows, outputs).items():
         unit = answer["output_units"].get(name, "")
-        variables[name] = (list(answer["keys"]), values, {"units": unit} if unit else {})
+        variables[name] = (list(answer["keys"]), values.reshape(shape), {"units": unit} if unit else {})
     attributes = {name: str(answer[name]) for name in ("study", "status", "message") if name in answer}
     return xarray.Dataset(variables, coordinates, attributes)
+
+
+def tables_as_dataset(answer: dict, units: dict[str, str], along: dict[str, tuple[str, ...]]) -> xarray.Dataset:
+    """Every list of numbers in the answer of a study as an `xarray.Dataset`: "curve/h_min" is the variable curve.h_min,
+    and the column of a list of rows, "modes/frequency", lies along the dimension of its rows, modes.
+
+    `units` {"curve/h_min": unit}; `along` {table: names of columns along which its others lie, in the order of their
+    axes, its own columns or those of the answer itself}, which become dimensions with coordinates.  Axes that are not
+    told have dimensions of their own.
+    """
+    import xarray
+
+    answer, of_rows = _with_columns(answer)
+    columns = {key: values for key, values in number_columns(answer) if key not in NO_NUMBERS}
+    told = {}
+    for table, names in along.items():
+        pairs = [(f"{table}/{name}", name) for name in names]
+        told[table] = [own if own in columns else above for own, above in pairs]
+    axes = {key for keys in told.values() for key in keys if key in columns and columns[key].ndim == 1}
+    variables = {}
+    for key, values in columns.items():
+        table, name, unit = key.rpartition("/")[0], key.replace("/", "."), units.get(key, "")
+        dimensions = [name] if key in axes else [f"{name}.{axis}" for axis in range(values.ndim)]
+        others = [*([table] if table in of_rows else []), *told.get(table, ())]
+        for axis, other in enumerate(others if key not in axes else ()):
+            fits = other in axes and values.shape[axis : axis + 1] == columns[other].shape
+            if fits or other in of_rows:
+                dimensions[axis] = other.replace("/", ".")
+        variables[name] = (dimensions, values, {"units": unit} if unit else {})
+    attributes = {name: str(answer[name]) for name in ("study", "status", "message") if name in answer}
+    return xarray.Dataset(variables, attrs=attributes)
+
+
+def _with_columns(answer: dict) -> tuple[dict, set[str]]:
+    """The answer with a table of columns for each list of rows, and the names of these."""
+    lists = {key: held for key, held in answer.items() if isinstance(held, list) and held}
+    rows = {key for key, held in lists.items() if all(isinstance(entry, dict) for entry in held)}
+    columns = {}
+    for key in rows:
+        # A row that failed has other names.
+        names = dict.fromkeys(name for row in answer[key] for name in row)
+        columns[key] = {name: [row.get(name) for row in answer[key]] for name in names}
+    return {**answer, **columns}, rows
+
+
+def columns_of(rows: list[dict], outputs: list[str]) -> dict[str, np.ndarray]:
+    """{name: (n,)} of the outputs, and `status` and `message`, of rows (n) of runs: numbers with NaN for what there is
+    not, or words with none for it; a point that failed is "not possible", the message its reason."""
+    columns = {output: _values([row.get(output) for row in rows]) for output in outputs}
+    columns["status"] = _values([str(row.get("status", "not possible")) for row in rows])
+    columns["message"] = _values([row.get("failed", row.get("message", "")) for row in rows])
+    return columns
 
 
 def _units(unit: str | None) -> dict:

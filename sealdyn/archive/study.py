@@ -25,7 +25,7 @@ def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: di
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
     texts = {"scenario": scenario_text, "resolved": json.dumps(resolved), "answer": json.dumps(answer)}
-    columns = list(_columns(answer))
+    columns = list(number_columns(answer))
     size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(values.nbytes for _, values in columns)
     try:
         with hdf5_with_room(fresh, 4 * size + FILE + DATASET * len(columns)) as file:
@@ -55,11 +55,11 @@ def _write(file, meta, texts, columns, units) -> None:
     seal(file)
 
 
-def _columns(tree, key=""):
+def number_columns(tree, key=""):
     """Every list of numbers (any depth, rectangular) in the answer, with its path."""
     if isinstance(tree, dict):
         for name, below in tree.items():
-            yield from _columns(below, f"{key}/{name}" if key else name)
+            yield from number_columns(below, f"{key}/{name}" if key else name)
     elif isinstance(tree, list) and tree and key:
         try:
             values = np.array([_numbers(entry) for entry in tree], dtype=float)

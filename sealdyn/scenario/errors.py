@@ -4,9 +4,11 @@ import dataclasses
 import difflib
 import types
 import typing
+from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
+from ..scene.scene import SceneError
 from ..units import Quantity, QuantityError, VaryingQuantity, cut, quoted
 
 NOTHING = object()
@@ -27,6 +29,15 @@ class ScenarioError(Exception):
         where = f"{cut(where)}: " if where else ""
         line = f"{cut(self.name)}: {where}found {cut(self.found)}; expected {cut(self.expected, LONGEST)}"
         return "".join(c if c.isprintable() else " " for c in line)
+
+
+@contextmanager
+def scene_errors_of(name: str):
+    """What is wrong with a scene, raised as a ScenarioError of the scenario `name`."""
+    try:
+        yield
+    except SceneError as error:
+        raise ScenarioError(name, error.key, error.found, error.expected) from None
 
 
 @cache

@@ -4,6 +4,8 @@ import tomllib
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+import numpy as np
+
 from ..scene.variants import ALTERNATIVES
 from ..toml_line import toml_line
 from ..units import quoted
@@ -13,11 +15,17 @@ from .errors import ScenarioError
 def override_key(raw: dict, override: str, name: str) -> None:
     """Set one "key=value" in the tables `raw` of the scenario `name`: the value is TOML where it can be, else a string.
     Raises ScenarioError."""
+    key, written = key_and_words(override, name)
+    set_value(raw, key, value_of(written), f"{name} (--set {quoted(override)})")
+
+
+def key_and_words(override: str, name: str) -> tuple[str, str]:
+    """Key and value, as it is written, of "key=value".  Raises ScenarioError, of the scenario `name`."""
     key, equals, written = (part.strip() for part in override.partition("="))
-    name = f"{name} (--set {quoted(override)})"
     if not key or not equals:
+        name = f"{name} (--set {quoted(override)})"
         raise ScenarioError(name, "", "no key=value", 'for example rotor.runout="0.2 mrad"')
-    set_value(raw, key, value_of(written), name)
+    return key, written
 
 
 def set_value(raw: dict, key: str, value: Any, name: str) -> None:
@@ -59,6 +67,15 @@ def _entry(place: Any, step: str, key: str, name: str) -> Any:
     # What was read is never changed: its copy is.
     place[step] = below
     return below
+
+
+def without_arrays(value: Any) -> Any:
+    """A value as a file could have it: plain numbers and lists for those of numpy, tables without keys of None."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    if isinstance(value, dict):
+        return {key: without_arrays(held) for key, held in value.items() if held is not None}
+    return [without_arrays(entry) for entry in value] if isinstance(value, list | tuple) else value
 
 
 def value_of(written: str) -> Any:

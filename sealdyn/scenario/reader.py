@@ -3,13 +3,15 @@
 import dataclasses
 import difflib
 import math
+import os
 import re
 import stat
 import tomllib
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, TypeAdapter, ValidationError
 
@@ -18,9 +20,10 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, application_errors
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
+from ..toml_line import toml_text
 from ..units import Length, QuantityError, Time, quoted
 from .errors import ScenarioError, explain, tables, without_indices
-from .overrides import override_key
+from .overrides import override_key, without_arrays
 
 __all__ = [
     "Run",
@@ -114,12 +117,37 @@ class Scenario:
             tree["application"] = dataclasses.asdict(self.application)
         return _plain(tree)
 
+    @classmethod
+    def from_dict(cls, tables: dict[str, Any], name: str = "scene", question: str = "") -> Self:
+        """Scenario of tables as a file has them, {"film": {"clearance": "10 um", ...}, ...}: quantities are strings
+        with units or SI numbers.  `question` is put at the head of its text.  Raises ScenarioError."""
+        return parse_scenario(text_of(tables, name, question), name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its tables as they were written, overrides in them: `Scenario.from_dict` makes an equal scenario of them."""
+        raw = _toml(self.text, self.name)
+        for override in self.overrides:
+            override_key(raw, override, self.name)
+        return raw
+
+    def to_toml(self) -> str:
+        """Its text as a file has it; with overrides the tables are written anew, below the head of the file."""
+        return text_of(self.to_dict(), self.name, self.question) if self.overrides else self.text
+
+    def with_(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> Self:
+        """The scenario with other values at dotted keys: `with_({"film.clearance": "5 um"})`, or with two underscores
+        for each dot, `with_(film__clearance=5e-6)`.  Strings as the user writes them, SI numbers, tables.
+        Raises ScenarioError."""
+        from .settings import with_values
+
+        return with_values(self, {**(values or {}), **{key.replace("__", "."): value for key, value in more.items()}})
+
     def unused(self) -> list[str]:
         """Known keys, dotted, that the user gave and that this scene does not use."""
         return unused(self.scene, self.given)
 
 
-def read_scenario(path, overrides=()) -> Scenario:
+def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
     """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
     path = Path(path)
     try:
@@ -190,6 +218,16 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     parts = {"run": file.run, "application": file.application, "study": file.study}
     return {"scene": scene, **parts, "given": given, "reading": reading}
+
+
+def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
+    """The TOML text of a scenario's tables, with the question as the comment at its head.  Raises ScenarioError."""
+    try:
+        written = toml_text(without_arrays(tables))
+    except (TypeError, ValueError, AttributeError, RecursionError) as error:
+        found = f"what TOML cannot hold ({' '.join(str(error).split())[:200] or type(error).__name__})"
+        raise ScenarioError(name, "", found, "tables of strings, numbers and lists") from None
+    return "".join(f"# {line}".rstrip() + "\n" for line in question.splitlines()) + written
 
 
 def film_choices() -> list[str]:

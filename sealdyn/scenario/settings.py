@@ -5,8 +5,10 @@ import contextlib
 import dataclasses
 import difflib
 import json
+import os
 import re
 import typing
+from collections.abc import Iterable, Mapping
 from types import UnionType
 from typing import Any
 
@@ -19,8 +21,8 @@ from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
 from .errors import ScenarioError
-from .overrides import as_written, opened, override_of, set_value, value_of
-from .reader import Scenario, given_keys, read_tables, refuse_extremes
+from .overrides import as_written, key_and_words, opened, override_of, set_value, value_of, without_arrays
+from .reader import Scenario, given_keys, read_scenario, read_tables, refuse_extremes
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 # Points of a grid, and any count that a study is given.
@@ -92,8 +94,8 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
     Raises ScenarioError.
     """
-    values = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
-    more = [override_of(key, value) for key, value in values.items()]
+    values = {key: without_arrays(value) for key, value in values.items()}
+    more = [_written(key, value, scenario.name) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
     tables |= {"run": opened(scenario.run), "study": scenario.study}
     if scenario.reading is not None:
@@ -109,6 +111,30 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         given |= {*given_keys({key: as_written(value)})}
     found = read_tables(tables, scenario.name, frozenset(given))
     return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
+
+
+def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
+    """The scenario itself or that of a file, with `overrides`: {dotted key: value}, or strings "key=value".
+    Raises ScenarioError."""
+    if isinstance(overrides, Mapping):
+        if isinstance(source, Scenario):
+            return with_values(source, overrides) if overrides else source
+        overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
+    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    if not isinstance(source, Scenario):
+        return read_scenario(source, overrides)
+    # One after the other: a key may come twice.
+    for key, written in [key_and_words(override, source.name) for override in overrides]:
+        source = with_values(source, {key: written})
+    return source
+
+
+def _written(key: str, value: Any, name: str) -> str:
+    """The override that sets a value.  Raises ScenarioError, of the scenario `name`, for what no file can have."""
+    try:
+        return override_of(key, value)
+    except (TypeError, ValueError, RecursionError):
+        raise ScenarioError(name, str(key), quoted(str(value)), "a string, a number, a list or a table") from None
 
 
 def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:

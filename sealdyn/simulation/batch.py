@@ -5,26 +5,43 @@ runs that do not end well, go one by one.  The loop has no trial and follows no 
 tolerance of solvers/contract.py, and their numbers are those of single runs within the asked accuracy.
 """
 
-from collections.abc import Iterable
-from contextlib import closing
-from functools import partial
+from __future__ import annotations
 
-from ..archive import as_dataset
+import os
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import closing, suppress
+from functools import partial
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+from ..archive import as_dataset, columns_of
 from ..numerics.parallel import AT_ONCE, Together, processes
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import with_values
+from ..scenario.overrides import without_arrays
+from ..scenario.reader import Scenario
+from ..scenario.settings import scenario_of, with_values
+from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from .looped_run import LoopedRun, NotSampled, integrate
 from .outputs import output, unit_of, with_speeds
 from .simulate import in_memory, prepare_run
 from .summary import state_names
 
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
 OUTPUTS = ("h_min.value", "relative_misalignment.max")
 
 
 def simulate_many(
-    scenario, sets: Iterable[dict], outputs: Iterable[str] = OUTPUTS, *, workers: int | None = None, progress=None
-):
+    scenario: Scenario,
+    sets: Iterable[Mapping[str, Any]],
+    outputs: Iterable[str] = OUTPUTS,
+    *,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> xarray.Dataset:
     """Many runs of a scenario in memory, as an `xarray.Dataset` over the dimension `run`.
 
     `sets`: of each run {dotted key: value}, values as for `with_values` (scenario/settings.py); `outputs`: dotted keys
@@ -37,6 +54,51 @@ def simulate_many(
     sets = [dict(values) for values in sets]
     names = state_names(first_ready(scenario, sets).model.unknowns)
     outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in names)])]
+    rows = rows_of(scenario, sets, outputs, workers, progress)
+    units = {name: unit_of(name) for name in outputs}
+    axis = {"key": "run", "values": range(len(sets)), "unit": None}
+    return as_dataset({"keys": ["run"], "axes": [axis], "rows": rows, "outputs": outputs, "output_units": units})
+
+
+def sweep(
+    source: Scenario | str | os.PathLike,
+    grid: Mapping[str, Iterable[Any]],
+    outputs: Iterable[str] | str = OUTPUTS,
+    *,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> pandas.DataFrame:
+    """Runs of a scenario over a grid of keys, as a `pandas.DataFrame`: a row a run, indexed by the keys.
+
+    `grid` {dotted key: values}, SI numbers or "5 um", of which the first varies slowest; `outputs` dotted keys of the
+    summary, the columns beside `status` and `message`; `attrs["units"]` {column: unit}.  Where a run was not possible
+    numbers are NaN, the status is "not possible" and the message its reason.  `workers`, `progress` as in
+    `simulate_many`.
+    Raises ScenarioError if no run can be read, or a key has no values.
+    """
+    import pandas
+
+    scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
+    axes = {key: list(without_arrays(values)) for key, values in grid.items()}
+    if not axes or not all(axes.values()):
+        empty = next((key for key in axes if not axes[key]), "")
+        raise ScenarioError(scenario.name, empty, "no values", 'values to go through: {"rotor.runout": [1e-5, 2e-5]}')
+    places = list(product(*axes.values()))
+    sets = [dict(zip(axes, place, strict=True)) for place in places]
+    # A grid may begin where no seal can be; kernels are loaded once for all processes in any case.
+    with suppress(SceneError):
+        first_ready(scenario, sets)
+    rows = rows_of(scenario, sets, outputs, workers, progress)
+    names = list(axes)
+    index = pandas.Index([place[0] for place in places], name=names[0]) if len(axes) == 1 else None
+    index = pandas.MultiIndex.from_tuples(places, names=names) if index is None else index
+    table = pandas.DataFrame(columns_of(rows, outputs), index=index)
+    table.attrs["units"] = {output: unit_of(output) for output in outputs if unit_of(output)}
+    return table
+
+
+def rows_of(scenario, sets: list[dict], outputs: list[str], workers, progress) -> list[dict]:
+    """A row of each run, in their order: its outputs, `status`, and `message` or `failed` unless it ended well."""
     todo = {k: {"set": values, "outputs": outputs} for k, values in enumerate(sets)}
     rows = [None] * len(sets)
     with closing(processes(workers)(Together(partial(run_many, scenario)), todo, "runs")) as answers:
@@ -44,9 +106,7 @@ def simulate_many(
             rows[k] = row
             if progress:
                 progress(done + 1, len(sets))
-    units = {name: unit_of(name) for name in outputs}
-    axis = {"key": "run", "values": range(len(sets)), "unit": None}
-    return as_dataset({"keys": ["run"], "axes": [axis], "rows": rows, "outputs": outputs, "output_units": units})
+    return rows
 
 
 def first_ready(scenario, sets):

@@ -7,7 +7,7 @@ import platform
 import time as clock
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -20,6 +20,7 @@ from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import largest_value
 from ..dynamics.signals import PARTS
+from ..scenario.reader import Scenario
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..solvers.contract import Cause, Counts, Enough, Status, attainable
@@ -29,22 +30,12 @@ from .attempts import Try, judged, next_try
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
+from .result import Result
 from .second_run import Comparison
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
 from .size import refuse_large
 from .start_selection import Start, choose_start
 from .summary import parts, plain, summarise
-
-
-@dataclass(frozen=True)
-class Result:
-    """What a run leaves: `status` (a value of Status), a sentence, the summary as a dict (as `run --json` prints it,
-    SI), and the path of the archive."""
-
-    status: str
-    message: str
-    summary: dict
-    archive: Path
 
 
 def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
@@ -63,7 +54,7 @@ def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
 
 
 def simulate(
-    scenario,
+    scenario: Scenario,
     out: str | os.PathLike | None = None,
     *,
     progress: Callable[[float, float], None] | None = None,

@@ -2,18 +2,22 @@
 
 import importlib
 import json
+import os
 import pkgutil
 import platform
 import sys
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 from .. import __version__, studies
 from ..archive import followed, only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
+from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
 from ..scene import variants
 from ..scene.scene import SceneError
@@ -86,9 +90,17 @@ class StudyContext:
 
 
 def run_study(
-    name: str, scenario, out=None, *, flags=None, workers=None, scheduler=None, results=None, progress=None,
-    leave_out=(),
-) -> dict:  # fmt: skip
+    name: str,
+    scenario: Scenario,
+    out: str | os.PathLike | None = None,
+    *,
+    flags: Mapping[str, Any] | None = None,
+    workers: int | None = None,
+    scheduler: Any = None,
+    results: str | os.PathLike | None = None,
+    progress: Callable[[float, float, str], None] | None = None,
+    leave_out: Iterable[str] = (),
+) -> dict[str, Any]:
     """Run study `name` (hyphens or underscores) on a scenario; returns its answer with `archive` added.
 
     `flags` override the scenario's `[study.NAME]`; an interrupted study goes on from its journal beside `out`.

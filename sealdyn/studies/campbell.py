@@ -15,6 +15,7 @@ from ..units import Speed
 
 WITH_WAVES = True
 REFUSES = ("secondary-seal",)
+ALONG = {"modes": ("speed",)}
 units = {"speed": "rad/s", "modes/frequency": "rad/s"}
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7

@@ -38,6 +38,7 @@ DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u 
                  for row in STIFFNESS_UNITS]  # fmt: skip
 STEP = 0.02
 
+ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")}
 units = {
     "against_speed/speed": "rad/s",
     "against_frequency/frequency": "rad/s",

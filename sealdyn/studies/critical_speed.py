@@ -30,6 +30,7 @@ from ..simulation.stability import critical_speed, held_speeds, natural_frequenc
 from ..status import Status
 
 REFUSES = ("secondary-seal",)
+ALONG = {"growth": ("speed",)}
 units = {
     "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
     "nonlinear/branch/speed": "rad/s", "nonlinear/branch/amplitude": "rad", "nonlinear/branch/frequency": "rad/s",

@@ -31,6 +31,7 @@ WITH_WAVES = True
 FINE = 1e-10
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
+ALONG = {"curve": ("clearance",)}
 units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/contact_force": "N", "curve/stiffness": "N/m"}
 
 

@@ -42,6 +42,7 @@ NOTHING = 1e-9
 # What is kept of further clearances, beside their profile.
 BESIDE = ("clearance", "force", "gauge_force", "centre_of_pressure", "leakage", "mass_flow", "exit_mach")
 
+ALONG = {"pressure": ("r", "theta")}
 units = {
     "beside/clearance": "m",
     "beside/force": "N",

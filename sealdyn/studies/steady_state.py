@@ -24,6 +24,7 @@ from ..solvers.recorder import Recorder
 WITH_WAVES = True
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
+ALONG = {"orbit": ("time",), "linear": ("time",)}
 units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
          "orbit/h_min": "m", "linear/time": "s", "linear/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
 

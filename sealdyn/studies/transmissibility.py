@@ -52,6 +52,7 @@ REFUSES = ("secondary-seal",)
 # Relative difference below which both arrangements transmit the same.
 SAME = 1e-9
 
+ALONG = {seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
 units = {"speed": "rad/s"} | {
     f"{seal}/{road}{phase}": "deg" for seal in SEALS for road in ("", "linear_algebra/") for phase in PHASES
 }

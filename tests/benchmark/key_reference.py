@@ -30,6 +30,8 @@ JSON schema (`sealdyn schema`), which editors read too.
   the first and after the last; the same time twice is a step.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
   the rotor (FMR), both make both float (FMSR).
+- `sealdyn list` names the shipped ones, wherever sealdyn is installed; `sealdyn.example("fms_reference")` reads one in
+  Python.
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
 - `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` ([README](../README.md)): no
   number of a run hangs on it.

@@ -78,6 +78,21 @@ def test_plot(kind, folder):
         assert picture.format == "PNG"
 
 
+@pytest.mark.parametrize("suffix, begin", [(".svg", b"<?xml"), (".pdf", b"%PDF")])
+def test_a_figure_of_lines_is_written_twice_alike(suffix, begin, folder):
+    for name in ("one", "two"):
+        answer = sealdyn("plot", "first.h5", "--kind", "orbit", "--out", f"{name}{suffix}", cwd=folder)
+        assert answer.code == 0 and answer.out.strip() == f"{name}{suffix}"
+    one, two = ((folder / f"{name}{suffix}").read_bytes() for name in ("one", "two"))
+    assert one.startswith(begin) and one == two
+    assert not list(folder.glob("*.new"))
+
+
+def test_a_figure_of_another_kind_is_refused(folder):
+    answer = sealdyn("plot", "first.h5", "--out", "orbit.jpg", cwd=folder)
+    assert answer.code == 2 and answer.err.count("\n") == 1 and all(f".{form}" in answer.err for form in ("svg", "pdf"))
+
+
 def test_schema_knows_the_keys_of_the_shipped_scenarios(tmp_path):
     schema = sealdyn("schema", cwd=tmp_path).found
     assert schema["$schema"] == "https://json-schema.org/draft/2020-12/schema"

@@ -32,6 +32,24 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
         assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
 
 
+def test_program_of_the_readme_runs_and_prints_what_it_says(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    Path("pump.toml").write_text(re.search(r"```toml\n(.*?)```", README, re.DOTALL)[1])
+    program = re.search(r"```python\n(.*?)```", README, re.DOTALL)[1]
+    # Four of the thousand runs.
+    few = program.replace("1000", "4")
+    assert few != program
+    left = {}
+    exec(compile(few, "README.md", "exec"), left)
+    printed = capsys.readouterr().out
+    assert printed.startswith("ok ") and 'outer_radius = "29 mm"' in printed and "stable" in printed
+    (spring,) = re.findall(r"^(\d+\.\d+)$", printed, re.MULTILINE)
+    assert float(spring) == pytest.approx(float(re.search(r"# ([\d.]+) N$", program, re.MULTILINE)[1]), abs=0.06)
+    assert (left["table"]["status"] == "ok").all() and left["data"].sizes["run"] == 4
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.svg", "pump.toml"]
+
+
 def test_every_study_has_its_question_in_the_readme():
     for module in pkgutil.iter_modules(studies.__path__):
         if not module.name.startswith("_"):

@@ -1,13 +1,25 @@
-"""The names of the package, as the README uses them."""
+"""The names of the package: runs with and without an archive, single numbers, tables, figures."""
 
+import inspect
+import io
+import math
 from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from scipy.optimize import brentq
 
 import sealdyn
 
-SCENARIO = Path(__file__).parents[2] / "scenarios" / "axial_only.toml"
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SCENARIO = SCENARIOS / "axial_only.toml"
+# Tilts and turns, in a moment.
+TILTED, SHORT = SCENARIOS / "fms_reference.toml", {"run.turns": 4}
+CHARTS = ("overview", "orbit", "film", "spectrum", "poincare")
 
 
-def test_the_readme_program_runs_and_runs_again(tmp_path):
+def test_a_scenario_runs_and_runs_again(tmp_path):
     """A package's attribute is taken by a submodule of its name as soon as that is imported: there must be none."""
     scenario = sealdyn.read_scenario(SCENARIO, ["run.samples=50"])
     for _ in range(2):
@@ -17,3 +29,137 @@ def test_the_readme_program_runs_and_runs_again(tmp_path):
             assert data["h_min"].shape == (51,)
     for name in sealdyn.__all__:
         assert callable(getattr(sealdyn, name))
+
+
+def test_all_names_are_listed():
+    assert set(sealdyn.__all__) < set(dir(sealdyn)) and "__version__" in dir(sealdyn)
+    with pytest.raises(AttributeError, match="no attribute 'simulat'"):
+        sealdyn.simulat  # noqa: B018
+
+
+def test_all_arguments_and_answers_have_types():
+    functions = [function for name in sealdyn.__all__ if inspect.isfunction(function := getattr(sealdyn, name))]
+    methods = ("from_dict", "to_dict", "to_toml", "with_", "resolved", "unused")
+    functions += [getattr(sealdyn.Scenario, name) for name in methods]
+    assert len(functions) > 12
+    for function in functions:
+        signature = inspect.signature(function)
+        assert signature.return_annotation is not inspect.Signature.empty, function
+        for argument in signature.parameters.values():
+            assert argument.annotation is not inspect.Parameter.empty or argument.name == "self", (function, argument)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """The same run in memory and in an archive."""
+    folder = tmp_path_factory.mktemp("runs")
+    with pytest.MonkeyPatch.context() as here:
+        here.chdir(folder)
+        here.setattr("tempfile.tempdir", str(folder))
+        in_memory = sealdyn.run(TILTED, SHORT)
+        assert in_memory.data.attrs["status"] == "ok" and in_memory.plot.poincare()
+        assert not list(folder.iterdir())
+    return in_memory, sealdyn.run(sealdyn.read_scenario(TILTED), ["run.turns=4"], folder / "mine.h5")
+
+
+def test_a_run_in_memory_is_that_of_an_archive(results):
+    in_memory, kept = results
+    assert in_memory.archive is None and in_memory.summary["archive"] is None
+    assert kept.archive.name == "mine.h5" and kept.archive.is_file()
+    assert in_memory.status == kept.status == "ok" and in_memory.message == kept.message
+    own = ("archive", "wall_time")
+    assert all(value == kept.summary[name] for name, value in in_memory.summary.items() if name not in own)
+    xarray.testing.assert_identical(in_memory.data.drop_attrs(), kept.data.drop_attrs())
+    assert in_memory.data.h_min.attrs["units"] == "m" and in_memory.data.h_min.size == 4 * 64 + 1
+    assert isinstance(in_memory.data.h_min.data, np.ndarray)
+
+
+@pytest.mark.parametrize("chart", CHARTS)
+def test_figures_of_a_run_are_written_as_lines_or_pixels(results, chart):
+    figure = getattr(results[0].plot, chart)()
+    lines = [len(ax.lines) + len(ax.collections) for ax in figure.axes]
+    assert sum(lines) > 0
+    for form, begin in {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}.items():
+        figure.savefig(file := io.BytesIO(), format=form)
+        assert file.getvalue().startswith(begin)
+
+
+def test_a_run_that_fails_is_a_result_and_one_that_cannot_be_is_an_error():
+    collapsed = sealdyn.run(TILTED, {"film.coning": "-0.5 mrad", **SHORT})
+    assert collapsed.status == "collapsed" and collapsed.data.attrs["status"] == "collapsed"
+    # Refused by the scenario, and by the scene once it is made ready.
+    for values in ({"film.clerance": 1}, {"rotor.runout": "1 mrad", "stator.misalignment": "1 mrad"}):
+        with pytest.raises(sealdyn.ScenarioError) as refused:
+            sealdyn.run(TILTED, values)
+        assert str(refused.value).startswith("fms_reference") and "\n" not in str(refused.value)
+
+
+# --- numbers -------------------------------------------------------------------------------------------
+
+# Aligned and parallel: the film of a textbook.
+PARALLEL = {"film.coning": 0, "rotor.runout": 0, "stator.misalignment": 0, "run.turns": 1}
+
+
+def test_a_clearance_is_found_for_a_leakage():
+    """Q = pi C^3 dp / (6 mu ln(r_o / r_i)), the flow between parallel rings."""
+    scenario, leakage = sealdyn.read_scenario(TILTED).with_(PARALLEL), 2e-5
+
+    def over(clearance):
+        found = sealdyn.evaluate(scenario, {"film.clearance": clearance}, ["leakage.mean"])
+        return found["leakage.mean"] - leakage
+
+    cube = 6 * 0.5e-3 * math.log(40 / 32) * leakage / (math.pi * 5e5)
+    assert brentq(over, 5e-6, 1e-4, xtol=1e-12) == pytest.approx(cube ** (1 / 3), rel=1e-3)
+
+
+def test_numbers_are_those_of_the_run(results):
+    keys = ["h_min.value", "leakage.mean", "stability.verdict"]
+    found = sealdyn.evaluate(TILTED, {"film.clearance": "10 um", **SHORT}, keys)
+    summary = results[0].summary
+    assert list(found) == keys and found["stability.verdict"] == summary["stability"]["verdict"]
+    assert found["h_min.value"] == pytest.approx(summary["h_min"]["value"], rel=1e-6)
+    assert found["leakage.mean"] == pytest.approx(summary["leakage"]["mean"], rel=1e-6)
+
+
+def test_numbers_of_a_run_that_collapses_are_not_handed_out_unasked():
+    values = {"film.coning": "-0.5 mrad", **SHORT}
+    with pytest.raises(sealdyn.RunEnded) as ended:
+        sealdyn.evaluate(TILTED, values, ["h_min.value"])
+    assert ended.value.status == "collapsed" and "collapsed" in str(ended.value)
+    found = sealdyn.evaluate(TILTED, values, ["status", "relative_misalignment.steady_max"])
+    assert found["status"] == "collapsed" and math.isnan(found["relative_misalignment.steady_max"])
+
+
+@pytest.mark.parametrize(
+    "values, outputs, told",
+    [
+        ({"film.clerance": 1e-5}, "h_min.value", "nearest 'clearance'"),
+        ({"rotor.runout": "1 mrad", "stator.misalignment": "1 mrad"}, "h_min.value", "fms_reference"),
+        (SHORT, "h_min.valeu", "nearest h_min.value"),
+    ],
+)
+def test_what_cannot_be_evaluated_is_told_in_one_line(values, outputs, told):
+    with pytest.raises((sealdyn.ScenarioError, ValueError)) as refused:
+        sealdyn.evaluate(TILTED, values, outputs)
+    assert told in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_sweep_is_a_table_of_its_keys():
+    scenario, outputs = sealdyn.read_scenario(TILTED).with_(SHORT), ["h_min.value", "stability.verdict"]
+    grid = {"film.clearance": ["10 kg", "10 um"], "rotor.runout": np.array([1e-5, 2e-5, 3e-5])}
+    table = sealdyn.sweep(scenario, grid, outputs, workers=1)
+    assert table.index.names == list(grid) and list(table.columns) == [*outputs, "status", "message"]
+    assert table.attrs["units"] == {"h_min.value": "m"}
+    good, bad = table.loc["10 um"], table.loc["10 kg"]
+    assert (good["status"] == "ok").all() and good["h_min.value"].is_monotonic_decreasing
+    assert good.loc[2e-5, "h_min.value"] == sealdyn.evaluate(scenario, {"rotor.runout": 2e-5}, outputs)["h_min.value"]
+    assert (bad["status"] == "not possible").all() and bad["h_min.value"].isna().all()
+    assert bad["message"].str.contains("a length").all()
+
+
+def test_a_sweep_of_one_key_has_its_values_as_index():
+    scenario = sealdyn.read_scenario(TILTED).with_(SHORT)
+    table = sealdyn.sweep(scenario, {"rotor.runout": ["10 urad", "20 urad"]}, "h_min.value", workers=1)
+    assert list(table.index) == ["10 urad", "20 urad"] and table.index.name == "rotor.runout"
+    with pytest.raises(sealdyn.ScenarioError, match="no values"):
+        sealdyn.sweep(scenario, {"rotor.runout": []})

@@ -1,4 +1,4 @@
-"""The page of a chart: heading, panels in the house's look, what panels have in common, and a PNG at the end."""
+"""The page of a chart: heading, panels in the house's look, what panels have in common, and a file at the end."""
 
 import os
 from pathlib import Path
@@ -23,6 +23,8 @@ LOOK = {
     "path.simplify": True, "agg.path.chunksize": 20000,
 }  # fmt: skip
 DPI = 150
+# Files of lines in place of pixels, and what their date is called.
+LINES = {".svg": "Date", ".pdf": "CreationDate"}
 # Of the value: a series that changes by less differs by rounding only.
 ROUNDING = 1e-6
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
@@ -96,24 +98,37 @@ def shortened(words: str, length: int) -> str:
     return shorten(words, length, placeholder=" …")
 
 
-def save(figure, path) -> Path:
-    """Writes the PNG beside `path` first, so that a figure is never seen half drawn."""
+def save(figure, path) -> Path | Figure:
+    """Writes the figure (png, svg or pdf, by the name) beside `path` first, so that none is ever seen half drawn, and
+    returns its path; without a path nothing is written, and the figure itself is returned."""
+    for ax in figure.axes:
+        flatten(ax)
+    if path is None:
+        return figure
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
-    for ax in figure.axes:
-        flatten(ax)
-    figure.canvas.draw()
-    # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
-    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
-    few = pixels.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     try:
-        few.save(fresh, format="PNG", dpi=(DPI, DPI))
+        (_write_lines if path.suffix in LINES else _write_pixels)(figure, fresh, path.suffix)
         os.replace(fresh, path)
     except BaseException:
         fresh.unlink(missing_ok=True)
         raise
     return path
+
+
+def _write_lines(figure, path: Path, suffix: str) -> None:
+    """A file that is drawn at any size; without a date, so that equal figures are equal files."""
+    with rc_context({"svg.hashsalt": "sealdyn"}):
+        figure.savefig(path, format=suffix.removeprefix("."), metadata={LINES[suffix]: None})
+
+
+def _write_pixels(figure, path: Path, _: str) -> None:
+    figure.canvas.draw()
+    # 256 colours are enough for lines and a stepped colour map, and a third of the bytes.
+    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
+    few = pixels.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(path, format="PNG", dpi=(DPI, DPI))
 
 
 # --- what panels have in common --------------------------------------------------------------------------

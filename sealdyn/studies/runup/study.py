@@ -27,6 +27,7 @@ from .speed_ramp import passage, short_pass
 CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
 # Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.
 RAMPS = (100.0, 10.0, 1.0)
+ALONG = {"linear": ("speed",), "curve": ("rate",), "whirl": ("speed",)}
 units = {
     "linear/speed": "rad/s", "linear/amplitude": "rad", "linear/phase": "rad", "curve/rate": "rad/s^2",
     "curve/relative_misalignment": "rad", "curve/h_min": "m", "whirl/speed": "rad/s", "whirl/frequency": "rad/s",

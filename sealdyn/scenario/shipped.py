@@ -1,0 +1,45 @@
+"""The scenarios that come with the program: in a wheel inside the package, in a checkout beside it."""
+
+from __future__ import annotations
+
+import difflib
+from itertools import takewhile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .reader import Scenario
+
+PACKAGE = Path(__file__).parents[1]
+
+
+def shipped_folder() -> Path:
+    """Where they are."""
+    inside = PACKAGE / "scenarios"
+    return inside if inside.is_dir() else PACKAGE.parent / "scenarios"
+
+
+def examples() -> dict[str, str]:
+    """Name of each scenario that comes with the program, and the question at its head."""
+    return {path.stem: _question(path.read_text("utf-8")) for path in sorted(shipped_folder().glob("*.toml"))}
+
+
+def example(name: str) -> Scenario:
+    """A scenario that comes with the program, by its name.  Raises ScenarioError, which names the nearest."""
+    from .errors import ScenarioError
+    from .reader import read_scenario
+
+    path = shipped_folder() / f"{name}.toml"
+    names = [path.stem for path in sorted(shipped_folder().glob("*.toml"))]
+    if name not in names:
+        near = difflib.get_close_matches(name, names, 1)
+        hint = f"; nearest '{near[0]}'" if near else ""
+        raise ScenarioError(name, "", "no such scenario", f"a name of `sealdyn list`{hint}")
+    return read_scenario(path)
+
+
+def _question(text: str) -> str:
+    """The comment at the head of a file as far as its first question mark."""
+    lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
+    words, mark, _ = " ".join(line.lstrip("# ").rstrip() for line in lines).partition("?")
+    return words + mark

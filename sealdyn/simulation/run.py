@@ -1,0 +1,77 @@
+"""One run asked for in Python: of a file, with other values, into an archive or memory; or a few of its numbers."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from ..scenario.errors import scene_errors_of
+from ..scenario.reader import Scenario
+from ..scenario.settings import scenario_of
+from ..status import Status
+from .batch import run_many
+from .result import Result
+from .simulate import simulate
+
+
+class RunEnded(Exception):
+    """A run that did not end well, of which numbers were asked; `status` and `message` as in a Result."""
+
+    def __init__(self, name: str, status: str, message: str):
+        super().__init__(name, status, message)
+        self.name, self.status, self.message = name, status, message
+
+    def __str__(self):
+        return f"{self.name}: {self.status}: {self.message}"
+
+
+def run(
+    source: Scenario | str | os.PathLike,
+    overrides: Mapping[str, Any] | Iterable[str] = (),
+    out: str | os.PathLike | None = None,
+    *,
+    progress: Callable[[float, float], None] | None = None,
+    stop: Callable[[], bool] | None = None,
+    allow_large: bool = False,
+) -> Result:
+    """Run a scenario, or that of a TOML file; without `out` nothing is left on disk.
+
+    `overrides`: {dotted key: value}, or strings "key=value".  `out`: the archive to write.  `progress`, `stop`,
+    `allow_large` as in `simulate`.  The result has `status`, `message`, `summary`, `data` (xarray) and `plot`; a run
+    that fails is a result with its status.
+    Raises ScenarioError for what cannot be run, ArchiveError for an archive that cannot be written.
+    """
+    scenario = scenario_of(source, overrides)
+    how = {"progress": progress, "stop": stop, "allow_large": allow_large}
+    with scene_errors_of(scenario.name):
+        if out is not None:
+            return simulate(scenario, out, **how)
+        with TemporaryDirectory() as folder:
+            result = simulate(scenario, Path(folder) / "run.h5", **how)
+            summary = {**result.summary, "archive": None}
+            return replace(result, summary=summary, archive=None, content=result.archive.read_bytes())
+
+
+def evaluate(
+    source: Scenario | str | os.PathLike, values: Mapping[str, Any], outputs: Iterable[str] | str
+) -> dict[str, Any]:
+    """Numbers {output: value} (SI) of a run of the scenario with other `values` at dotted keys, without an archive and
+    without a certificate: what an optimiser calls.
+
+    `values` {key: SI number, or "5 um"}; `outputs` dotted keys of the summary, "h_min.value".  What a run does not have
+    (the steady extremes of one that does not settle) is NaN.
+    Raises ScenarioError for what cannot be run, ValueError for an output that there is not, and RunEnded if the run
+    did not end well, unless its "status" is among the outputs.
+    """
+    scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
+    (row,) = run_many(scenario, [{"set": dict(values), "outputs": outputs}])
+    if isinstance(row, Exception):
+        with scene_errors_of(scenario.name):
+            raise row
+    if row["status"] != Status.OK and "status" not in outputs:
+        raise RunEnded(scenario.name, str(row["status"]), row["message"])
+    return {output: float("nan") if row[output] is None else row[output] for output in outputs}
