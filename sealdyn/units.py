@@ -125,6 +125,8 @@ class TemperatureScale(Quantity):
         # Degrees per kelvin, and where absolute zero lies.
         scale = {"degC": ("1", "273.15"), "degF": ("1.8", "459.67")}.get(unit)
         if scale is None:
+            if re.search("deg[CF]", unit):
+                raise QuantityError(f"{quoted(text)} (a scale with another zero)", self.expected())
             return super()._from_string(text)
         degrees, zero = map(Decimal, scale)
         return float((Decimal(number) + zero) / degrees)

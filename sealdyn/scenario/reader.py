@@ -20,6 +20,7 @@ from ..scene.scene import Scene, SceneError
 from ..units import Length, QuantityError, Time, quoted
 from .errors import ScenarioError, explain, tables, without_indices
 from .overrides import override_key
+from .unquoted import unquoted_quantity
 
 __all__ = [
     "Run",
@@ -207,6 +208,8 @@ def _toml(text: str, name: str) -> dict:
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        if bare := unquoted_quantity(text, str(error)):
+            raise ScenarioError(name, *bare) from None
         raise ScenarioError(name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
     except (ValueError, RecursionError):
         raise ScenarioError(name, "", "numbers too long or tables too deep", "a scenario file (TOML)") from None

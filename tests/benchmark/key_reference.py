@@ -25,7 +25,9 @@ One TOML file describes a seal and a run.  This page is written by `python tests
 JSON schema (`sealdyn schema`), which editors read too.
 
 - A quantity is a string with a unit (`"10 um"`, `"9550 rpm"`, `"5 bar"`, `"0.5 mPa*s"`) or a bare number in the SI unit
-  named below.  Pressures are absolute.
+  named below.  Units multiply by `*`, `.`, `-` or a blank and divide by `/`, powers stand with or without `^`:
+  `"0.5 mPa.s"`, `"3 lbf-in"`, `"850 kg/m3"`, `"4 kJ/(kg*K)"`.  `in`, `mil`, `lb`, `lbf`, `psi`, `ksi`, `BTU`, `degF`,
+  `kgf`, `cP` and their like are known.  Pressures are absolute.
 - A quantity marked ~ may vary with time: `{ time = [...], value = [...] }`, linear between the times, constant before
   the first and after the last; the same time twice is a step.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
