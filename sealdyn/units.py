@@ -132,6 +132,10 @@ class TemperatureScale(Quantity):
         return float((Decimal(number) + zero) / degrees)
 
 
+class RadiusQuantity(Quantity):
+    """A radius: its key, "outer_radius", has a twin, "outer_diameter", as drawings have it."""
+
+
 UNICODE_UNITS = {
     ord("µ"): "u",
     ord("μ"): "u",
@@ -254,6 +258,7 @@ class Varying:
 SECONDS = Quantity("time", "s", '"0.5 s"')
 Time = Annotated[float, SECONDS]
 Length = Annotated[float, Quantity("length", "m", '"10 um"')]
+Radius = Annotated[float, RadiusQuantity("length", "m", '"32 mm"')]
 Angle = Annotated[float, Quantity("angle", "rad", '"25 urad", "0.5 mrad", "1 deg"', ("m/m",))]
 ConingPerSpeedSquared = Annotated[
     float, Quantity("coning per speed squared", "s^2/rad", '"2e-9 s^2/rad", "2e-5 urad/rpm^2"', ("s^2",))

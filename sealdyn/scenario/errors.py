@@ -7,7 +7,7 @@ import typing
 from functools import cache
 from typing import Any
 
-from ..units import Quantity, QuantityError, VaryingQuantity, cut, quoted
+from ..units import Quantity, QuantityError, RadiusQuantity, VaryingQuantity, cut, quoted
 
 NOTHING = object()
 # Characters of what was expected: it may list names.
@@ -51,6 +51,17 @@ def table_in(holds: Any) -> type | None:
     return None
 
 
+def diameters(keys: dict[str, Any]) -> dict[str, str]:
+    """{"outer_diameter": "outer_radius"} of a table's `keys` {key: what it holds (a type)}."""
+    radii = (key for key, holds in keys.items() if _is_radius(holds))
+    return {key.replace("radius", "diameter"): key for key in radii}
+
+
+def _is_radius(holds: Any) -> bool:
+    kinds = [holds, *typing.get_args(holds)]
+    return any(isinstance(part, RadiusQuantity) for kind in kinds for part in getattr(kind, "__metadata__", ()))
+
+
 def is_list(holds: Any) -> bool:
     """Whether a key holds a list of tables."""
     return typing.get_origin(holds) is list
@@ -90,7 +101,7 @@ def without_indices(path: str) -> str:
 
 def nearest(kind: type, path: str, key: str) -> str:
     """Where an unknown key belongs: the table that has it, or the nearest spelling here, or elsewhere."""
-    every = tables(kind)
+    every = {table: keys | diameters(keys) for table, keys in tables(kind).items()}
     here = list(every.get(without_indices(path), {}))
     elsewhere = [f"[{table}]" for table, keys in every.items() if key in keys and table]
     top = [table for table in every if table and table.rpartition(".")[2] == key]

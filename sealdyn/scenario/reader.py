@@ -18,6 +18,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
 from ..units import Length, QuantityError, Time, quoted
+from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explain, tables, without_indices
 from .overrides import override_key
 from .unquoted import unquoted_quantity
@@ -159,7 +160,8 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     those of studies.
     Raises `ScenarioError`."""
     _refuse_odd_numbers(raw, name)
-    given = given_keys(raw) if given is None else given
+    raw, halved = with_radii(raw, ScenarioFile, name)
+    given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] != "study")
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
@@ -173,7 +175,8 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     except ValidationError as error:
         raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
     except SceneError as error:
-        raise ScenarioError(name, error.key, error.found, error.expected) from None
+        found = f"{error.found}, half of {halved[error.key]}" if error.key in halved else error.found
+        raise ScenarioError(name, error.key, found, error.expected) from None
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})

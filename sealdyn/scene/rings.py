@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from ..units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
+from ..units import Angle, Damping, Inertia, Length, Mass, Radius, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
 from .elastic_ring import ElasticRing
 from .secondary_seal import SecondarySeal
 from .waviness import Waviness
@@ -28,7 +28,7 @@ class Support:
     """All springs together, along the shaft axis."""
     axial_damping: Damping = 0.0
     """All dampers together, along the shaft axis."""
-    radius: Length | None = None
+    radius: Radius | None = None
     """Radius of the circle of springs: tilt coefficient = axial coefficient * radius^2 / 2."""
     tilt_stiffness: TiltStiffness | None = None
     """About a diameter, in place of `radius`."""

@@ -22,9 +22,14 @@ ALTERNATIVES = {
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),
     "acceleration": ("displacement",),
-    "radius": ("tilt_stiffness", "tilt_damping"),
-    "tilt_stiffness": ("radius",),
-    "tilt_damping": ("radius",),
+    "radius": ("tilt_stiffness", "tilt_damping", "diameter"),
+    "diameter": ("tilt_stiffness", "tilt_damping", "radius"),
+    "tilt_stiffness": ("radius", "diameter"),
+    "tilt_damping": ("radius", "diameter"),
+    "inner_radius": ("inner_diameter",),
+    "inner_diameter": ("inner_radius",),
+    "outer_radius": ("outer_diameter",),
+    "outer_diameter": ("outer_radius",),
 }
 # Tables that may hold functions of time.
 VARYING = ("shaft", "film", "rotor", "stator", "closing")
