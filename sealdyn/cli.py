@@ -347,6 +347,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "status": Status.OK,
         "message": "the scene is possible",
         "scene": scenario.resolved(),
+        "gauge": sorted(scenario.gauge),
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],

@@ -17,7 +17,7 @@ from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.checks import check_scene, unused
 from ..scene.scene import Scene, SceneError
-from ..units import Length, QuantityError, Time, quoted
+from ..units import Length, QuantityError, Time, is_gauge, quoted
 from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explain, tables, without_indices
 from .overrides import override_key
@@ -85,7 +85,7 @@ class Scenario:
     `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
     `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
-    keys of speeds that were written without a unit.
+    keys of speeds that were written without a unit; `gauge`: keys of the film's pressures that were written as gauge.
     Scenarios that run alike are equal, wherever they came from and whatever studies are to ask of them.
     """
 
@@ -100,6 +100,7 @@ class Scenario:
     given: frozenset[str] = frozenset()
     reading: Any = None
     bare: frozenset[str] = field(default=frozenset(), compare=False)
+    gauge: frozenset[str] = field(default=frozenset(), compare=False)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -147,11 +148,13 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     for override in overrides:
         override_key(raw, override, name)
     bare = frozenset(f"{table}.speed" for table in ("shaft", "stator") if _is_bare(_table(raw, table).get("speed")))
+    gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name)
     name = name.removesuffix(".toml")
     return Scenario(
-        **found, bare=bare, text=text, name=name, path=path, overrides=list(overrides), question=_question(text)
-    )
+        **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
+        question=_question(text),
+    )  # fmt: skip
 
 
 def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:

@@ -25,6 +25,8 @@ from .reader import Scenario, given_keys, read_tables, refuse_extremes
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 # Points of a grid, and any count that a study is given.
 MOST = 1_000_000
+# Units of temperature whose zero is no zero.
+SCALES = {"degC", "degF"}
 AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
 
 
@@ -190,7 +192,11 @@ def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[
     are SI.  Raises ScenarioError that names the setting `where`."""
     given = axis(f"values={words}", scenario.name, where)
     written = given["unit"]
-    if written is None or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit))):
+    if (
+        written is None
+        or written in SCALES
+        or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit)))
+    ):
         expected = f'numbers, "a, b, c" or "from:to:count[:log]", in {unit} or its like'
         raise ScenarioError(scenario.name, where, f'"{words}"', expected)
     factor = float(dimension_and_factor(written)[1]) if written else 1.0
@@ -208,9 +214,11 @@ def _is_unit(words: str) -> bool:
 
 
 def _alike(matches) -> bool:
-    """Whether the units written are units, and of one kind: none is converted into another's."""
-    units = [m[2] for m in matches]
-    return all(map(_is_unit, units)) and _one_kind(*filter(None, units))
+    """Whether the units written are one, or convertible into each other: those that count from another zero are not."""
+    units = {m[2] for m in matches if m[2]}
+    if len(units) < 2:
+        return True
+    return not units & SCALES and all(map(_is_unit, units)) and _one_kind(*units)
 
 
 def _one_kind(*units) -> bool:

@@ -3,7 +3,7 @@
 import difflib
 import re
 import typing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtr, ndtri
@@ -175,7 +175,8 @@ class _Entry:
             raise self.wrong(f"{quoted(words.strip())}", quantity.expected() if self.quantity else "a number")
         number, written = match[1], match[2] or unit
         if positive:
-            quantity = replace(quantity, least=0, open=True)
+            # A width counts from no zero but its own: of degrees, kelvins, and never gauge.
+            quantity = Quantity(quantity.name, quantity.unit, quantity.example, quantity.also, 0, True)
         if self.quantity is None and written:
             raise self.wrong(f"{quoted(words.strip())}", "a number without a unit")
         try:
