@@ -15,7 +15,9 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import check_scene, unused
+from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..units import Length, QuantityError, Time, is_gauge, quoted
 from .diameters import radius_key, with_radii
@@ -168,9 +170,11 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     given = frozenset(key for key in given if key.partition(".")[0] != "study")
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
+    _check_bodies(raw, name)
     _check_run_and_study(raw, name)
     try:
         file = _reader().validate_python(raw)
+        file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
         refuse_extremes(file, name)
         _check_film_name(file.film.model)
         check_scene(file, file.run)
@@ -305,6 +309,15 @@ def _tilt(entry: Any, outer_radius: Any) -> Any:
 def _table(raw: dict, key: str) -> dict:
     """A table of the file, empty if it is none (the reader says so)."""
     return raw[key] if isinstance(raw.get(key), dict) else {}
+
+
+def _check_bodies(raw: dict, name: str) -> None:
+    """A ring has a mass, or a body that gives it."""
+    for ring in RING_NAMES:
+        table = _table(raw, ring)
+        if "body" in table and (both := [key for key in INERTIAL if key in table]):
+            expected = f"mass and inertias, or a table [{ring}.body] that gives them"
+            raise ScenarioError(name, f"{ring}.{both[0]}", f"{both[0]} beside [{ring}.body]", expected)
 
 
 def _check_run_and_study(raw: dict, name: str) -> None:

@@ -14,7 +14,9 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ..scene import variants
+from ..scene.body import INERTIAL
 from ..scene.checks import check_scene
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
@@ -98,6 +100,12 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     more = [override_of(key, value) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
     tables |= {"run": opened(scenario.run), "study": scenario.study}
+    for ring in RING_NAMES:
+        if body := tables[ring].pop("body", None):
+            # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
+            own = dict(zip(INERTIAL, body.inertia(), strict=True))
+            if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
+                tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
     if scenario.reading is not None:
         tables["rotor"]["runout"] = scenario.reading
     given = set(scenario.given)

@@ -7,6 +7,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from . import coning, contact, secondary_seal
 from . import film as film_table
+from .body import body_errors
 from .elastic_ring import elastic_errors
 from .gas import GASES, gas_of
 from .pads import pads_errors
@@ -182,6 +183,8 @@ def _closing(scene) -> None:
 
 
 def _ring(name: str, ring) -> None:
+    for key, found, expected in body_errors(ring.body) if ring.body else ():
+        raise SceneError(f"{name}.body.{key}", found, expected)
     if ring.polar_inertia > 2 * ring.transverse_inertia and not ring.unphysical_inertia:
         raise SceneError(
             f"{name}.polar_inertia",
@@ -300,7 +303,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia")
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia")
 
 
 def unused(scene, given: set[str]) -> list[str]:
