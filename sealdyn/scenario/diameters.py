@@ -16,24 +16,28 @@ def radius_key(kind: type, key: str) -> str:
     return f"{table}.{twin}" if twin else key
 
 
-def with_radii(tree: Any, kind: type, name: str, path: str = "") -> tuple[Any, dict[str, str]]:
+def with_radii(tree: Any, kind: type, name: str, wrong: list, path: str = "") -> tuple[Any, dict[str, str]]:
     """The tables `tree` of the dataclass `kind` with every diameter halved under the key of its radius, and which were:
-    {dotted key of the radius: key of the diameter}.  Raises ScenarioError, of the scenario `name`, for a diameter
-    beside its radius or one that is no length."""
+    {dotted key of the radius: key of the diameter}.  To `wrong` are appended ScenarioErrors, of the scenario `name`,
+    for diameters beside their radius and for those that are no length, which are then any."""
     halved = {}
     if isinstance(tree, list):
-        entries = [with_radii(entry, kind, name, f"{path}.{n}") for n, entry in enumerate(tree)]
+        entries = [with_radii(entry, kind, name, wrong, f"{path}.{n}") for n, entry in enumerate(tree)]
         return [entry for entry, _ in entries], {key: twin for _, found in entries for key, twin in found.items()}
     if not isinstance(tree, dict):
         return tree, halved
     keys, tree = {f.name: f.type for f in dataclasses.fields(kind)}, tree.copy()
     for key in tree:
         if inner := table_in(keys.get(key)):
-            tree[key], below = with_radii(tree[key], inner, name, f"{path}.{key}".strip("."))
+            tree[key], below = with_radii(tree[key], inner, name, wrong, f"{path}.{key}".strip("."))
             halved |= below
     for diameter, radius in diameters(keys).items():
         if diameter in tree:
-            tree[radius] = _half(tree, diameter, radius, f"{path}.{diameter}", name)
+            try:
+                tree[radius] = _half(tree, diameter, radius, f"{path}.{diameter}", name)
+            except ScenarioError as error:
+                wrong.append(error)
+                tree[radius] = 1.0
             del tree[diameter]
             halved[f"{path}.{radius}"] = diameter
     return tree, halved

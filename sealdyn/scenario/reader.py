@@ -6,6 +6,7 @@ import math
 import re
 import stat
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -16,12 +17,12 @@ from pydantic import Field, TypeAdapter, ValidationError
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.body import INERTIAL, with_inertia
-from ..scene.checks import check_scene, unused
+from ..scene.checks import scene_errors, unused
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..units import Length, QuantityError, Time, is_gauge, quoted
 from .diameters import radius_key, with_radii
-from .errors import ScenarioError, explain, tables, without_indices
+from .errors import ScenarioError, explained, tables, together, without_indices
 from .overrides import override_key
 from .unquoted import unquoted_quantity
 
@@ -164,30 +165,45 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless told, without
     those of studies.
     Raises `ScenarioError`."""
-    _refuse_odd_numbers(raw, name)
-    raw, halved = with_radii(raw, ScenarioFile, name)
+    wrong = [*_odd_numbers(raw, name)]
+    raw, halved = with_radii(raw, ScenarioFile, name, wrong)
     given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] != "study")
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
-    _check_bodies(raw, name)
-    _check_run_and_study(raw, name)
+    wrong += [*_bodies(raw, name), *_run_and_study(raw, name)]
     try:
         file = _reader().validate_python(raw)
-        file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
-        refuse_extremes(file, name)
-        _check_film_name(file.film.model)
-        check_scene(file, file.run)
-        film_of(file)
     except ValidationError as error:
-        raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
-    except SceneError as error:
-        found = f"{error.found}, half of {halved[error.key]}" if error.key in halved else error.found
-        raise ScenarioError(name, error.key, found, error.expected) from None
+        wrong += explained(name, ScenarioFile, raw, error.errors(include_url=False))
+    if wrong:
+        # What the values are together is asked where each can be.
+        raise together(wrong)
+    file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
+    refuse_extremes(file, name)
+    if impossible := _impossible(file):
+        halves = [f"{e.found}, half of {halved[e.key]}" if e.key in halved else e.found for e in impossible]
+        found = zip(impossible, halves, strict=True)
+        raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     return {"scene": scene, "run": file.run, "study": file.study, "given": given, "reading": reading}
+
+
+def _impossible(file: ScenarioFile) -> list[SceneError]:
+    """What no scene can have together, and, where there is nothing of that kind, what its film does not take."""
+    bad = []
+    try:
+        _check_film_name(file.film.model)
+    except SceneError as error:
+        bad.append(error)
+    bad += scene_errors(file, file.run)
+    try:
+        _ = bad or film_of(file)
+    except SceneError as error:
+        bad.append(error)
+    return bad
 
 
 def film_choices() -> list[str]:
@@ -228,7 +244,7 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> None:
+def _odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> Iterator[ScenarioError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
     if depth > 20:
         raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
@@ -236,13 +252,13 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path != "study":
-            _refuse_odd_numbers(value, name, path, depth + 1)
+            yield from _odd_numbers(value, name, path, depth + 1)
     if isinstance(tree, float) and not math.isfinite(tree):
-        raise ScenarioError(name, key, str(tree), "a finite number")
+        yield ScenarioError(name, key, str(tree), "a finite number")
     if isinstance(tree, bool) and key:
         table, _, last = without_indices(key).rpartition(".")
         if tables(ScenarioFile).get(table, {}).get(last) is not bool:
-            raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+            yield ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
 def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
@@ -311,25 +327,25 @@ def _table(raw: dict, key: str) -> dict:
     return raw[key] if isinstance(raw.get(key), dict) else {}
 
 
-def _check_bodies(raw: dict, name: str) -> None:
+def _bodies(raw: dict, name: str) -> Iterator[ScenarioError]:
     """A ring has a mass, or a body that gives it."""
     for ring in RING_NAMES:
         table = _table(raw, ring)
         if "body" in table and (both := [key for key in INERTIAL if key in table]):
             expected = f"mass and inertias, or a table [{ring}.body] that gives them"
-            raise ScenarioError(name, f"{ring}.{both[0]}", f"{both[0]} beside [{ring}.body]", expected)
+            yield ScenarioError(name, f"{ring}.{both[0]}", f"{both[0]} beside [{ring}.body]", expected)
 
 
-def _check_run_and_study(raw: dict, name: str) -> None:
+def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
     """What depends on several keys: how long and how often, and that studies are tables."""
     for study, settings in _table(raw, "study").items():
         if not isinstance(settings, dict):
-            raise ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
+            yield ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
     raw.setdefault("run", {})
     run = _table(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
         if one in run and other in run:
-            raise ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
+            yield ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
     if "duration" not in run:
         run.setdefault("turns", 60)
     if "samples" not in run:

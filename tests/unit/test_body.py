@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
@@ -32,6 +32,7 @@ def inertias(ring):
     return [getattr(ring, key) for key in INERTIAL]
 
 
+@settings(deadline=None)
 @given(
     st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*DENSITIES]), st.floats(100, 2e4)
 )

@@ -7,7 +7,7 @@ from decimal import Decimal
 
 import pint
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sealdyn import unit_names, units
@@ -230,6 +230,7 @@ WORDS |= {"reyn": "psi*s", "bara": "bar", "min": "min", "K": "K"}
 SYMBOLS = pint.UnitRegistry()
 
 
+@settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(sorted(WORDS)), st.integers(1, 3)), min_size=1, max_size=4), st.data())
 def test_every_spelling_is_what_pint_reads(parts, data):
     """Products, powers and a divisor, in each way of writing them."""

@@ -1,7 +1,7 @@
 """Quantities without quotation marks: the line that says so names key, line and how to write it."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
@@ -43,6 +43,7 @@ def test_other_slips_keep_the_words_of_the_parser(text):
     assert refusal(text).key == "" and "no TOML" in str(refusal(text))
 
 
+@settings(deadline=None)
 @given(st.text(alphabet='ab1.= \n[]{}",#-e', max_size=60))
 def test_any_text_ends_in_one_line(text):
     assert str(refusal(text)).isprintable()
