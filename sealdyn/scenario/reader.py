@@ -171,11 +171,12 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     given = frozenset(key for key in given if key.partition(".")[0] != "study")
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
-    wrong += [*_bodies(raw, name), *_run_and_study(raw, name)]
+    wrong += [*_run_and_study(raw, name)]
     try:
         file = _reader().validate_python(raw)
     except ValidationError as error:
         wrong += explained(name, ScenarioFile, raw, error.errors(include_url=False))
+    wrong = wrong or [*_bodies(file, raw, name)]
     if wrong:
         # What the values are together is asked where each can be.
         raise together(wrong)
@@ -327,13 +328,15 @@ def _table(raw: dict, key: str) -> dict:
     return raw[key] if isinstance(raw.get(key), dict) else {}
 
 
-def _bodies(raw: dict, name: str) -> Iterator[ScenarioError]:
-    """A ring has a mass, or a body that gives it."""
-    for ring in RING_NAMES:
-        table = _table(raw, ring)
-        if "body" in table and (both := [key for key in INERTIAL if key in table]):
-            expected = f"mass and inertias, or a table [{ring}.body] that gives them"
-            yield ScenarioError(name, f"{ring}.{both[0]}", f"{both[0]} beside [{ring}.body]", expected)
+def _bodies(file: ScenarioFile, raw: dict, name: str) -> Iterator[ScenarioError]:
+    """A ring has a mass, or a body that gives it, or both as `sealdyn check` prints them."""
+    for ring in (key for key in RING_NAMES if getattr(file, key).body):
+        own, by_body = getattr(file, ring), with_inertia(getattr(file, ring))
+        for key in INERTIAL:
+            value, follows = getattr(own, key), getattr(by_body, key)
+            if key in _table(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
+                expected = f"nothing, or what follows from the body, {follows:g}"
+                yield ScenarioError(name, f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
 
 
 def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:

@@ -88,6 +88,13 @@ def test_a_mass_set_by_a_study_does_without_the_body():
         assert rotor.body is None and inertias(rotor) == [1.0, *inertias(parse().scene.rotor)[1:]]
 
 
+def test_what_check_prints_is_read_again():
+    """Mass and body side by side, if they agree."""
+    rotor = parse().scene.rotor
+    same = [f"rotor.{key}={value!r}" for key, value in zip(INERTIAL, inertias(rotor), strict=True)]
+    assert parse(*same).scene == parse().scene
+
+
 def test_a_body_of_a_rigid_ring_is_not_used():
     text = drawn().replace("[stator]\n", f"[stator]\n{BODY}")
     assert {key.rpartition(".")[0] for key in parse(text=text).unused()} == {"stator.body"}
