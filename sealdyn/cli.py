@@ -110,11 +110,11 @@ def _libraries_on_stderr():
 
 
 class Stop(Exception):
-    """Ends a verb with a status and a sentence."""
+    """Ends a verb with a status and a sentence; of a scenario with every ScenarioError, the sentence's own first."""
 
-    def __init__(self, status: str, message: str, code: int | None = None):
+    def __init__(self, status: str, message: str, code: int | None = None, errors=()):
         super().__init__(message)
-        self.status, self.message = status, message
+        self.status, self.message, self.errors = status, message, errors
         self.code = EXIT[status] if code is None else code
 
 
@@ -137,7 +137,7 @@ def _read(path: Path, overrides):
 
             refuse_unknown_rules(scenario)
     except ScenarioError as error:
-        raise Stop(Status.INVALID, str(error)) from None
+        raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
     return scenario
 
 
@@ -375,6 +375,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "status": Status.OK,
         "message": "the scene is possible",
         "scene": scenario.resolved(),
+        "gauge": sorted(scenario.gauge),
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
@@ -785,7 +786,7 @@ def _run(as_json: bool):
             _tell_interrupted(as_json)
         sys.exit(code if isinstance(code, int) else DONE)
     except Stop as stop:
-        _refuse(stop.status, stop.message, as_json)
+        _refuse(stop.status, stop.message, as_json, stop.errors)
         sys.exit(stop.code)
     except BrokenPipeError:
         # Whoever read us has seen enough; keep the interpreter from complaining at exit.
@@ -828,14 +829,18 @@ def _break_off(as_json: bool, out: int):
         os.write(out, f"{json.dumps({'status': Status.INTERRUPTED, 'message': line})}\n".encode())
 
 
-def _refuse(status: str, message: str, as_json: bool):
+def _refuse(status: str, message: str, as_json: bool, errors=()):
     from .units import cut
 
-    line = cut(" ".join(message.split()), LONGEST)
-    if as_json:
-        print(json.dumps({"status": status, "message": line}))
-    else:
-        print(line, file=sys.stderr)
+    lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
+    if not as_json:
+        print("\n".join(lines), file=sys.stderr)
+        return
+    told = {"status": status, "message": lines[0]}
+    if errors:
+        keys = [{"key": error.key, "found": error.found, "expected": error.expected} for error in errors]
+        told["errors"] = [{"message": line, **key} for line, key in zip(lines, keys, strict=True)]
+    print(json.dumps(told))
 
 
 if __name__ == "__main__":

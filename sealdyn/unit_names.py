@@ -14,6 +14,8 @@ PREFIXES = """
 giga- = 1e9 = G-
 mega- = 1e6 = M-
 kilo- = 1e3 = k-
+hecto- = 1e2 = h-
+deca- = 1e1 = da-
 deci- = 1e-1 = d-
 centi- = 1e-2 = c-
 milli- = 1e-3 = m-
@@ -25,15 +27,18 @@ meter = [length] = m = metre
 kilogram = [mass] = kg
 second = [time] = s = sec
 kelvin = [temperature] = K = degC
+rankine = 5 / 9 kelvin = degR = degF
 radian = [angle] = rad
 gram = 1e-3 kilogram = g
 minute = 60 second = min
 hour = 3600 second = h = hr
 micron = 1e-6 meter = microns
-inch = 0.0254 meter = in
+inch = 0.0254 meter = in = inches
 mil = 1e-3 inch = thou
-foot = 12 inch = ft
+foot = 12 inch = ft = feet
 pound = 0.45359237 kilogram = lb = lbm
+ounce = 1 / 16 pound = oz
+tonne = 1e3 kilogram
 liter = 1e-3 meter**3 = L = l = litre
 cc = 1e-6 meter**3
 revolution = 6.28318530717958647692528676655900577 radian = rev = turn
@@ -42,9 +47,14 @@ arcminute = 1 / 60 degree = arcmin
 arcsecond = 1 / 60 arcminute = arcsec
 hertz = revolution / second = Hz
 rpm = revolution / minute
+rps = revolution / second
 newton = kilogram * meter / second**2 = N
 standard_gravity = 9.80665 meter / second**2
+dyne = 1e-5 newton = dyn
+kilogram_force = kilogram * standard_gravity = kgf = kp
 pound_force = pound * standard_gravity = lbf
+ounce_force = ounce * standard_gravity = ozf
+slug = pound_force * second**2 / foot
 newton_meter = newton * meter = Nm
 newton_second = newton * second = Ns
 newton_meter_second = newton * meter * second = Nms
@@ -52,12 +62,17 @@ pascal = newton / meter**2 = Pa
 pascal_second = pascal * second = Pas
 bar = 1e5 pascal = bara
 atmosphere = 101325 pascal = atm
+torr = 101325 / 760 pascal = Torr
+mmHg = 133.322387415 pascal
 psi = pound_force / inch**2 = psia
+ksi = 1e3 psi
 poise = 0.1 pascal * second = P
+reyn = psi * second
 stokes = 1e-4 meter**2 / second = St
 joule = newton * meter = J
 watt = joule / second = W
 calorie = 4.184 joule = cal
+british_thermal_unit = 1055.05585262 joule = BTU = Btu
 """
 # What most scenarios are written in, as pint reads it: exponents of the dimensions, then units and factors.  To load
 # pint takes as long as all else that reads a scenario.
@@ -84,6 +99,11 @@ COMMON = {
 }
 # A unit is names, one-digit powers, * / ( ) and blanks: nothing that could be made to compute for long.
 UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|[*/() ])+")
+# As engineers also write them: "mPa.s" and "lbf-in" for products, "kg/m3" for powers.
+PRODUCT = re.compile(r"(?<=[a-zA-Z\d)]) ?[.-] ?(?=[a-zA-Z(])")
+POWER = re.compile(r"(?<=[a-zA-Z])([2-9])(?!\d)")
+# Either of J/(kg*K) and J/kg*K.
+UNCLEAR = re.compile(r"/[^()*/]*[.-] ?[a-zA-Z]")
 
 
 @cache
@@ -114,7 +134,10 @@ def dimension_and_factor(text: str) -> tuple[frozenset, Decimal]:
 
 
 def _by_pint(text: str) -> tuple[frozenset, Decimal]:
-    if len(text) > 60 or not UNIT.fullmatch(text):
+    if len(text) > 60 or UNCLEAR.search(text):
+        raise ValueError(text)
+    text = POWER.sub(r"^\1", PRODUCT.sub("*", text))
+    if not UNIT.fullmatch(text):
         raise ValueError(text)
     registry = _registry()
     try:
@@ -126,6 +149,8 @@ def _by_pint(text: str) -> tuple[frozenset, Decimal]:
 
 def unknown_unit(text: str) -> str:
     """Which word of `text` is no unit, with the nearest that is."""
+    if UNCLEAR.search(text):
+        return f"'{text}' is unclear: which part divides, brackets say, as in J/(kg*K)"
     for word in re.findall(r"[^\W\d]+", text):
         if not _is_unit(word):
             same = [name for name in _names() if name.lower() == word.lower()]

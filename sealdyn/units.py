@@ -18,7 +18,9 @@ from .unit_names import dimension_and_factor, unknown_unit
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
 # Of a table.
 MOST_POINTS = 20_000
-GAUGE = re.compile(r"gau?ge|\b(?:bar|psi|k?pa|mpa|atm) *\(?g\b", re.IGNORECASE)
+# A unit of pressure that counts from the air's, "barg", "bar(g)", "psi gauge", and that pressure (Pa).
+GAUGE = re.compile(r"(.+?) ?(?:\(g\)|\(?\bgau?ge\b\)?)|(\w*(?:bar|psi|Pa|atm)) ?g")
+AIR = 101325
 
 
 class QuantityError(ValueError):
@@ -84,7 +86,7 @@ class Quantity:
             raise QuantityError(quoted(text), f"a finite {self.name}") from None
 
     def _split(self, text: str) -> tuple[str, str]:
-        """Number and unit of a string, with this quantity's own reading of `g` and of gauge pressure."""
+        """Number and unit of a string, with this quantity's own reading of `g`."""
         match = NUMBER.fullmatch(text.strip()) if len(text) < 200 else None
         if not match:
             raise QuantityError(quoted(text), self.expected())
@@ -95,8 +97,6 @@ class Quantity:
         if self.name == "acceleration":
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
-        if self.name == "absolute pressure" and GAUGE.search(unit):
-            raise QuantityError(f"{quoted(text)} (gauge)", "an absolute pressure: add the 1.01325 bar of the air")
         if re.search(r"\bTIR\b", unit):
             raise QuantityError(
                 f"{quoted(text)} (total indicator reading)", f"{self.expected()}; TIR: rotor.runout only"
@@ -125,9 +125,35 @@ class TemperatureScale(Quantity):
         # Degrees per kelvin, and where absolute zero lies.
         scale = {"degC": ("1", "273.15"), "degF": ("1.8", "459.67")}.get(unit)
         if scale is None:
+            if re.search("deg[CF]", unit):
+                raise QuantityError(f"{quoted(text)} (a scale with another zero)", self.expected())
             return super()._from_string(text)
         degrees, zero = map(Decimal, scale)
         return float((Decimal(number) + zero) / degrees)
+
+
+class AbsolutePressure(Quantity):
+    """A pressure: absolute, or above the air's standard 1.01325 bar where its unit says gauge ("5 barg", "70 psig")."""
+
+    def _from_string(self, text: str) -> float:
+        number, unit = self._split(text)
+        if not (gauge := GAUGE.fullmatch(unit)):
+            return super()._from_string(text)
+        above = Quantity("pressure", self.unit, self.example)
+        return float(Decimal(above.read(f"{number} {gauge[1] or gauge[2]}")) + AIR)
+
+
+def is_gauge(value: Any) -> bool:
+    """Whether a value as written, or any of a table's, is a gauge pressure."""
+    if isinstance(value, dict):
+        value = value.get("value")
+    written = [match[2] for entry in (value if isinstance(value, list) else [value])
+               if isinstance(entry, str) and (match := NUMBER.fullmatch(entry.strip()))]  # fmt: skip
+    return any(map(GAUGE.fullmatch, written))
+
+
+class RadiusQuantity(Quantity):
+    """A radius: its key, "outer_radius", has a twin, "outer_diameter", as drawings have it."""
 
 
 UNICODE_UNITS = {
@@ -252,6 +278,7 @@ class Varying:
 SECONDS = Quantity("time", "s", '"0.5 s"')
 Time = Annotated[float, SECONDS]
 Length = Annotated[float, Quantity("length", "m", '"10 um"')]
+Radius = Annotated[float, RadiusQuantity("length", "m", '"32 mm"')]
 Angle = Annotated[float, Quantity("angle", "rad", '"25 urad", "0.5 mrad", "1 deg"', ("m/m",))]
 ConingPerSpeedSquared = Annotated[
     float, Quantity("coning per speed squared", "s^2/rad", '"2e-9 s^2/rad", "2e-5 urad/rpm^2"', ("s^2",))
@@ -274,7 +301,7 @@ AxialFilmStiffness = Annotated[float, Quantity("film stiffness", "N/m", '"5e7 N/
 AxialFilmDamping = Annotated[float, Quantity("film damping", "N*s/m", '"3e4 N*s/m"')]
 SignedTiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",))]
 SignedTiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",))]
-Pressure = Annotated[float, Quantity("absolute pressure", "Pa", '"5 bar"', (), 0)]
+Pressure = Annotated[float, AbsolutePressure("absolute pressure", "Pa", '"5 bar"', (), 0)]
 Stress = Annotated[float, Quantity("stress", "Pa", '"300 MPa"', (), 0, True)]
 WearCoefficient = Annotated[float, Quantity("wear coefficient", "1/Pa", '"1e-15 1/Pa"', (), 0)]
 AsperityDensity = Annotated[float, Quantity("number per area", "1/m^2", '"1e10 1/m^2"', (), 0, True)]

@@ -201,6 +201,9 @@ def resolved_lines(found: dict) -> list[str]:
         if table == "film" and keys["gas"] is not None:
             keys = {key: value for key, value in keys.items() if key not in OF_LIQUIDS}
         out += _table_lines(table, keys)
+    if found.get("gauge"):
+        given = " and ".join(found["gauge"])
+        out.append(f"# pressures are absolute: {given}, given as gauge, with the 1.01325 bar of the air")
     model = found["model"]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")
     out += [f"# {reason}" for reason in model["reasons"]]

@@ -2,6 +2,7 @@
 
 import dataclasses
 import difflib
+import re
 import types
 import typing
 from contextlib import contextmanager
@@ -9,15 +10,23 @@ from functools import cache
 from typing import Any
 
 from ..scene.scene import SceneError
-from ..units import Quantity, QuantityError, VaryingQuantity, cut, quoted
+from ..units import Quantity, QuantityError, RadiusQuantity, VaryingQuantity, cut, quoted
 
 NOTHING = object()
+MISSING = ("nothing", "no such table")
+# What `nearest` says of a key of the same table.
+NEAR = re.compile(r"nearest '(\w+)'$")
 # Characters of what was expected: it may list names.
 LONGEST = 600
+# Lines about one file.
+MOST = 50
 
 
 class ScenarioError(Exception):
-    """A scenario that cannot be run; its text is one line.  `key` is dotted, table first."""
+    """A scenario that cannot be run; its text is one line.  `key` is dotted, table first.  `others`: what else is wrong
+    with the same scenario, ScenarioErrors."""
+
+    others: "tuple[ScenarioError, ...]" = ()
 
     def __init__(self, name: str, key: str, found: str, expected: str):
         super().__init__(name, key, found, expected)
@@ -40,6 +49,19 @@ def scene_errors_of(name: str):
         raise ScenarioError(name, error.key, error.found, error.expected) from None
 
 
+def together(errors: list[ScenarioError]) -> ScenarioError:
+    """The first of the errors, with the others in its `others`: one of each key, MOST in all."""
+    kept = {}
+    for error in errors:
+        kept.setdefault(error.key, error)
+    first, *rest = kept.values()
+    if len(rest) >= MOST:
+        more = ScenarioError(first.name, "", f"{len(rest) - MOST + 2} more", "those above corrected first")
+        rest = [*rest[: MOST - 2], more]
+    first.others = tuple(rest)
+    return first
+
+
 @cache
 def tables(kind: type, path: str = "") -> dict[str, dict[str, Any]]:
     """Every table a scenario may have, by dotted path: {path: {key: what it holds (a type)}}, from the dataclass
@@ -60,6 +82,17 @@ def table_in(holds: Any) -> type | None:
     if typing.get_origin(holds) in (list, typing.Union, types.UnionType):
         return next((t for t in map(table_in, typing.get_args(holds)) if t), None)
     return None
+
+
+def diameters(keys: dict[str, Any]) -> dict[str, str]:
+    """{"outer_diameter": "outer_radius"} of a table's `keys` {key: what it holds (a type)}."""
+    radii = (key for key, holds in keys.items() if _is_radius(holds))
+    return {key.replace("radius", "diameter"): key for key in radii}
+
+
+def _is_radius(holds: Any) -> bool:
+    kinds = [holds, *typing.get_args(holds)]
+    return any(isinstance(part, RadiusQuantity) for kind in kinds for part in getattr(kind, "__metadata__", ()))
 
 
 def is_list(holds: Any) -> bool:
@@ -101,7 +134,7 @@ def without_indices(path: str) -> str:
 
 def nearest(kind: type, path: str, key: str) -> str:
     """Where an unknown key belongs: the table that has it, or the nearest spelling here, or elsewhere."""
-    every = tables(kind)
+    every = {table: keys | diameters(keys) for table, keys in tables(kind).items()}
     here = list(every.get(without_indices(path), {}))
     elsewhere = [f"[{table}]" for table, keys in every.items() if key in keys and table]
     top = [table for table in every if table and table.rpartition(".")[2] == key]
@@ -120,19 +153,34 @@ def nearest(kind: type, path: str, key: str) -> str:
     return f"the keys here are {', '.join(here)}"
 
 
-def explain(name: str, kind: type, raw: dict, errors: list[dict]) -> ScenarioError:
-    """A ScenarioError from the most telling of pydantic's errors: an unknown key first, then a wrong value, then a
-    missing key.  `name` of the scenario, `kind` its dataclass, `raw` its tables."""
+def explained(name: str, kind: type, raw: dict, errors: list[dict]) -> list[ScenarioError]:
+    """ScenarioErrors of pydantic's errors, the most telling first: unknown keys, wrong values, missing keys, but not
+    those missing that are there misspelt.  `name` of the scenario, `kind` its dataclass, `raw` its tables."""
     rank = {"unexpected_keyword_argument": 0, "missing": 2}
     relevant = [e for e in errors if not _beside_the_point(raw, e["loc"])] or errors
-    error = min(relevant, key=lambda e: rank.get(e["type"], 1))
+    # More than are told need no words.
+    found = [_explained(name, kind, raw, e) for e in sorted(relevant, key=lambda e: rank.get(e["type"], 1))[: 4 * MOST]]
+    meant = {key for error in found for key in _meant(error)}
+    return [error for error in found if not (error.found in MISSING and error.key in meant)]
+
+
+def _meant(error: ScenarioError) -> list[str]:
+    """Dotted keys that an unknown key may have been meant for."""
+    near = NEAR.search(error.expected) if error.found.startswith("an unknown") else None
+    if not near:
+        return []
+    table, dot, _ = error.key.rpartition(".")
+    return [table + dot + near[1], table + dot + near[1].replace("diameter", "radius")]
+
+
+def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     unknown = error["type"] == "unexpected_keyword_argument"
     path, holds, value = _follow(kind, raw, error["loc"], keep_last=unknown)
     key = ".".join(path)
     if unknown:
         return _unknown(name, kind, path)
     if error["type"] == "missing" or value is NOTHING:
-        found = "no such table" if table_in(holds) else "nothing"
+        found = MISSING[bool(table_in(holds))]
         return ScenarioError(name, key, found, expected_of(key, holds))
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, QuantityError):

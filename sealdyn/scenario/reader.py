@@ -7,7 +7,7 @@ import os
 import re
 import stat
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -18,12 +18,16 @@ from pydantic import Field, TypeAdapter, ValidationError
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, application_errors
-from ..scene.checks import check_scene, unused
+from ..scene.body import INERTIAL, with_inertia
+from ..scene.checks import scene_errors, unused
+from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..toml_line import toml_text
-from ..units import Length, QuantityError, Time, quoted
-from .errors import ScenarioError, explain, tables, without_indices
+from ..units import Length, QuantityError, Time, is_gauge, quoted
+from .diameters import radius_key, with_radii
+from .errors import ScenarioError, explained, tables, together, without_indices
 from .overrides import override_key, without_arrays
+from .unquoted import unquoted_quantity
 
 __all__ = [
     "Run",
@@ -92,7 +96,7 @@ class Scenario:
     `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
     `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
-    keys of speeds that were written without a unit.
+    keys of speeds that were written without a unit; `gauge`: keys of the film's pressures that were written as gauge.
     Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
     seal is for (`application`, None without that table).
     """
@@ -109,6 +113,7 @@ class Scenario:
     reading: Any = None
     bare: frozenset[str] = field(default=frozenset(), compare=False)
     application: Application | None = field(default=None, compare=False)
+    gauge: frozenset[str] = field(default=frozenset(), compare=False)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -183,11 +188,13 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     for override in overrides:
         override_key(raw, override, name)
     bare = frozenset(f"{table}.speed" for table in ("shaft", "stator") if _is_bare(_table(raw, table).get("speed")))
+    gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name)
     name = name.removesuffix(".toml")
     return Scenario(
-        **found, bare=bare, text=text, name=name, path=path, overrides=list(overrides), question=_question(text)
-    )
+        **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
+        question=_question(text),
+    )  # fmt: skip
 
 
 def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
@@ -195,24 +202,27 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
     told, without those on which no run hangs.
     Raises `ScenarioError`."""
-    _refuse_odd_numbers(raw, name)
-    given = given_keys(raw) if given is None else given
+    wrong = [*_odd_numbers(raw, name)]
+    raw, halved = with_radii(raw, ScenarioFile, name, wrong)
+    given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
-    _check_run_and_study(raw, name)
+    wrong += [*_run_and_study(raw, name)]
     try:
         file = _reader().validate_python(raw)
-        refuse_extremes(file, name)
-        _check_film_name(file.film.model)
-        check_scene(file, file.run)
-        film_of(file)
-        for key, found, expected in application_errors(file.application) if file.application else ():
-            raise SceneError(f"application.{key}", found, expected)
     except ValidationError as error:
-        raise explain(name, ScenarioFile, raw, error.errors(include_url=False)) from None
-    except SceneError as error:
-        raise ScenarioError(name, error.key, error.found, error.expected) from None
+        wrong += explained(name, ScenarioFile, raw, error.errors(include_url=False))
+    wrong = wrong or [*_bodies(file, raw, name)]
+    if wrong:
+        # What the values are together is asked where each can be.
+        raise together(wrong)
+    file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
+    refuse_extremes(file, name)
+    if impossible := _impossible(file):
+        halves = [f"{e.found}, half of {halved[e.key]}" if e.key in halved else e.found for e in impossible]
+        found = zip(impossible, halves, strict=True)
+        raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
     if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
         raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
@@ -228,6 +238,23 @@ def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
         found = f"what TOML cannot hold ({' '.join(str(error).split())[:200] or type(error).__name__})"
         raise ScenarioError(name, "", found, "tables of strings, numbers and lists") from None
     return "".join(f"# {line}".rstrip() + "\n" for line in question.splitlines()) + written
+
+
+def _impossible(file: ScenarioFile) -> list[SceneError]:
+    """What no scene can have together, and, where there is nothing of that kind, what its film does not take."""
+    bad = []
+    try:
+        _check_film_name(file.film.model)
+    except SceneError as error:
+        bad.append(error)
+    bad += scene_errors(file, file.run)
+    for key, found, expected in application_errors(file.application) if file.application else ():
+        bad.append(SceneError(f"application.{key}", found, expected))
+    try:
+        _ = bad or film_of(file)
+    except SceneError as error:
+        bad.append(error)
+    return bad
 
 
 def film_choices() -> list[str]:
@@ -258,6 +285,8 @@ def _toml(text: str, name: str) -> dict:
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        if bare := unquoted_quantity(text, str(error)):
+            raise ScenarioError(name, *bare) from None
         raise ScenarioError(name, "", f"no TOML: {error}", 'lines like clearance = "10 um" under [film]') from None
     except (ValueError, RecursionError):
         raise ScenarioError(name, "", "numbers too long or tables too deep", "a scenario file (TOML)") from None
@@ -266,7 +295,7 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> None:
+def _odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> Iterator[ScenarioError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
     if depth > 20:
         raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
@@ -274,13 +303,13 @@ def _refuse_odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> 
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path not in ("study", "application.acknowledge"):
-            _refuse_odd_numbers(value, name, path, depth + 1)
+            yield from _odd_numbers(value, name, path, depth + 1)
     if isinstance(tree, float) and not math.isfinite(tree):
-        raise ScenarioError(name, key, str(tree), "a finite number")
+        yield ScenarioError(name, key, str(tree), "a finite number")
     if isinstance(tree, bool) and key:
         table, _, last = without_indices(key).rpartition(".")
         if tables(ScenarioFile).get(table, {}).get(last) is not bool:
-            raise ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
+            yield ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
 def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
@@ -349,16 +378,27 @@ def _table(raw: dict, key: str) -> dict:
     return raw[key] if isinstance(raw.get(key), dict) else {}
 
 
-def _check_run_and_study(raw: dict, name: str) -> None:
+def _bodies(file: ScenarioFile, raw: dict, name: str) -> Iterator[ScenarioError]:
+    """A ring has a mass, or a body that gives it, or both as `sealdyn check` prints them."""
+    for ring in (key for key in RING_NAMES if getattr(file, key).body):
+        own, by_body = getattr(file, ring), with_inertia(getattr(file, ring))
+        for key in INERTIAL:
+            value, follows = getattr(own, key), getattr(by_body, key)
+            if key in _table(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
+                expected = f"nothing, or what follows from the body, {follows:g}"
+                yield ScenarioError(name, f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
+
+
+def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
     """What depends on several keys: how long and how often, and that studies are tables."""
     for study, settings in _table(raw, "study").items():
         if not isinstance(settings, dict):
-            raise ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
+            yield ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
     raw.setdefault("run", {})
     run = _table(raw, "run")
     for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
         if one in run and other in run:
-            raise ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
+            yield ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
     if "duration" not in run:
         run.setdefault("turns", 60)
     if "samples" not in run:

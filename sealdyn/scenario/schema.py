@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from .errors import table_in
+from .errors import diameters, table_in
 from .reader import ScenarioFile, film_choices
 
 
@@ -20,10 +20,33 @@ def json_schema() -> dict:
     schema = _without_null(TypeAdapter(ScenarioFile).json_schema())
     schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
     for kind in _kinds(ScenarioFile):
-        keys = (schema if kind is ScenarioFile else schema["$defs"][kind.__name__])["properties"]
+        table = schema if kind is ScenarioFile else schema["$defs"][kind.__name__]
+        keys = table["properties"]
         for key, meaning in _meanings(kind).items():
             keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
+        _add_diameters(table, kind)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
+
+
+def _add_diameters(table: dict, kind: type) -> None:
+    """Beside each radius of a table's schema its diameter: one of the two, or at most one."""
+    twins = {
+        radius: diameter for diameter, radius in diameters({f.name: f.type for f in dataclasses.fields(kind)}).items()
+    }
+    properties = {}
+    for key, holds in table["properties"].items():
+        properties[key] = holds
+        if key in twins:
+            expected = holds["description"].splitlines()[-1]
+            properties[twins[key]] = holds | {"description": f"In place of `{key}`: twice that.\n{expected}"}
+    table["properties"] = properties
+    either = {r: [{"required": [r]}, {"required": [d]}] for r, d in twins.items()}
+    if not twins:
+        return
+    needed = table.get("required", [])
+    both = {r: {"not": {"required": [r, d]}} for r, d in twins.items()}
+    table["allOf"] = [{"oneOf": ways} if r in needed else both[r] for r, ways in either.items()]
+    table["required"] = [key for key in needed if key not in twins]
 
 
 def _kinds(kind: type) -> set[type]:

@@ -16,7 +16,9 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ..scene import variants
+from ..scene.body import INERTIAL
 from ..scene.checks import check_scene
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
@@ -27,6 +29,8 @@ from .reader import Scenario, given_keys, read_scenario, read_tables, refuse_ext
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 # Points of a grid, and any count that a study is given.
 MOST = 1_000_000
+# Units of temperature whose zero is no zero.
+SCALES = {"degC", "degF"}
 AXIS = '"key=from:to:count", "key=from:to:count:log" or "key=a,b,c"'
 
 
@@ -98,6 +102,12 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     more = [_written(key, value, scenario.name) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
     tables |= {"run": opened(scenario.run), "study": scenario.study}
+    for ring in RING_NAMES:
+        if body := tables[ring].pop("body", None):
+            # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
+            own = dict(zip(INERTIAL, body.inertia(), strict=True))
+            if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
+                tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
     if scenario.reading is not None:
         tables["rotor"]["runout"] = scenario.reading
     given = set(scenario.given)
@@ -216,7 +226,11 @@ def values_in_si(scenario: Scenario, words: str, unit: str, where: str) -> list[
     are SI.  Raises ScenarioError that names the setting `where`."""
     given = axis(f"values={words}", scenario.name, where)
     written = given["unit"]
-    if written is None or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit))):
+    if (
+        written is None
+        or written in SCALES
+        or (written and not (_is_unit(written) and _is_unit(unit) and _one_kind(written, unit)))
+    ):
         expected = f'numbers, "a, b, c" or "from:to:count[:log]", in {unit} or its like'
         raise ScenarioError(scenario.name, where, f'"{words}"', expected)
     factor = float(dimension_and_factor(written)[1]) if written else 1.0
@@ -234,9 +248,11 @@ def _is_unit(words: str) -> bool:
 
 
 def _alike(matches) -> bool:
-    """Whether the units written are units, and of one kind: none is converted into another's."""
-    units = [m[2] for m in matches]
-    return all(map(_is_unit, units)) and _one_kind(*filter(None, units))
+    """Whether the units written are one, or convertible into each other: those that count from another zero are not."""
+    units = {m[2] for m in matches if m[2]}
+    if len(units) < 2:
+        return True
+    return not units & SCALES and all(map(_is_unit, units)) and _one_kind(*units)
 
 
 def _one_kind(*units) -> bool:

@@ -7,6 +7,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
 from . import coning, contact, secondary_seal
 from . import film as film_table
+from .body import body_errors
 from .elastic_ring import elastic_errors
 from .gas import GASES, gas_of
 from .pads import pads_errors
@@ -20,27 +21,37 @@ UNITS = {"temperature": "K", "speed": "rad/s"}
 
 def check_scene(scene, run) -> None:
     """Raises `SceneError` with the first rule that a Scene, or its `run` (the `[run]` table), breaks."""
-    _film(scene)
-    _profile(scene)
-    for key, found, expected in (*waviness_errors(scene), *elastic_errors(scene)):
-        raise SceneError(key, found, expected)
-    _closing(scene)
+    for error in scene_errors(scene, run):
+        raise error
+
+
+def scene_errors(scene, run) -> list[SceneError]:
+    """Rules that a Scene, or its `run` (the `[run]` table), breaks: of each part the first, and what follows from
+    several parts only where each is possible."""
+    bad = _broken(_film, scene) or _broken(_profile, scene)
+    bad += _broken(_cavitation, scene.film) + _broken(_liquid if scene.film.gas is None else _gas, scene.film)
+    bad += [SceneError(*error) for error in (*waviness_errors(scene), *elastic_errors(scene))]
+    bad += _broken(_closing, scene)
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
-        _ring(name, ring)
-        check_no_step(name, ring)
+        bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
     if scene.contact:
-        for key, found, expected in contact.contact_errors(scene.contact):
-            raise SceneError(f"contact.{key}", found, expected)
+        bad += [SceneError(f"contact.{key}", *words) for key, *words in contact.contact_errors(scene.contact)]
     if not (scene.stator.support or scene.rotor.support):
-        raise SceneError(
-            "rotor.support",
-            "no support on either ring",
-            "[rotor.support] or [stator.support]: the ring that floats",
-        )
-    _vibrations(scene.housing)
-    _run(scene.shaft, run)
-    if run.start == "rest" or (run.start == "auto" and scene.initial.given):
-        _open_at_start(scene)
+        expected = "[rotor.support] or [stator.support]: the ring that floats"
+        bad.append(SceneError("rotor.support", "no support on either ring", expected))
+    bad += _broken(_vibrations, scene.housing) + _broken(_run, scene.shaft, run)
+    if not bad and (run.start == "rest" or (run.start == "auto" and scene.initial.given)):
+        bad += _broken(_open_at_start, scene)
+    return bad
+
+
+def _broken(rule, *parts) -> list[SceneError]:
+    """The SceneError that a rule raises for its parts, if it does."""
+    try:
+        rule(*parts)
+    except SceneError as error:
+        return [error]
+    return []
 
 
 def _film(scene) -> None:
@@ -72,8 +83,6 @@ def _film(scene) -> None:
     if film.model == "reynolds":
         for key, found, expected in reynolds_errors(film):
             raise SceneError(f"film.{key}", found, expected)
-    _cavitation(film)
-    _gas(film) if film.gas is not None else _liquid(film)
 
 
 def _coning(scene) -> None:
@@ -182,6 +191,8 @@ def _closing(scene) -> None:
 
 
 def _ring(name: str, ring) -> None:
+    for key, found, expected in body_errors(ring.body) if ring.body else ():
+        raise SceneError(f"{name}.body.{key}", found, expected)
     if ring.polar_inertia > 2 * ring.transverse_inertia and not ring.unphysical_inertia:
         raise SceneError(
             f"{name}.polar_inertia",
@@ -300,7 +311,7 @@ def turns_of(speed) -> float:
     return angle / (2 * math.pi)
 
 
-RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia")
+RIGID_LEAVES = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia")
 
 
 def unused(scene, given: set[str]) -> list[str]:

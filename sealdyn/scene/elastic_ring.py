@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from ..units import BendingStiffness, Length
+from ..units import BendingStiffness, Radius
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class ElasticRing:
 
     bending_stiffness: BendingStiffness
     """E J against bending out of the ring's plane."""
-    radius: Length
+    radius: Radius
     """Radius of the centroid of the ring's section."""
     torsion_ratio: float = 1.3
     """Bending stiffness over torsional stiffness, A = E J/(G J_t); 1.3 for a round bar of steel, 1.5 to 6 for slender

@@ -18,6 +18,7 @@ from ..units import (
     Pressure,
     Quantity,
     QuantityError,
+    Radius,
     SignedTiltDamping,
     SignedTiltStiffness,
     SpecificHeat,
@@ -99,9 +100,9 @@ class Film:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    inner_radius: Length
+    inner_radius: Radius
     """Inner radius of the narrower face."""
-    outer_radius: Length
+    outer_radius: Radius
     """Outer radius of the narrower face."""
     outer_pressure: Varying[Pressure]
     """Absolute, at the outer radius."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..units import Angle, Length
+from ..units import Angle, Length, Radius
 
 # Edge of a pad's flank where it is not given, as a share of the pad's shorter side.
 SHARP = 0.05
@@ -30,9 +30,9 @@ class Pads:
     """By which the film is thicker in the pads."""
     angle: Angle
     """Of one pad, between the middles of its flanks."""
-    inner_radius: Length
+    inner_radius: Radius
     """Where a pad begins."""
-    outer_radius: Length
+    outer_radius: Radius
     """Where it ends."""
     edge: Length | None = None
     """Width of its flanks, from an eighth to seven eighths of the depth over twice it; 5 % of its shorter side."""

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from ..units import Angle, Damping, Inertia, Length, Mass, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
+from ..units import Angle, Damping, Inertia, Length, Mass, Radius, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
+from .body import Body
 from .elastic_ring import ElasticRing
 from .secondary_seal import SecondarySeal
 from .waviness import Waviness
@@ -28,7 +29,7 @@ class Support:
     """All springs together, along the shaft axis."""
     axial_damping: Damping = 0.0
     """All dampers together, along the shaft axis."""
-    radius: Length | None = None
+    radius: Radius | None = None
     """Radius of the circle of springs: tilt coefficient = axial coefficient * radius^2 / 2."""
     tilt_stiffness: TiltStiffness | None = None
     """About a diameter, in place of `radius`."""
@@ -64,11 +65,13 @@ class Stator:
     __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
-    """Mass of the ring, if it floats."""
+    """Mass of the ring, if it floats; or a table `body`."""
     transverse_inertia: Inertia = 0.0
     """Moment of inertia about a diameter; with mass 0 and inertias 0 the ring has no inertia."""
     polar_inertia: Inertia = 0.0
     """Moment of inertia about the shaft axis, at most twice the transverse one."""
+    body: Body | None = None
+    """The ring from its drawing, in place of mass and inertias."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Angle] = 0.0
@@ -95,11 +98,13 @@ class Rotor:
     __pydantic_config__ = FORBID_UNKNOWN
 
     mass: Mass = 0.0
-    """Mass of the ring, if it floats."""
+    """Mass of the ring, if it floats; or a table `body`."""
     transverse_inertia: Inertia = 0.0
     """Moment of inertia about a diameter; with mass 0 and inertias 0 the ring has no inertia."""
     polar_inertia: Inertia = 0.0
     """Moment of inertia about the shaft axis, at most twice the transverse one."""
+    body: Body | None = None
+    """The ring from its drawing, in place of mass and inertias."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
     misalignment: Varying[Angle] = 0.0

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from ..units import Force, Length, LineForce, Velocity
+from ..units import Force, LineForce, Radius, Velocity
 
 
 @dataclass(frozen=True)
@@ -16,7 +16,7 @@ class SecondarySeal:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    radius: Length
+    radius: Radius
     """Radius of the circle on which the O-ring slides."""
     line_friction: LineForce | None = None
     """Friction per length of that circle; or give `friction_force`."""

@@ -10,8 +10,9 @@ from dataclasses import fields, replace
 from typing import Any
 
 from ..numerics.piecewise_linear import PiecewiseLinear
+from .body import INERTIAL, with_inertia
 from .excitation import Housing, Shaft
-from .rings import Rotor, Stator
+from .rings import RING_NAMES, Rotor, Stator
 from .scene import Closing, Initial, RingStart, Scene, SceneError
 
 # A key that is given takes its alternatives in the same table away.
@@ -22,9 +23,14 @@ ALTERNATIVES = {
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),
     "acceleration": ("displacement",),
-    "radius": ("tilt_stiffness", "tilt_damping"),
-    "tilt_stiffness": ("radius",),
-    "tilt_damping": ("radius",),
+    "radius": ("tilt_stiffness", "tilt_damping", "diameter"),
+    "diameter": ("tilt_stiffness", "tilt_damping", "radius"),
+    "tilt_stiffness": ("radius", "diameter"),
+    "tilt_damping": ("radius", "diameter"),
+    "inner_radius": ("inner_diameter",),
+    "inner_diameter": ("inner_radius",),
+    "outer_radius": ("outer_diameter",),
+    "outer_diameter": ("outer_radius",),
 }
 # Tables that may hold functions of time.
 VARYING = ("shaft", "film", "rotor", "stator", "closing")
@@ -33,7 +39,7 @@ LEFT_OUT = {
     "contact": ("contact", "stator.secondary_seal", "rotor.secondary_seal"),
     "secondary-seal": ("stator.secondary_seal", "rotor.secondary_seal"),
 }
-CARRIED = ("mass", "transverse_inertia", "polar_inertia", "unphysical_inertia", "misalignment", "support",
+CARRIED = ("mass", "transverse_inertia", "polar_inertia", "body", "unphysical_inertia", "misalignment", "support",
            "secondary_seal")  # fmt: skip
 
 
@@ -54,6 +60,12 @@ def with_values(scene, values: dict[str, Any]):
     """
     for key, value in values.items():
         scene = _with_value(scene, key.split("."), value, key)
+        name, _, below = key.partition(".")
+        if name in RING_NAMES and getattr(scene, name).body:
+            # A body's mass follows it; a mass of its own does without the body.
+            ring = getattr(scene, name)
+            ring = replace(ring, body=None) if below in INERTIAL else with_inertia(ring)
+            scene = replace(scene, **{name: ring})
     return scene
 
 

@@ -25,7 +25,12 @@ One TOML file describes a seal and a run.  This page is written by `python tests
 JSON schema (`sealdyn schema`), which editors read too.
 
 - A quantity is a string with a unit (`"10 um"`, `"9550 rpm"`, `"5 bar"`, `"0.5 mPa*s"`) or a bare number in the SI unit
-  named below.  Pressures are absolute.
+  named below.  Units multiply by `*`, `.`, `-` or a blank and divide by `/`, powers stand with or without `^`:
+  `"0.5 mPa.s"`, `"3 lbf-in"`, `"850 kg/m3"`, `"4 kJ/(kg*K)"`.  `in`, `mil`, `lb`, `lbf`, `psi`, `ksi`, `BTU`, `degF`,
+  `kgf`, `cP` and their like are known.
+- Pressures are absolute, or gauge if their unit says so: `"5 barg"`, `"70 psig"`, `"0.4 MPa gauge"` are read as so much
+  above 1.01325 bar.  Where the air around has another pressure, give absolute ones.
+- Where a table has a radius, its diameter may stand instead (`outer_diameter` for `outer_radius`); never both.
 - A quantity marked ~ may vary with time: `{ time = [...], value = [...] }`, linear between the times, constant before
   the first and after the last; the same time twice is a step.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
@@ -74,7 +79,10 @@ def tables(schema: dict, table: dict, path: str = "") -> dict[str, list[str]]:
 
 def key_table(table: dict, paths: list[str]) -> str:
     """One row a key: quantity and unit, default, meaning."""
-    rows = [row(key, holds, key in table.get("required", ())) for key, holds in table["properties"].items()]
+    # Of a radius and its diameter one is required: the radius is named so.
+    either = [rule["oneOf"][0]["required"] for rule in table.get("allOf", ()) if "oneOf" in rule]
+    required = sum(either, [*table.get("required", ())])
+    rows = [row(key, holds, key in required) for key, holds in table["properties"].items()]
     rows = [line for line in rows if line]
     if not rows:
         return ""

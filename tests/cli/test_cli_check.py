@@ -13,3 +13,23 @@ def test_check_says_what_the_floor_of_a_pressure_costs(tmp_path):
 def test_check_says_which_waves_are_left_of_an_elastic_ring(tmp_path):
     answer = sealdyn("check", SCENARIOS / "lebeck_elastic.toml", cwd=tmp_path)
     assert answer.code == 0 and "of its 17.5 um of waves are left at rest" in answer.out
+
+
+def test_check_prints_gauge_pressures_as_absolute_and_says_so(tmp_path):
+    arguments = ["check", SCENARIOS / "axial_only.toml", "--set", "film.outer_pressure=5 barg"]
+    answer = sealdyn(*arguments, cwd=tmp_path)
+    assert answer.code == 0 and "\nouter_pressure = 601325.0\n" in answer.out
+    assert "# pressures are absolute: film.outer_pressure, given as gauge" in answer.out
+    assert sealdyn(*arguments, "--json", cwd=tmp_path).found["gauge"] == ["film.outer_pressure"]
+    assert "gauge" not in sealdyn(*arguments[:2], cwd=tmp_path).out
+
+
+def test_check_prints_the_mass_of_a_body(tmp_path):
+    body = "{ inner_radius = 0, outer_diameter = '20 cm', length = '10 cm', density = '1 g/cm3' }"
+    text = (SCENARIOS / "axial_only.toml").read_text().splitlines()
+    kept = [line for line in text if not line.startswith(("mass", "transverse_inertia", "polar_inertia"))]
+    (tmp_path / "seal.toml").write_text("\n".join(kept))
+    ring = "rotor" if "[rotor.support]" in kept else "stator"
+    answer = sealdyn("check", "seal.toml", "--set", f"{ring}.body={body}", cwd=tmp_path)
+    assert answer.code == 0, answer.err
+    assert f"[{ring}.body]" in answer.out and "\nmass = 3.14159" in answer.out

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from command import REFERENCE, sealdyn, settings
 
+SEVERAL = '[shaft]\nsped = 1\n[film]\ninner_radius = "1 kg"\n[run]\nturns = -1\n'
 LACKING = '[shaft]\nspeed = "1000 rad/s"\n'
 
 BAD = {
@@ -73,6 +74,22 @@ def test_bad_input_is_one_object(arguments, folder):
     answer = sealdyn(*arguments, "--json", cwd=folder)
     assert answer.code == 2
     assert answer.found["status"] == "invalid" and "\n" not in answer.found["message"]
+
+
+def test_every_problem_of_a_file_at_once(folder):
+    """A line each, and in JSON a list; the message is the first of them."""
+    (folder / "several.toml").write_text(SEVERAL)
+    answer = sealdyn("check", "several.toml", cwd=folder)
+    lines = answer.err.splitlines()
+    assert answer.code == 2 and answer.out == "" and all(line.startswith("several.toml: [") for line in lines)
+    found = sealdyn("run", "several.toml", "--json", cwd=folder).found
+    assert found["status"] == "invalid" and found["message"] == lines[0]
+    assert [error["message"] for error in found["errors"]] == lines
+    keys = [error["key"] for error in found["errors"]]
+    assert keys[0] == "shaft.sped" and {"film.inner_radius", "film.outer_radius", "run.turns"} < set(keys)
+    # The speed is not missing: it is there misspelt.
+    assert "shaft.speed" not in keys and len(keys) == len(set(keys))
+    assert set(found["errors"][0]) == {"message", "key", "found", "expected"}
 
 
 def test_bad_input_leaves_nothing_behind(folder):

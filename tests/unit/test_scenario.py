@@ -90,7 +90,7 @@ BROKEN = [
     (('outer_radius = "40 mm"', ""), ["[film] outer_radius", "nothing", "a length"]),
     # wrong kinds
     (('"1000 rad/s"', '"10 um"'), ["[shaft] speed", '"10 um"', "a unit of length", "rad/s"]),
-    (('"5 bar"', '"5 bar gauge"'), ["[film] outer_pressure", "absolute"]),
+    (('"5 bar"', '"-5 bar gauge"'), ["[film] outer_pressure", "absolute"]),
     (('"10 um"', '"10 um TIR"'), ["[film] clearance", "rotor.runout only"]),
     (('mass = "1 kg"', "mass = true"), ["[rotor] mass", "true"]),
     (('mass = "1 kg"', "mass = nan"), ["[rotor] mass", "nan", "finite"]),

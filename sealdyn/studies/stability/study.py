@@ -101,6 +101,8 @@ def _held_by(scenario, where, key):
         near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
         hint = f"; nearest {near[0]}" if near else ""
         raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
+    if ".body." in key:
+        raise ScenarioError(scenario.name, where, f'"{key}"', "mass or an inertia, which follow from the body")
     return holds, _unit(holds)
 
 

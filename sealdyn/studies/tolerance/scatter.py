@@ -3,13 +3,14 @@
 import difflib
 import re
 import typing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm, qmc, truncnorm, uniform
 
-from ...scenario.errors import ScenarioError, nearest, tables, without_indices
+from ...scenario.diameters import radius_key
+from ...scenario.errors import ScenarioError, diameters, nearest, tables, without_indices
 from ...scene import variants
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quoted
@@ -92,12 +93,13 @@ class _Entry:
     def _quantity(self) -> Quantity | None:
         """What the key holds; None for a plain number.  Raises ScenarioError if it is no key, or no number."""
         table, _, last = self.key.rpartition(".")
-        known = tables(Scene)
+        known = {table: keys | diameters(keys) for table, keys in tables(Scene).items()}
         if last not in known.get(without_indices(table), {}):
             hint = nearest(Scene, table, last)
             # Of a table that there is not: which there are.
             hint = hint if hint[-1] != " " else f"the tables are {', '.join(known[''])}"
             raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
+        last = radius_key(Scene, self.key).rpartition(".")[2]
         try:
             owner = variants.part(self.scenario.scene, table) if table else self.scenario.scene
             kind = typing.get_type_hints(type(owner), include_extras=True)[last]
@@ -144,11 +146,12 @@ class _Entry:
         return centre - width, centre + width, centre, width / SIGMAS
 
     def _own(self) -> float:
-        value = variants.part(self.scenario.scene, self.key)
+        radius = radius_key(Scene, self.key)
+        value = variants.part(self.scenario.scene, radius)
         if not isinstance(value, int | float):
             found = "no value" if value is None else "a function of time"
             raise self.wrong(f"{found} of {self.key} in the scenario", FORMS[self.kind])
-        return float(value)
+        return float(value) if radius == self.key else 2 * float(value)
 
     def _unit(self, parts) -> str:
         """The last unit written: a number without a unit is in that of its neighbours."""
@@ -172,7 +175,8 @@ class _Entry:
             raise self.wrong(f"{quoted(words.strip())}", quantity.expected() if self.quantity else "a number")
         number, written = match[1], match[2] or unit
         if positive:
-            quantity = replace(quantity, least=0, open=True)
+            # A width counts from no zero but its own: of degrees, kelvins, and never gauge.
+            quantity = Quantity(quantity.name, quantity.unit, quantity.example, quantity.also, 0, True)
         if self.quantity is None and written:
             raise self.wrong(f"{quoted(words.strip())}", "a number without a unit")
         try:

@@ -1,0 +1,75 @@
+"""Everything that is wrong with a file, at once: each key once, the most telling first."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from sealdyn.scenario.errors import MOST
+from sealdyn.scenario.reader import ScenarioError, parse_scenario
+
+FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
+
+
+def errors(text: str, *overrides) -> list[ScenarioError]:
+    with pytest.raises(ScenarioError) as caught:
+        parse_scenario(text, "seal.toml", overrides)
+    found = [caught.value, *caught.value.others]
+    assert all(str(error).startswith("seal.toml") and str(error).isprintable() for error in found)
+    return found
+
+
+def keys(text: str, *overrides) -> list[str]:
+    return [error.key for error in errors(text, *overrides)]
+
+
+# What a key may be set to, so that it is wrong by itself and nothing else is.
+SLIPS = {
+    "film.clearance": '"10 kg"',
+    "film.viscosty": '"1 cP"',
+    "film.outer_pressure": '"5 Bar"',
+    "film.outer_diameter": '"80 rpm"',
+    "rotor.mass": "nan",
+    "rotor.support.axial_damping": "true",
+    "run.solver": '"admas"',
+    "shaft.speed": "[1]",
+    "stator.waviness": "[{ order = 2, amplitud = 1 }]",
+}
+
+
+@settings(deadline=None)
+@given(st.sets(st.sampled_from(sorted(SLIPS)), min_size=1))
+def test_slips_are_reported_together(slips):
+    """Overrides replace the right values by wrong ones: each is found, and nothing else."""
+    expected = {"stator.waviness.0.amplitud" if slip == "stator.waviness" else slip for slip in slips}
+    assert set(keys(FMR, *(f"{slip}={SLIPS[slip]}" for slip in slips))) == expected
+
+
+def test_the_first_is_an_unknown_key_then_a_wrong_value_then_a_missing_one():
+    text = FMR.replace('viscosity = "0.5 mPa*s"', "").replace('"5 bar"', '"5 rpm"').replace("[stator]", "[statr]")
+    found = keys(text.replace("inner_pressure = ", "inner_presure = "))
+    assert found[:2] == ["film.inner_presure", "statr"] or found[:2] == ["statr", "film.inner_presure"]
+    assert found[2] == "film.outer_pressure"
+    # Those misspelt are not missing, too.
+    assert not {"stator", "film.inner_pressure"} & set(found)
+
+
+def test_a_misspelt_diameter_is_no_missing_radius():
+    assert keys(FMR.replace('outer_radius = "40 mm"', 'outer_diametre = "80 mm"')) == ["film.outer_diametre"]
+
+
+def test_what_no_scene_can_have_together_of_every_part():
+    wrong = ["film.cavitation_pressure=1 bar", "closing.balance_ratio=-1", "rotor.polar_inertia=1", "run.duration=-1"]
+    expected = ["film.cavitation_pressure", "closing.balance_ratio", "rotor.polar_inertia", "run.duration"]
+    assert keys(FMR, *wrong, "film.floor=1") == ["film.floor", *expected]
+
+
+def test_of_thousands_so_many_lines():
+    text = "".join(f"[[housing.axial]]\nfrequency = 0\nx{k} = 1\n" for k in range(2000))
+    found = errors(f"{FMR}\n{text}")
+    assert len(found) == MOST and "more" in found[-1].found
+
+
+def test_one_problem_is_one_line():
+    assert keys(FMR, "film.clearance=10 kg") == ["film.clearance"]
