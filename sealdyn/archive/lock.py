@@ -19,6 +19,7 @@ def only_writer(path):
     if place.is_symlink() or (place.exists() and not place.is_file()):
         raise ArchiveError(f"{path}: found what is no file (a folder, a pipe, a device, a link to itself)")
     path = Path(os.path.realpath(place))
+    made = [folder for folder in path.parents if not folder.exists()]
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{path.stem}.lock")
     lock = FileLock(beside, timeout=0)
@@ -35,3 +36,7 @@ def only_writer(path):
         with suppress(OSError):
             beside.unlink()
         lock.release()
+        # Folders in which nothing came to stand.
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
