@@ -572,7 +572,7 @@ def report(
             _must_be_archive(file)
     with _reads(files[0]):
         try:
-            review(files, out, title, tables=study_tables)
+            review(files, out, title, _rules_of, study_tables)
         except OSError as error:
             raise _not_written(error, out, "the archives are whole") from None
     print(out)
@@ -597,6 +597,24 @@ def compare(
     else:
         for line in comparison_lines(found):
             print(line)
+
+
+def _rules_of(file, info) -> list[dict]:
+    """What the design rules say of the scene of a run, the broken ones first."""
+    from .analysis.design_rules import findings
+    from .archive import ArchiveError
+    from .scene.scene import SceneError
+    from .simulation.simulate import prepare_run
+
+    scenario = _read(file, None)
+    try:
+        run, *_ = prepare_run(scenario)
+    except (SceneError, ArchiveError) as error:
+        # It began from an archive, say, that is gone.
+        print(f"warning: {file}: the page has no design rules ({error})", file=sys.stderr)
+        return []
+    order = ("fail", "note", "acknowledged", "pass", "not applicable")
+    return sorted(findings(scenario, run.model), key=lambda row: order.index(row["verdict"]))
 
 
 def _must_be_archive(file):

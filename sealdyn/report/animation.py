@@ -24,7 +24,9 @@ RADII, STEPS, COLOURS = 5, 24, 128
 THICK = 0.22
 # Share of the gap that enlarged tilts leave open, and what they may lift a ring's edge by, in the thickest film.
 OPEN, LEANING = 0.15, 0.5
-RINGS = ("stator", "rotor")
+RINGS, TILTED = ("stator", "rotor"), ("relative", "rotor", "stator")
+# Planes among which the section is chosen.
+PLANES = 36
 SUFFIXES = (".gif", ".mp4", ".png")
 
 
@@ -131,6 +133,10 @@ class _Rows:
         """A series at a progress."""
         return float(np.interp(moment, self.at, self.values(name)))
 
+    def lean(self, name: str, angle: float) -> np.ndarray:
+        """Rise over radius (m,) of the tilt `name` at an angle."""
+        return self.values(f"{name}_tilt_x") * np.sin(angle) - self.values(f"{name}_tilt_y") * np.cos(angle)
+
     def thickness(self, radius, angle, moment: float) -> np.ndarray:
         """Film thickness (m) over the face at a progress."""
         k = int(np.clip(np.searchsorted(self.at, moment) - 1, 0, self.rows - 2))
@@ -144,21 +150,24 @@ def _radii(run: Run) -> tuple[float, float]:
 
 
 def _section(ax, run: Run, rows: _Rows):
-    """Both rings cut by the plane through the shaft and the x axis: heights in micrometres beside millimetres, tilts
-    enlarged as far as the gap stays open."""
-    radii, sides = np.linspace(*_radii(run), RADII), (0.0, np.pi)
+    """Both rings cut by the plane through the shaft in which they tilt most: heights in micrometres beside millimetres,
+    tilts enlarged as far as the gap stays open."""
+    radii, planes = np.linspace(*_radii(run), RADII), np.linspace(0, np.pi, PLANES, endpoint=False)
     looked = rows.at[:: max(1, len(rows.at) // 200)]
-    # In this plane the tilt about the x axis is not seen.
+    leans = [max(np.abs(rows.lean(name, plane)).max() for name in TILTED) for plane in planes]
+    plane = planes[np.argmax(leans)]
+    sides = (plane, plane + np.pi)
     over = np.array([[rows.thickness(radii, angle, moment) for angle in sides] for moment in looked])
-    lean = np.array([rows.when("relative_tilt_y", moment) for moment in looked])[:, None, None]
-    wedge = -lean * radii * np.cos(sides)[:, None]
-    leans = [np.abs(rows.values(f"{name}_tilt_y")).max() for name in ("relative", "rotor", "stator")]
+    lean = np.interp(looked, rows.at, rows.lean("relative", plane))
+    wedge = lean[:, None, None] * np.array([1.0, -1.0])[:, None] * radii
     times = _enlarged(over - wedge, wedge, max(leans) * radii[-1])
+    rotor_lean, relative_lean = rows.lean("rotor", plane), rows.lean("relative", plane)
 
-    def heights(moment, angle):
-        rotor = rows.when("rotor_z", moment) - times * radii * rows.when("rotor_tilt_y", moment) * np.cos(angle)
-        more = -(times - 1) * radii * rows.when("relative_tilt_y", moment) * np.cos(angle)
-        return 1e6 * rotor, 1e6 * (rotor + rows.thickness(radii, angle, moment) + more)
+    def heights(moment, side):
+        way = radii if side == plane else -radii
+        rotor = rows.when("rotor_z", moment) + times * way * np.interp(moment, rows.at, rotor_lean)
+        more = (times - 1) * way * np.interp(moment, rows.at, relative_lean)
+        return 1e6 * rotor, 1e6 * (rotor + rows.thickness(radii, side, moment) + more)
 
     ends = np.array([heights(moment, angle) for moment in looked for angle in sides])
     low, high = ends.min(), ends.max()
@@ -170,14 +179,14 @@ def _section(ax, run: Run, rows: _Rows):
     width = 1e3 * radii[-1]
     ax.set(xlim=(-1.08 * width, 1.08 * width), ylim=(low - thick, high + thick))
     ax.set_title("Section" if times == 1 else f"Section, tilts {times:g} times enlarged")
-    ax.set(xlabel="along the x axis, mm", ylabel="along the shaft, µm")
+    ax.set(xlabel=f"at {np.degrees(plane):.0f}° (right) and opposite, mm", ylabel="along the shaft, µm")
     ax.axvline(0, color=GREY, lw=0.8, ls="-.")
     ax.legend(loc="center")
 
     def move(moment):
         for angle, (stator, rotor) in bodies:
             below, above = heights(moment, angle)
-            across = 1e3 * radii * np.cos(angle)
+            across = 1e3 * (radii if angle == plane else -radii)
             stator.set_xy(_closed(across, above, high + 2 * thick))
             rotor.set_xy(_closed(across, below, low - 2 * thick))
 
