@@ -537,7 +537,7 @@ def animate(
 ):
     """Show the motion: both rings with enlarged tilts, the film over the face, the orbit, and the time line."""
     from .archive import is_study
-    from .report.animation import animate
+    from .report.charts.animation import animate
 
     out = out or file.with_suffix(".gif")
     with _Progress() as bar, _reads(file):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from sealdyn.report.animation import OPEN, _enlarged, _Rows
+from sealdyn.report.charts.animation import OPEN, _enlarged, _Rows
 from sealdyn.report.charts.record import Run
 
 TURNS, SAMPLES, PER_TURN = 3, 24, 6

@@ -280,6 +280,10 @@ def test_reading_while_a_run_writes(tmp_path):
     try:
         for n in range(0, 20000, 40):
             run.append(rows(n, n + 40), {"row": n + 40})
+            # On a busy machine the watcher may not have had its turn.
+            end = time.monotonic() + 20
+            while n % 4000 == 0 and n and len(set(seen)) < n // 4000 and time.monotonic() < end:
+                time.sleep(0.001)
         run.finish("ok", "", {})
     finally:
         stop.set()

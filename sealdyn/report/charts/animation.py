@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib import colormaps
 from PIL import Image
 
-from ..archive import ArchiveError
-from .charts.face import annulus, in_the_middle
-from .charts.film import around, thickness
-from .charts.orbit import contact_circle
-from .charts.page import absent, header, look, sheet
-from .charts.palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
-from .charts.record import Run
+from ...archive import ArchiveError
+from .face import annulus, in_the_middle
+from .film import around, thickness
+from .orbit import contact_circle
+from .page import absent, header, look, sheet
+from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
+from .record import Run
 
 # Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
 PER_TURN, PER_SECOND, MOST, SIZE, DPI = 36, 15, 2000, (11.0, 6.2), 80
