@@ -83,8 +83,8 @@ def cluster(folder, *words, **env):
     told = folder / "scheduler.json"
     running = [started(folder, "scheduler", "--host", "127.0.0.1", "--port", 0, "--scheduler-file", told, **env)]
     try:
-        until(told.exists)
-        address = json.loads(told.read_text())["address"]
+        until(lambda: address_in(told))
+        address = address_in(told)
         running += [worker(address, folder, *words) for _ in range(2)]
         with client_of(address) as client:
             client.wait_for_workers(2, timeout=LIMIT)
@@ -92,6 +92,12 @@ def cluster(folder, *words, **env):
     finally:
         for process in reversed(running):
             ended(process)
+
+
+def address_in(told):
+    """Of a scheduler's file, once it is whole."""
+    with contextlib.suppress(OSError, ValueError):
+        return json.loads(told.read_text())["address"]
 
 
 def ended(process):
