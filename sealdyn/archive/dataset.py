@@ -78,10 +78,12 @@ def tables_as_dataset(answer: dict, units: dict[str, str], along: dict[str, tupl
         table, name, unit = key.rpartition("/")[0], key.replace("/", "."), units.get(key, "")
         dimensions = [name] if key in axes else [f"{name}.{axis}" for axis in range(values.ndim)]
         others = [*([table] if table in of_rows else []), *told.get(table, ())]
-        for axis, other in enumerate(others if key not in axes else ()):
+        for axis, other in enumerate(others[: values.ndim] if key not in axes else ()):
             fits = other in axes and values.shape[axis : axis + 1] == columns[other].shape
-            if fits or other in of_rows:
-                dimensions[axis] = other.replace("/", ".")
+            own = axis == 0 and other == table and table in of_rows
+            along_it = other.replace("/", ".")
+            if (fits or own) and along_it not in dimensions:
+                dimensions[axis] = along_it
         variables[name] = (dimensions, values, {"units": unit} if unit else {})
     attributes = {name: str(answer[name]) for name in ("study", "status", "message") if name in answer}
     return xarray.Dataset(variables, attrs=attributes)

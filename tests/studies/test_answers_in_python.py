@@ -88,6 +88,7 @@ VALUES = st.recursive(
 
 @settings(max_examples=200, deadline=None)
 @example({"speed": [[1.0]], "one": [1.0]}, {"one": ("speed",)})
+@example({"speed": None, "failed": [{"speed": None}]}, {"one": ("speed", "speed"), "failed": ("one", "failed")})
 @given(st.dictionaries(NAMES, VALUES, max_size=4), st.dictionaries(NAMES, st.tuples(NAMES, NAMES), max_size=3))
 def test_any_answer_can_be_shown(answer, along):
     data = tables_as_dataset(answer, {"speed": "rad/s"}, along)
