@@ -42,7 +42,6 @@ def comparison(one, other) -> dict:
         "status": [str(info["status"]) for info in infos],
         "scene": _different(*scenes),
         "summary": [row for row in _different(*summaries) if not row["key"].startswith(OWN)],
-        "same": [key for key, *_ in FIRST if key in summaries[0] and not _differ(*(s.get(key) for s in summaries))],
         "series": list(_series(one, other, infos)),
     }
 
