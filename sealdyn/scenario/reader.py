@@ -213,7 +213,10 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
         file = _reader().validate_python(raw)
     except ValidationError as error:
         wrong += explained(name, ScenarioFile, raw, error.errors(include_url=False))
-    wrong = wrong or [*_bodies(file, raw, name)]
+    if not wrong:
+        # Powers of the numbers are taken from here on.
+        refuse_extremes(file, name)
+        wrong += _bodies(file, raw, name)
     if wrong:
         # What the values are together is asked where each can be.
         raise together(wrong)

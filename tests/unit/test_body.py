@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
 from sealdyn.scene.body import DENSITIES, INERTIAL, Body
 from sealdyn.studies.stability.study import si_axis
@@ -124,3 +125,11 @@ def test_refused_in_one_line(override, key, says):
 def test_a_stability_map_wants_the_mass_itself():
     with pytest.raises(ScenarioError, match="follow from the body"):
         si_axis(parse(), "rotor.body.length=30:40 mm:3", "x")
+
+
+@pytest.mark.parametrize("key", ["inner_radius", "outer_radius", "length"])
+def test_a_body_of_no_world_is_refused_by_its_key(key):
+    body = {"inner_radius": "28 mm", "outer_radius": "38 mm", "length": "15 mm", "material": "steel", key: "1e200 m"}
+    words = ", ".join(f'{name} = "{value}"' for name, value in body.items())
+    with pytest.raises(ScenarioError, match=key):
+        parse_scenario(f"{template('fms').split('mass = ')[0]}body = {{ {words} }}\n", "seal")
