@@ -19,7 +19,7 @@ from sealdyn.simulation.simulate import simulate
 from sealdyn.simulation.size import size_of
 
 from .outcome import PATIENCE, one_line, place
-from .scenarios import SCENARIOS, mutated
+from .scenarios import SCENARIOS, healthy, mutated
 
 # Longest making ready without a word (s): films of many cells, kernels; a run that advances is broken off after LONG.
 READY, LONG = 120, 5
@@ -31,7 +31,7 @@ WARM, SHORT = ("fms_reference", "rub", "lebeck_elastic", "rayleigh_pads"), ("run
 
 def runs(ledger, seed, numbers, folder: Path) -> None:
     """One run for each number."""
-    texts = [path.read_text() for path in sorted(SCENARIOS.glob("*.toml"))]
+    texts = healthy()
     for name in WARM:
         # Kernels that are in this process need not be read by its forks.
         simulate(read_scenario(SCENARIOS / f"{name}.toml", SHORT), folder / "run-0.h5")

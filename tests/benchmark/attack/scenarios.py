@@ -10,7 +10,8 @@ from sealdyn.simulation.simulate import prepare_run
 
 from .outcome import tried
 
-SCENARIOS = Path(__file__).parents[3] / "scenarios"
+HOUSE = Path(__file__).parents[3]
+SCENARIOS = HOUSE / "scenarios"
 # Longest time (s) for making ready: a film may choose many cells.
 READY = 120
 # Of the scenarios that are read one in so many is made ready.
@@ -26,6 +27,12 @@ OTHERS = (
     "1979-05-27", '"auto"', '"10 furlongs"', '"1 um"', '"1e300 bar"', '"5 %"', '"' + 2000 * "m" + '"',
 )  # fmt: skip
 VALUE = re.compile(r"^(\s*[\w.]+\s*=\s*)(.+)$", re.M)
+
+
+def healthy() -> list[str]:
+    """The scenarios that are mutated: those that come with the program, and those that `sealdyn new` writes."""
+    templates = HOUSE / "sealdyn" / "scenario" / "templates"
+    return [path.read_text() for folder in (SCENARIOS, templates) for path in sorted(folder.glob("*.toml"))]
 
 
 def mutated(random, text) -> str:
@@ -64,7 +71,7 @@ def mutated(random, text) -> str:
 
 def scenarios(ledger, seed, numbers, folder=None) -> None:
     """Mutated scenarios through the reader, of the valid ones one in some made ready to run."""
-    texts = [path.read_text() for path in sorted(SCENARIOS.glob("*.toml"))]
+    texts = healthy()
     for number in numbers:
         chance = random.Random(f"{seed} {number}")
         text = mutated(chance, chance.choice(texts))
