@@ -442,8 +442,9 @@ def list_scenarios(as_json: AsJson = False):
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
-    csv: Annotated[bool, typer.Option("--csv", help="all series, or a study's table, to standard output")] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="all series, or a table of a study, to standard output")] = False,
     mat: Annotated[Path | None, typer.Option("--mat", help="MATLAB file to write them to")] = None,
+    table: Annotated[str | None, typer.Option(help="which table of a study, as --csv has it or for --mat")] = None,
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""
@@ -454,7 +455,9 @@ def show(
         raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
     with _reads(file):
         if is_study(file):
-            return _show_study(file, csv, mat, as_json)
+            return _show_study(file, csv, mat, as_json, table)
+        if table is not None:
+            raise Stop(Status.INVALID, f"--table: found {table!r}; expected nothing, {file} is the archive of a run")
         info = read_info(file)
         if mat is not None:
             _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])})
@@ -469,28 +472,43 @@ def show(
                 print(line)
 
 
-def _show_study(file, csv, mat, as_json):
-    """The answer of a study; its table of columns for other programs."""
-    from .archive import read_study
-    from .report.text import study_lines
+def _show_study(file, csv, mat, as_json, table):
+    """The answer of a study; a table of it for other programs."""
+    from .archive import answer_tables, read_study
+    from .report.text import csv_lines, study_lines, tables_line
     from .studies._runner import study_tables
 
     study = read_study(file)
-    answer, table = study["answer"], study["answer"].get("table")
-    if (csv or mat is not None) and not isinstance(table, dict):
-        raise Stop(Status.INVALID, f"{file}: study {study['study']} has no table of columns; --json prints all of it")
+    answer = study["answer"]
     if mat is not None:
-        _write_mat(mat, table)
-    elif csv:
-        print(",".join(table))
-        for row in zip(*table.values(), strict=True):
-            print(",".join(map(repr, row)))
+        # MATLAB has no points in names, and no units.
+        columns = _table_of(file, study, table)
+        _write_mat(mat, {name.split(" [")[0].replace(".", "_"): values for name, values in columns.items()})
+    elif csv or table is not None:
+        for line in csv_lines(_table_of(file, study, table)):
+            print(line)
     elif as_json:
         print(json.dumps(answer))
     else:
         print(f"{study['name']}, study {study['study']}:")
-        for line in study_lines(answer, study_tables(study["study"], answer)):
+        for line in [*study_lines(answer, study_tables(study["study"], answer)), *tables_line(answer_tables(study))]:
             print(line)
+
+
+def _table_of(file, study, name) -> dict:
+    """The columns of a table of a study: the one that is asked for, or that there is, or that is meant for others."""
+    from .archive import answer_tables
+
+    tables = answer_tables(study)
+    if name is None and isinstance(study["answer"].get("table"), dict):
+        name = "table"
+    if name is None and len(tables) == 1:
+        return next(iter(tables.values()))
+    if name in tables:
+        return tables[name]
+    found = "nothing" if name is None else f'"{name}"'
+    expected = f"one of {', '.join(tables)}{_nearest(name or '', tables)}" if tables else "nothing, it has no table"
+    raise Stop(Status.INVALID, f"{file}: --table: found {found}; expected {expected}")
 
 
 def _write_mat(path, columns):

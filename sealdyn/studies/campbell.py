@@ -16,7 +16,8 @@ from ..units import Speed
 WITH_WAVES = True
 REFUSES = ("secondary-seal",)
 ALONG = {"modes": ("speed",)}
-units = {"speed": "rad/s", "modes/frequency": "rad/s"}
+units = dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s") | {"growth_rate": "1/s"}
+units |= dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1")
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9

@@ -38,16 +38,21 @@ DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u 
                  for row in STIFFNESS_UNITS]  # fmt: skip
 STEP = 0.02
 
-ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")}
+ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")} | {"table": ("row",)}
 units = {
-    "against_speed/speed": "rad/s",
-    "against_frequency/frequency": "rad/s",
-    "table/speed": "rad/s",
-    "table/frequency": "rad/s",
-    "against_clearance/clearance": "m",
-    "against_tilt/tilt": "rad",
-    "against_tilt/axial_opening": "m",
-}
+    "speed": "rad/s",
+    "frequency": "rad/s",
+    "clearance": "m",
+    "tilt": "rad",
+    "axial_opening": "m",
+    "stiffness": STIFFNESS_UNITS,
+    "damping": DAMPING_UNITS,
+} | {
+    f"{letter}_{row}_{column}": matrix[i][j]
+    for letter, matrix in (("k", STIFFNESS_UNITS), ("d", DAMPING_UNITS))
+    for i, row in enumerate(ORDER)
+    for j, column in enumerate(ORDER)
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

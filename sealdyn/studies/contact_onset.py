@@ -19,7 +19,11 @@ from ..status import Status
 REFUSES = ("secondary-seal",)
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
-units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
+ALONG = {"path": ("forcing",), "curve": ("value",)}
+# Of the key itself the answer knows the unit.
+units = dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m") | {"tilt": "rad"}
+units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {"cavitation_pressure": "Pa", "start": "SI"}
+units |= dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1")
 
 
 @dataclass(frozen=True)
@@ -56,9 +60,12 @@ def run(scenario, settings, tools) -> dict:
     ]
     answer = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
+    unit = si_unit(scenario.scene, key)
+    answer["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
+    answer["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
     if "failed" in answer:
         answer["status"] = Status.FAILED
-    return {**answer, "verdict": _verdict(answer, si_unit(scenario.scene, key))}
+    return {**answer, "verdict": _verdict(answer, unit)}
 
 
 def brief(row: dict) -> dict:

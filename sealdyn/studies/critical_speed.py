@@ -30,12 +30,14 @@ from ..simulation.stability import critical_speed, held_speeds, natural_frequenc
 from ..status import Status
 
 REFUSES = ("secondary-seal",)
-ALONG = {"growth": ("speed",)}
-units = {
-    "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
-    "nonlinear/branch/speed": "rad/s", "nonlinear/branch/amplitude": "rad", "nonlinear/branch/frequency": "rad/s",
-    "nonlinear/branch/growth_rate": "1/s", "nonlinear/branch/opening": "m", "nonlinear/branch/h_min": "m",
-}  # fmt: skip
+ALONG = {"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
+         "nonlinear/directions": ("speed",)}  # fmt: skip
+units = dict.fromkeys(("speed", "frequency", "bracket"), "rad/s") | dict.fromkeys(("opening", "h_min"), "m")
+units |= dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate"), "1/s")
+units |= dict.fromkeys(
+    ("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"), "rad"
+)
+units |= dict.fromkeys(("difference", "turns"), "1")
 
 # Speeds, relative to the eigenvalues' threshold, at which a disturbance is let grow or decay.
 SHARES = (0.95, 0.98, 0.998, 1.002, 1.02, 1.05)

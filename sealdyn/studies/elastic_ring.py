@@ -17,13 +17,9 @@ WITH_WAVES = True
 LEAST, LARGEST = 1e-3, 1.3
 # Steps of letting a ring go, and how near (as a share) it has come back.
 STEPS, NEAR = 80, 0.1
-units = {
-    "curve/net": "m",
-    "curve/initial": "m",
-    "curve/turned": "rad",
-    "curve/clearance": "m",
-    "curve/leakage": "m^3/s",
-}
+ALONG = {"curve": ("net",), "points/let_go": ("instant",)}
+units = dict.fromkeys(("net", "initial", "clearance", "from", "to"), "m") | {"turned": "rad", "leakage": "m^3/s"}
+units |= {"time": "s"} | dict.fromkeys(("load_support", "friction_coefficient", "let_go/points"), "1")
 COLUMNS = ("net", "initial", "turned", "load_support", "clearance", "leakage", "friction_coefficient")
 
 

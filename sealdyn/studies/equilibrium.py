@@ -32,7 +32,10 @@ FINE = 1e-10
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
 ALONG = {"curve": ("clearance",)}
-units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/contact_force": "N", "curve/stiffness": "N/m"}
+units = dict.fromkeys(("opening_force", "film_force", "contact_force"), "N") | {"stiffness": "N/m", "range": "m"}
+units |= {"clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s"}
+units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
+units |= dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1")
 
 
 @dataclass(frozen=True)

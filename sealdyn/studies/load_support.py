@@ -11,8 +11,11 @@ from ..scene.variants import frozen_at_start
 from .equilibrium import find, kept_waves, root_row
 
 WITH_WAVES = True
-OUTPUTS = {"clearance": "m", "load_support": "", "friction_coefficient": "", "leakage": "m^3/s",
-           "cavitated_fraction": "", "film_force": "N", "contact_force": "N"}  # fmt: skip
+OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "leakage": "m^3/s",
+           "cavitated_fraction": "1", "film_force": "N", "contact_force": "N"}  # fmt: skip
+# Of the balances within the rows.
+units = OUTPUTS | {"stiffness": "N/m", "mass_flow": "kg/s", "held": "m", "rows": "1"}
+units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
 SAID = (("load_support", "Load support", 100.0, " %"), ("friction_coefficient", "Friction coefficient", 1.0, ""),
         ("leakage", "Leakage", 3.6e9, " ml/h"))  # fmt: skip
 # A film this much of whose face cavitates has a cavity, and what changes by less over the key stays.

@@ -29,7 +29,9 @@ MOST_CALLS = 600_000
 # Accuracy of the numbers that are told.
 TOLD = 1e-6
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
-units = {"resolved/rate": "1/s", "resolved/uncertainty": "1/s", "resolved/numerical_damping": "1/s"}
+ALONG = {"damping": ("accuracy",), "drift": ("accuracy",)}
+# Growth, cost and drift are for each turn, or shares.
+units = dict.fromkeys(("accuracy", "turns", "growth", "cost", "tolerance", "energy", "momentum", "attainable"), "1")
 
 LINEAR = {"film.model": "linear"}
 # The linear film at its threshold is the measure: nothing else may damp or bound the motion.

@@ -42,7 +42,13 @@ NOTHING = 1e-9
 # What is kept of further clearances, beside their profile.
 BESIDE = ("clearance", "force", "gauge_force", "centre_of_pressure", "leakage", "mass_flow", "exit_mach")
 
-ALONG = {"pressure": ("r", "theta")}
+ALONG = {
+    "pressure": ("r", "theta"),
+    "profiles": ("pressure/r",),
+    "profiles/width_mean": ("pressure/theta",),
+    "profiles/mid_radius": ("pressure/theta",),
+    "beside": ("clearance", "pressure/r"),
+}
 units = {
     "beside/clearance": "m",
     "beside/force": "N",
@@ -54,6 +60,11 @@ units = {
     "pressure/r": "m",
     "pressure/theta": "rad",
     "pressure/p": "Pa",
+    "edges/inner": ["m", "Pa"],
+    "edges/outer": ["m", "Pa"],
+    "centre_of_pressure": "1",
+    "exit_mach": "1",
+    "beside/circle_mean": "Pa",
     "profiles/thinnest": "Pa",
     "profiles/thickest": "Pa",
     "profiles/circle_mean": "Pa",

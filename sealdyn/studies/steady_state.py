@@ -24,9 +24,11 @@ from ..solvers.recorder import Recorder
 WITH_WAVES = True
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
-ALONG = {"orbit": ("time",), "linear": ("time",)}
-units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
-         "orbit/h_min": "m", "linear/time": "s", "linear/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
+ALONG = {"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
+         "near_threshold": ("speed",)}  # fmt: skip
+units = {"period": "s", "time": "s", "h_min": "m", "speed": "rad/s"}
+units |= dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalignment", "shaft_angle"), "rad")
+units |= dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transient", "defects"), "1")
 
 
 @dataclass(frozen=True)

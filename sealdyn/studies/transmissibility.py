@@ -53,9 +53,12 @@ REFUSES = ("secondary-seal",)
 SAME = 1e-9
 
 ALONG = {seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
-units = {"speed": "rad/s"} | {
-    f"{seal}/{road}{phase}": "deg" for seal in SEALS for road in ("", "linear_algebra/") for phase in PHASES
-}
+ALONG |= {"time_domain": ("speed",), "crossings": ("speed",)}
+units = {"speed": "rad/s", "turns": "1"} | dict.fromkeys(PHASES, "deg") | dict.fromkeys(QUANTITIES, "1")
+units |= dict.fromkeys(
+    (f"table{road}/{seal}" for seal in SEALS for road in ("", "/formula", "/linear_algebra", "/time_domain")),
+    "the row's unit",
+)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,8 @@ from ...simulation.simulate import prepare_run
 from ...status import Status
 from . import cases
 
-units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row's unit"}
+units = {"failing_error": "the row's unit", "survivor_error": "the row's unit", "item": "1", "items": "1"}
+ALONG = {"rows": ("item",)}
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,22 @@ from .statistics import evaluate_point, touch_level
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
 UNITS = {"rotor.runout": "rad", "rotor.misalignment": "rad", "stator.misalignment": "rad", "shaft.speed": "rad/s"}
-units = {"rows/h_min": "m", "rows/section": "rad", "separation/apart": "of clearance/outer radius"}
+ALONG = {
+    "rows": ("value",), "rows/section": ("rows/kept",), "rows/h_min": ("rows/kept",),
+    "rows/orders": ("rows/line",), "rows/amplitude": ("rows/line",), "separation/apart": ("separation/period",),
+    "whirl/rows": ("speed",), "whirl/rows/amplitudes": ("whirl/rows/turn",),
+}  # fmt: skip
+units = {"apart": "of clearance/outer radius", "h_min": "m", "impulse": "N*s", "wall_time": "s", "speed": "rad/s",
+         "end": "SI", "rows/lines/between": "1"}  # fmt: skip
+units |= dict.fromkeys(("section", "amplitude", "amplitudes", "from"), "rad")
+units |= dict.fromkeys((f"rows/lines/{order}" for order in ("0.5", "1", "1.5", "2", "3", "4")), "rad")
+units |= dict.fromkeys(("contact_power", "friction_power"), "W")
+units |= {f"{name}/{what}": unit for what in ("values", "uncertainties") for name, unit in (
+    *((f"h_min_{n}", "m") for n in ("mean", "std", "median", "q05", "q95")),
+    *((f"section_{n}", "rad") for n in ("x_mean", "y_mean", "x_std", "y_std")), ("impulse", "N*s"))}  # fmt: skip
+units |= dict.fromkeys(("period", "distinct", "contacts", "contact_share", "contact_force", "exponent", "uncertainty",
+                        "multiplier", "orders", "evaluations", "first_contact", "turns", "whirl_ratio", "values",
+                        "uncertainties", "spectrum", "accuracies"), "1")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -69,6 +84,7 @@ def run(scenario, settings, tools) -> dict:
     failed = [row["failed"] for row in found if "failed" in row]
     rows = [row for part in found for row in part.get("rows", [])]
     answer = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
+    answer["units"] = {"rows/value": unit}
     answer |= _judged(base, rows, settings, scenario, tools)
     answer["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
     if not any(row["status"] == Status.OK for row in rows):

@@ -27,13 +27,21 @@ from .speed_ramp import passage, short_pass
 CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
 # Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.
 RAMPS = (100.0, 10.0, 1.0)
-ALONG = {"linear": ("speed",), "curve": ("rate",), "whirl": ("speed",)}
-units = {
-    "linear/speed": "rad/s", "linear/amplitude": "rad", "linear/phase": "rad", "curve/rate": "rad/s^2",
-    "curve/relative_misalignment": "rad", "curve/h_min": "m", "whirl/speed": "rad/s", "whirl/frequency": "rad/s",
-    "whirl/growth_rate": "1/s", "waterfall/up/speed": "rad/s", "waterfall/up/amplitude": "rad",
-    "waterfall/down/speed": "rad/s", "waterfall/down/amplitude": "rad",
-}  # fmt: skip
+LISTS = ("time", "value", "film", "tilt", "flow")
+ALONG = {
+    "linear": ("speed",), "curve": ("rate",), "whirl": ("speed",), "quasi_static": ("value",), "rows": ("rate",),
+    "rows/growth/curve": ("instant",), "waterfall/up": ("speed", "orders"), "waterfall/down": ("speed", "orders"),
+} | {f"rows/{name}": ("rows/instant",) for name in LISTS}  # fmt: skip
+# What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
+units = dict.fromkeys(("speed", "frequency", "h_min_speed", "relative_misalignment_speed", "speed_in_window",
+                       "resonances"), "rad/s")  # fmt: skip
+units |= dict.fromkeys(("h_min_time", "time", "until", "time_above", "stages"), "s") | {"growth_rate": "1/s"}
+units |= dict.fromkeys(("h_min", "film"), "m") | dict.fromkeys(("leakage", "leakage_least", "flow"), "m^3/s")
+units |= dict.fromkeys(("phase", "relative_misalignment", "tilt", "growth/from"), "rad")
+units |= dict.fromkeys(("turns", "window", "resolution", "folding", "orders", "driven", "departure", "rows/up/rows",
+                        "rows/down/rows", "rows/time/rows", "foretold", "measured", "integral", "with_factor", "error",
+                        "error_with_factor", "whole"), "1")  # fmt: skip
+units |= {f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment", "leakage")}
 
 
 @dataclass(frozen=True)
@@ -85,6 +93,8 @@ def speed_ramps(scenario, settings, tools) -> dict:
         "whirl": _whirl(mode, plan, begin, end), "forced_tilt": plan["forced"],
         "warnings": plan["warnings"], "rate_foretold": plan["rate_foretold"],
     }  # fmt: skip
+    size = "rad" if answer["tilting"] else "m"
+    answer["units"] = {"amplitude": size, "peak": ["rad/s", size], "rate": "rad/s^2", "bracket": "rad/s^2"}
     shown = next((r for r in rows if r.get("status") == Status.OK), next((r for r in rows if "waterfall" in r), None))
     answer["waterfall"] = {"rate": shown["rate"], "window": shown["window"], **shown["waterfall"]} if shown else None
     answer["rows"] = [{k: v for k, v in row.items() if k != "waterfall"} for row in rows]
@@ -176,7 +186,8 @@ def load_ramps(scenario, settings, tools) -> dict:
     for row in rows:
         row["overshoot"] = overshoot(row, slow) if "failed" not in row else None
     answer = {"key": key, "begin": begin, "end": end, "unit": unit, "rate_unit": rate_unit(unit), "decay": decay,
-              "slowest": slowest, "quasi_static": slow, "rows": rows}  # fmt: skip
+              "slowest": slowest, "quasi_static": slow, "rows": rows,
+              "units": {"value": unit, "rate": rate_unit(unit)}}  # fmt: skip
     if not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": load_sentences(answer)}

@@ -16,7 +16,12 @@ from ...numerics.piecewise_linear import initially
 from ...status import Status
 from . import released as free
 
-units = {"line/force_ratio": "1", "line/sealing_number": "1", "map/guide": "1"}
+ALONG = {"line": ("force_ratio",), "foreseen": ("force_ratio",), "map": ("guide",),
+         "map/closed_form": ("force_ratio",), "balance": ("force_ratio",), "published": ("force_ratio",),
+         "released": ("force_ratio",)}  # fmt: skip
+# Of what is left a film is a length; of what the released ring has, three: mean, least and largest of its last turns.
+units = {"mean_film": "m", "least_film": "m", "ratio/mean_film": "1", "ratio/least_film": "1", "direction": "rad",
+         "tilt_stiffness": "N*m/rad", "*": "1"}  # fmt: skip
 
 # Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.
 RADIANS, ABOVE = 300.0, 1.02

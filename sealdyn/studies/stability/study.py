@@ -25,7 +25,8 @@ from ...simulation.stability import critical_speed
 from .grid import INERTIA_RATIO, Grid
 
 REFUSES = ("secondary-seal",)
-units = {"growth_rate": "1/s", "tilt_growth_rate": "1/s"}
+ALONG = dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x"))
+units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain"), "1/s") | {"turns": "1"}
 # A run in time lasts until a small disturbance (1 % of the clearance) has grown by this much (e-folds), or decayed.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 
@@ -65,6 +66,7 @@ def run(scenario, settings, tools) -> dict:
         "margins": margins(scene),
         "unconditional": unconditional(scene),
         "confirmed": _confirmed(scenario, axes, tilt, settings.confirm, tools),
+        "units": {f"confirmed/{name}": a["unit"] for name, a in zip("xy", axes, strict=True)},
     }
     return answer | {"verdict": _verdict(answer, scenario, axes, total)}
 

@@ -20,6 +20,11 @@ from .verdict import sentences, tables
 __all__ = ["Settings", "run", "tables"]
 
 WITH_WAVES = True
+ALONG = dict.fromkeys(("samples", "samples/keys", "samples/outputs"), ("samples/run",)) | dict.fromkeys(
+    ("convergence", "convergence/quantiles", "convergence/total"), ("convergence/runs",)
+)
+# Of keys and outputs the answer knows the units; what is left are indices, shares and counts.
+units = {"*": "1"}
 OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
 # What every run is asked besides, to know whether the faces touched and whether the seal is stable.
 FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"
@@ -71,6 +76,8 @@ def run(scenario, settings, tools) -> dict:
                     for s in scatters},
         "outputs": outputs,
         "output_units": {name: unit_of(name) for name in outputs},
+        "units": {f"samples/keys/{s.key}": s.unit or "1" for s in scatters}
+        | {f"samples/outputs/{name}": unit_of(name) or "1" for name in outputs},
         "nominal": {name: nominal[name] for name in outputs},
         "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), **counts(rows[: len(whole.values)])},
         "sobol": indices(found, keys, settings.seed) if with_indices else
@@ -78,6 +85,8 @@ def run(scenario, settings, tools) -> dict:
     }  # fmt: skip
     answer |= distribution(whole, found, contact, answer["sobol"], factor is None)
     answer["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
+    of_first = ("standard_deviation", *(f"quantiles/{level}" for level in answer["quantiles"][outputs[0]]))
+    answer["units"] |= {f"convergence/{name}": unit_of(outputs[0]) or "1" for name in of_first}
     if not any(moment["count"] for moment in answer["moments"].values()):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer, rows)}

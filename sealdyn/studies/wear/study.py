@@ -28,7 +28,7 @@ HISTORY = {
     "mean_clearance": "m", "coning": "rad", "wear_rate": "m/s", "stator_volume": "m^3", "rotor_volume": "m^3",
     "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
 }  # fmt: skip
-ALONG = {"history": ("time",), "profile": ("radius",)}
+ALONG = {"history": ("time",), "profile": ("history/time", "radius"), "pv": ("history/time", "radius")}
 units = {f"history/{name}": unit for name, unit in HISTORY.items()} | {
     "radius": "m", "profile/stator": "m", "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s",
     "coefficients": "1/Pa",

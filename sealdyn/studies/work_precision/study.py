@@ -34,7 +34,12 @@ NAMES = {
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
     "trbdf2": "TR-BDF2",
 }  # fmt: skip
-units = {f"methods/{name}/wall": "s" for name in NAMES}
+ALONG = {f"methods/{name}": ("tolerance",) for name in NAMES} | {
+    f"methods/{name}/{what}": (f"methods/{name}/tolerance",)
+    for name in NAMES for what in ("error", *(f"observables/{where}" for where in WHERE))
+}  # fmt: skip
+# Errors are shares of a scale.
+units = {"wall": "s", "processor": "s", "*": "1"}
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
 WITH_WAVES = True
