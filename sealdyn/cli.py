@@ -120,25 +120,13 @@ class Stop(Exception):
 
 def _read(path: Path, overrides):
     """Scenario of a TOML file or of an archive; input errors end here."""
-    from .archive import read_info
-    from .scenario.reader import ScenarioError, parse_scenario, read_scenario
+    from .scenario.reader import ScenarioError, read_scenario
 
     try:
-        if path.suffix == ".h5":
-            with _reads(path):
-                info = read_info(path)
-                text, name = str(info["scenario"]), str(info.get("name", path.stem))
-                given = [*map(str, info.get("overrides", [])), *(overrides or [])]
-            scenario = parse_scenario(text, name, given)
-        else:
-            scenario = read_scenario(path, overrides or ())
-        if scenario.application is not None:
-            from .analysis.design_rules import refuse_unknown_rules
-
-            refuse_unknown_rules(scenario)
+        with _reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
+            return read_scenario(path, overrides or ())
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
-    return scenario
 
 
 @contextlib.contextmanager

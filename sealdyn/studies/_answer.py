@@ -67,7 +67,7 @@ def study(
     without: Iterable[str] = (),
     **settings: Any,
 ) -> Answer:
-    """Answer a question about a scenario, or about that of a TOML file: `sealdyn.study("sweep", scenario,
+    """Answer a question about a scenario, or that of a TOML file or an archive: `sealdyn.study("sweep", scenario,
     vary="rotor.runout=0:1 mrad:21")`.  Without `out` nothing is left on disk.
 
     `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";
