@@ -406,9 +406,9 @@ def new(
 @app.command()
 def schema():
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario.schema import json_schema
+    from .studies._settings import schema_with_studies
 
-    print(json.dumps(json_schema(), indent=2))
+    print(json.dumps(schema_with_studies(), indent=2))
 
 
 @app.command("list")
@@ -663,14 +663,19 @@ class _StudyCommand(TyperCommand):
 
 
 def _about_study(name: str) -> str | None:
+    """What a study is, its settings and its time; of no study which there are."""
     from rich.markup import escape
 
-    from .studies._runner import study_module, study_names
+    from .studies._runner import study_names
+    from .studies._settings import about, settings_of, time_of
 
     if name.replace("_", "-") not in study_names():
-        return None
-    module = study_module(name.replace("-", "_"))
-    return escape("\n\n".join(" ".join((part.__doc__ or "").split()) for part in (module, module.Settings)))
+        return escape("\n\n".join(f"{known}: {about(known)}" for known in study_names()))
+    lines = [
+        f"--{s.key.replace('_', '-')} ({s.holds}{f'; default {s.default}' if s.default else ''}): {s.meaning}"
+        for s in settings_of(name)
+    ]
+    return escape("\n\n".join([about(name), *lines, f"Time: {time_of(name)}."]))
 
 
 @app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

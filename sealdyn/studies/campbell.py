@@ -23,18 +23,26 @@ ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 3)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Speeds from `speed_from` to `speed_to` (default six times the scenario's, no more than a film holds), `points` of
-    them; `unit` of the figure's axes; `lines`: orders of the shaft speed drawn besides 1x and 1/2x."""
+    """Speeds, and how the figure is drawn."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed_from: Speed = 0.0
+    """Lowest speed."""
     speed_to: Speed | None = None
+    """Highest speed; without it six times the scenario's, no more than a film holds."""
     points: int = 241
+    """Number of speeds."""
     unit: Literal["rpm", "rad/s"] = "rpm"
+    """Of the figure's axes."""
     lines: tuple[float, ...] | float = ()
+    """Orders of the shaft speed that are drawn besides 1x and 1/2x."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -55,20 +55,30 @@ units = {
 }  # fmt: skip
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 3)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`tilt`: relative misalignment of the tilted state (default: the mean of the linear steady state, or, if that is
-    nothing, its turning part); `tilt_direction` from the x axis; sweeps over `speed_to`, `clearance_from` to
-    `clearance_to`, and the tilt, `points` each; `frequency` of the motion, "0:2kHz:60" or a list: with it the answer
-    has a table of the aligned film's matrices over speed and frequency for a rotordynamics code, too."""
+    """The tilted state, and what the matrices are followed over."""
 
     tilt: Angle | None = None
+    """Relative misalignment of the tilted state; without it the mean of the linear steady state, or, if that is
+    nothing, its turning part."""
     tilt_direction: Angle = 0.0
+    """Its direction from the x axis."""
     speed_to: Speed | None = None
+    """Highest speed, from rest; without it three times the scenario's."""
     clearance_from: Length | None = None
+    """Least clearance; without it 0.3 of the scene's."""
     clearance_to: Length | None = None
+    """Largest clearance; without it three times the scene's."""
     points: int = 41
+    """Number of speeds, of clearances and of tilts."""
     frequency: str | float | None = None
+    """Frequencies of the motion, "0:2kHz:60" or a list; with it the answer has a table of the aligned film's matrices
+    over speed and frequency for a rotordynamics code."""
 
 
 @dataclass(frozen=True)

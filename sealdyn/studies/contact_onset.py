@@ -26,21 +26,28 @@ units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {"cavitation_p
 units |= dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1")
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference --set stator.misalignment=0", 29)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
-    `margin`: touch is h_min = margin x clearance, of rough faces where their asperities meet; `over` and `values`: the
-    onset as a curve over another key; `floor`: also with the pressure floored at the lower boundary pressure, along the
-    curve too (slower); `most`: an onset that linear theory sees beyond so many times the scenario's own value of the
-    key is not followed."""
+    """What grows until the film touches, and what the onset is followed over."""
 
     key: str | None = None
+    """Key that grows until the film touches; without it rotor.runout of an FMS, stator.misalignment of an FMR scene."""
     margin: float = 1e-3
+    """Touch is a film of so much of the clearance; of rough faces where their asperities meet."""
     over: str | None = None
+    """Another key, over which the onset is a curve."""
     values: tuple[float | str, ...] = ()
+    """Values of that key."""
     floor: bool = False
+    """Also with the pressure floored at the lower boundary pressure, along the curve too (slower)."""
     tolerance: float = 1e-6
+    """Relative error of the onset."""
     most: float = 1000.0
+    """An onset that linear theory sees beyond so many times the scenario's own value of the key is not followed."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -38,14 +38,20 @@ units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
 units |= dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1")
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("run_in", 3)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Clearances from `clearance_from` to `clearance_to` (default: a range that shows every equilibrium), `points`
-    of the curve of opening force."""
+    """The curve of the opening force."""
 
     clearance_from: Length | None = None
+    """Least clearance; without it a range that shows every equilibrium."""
     clearance_to: Length | None = None
+    """Largest clearance; without it as above."""
     points: int = 241
+    """Points of the curve."""
 
 
 @dataclass(frozen=True)

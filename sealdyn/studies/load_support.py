@@ -22,12 +22,16 @@ SAID = (("load_support", "Load support", 100.0, " %"), ("friction_coefficient", 
 TORN, STEADY = 1e-9, 0.1
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 10)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`vary`: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c", as in a sweep; one key, aligned
-    faces."""
+    """What is varied, faces aligned."""
 
     vary: str = ""
+    """One key and its values: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c", as in a sweep."""
 
 
 def run(scenario, settings, tools) -> dict:

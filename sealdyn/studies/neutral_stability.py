@@ -38,14 +38,20 @@ LINEAR = {"film.model": "linear"}
 REFUSES = ("contact", "secondary-seal")
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 93)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`turns` of the neutral whirl and of the precession for every method; `accuracies` asked of each; `long`: turns
-    that the default method precesses (0: not at all)."""
+    """How long and how exactly each method runs."""
 
     turns: int = 60
+    """Turns of the neutral whirl and of the precession for every method."""
     accuracies: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+    """Accuracies asked of each."""
     long: int = 10_000
+    """Turns that the default method precesses (0: not at all)."""
 
 
 def run(scenario, settings, tools) -> dict:

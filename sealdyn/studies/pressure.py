@@ -73,14 +73,19 @@ units = {
 }
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference --at tilt=0.15mrad", 1)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`at`: the gap state, "clearance=5 um, tilt=0.1 mrad" (either may be left out): clearance at the inner radius of
-    the aligned faces (default: the equilibrium), then tilted by `tilt` about the x axis (default 0); nothing moves.
-    `beside`: further clearances, "5 um, 6 um", whose profiles over the radius are drawn beside, at the same tilt."""
+    """The gap state; nothing moves."""
 
     at: str | float | tuple[str, ...] = ""
+    """"clearance=5 um, tilt=0.1 mrad", either may be left out: clearance at the inner radius of the aligned faces
+    (without it the equilibrium), then tilted about the x axis (without it 0)."""
     beside: str | float | tuple[str | float, ...] = ""
+    """Further clearances, "5 um, 6 um", whose profiles over the radius are drawn beside, at the same tilt."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -31,16 +31,22 @@ units |= dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalign
 units |= dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transient", "defects"), "1")
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 26)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`turns` of the forcing's common period taken as one period (2 finds half-frequency responses); `samples` per
-    period in the figure; `approach`: speeds, as parts of the critical speed, at which the cost is compared with a
-    transient (empty: no comparison); `longest` transient tried, in periods."""
+    """The period, and the comparison with waiting."""
 
     turns: int = 1
+    """Common periods of the forcing that are taken as one period (2 finds half-frequency responses)."""
     samples: int = 256
+    """Samples of a period in the figure."""
     approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
+    """Speeds, as parts of the critical speed, at which the cost is compared with a transient's; empty: none."""
     longest: int = 4000
+    """Longest transient tried, in periods."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -28,13 +28,19 @@ OUTPUTS = (
 )
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference --vary rotor.runout=0:1mrad:21", 5)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`vary`: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes
-    that of its neighbours, none means SI; several make a grid.  `outputs`: dotted keys of the run's summary."""
+    """The grid, and what is asked at each point."""
 
     vary: list[str] | str = ()
+    """"key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes that of
+    its neighbours, none means SI; several make a grid."""
     outputs: list[str] | str = OUTPUTS
+    """Dotted keys of the run's summary."""
 
 
 def run(scenario, settings, tools) -> dict:

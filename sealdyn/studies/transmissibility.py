@@ -61,20 +61,30 @@ units |= dict.fromkeys(
 )
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 8)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Speeds from `speed_from` to `speed_to` (default three times the scenario's), `points` of them; `unit` of the
-    figure's axis; `time_points` speeds in the time domain at `accuracy`, of runs of at most `longest` turns."""
+    """Speeds, and the time domain beside them."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed_from: Speed = 0.0
+    """Lowest speed."""
     speed_to: Speed | None = None
+    """Highest speed; without it three times the scenario's."""
     points: int = 301
+    """Number of speeds."""
     unit: Literal["rad/s", "rpm"] = "rad/s"
+    """Of the figure's axis."""
     time_points: int = 12
+    """Speeds in the time domain."""
     accuracy: float = 1e-7
+    """Accuracy of these runs."""
     longest: float = 4000.0
+    """Turns that they may take."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -17,11 +17,16 @@ units = {"failing_error": "the row's unit", "survivor_error": "the row's unit", 
 ALONG = {"rows": ("item",)}
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 28)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`items`: numbers of the exhibits to show (default all)."""
+    """Which exhibits."""
 
     items: tuple[int, ...] | int = ()
+    """Numbers of the exhibits to show; empty: all."""
 
 
 def run(scenario, settings, tools) -> dict:

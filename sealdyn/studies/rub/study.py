@@ -44,26 +44,38 @@ units |= dict.fromkeys(("period", "distinct", "contacts", "contact_share", "cont
                         "uncertainties", "spectrum", "accuracies"), "1")  # fmt: skip
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("rub_chaotic", 408)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`key` grows over `values` ("from:to:count", any unit; default 0.6 to 1.2 times the scenario's): rotor.runout of a
-    seal with a flexible stator, else stator.misalignment; `down`: also back again.  At each point `ramp` periods lead
-    to it, `drop` pass and `keep` count; `exponent_turns` for its exponent.  `judge`: value at which two methods compare
-    over `judge_turns` (default: where the exponent is largest; 0 turns: nowhere).  `whirl`: also where a small whirl of
-    the unforced seal settles, at `whirl_speeds` (default 1.02, 1.1 and 1.3 of the critical speed)."""
+    """The path, and what is looked at along it."""
 
     key: str | None = None
+    """Key that grows; without it rotor.runout of a seal with a flexible stator, else stator.misalignment."""
     values: str | None = None
+    """Its values, "from:to:count" in any unit; without them 0.6 to 1.2 times the scenario's."""
     down: bool = False
+    """Also back again."""
     ramp: int = 15
+    """Periods that lead to each value."""
     drop: int = 80
+    """Periods that pass before any counts."""
     keep: int = 96
+    """Periods that count."""
     exponent_turns: int = 200
+    """Periods for the exponent."""
     judge: float | str | None = None
+    """Value at which two methods are compared; without it where the exponent is largest."""
     judge_turns: int = 600
+    """Periods of that comparison (0: none)."""
     accuracy: float = 1e-6
+    """Accuracy of the runs."""
     whirl: bool = False
+    """Also where a small whirl of the unforced seal settles."""
     whirl_speeds: tuple[Speed, ...] = ()
+    """Speeds of that; empty: 1.02, 1.1 and 1.3 of the critical speed."""
 
 
 def run(scenario, settings, tools) -> dict:

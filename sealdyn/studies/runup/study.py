@@ -44,24 +44,36 @@ units |= dict.fromkeys(("turns", "window", "resolution", "folding", "orders", "d
 units |= {f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment", "leakage")}
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("runup_past_threshold", 35)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`key` goes from `begin` to `end` (with units; SI without) and back at each of `rates` ("1000, 5000" or
-    "from:to:count[:log]", per second; for anything but the speed also "step"), `hold` there.  Defaults for the speed:
-    half the first resonance to 1.05 of the threshold, or 1.5 of the last resonance.  `disturbance`: relative tilt of
-    the whirl met at the threshold (default a thousandth of clearance/outer radius); `touch`: look for the rate that
-    just touches.  `order` followed (default 1), `window` in turns, `samples_per_turn`."""
+    """The ramps."""
 
     key: str = SPEED
+    """What goes from `begin` to `end` and back."""
     begin: float | str | None = None
+    """With its unit, or SI; without it half the first resonance, of another key than the speed its first value."""
     end: float | str | None = None
+    """With its unit, or SI; without it 1.05 of the threshold or 1.5 of the last resonance, of another key than
+    the speed the farthest of its table."""
     rates: float | str | None = None
+    """Rates per second, "1000, 5000" or "from:to:count[:log]"; for anything but the speed also "step"."""
     hold: Annotated[Time, Field(ge=0)] | None = None
+    """How long the end is held."""
     disturbance: Annotated[Angle, Field(ge=0)] | None = None
+    """Relative tilt of the whirl that is met at the threshold; without it a thousandth of clearance over outer
+    radius."""
     touch: bool = True
+    """Look for the rate that just touches."""
     order: float | None = None
+    """Order that is followed; without it 1 where something turns with the shaft."""
     window: Annotated[int, Field(ge=2)] | None = None
+    """Turns of the window in which it is tracked."""
     samples_per_turn: Annotated[int, Field(ge=8)] | None = None
+    """Samples of a turn."""
 
 
 def run(scenario, settings, tools) -> dict:

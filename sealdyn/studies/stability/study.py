@@ -31,17 +31,23 @@ units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain"), "1/s")
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 8)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`x` and `y`: "key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over
-    polar, transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; `confirm`: how many points beside the
-    threshold are confirmed in the time domain."""
+    """The map."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     x: str | None = None
+    """"key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over polar,
+    transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; without it the shaft speed."""
     y: str | None = None
+    """As `x`; without it the inertia ratio where a ring spins, else the damping of the support."""
     confirm: int = 4
+    """How many points beside the threshold are confirmed in the time domain."""
 
 
 def run(scenario, settings, tools) -> dict:
