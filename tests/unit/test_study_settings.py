@@ -111,7 +111,7 @@ def test_units_of_keys():
 @pytest.mark.parametrize("name", study_names())
 def test_every_setting_is_described_wherever_it_is_asked_for(name):
     """Help, JSON schema: what it holds, its unit, its default, what it means; and the time that the study takes."""
-    words, seconds = study_module(name.replace("-", "_")).TIMED
+    _, seconds = study_module(name.replace("-", "_")).TIMED
     help = " ".join(_about_study(name).replace("\\\\[", "[").split())
     table = schema_with_studies()["properties"]["study"]["properties"][name.replace("-", "_")]
     assert f"{seconds} s of processor time" in help and f"{seconds} s of processor time" in table["description"]
