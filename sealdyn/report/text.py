@@ -286,7 +286,12 @@ def _cell(row, key, factor=1.0) -> str:
     value = _value(row, key)
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else _n(value, factor)
+    return value if isinstance(value, str) else _plain(_n(value, factor))
+
+
+def _plain(words: str) -> str:
+    """Speeds and flows of five or six figures without an exponent."""
+    return f"{float(words):.0f}" if words.endswith(("e+04", "e+05")) else words
 
 
 def _value(row, key):

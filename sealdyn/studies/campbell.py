@@ -12,6 +12,8 @@ from ..dynamics.model import Model
 from ..scene.variants import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
+from ._words import frequencies
+from ._words import speed as speed_words
 
 WITH_WAVES = True
 REFUSES = ("secondary-seal",)
@@ -235,18 +237,18 @@ def _verdict(answer) -> list[str]:
         way = {"none": "does not oscillate", "axial": "oscillates"}.get(
             mode["direction"], f"mostly {mode['direction']}"
         )
-        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {low:.5g} to {high:.5g} rad/s.")
+        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {frequencies(low, high)}.")
     for point in answer["thresholds"]:
         if point["what"] == "damping":
             ratio = (
                 "" if point["whirl_ratio"] is None else f", whirling at {point['whirl_ratio']:.3g} of the shaft speed"
             )
-            said.append(f"Mode {point['mode']} loses or regains its damping at {point['speed']:.5g} rad/s{ratio}.")
+            said.append(f"Mode {point['mode']} loses or regains its damping at {speed_words(point['speed'])}{ratio}.")
         else:
-            said.append(f"Mode {point['mode']} changes its direction of whirl at {point['speed']:.5g} rad/s.")
+            said.append(f"Mode {point['mode']} changes its direction of whirl at {speed_words(point['speed'])}.")
     synchronous = [c for c in answer["crossings"] if c["line"] == 1.0]
     for c in synchronous:
-        said.append(f"Mode {c['mode']} meets once per turn at {c['speed']:.5g} rad/s.")
+        said.append(f"Mode {c['mode']} meets once per turn at {speed_words(c['speed'])}.")
     if not synchronous:
         said.append("No mode meets once per turn in this range.")
     return said

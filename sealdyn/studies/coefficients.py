@@ -29,6 +29,8 @@ from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..simulation.steady_tilt import steady_tilt
 from ..units import Angle, Length, Speed
+from ._words import frequencies
+from ._words import speed as speed_words
 
 WITH_WAVES = True
 # Rows and columns of the matrices.
@@ -268,8 +270,8 @@ def _hammer(answer) -> list[str]:
     for name, k in (("axial", 0), ("tilt", 1)) if swept else ():
         negative = [w for w, d in zip(swept["frequency"], swept["damping"], strict=True) if d[k][k] < 0.0]
         if negative:
-            share, ends = f"{len(negative)} of {len(swept['frequency'])}", f"{negative[0]:.5g} to {negative[-1]:.5g}"
-            where = f"{share} frequencies, {ends} rad/s"
+            share, ends = f"{len(negative)} of {len(swept['frequency'])}", frequencies(negative[0], negative[-1])
+            where = f"{share} frequencies, {ends}"
             said.append(f"The film's {name} damping is negative (pneumatic hammer) at {where}.")
     return said
 
@@ -295,7 +297,7 @@ def _verdict(answer) -> list[str]:
     pace = d[1, 1] * at["speed"]
     ratio = f", {k[1, 2] / pace:.4g} of the shaft speed times the damping (half, for a wedge film)" if pace else ""
     said = [
-        f"Aligned at {at['clearance'] * 1e6:.4g} um, {at['speed']:.5g} rad/s ({answer['film']} film): axial "
+        f"Aligned at {at['clearance'] * 1e6:.4g} um, {speed_words(at['speed'])}, {answer['film']} film: axial "
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]

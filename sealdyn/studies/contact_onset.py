@@ -15,6 +15,7 @@ from ..scenario.settings import must_be_number, si_unit, with_values
 from ..scene import variants
 from ..scene.contact import touch_height
 from ..status import Status
+from ._words import quantity, shown_in
 
 REFUSES = ("secondary-seal",)
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
@@ -278,8 +279,10 @@ class Follower:
 
 def tables(answer) -> list:
     """The onset over another key."""
-    columns = ((answer["over"], "value"), ("linear, SI", "formula"), ("nonlinear, SI", "nonlinear"),
-               ("with a floor, SI", "floored.nonlinear"))  # fmt: skip
+    found = [row.get(name) for row in answer["curve"] for name in ("formula", "nonlinear")]
+    unit, factor = shown_in(answer.get("units", {}).get("nonlinear", "SI"), found)
+    columns = ((answer["over"], "value"), (f"linear, {unit}", "formula", factor),
+               (f"nonlinear, {unit}", "nonlinear", factor), ("with a floor", "floored.nonlinear", factor))  # fmt: skip
     return [(answer["curve"], columns)]
 
 
@@ -290,8 +293,8 @@ def _verdict(answer, unit) -> list[str]:
         return [f"The asperities touch without any {answer['key']}, at r = {answer['radius'] * 1e3:.4g} mm: at rest "
                 f"they carry {answer['contact_force']:.4g} N of {answer['closing_force']:.5g} N."]  # fmt: skip
     lines = [
-        f"The faces first touch at {answer['key']} = {answer['nonlinear']:.6g} {unit}, at r = "
-        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {answer['formula']:.6g}: "
+        f"The faces first touch at {answer['key']} = {quantity(answer['nonlinear'], unit, 6)}, at r = "
+        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {quantity(answer['formula'], unit, 6)}: "
         f"{100 * (answer['ratio'] - 1):+.1f} %.",
         f"The seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset.",
     ]

@@ -28,6 +28,7 @@ from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.stability import critical_speed, held_speeds, natural_frequency
 from ..status import Status
+from ._words import speed as speed_words
 
 REFUSES = ("secondary-seal",)
 ALONG = {"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
@@ -297,7 +298,7 @@ def nonlinear_sentences(found, threshold) -> list[str]:
     said = [f"Beyond linear: {found['kind']} (contact: the film at its floor)."]
     unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
     speed = found["contact_speed"]
-    at = f"{speed:.5g} rad/s ({speed / threshold:.4f} of the threshold)" if speed else "no speed followed"
+    at = f"{speed_words(speed)}, {speed / threshold:.4f} of the threshold" if speed else "no speed followed"
     if found["kind"] == "subcritical":
         said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
                     f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
@@ -327,5 +328,5 @@ def fates(rows, start) -> str:
         if row["fate"] != last:
             parts.append([row["fate"], row["speed"], row["speed"]])
         parts[-1][2], last = row["speed"], row["fate"]
-    words = [f"{what} at {a:.5g}" + (f" to {b:.5g}" if b > a else "") for what, a, b in parts]
-    return f"{start.capitalize()} whirls in time: {', '.join(words)} rad/s."
+    words = [f"{what} at {speed_words(a)}" + (f" to {speed_words(b)}" if b > a else "") for what, a, b in parts]
+    return f"{start.capitalize()} whirls in time: {', '.join(words)}."

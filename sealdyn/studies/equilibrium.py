@@ -227,7 +227,7 @@ def _range(film, surfaces, roots, settings) -> tuple[float, float]:
 
 def tables(answer) -> list:
     """Every clearance of balance."""
-    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/m", "stiffness"), ("stable", "stable"),
+    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/um", "stiffness", 1e-6), ("stable", "stable"),
                ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
                ("load support, %", "load_support", 100), ("friction", "friction_coefficient"),
                ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip

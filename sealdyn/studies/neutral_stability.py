@@ -19,6 +19,7 @@ from ..scene.scene import Closing, SceneError
 from ..scene.variants import unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
+from ._words import speed
 from .failures.cases import neutral_stability as exhibit
 
 METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
@@ -215,8 +216,8 @@ def sentences(answer) -> list[str]:
         said = "no method kept to the bound on its cost"
         if rows:
             said = f"{least['growth']:+.1e} ({least['method']}) to {most['growth']:+.1e} ({most['method']})"
-        lines.append(f"Growth per turn that is the method's own at the threshold, {answer['critical_speed']:.5g} "
-                     f"rad/s, accuracy {TOLD:.0e}: {said}.")  # fmt: skip
+        lines.append(f"Growth per turn that is the method's own at the threshold, {speed(answer['critical_speed'])}, "
+                     f"accuracy {TOLD:.0e}: {said}.")  # fmt: skip
     if found and "failed" not in found:
         verb = "stays" if found["ratio"] >= MARGIN else "does not stay"
         lines.append(

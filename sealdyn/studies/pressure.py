@@ -296,8 +296,7 @@ def _verdict(answer, message: str) -> list[str]:
         f"At {where} ({answer['film']} film; thinnest {1e6 * answer['h_min']['value']:.4g} um): force "
         f"{answer['force']:.6g} N, {answer['gauge_force']:.5g} N of it above the lower edge pressure; "
         f"{f'moments {x:.4g} and {y:.4g} N m' if _turns(answer) else 'no moment'}; leakage "
-        f"{answer['leakage']:.4g} m^3/s{' at 0 degC and 1.01325 bar' if answer['gas'] else ''}, "
-        f"{answer['mass_flow']:.4g} kg/s.",
+        f"{_flow(answer)}, {answer['mass_flow'] * 3600:.4g} kg/h.",
     ]
     if answer["exit_mach"] is not None:
         choked = "choked" if answer["exit_mach"] >= 1.0 else "subsonic"
@@ -313,6 +312,13 @@ def _verdict(answer, message: str) -> list[str]:
         )
         return said
     return [*said, *_of_the_field(answer)]
+
+
+def _flow(answer) -> str:
+    """The leakage as a volume, of a gas at normal conditions."""
+    if answer["gas"]:
+        return f"{answer['leakage'] * 6e4:.4g} l/min at 0 degC and 1.01325 bar"
+    return f"{answer['leakage'] * 3.6e9:.4g} ml/h"
 
 
 def _of_the_field(answer) -> list[str]:
@@ -349,7 +355,7 @@ def tables(answer) -> list:
     found = []
     if answer["beside"]:
         columns = (("clearance, um", "clearance", 1e6), ("force, N", "force"), ("gauge force, N", "gauge_force"),
-                   ("centre, share of the width", "centre_of_pressure"), ("mass flow, kg/s", "mass_flow"),
+                   ("centre, share of the width", "centre_of_pressure"), ("mass flow, kg/h", "mass_flow", 3600),
                    ("exit Mach", "exit_mach"))  # fmt: skip
         found = [([answer, *answer["beside"]], columns)]
     if answer["pressure"] is None:

@@ -20,6 +20,7 @@ from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
+from ._words import RPM, speed
 
 WITH_WAVES = True
 # Turns of a run without a period that are drawn, and samples of each.
@@ -60,7 +61,7 @@ def run(scenario, settings, tools) -> dict:
     try:
         orbit = shooter.find()
     except NoOrbit as reason:
-        threshold = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
+        threshold = f"critical speed {speed(critical)}" if critical else "no critical speed"
         said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
         values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
         foretold = [complex(np.exp(v * shooter.period)) for v in values]
@@ -114,7 +115,7 @@ def _waves(model, waves) -> dict:
 
 def tables(answer) -> list:
     """Cost of shooting and of waiting near the critical speed."""
-    columns = (("of critical speed", "part"), ("speed, rad/s", "speed"), ("periods by shooting", "shooting"),
+    columns = (("of critical speed", "part"), ("speed, rpm", "speed", RPM), ("periods by shooting", "shooting"),
                ("by waiting (-: not within longest)", "transient"))  # fmt: skip
     return [(answer["near_threshold"], columns)]
 

@@ -58,6 +58,8 @@ def test_an_archive_of_any_study_is_a_dataset_and_tables(name, tmp_path):
     with sealdyn.open_archive(tmp_path / "s.h5") as data:
         xarray.testing.assert_identical(data.drop_attrs(), found.data.drop_attrs())
         assert data.attrs["name"] == scenario and data.attrs["study"] == name.replace("-", "_")
+        # Any netCDF reader takes it on.
+        data.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
         for variable in data.variables:
             column = data[variable]
             assert column.dtype.kind in "fbU" and column.size

@@ -21,11 +21,11 @@ from ...scene.variants import part
 from ...simulation.stability import critical_speed
 from ...status import Status
 from ...units import Speed
+from .._words import RPM, quantity, shown_in, speed
 from .statistics import evaluate_point, touch_level
 
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
-UNITS = {"rotor.runout": "rad", "rotor.misalignment": "rad", "stator.misalignment": "rad", "shaft.speed": "rad/s"}
 ALONG = {
     "rows": ("value",), "rows/section": ("rows/kept",), "rows/h_min": ("rows/kept",),
     "rows/orders": ("rows/line",), "rows/amplitude": ("rows/line",), "separation/apart": ("separation/period",),
@@ -171,47 +171,60 @@ def whirl(scene, point: dict) -> dict:
 
 def tables(answer) -> list:
     """Points of the diagram, and the whirls let go."""
-    value = (f"{answer['key']}, {UNITS.get(answer['key'], 'SI')}", "value")
+    unit, factor = _shown(answer)
+    value = (f"{answer['key']}, {unit}", "value", factor)
     share = (("contact, % of time", "contact_share", 100), ("% of closing force", "contact_force", 100))
     points = (("going", "direction"), value, ("motion", "class"), *share, ("exponent per period", "exponent"),
               ("+-", "uncertainty"), ("evaluations per turn", "evaluations"))  # fmt: skip
-    whirls = (("speed, rad/s", "speed"), ("whirl", "fate"), ("turns", "turns"), ("first touch, turns", "first_contact"),
-              ("whirl ratio", "whirl_ratio"), *share)  # fmt: skip
+    whirls = (("speed, rpm", "speed", RPM), ("whirl", "fate"), ("turns", "turns"),
+              ("first touch, turns", "first_contact"), ("whirl ratio", "whirl_ratio"), *share)  # fmt: skip
     return [(answer["rows"], points), ((answer["whirl"] or {}).get("rows"), whirls)]
 
 
 def sentences(answer) -> list[str]:
     """The verdict: motion along the path, what can be foretold, what becomes of whirl."""
-    unit = UNITS.get(answer["key"], "SI")
-    ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w]) for w in ("up", "down")}
+    unit, factor = _shown(answer)
+    ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w], factor) for w in ("up", "down")}
     paths = "; ".join(f"going {way}: {path}" for way, path in ways.items() if path)
     lines = [f"{answer['key']} ({unit}) {paths}." if paths else "No point of the diagram was reached."]
     if answer["judge"]:
-        lines.append(_foretold(answer, unit))
+        lines.append(_foretold(answer, quantity(answer["judge"]["value"], _unit(answer))))
     if answer["whirl"]:
         critical, rows = answer["whirl"]["critical_speed"], answer["whirl"]["rows"]
-        fates = ", ".join(f"{row['fate']} at {row['speed']:.5g} rad/s" for row in rows if "failed" not in row)
-        where = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
-        lines.append(f"Small whirls of the unforced seal ({where}): {fates or 'none'}.")
+        fates = ", ".join(f"{row['fate']} at {speed(row['speed'])}" for row in rows if "failed" not in row)
+        where = f"critical speed {speed(critical)}" if critical else "no critical speed"
+        lines.append(f"Small whirls of the unforced seal, {where}: {fates or 'none'}.")
     return lines
 
 
-def _classes(rows) -> str:
+def _unit(answer) -> str:
+    """SI unit of the key."""
+    return answer.get("units", {}).get("rows/value", "SI")
+
+
+def _shown(answer) -> tuple[str, float]:
+    """The unit in which values of the key are shown, and its factor."""
+    return shown_in(_unit(answer), [row["value"] for row in answer["rows"]])
+
+
+def _classes(rows, factor) -> str:
     """Classes along a path: "no contact to 0.2, period 1 to 0.3, ..."."""
     last = [k + 1 == len(rows) or rows[k + 1]["class"] != row["class"] for k, row in enumerate(rows)]
-    return ", ".join(f"{row['class']} to {row['value']:.4g}" for row, ends in zip(rows, last, strict=True) if ends)
+    return ", ".join(
+        f"{row['class']} to {factor * row['value']:.4g}" for row, ends in zip(rows, last, strict=True) if ends
+    )
 
 
-def _foretold(answer, unit) -> str:
+def _foretold(answer, where) -> str:
     """Exponent by two methods, the averages that agree, and the horizon of a chaotic motion."""
     judged, separation = answer["judge"], answer["separation"]
     if "failed" in judged:
-        return f"Two methods could not be compared at {judged['value']:.4g} {unit}."
+        return f"Two methods could not be compared at {where}."
     entries = answer["methods"]["invariants"]
     values, bounds = entries["exponent"]["values"], entries["exponent"]["uncertainties"]
     told = " and ".join(f"{v:.3f} +- {u:.3f}" for v, u in zip(values, bounds, strict=True))
     wrong = [name for name, entry in entries.items() if not entry["agree"]]
-    line = (f"At {judged['value']:.4g} {unit} the exponent is {told} a period by Adams and DOP853, "
+    line = (f"At {where} the exponent is {told} a period by Adams and DOP853, "
             f"{len(entries) - len(wrong)} of {len(entries)} averages agree")  # fmt: skip
     line += f" (not {', '.join(wrong)})" if wrong else ""
     if min(v - u for v, u in zip(values, bounds, strict=True)) > 0:

@@ -18,6 +18,7 @@ from ...scenario.settings import si_unit
 from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
+from .._words import RPM
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
 from .sentences import WAYS, load_sentences, sentences
@@ -214,10 +215,10 @@ def tables(answer) -> list:
     ends = (("thinnest film, um", "h_min", 1e6), ("largest misalignment, urad", "relative_misalignment", 1e6),
             ("touch", "touched"), ("ended", "status"))  # fmt: skip
     if answer["key"] == SPEED:
-        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rad/s", "peak.up"),
-                   ("down", "peak.down"), ("peak read to", "read"), ("from linear, %", "departure", 100),
+        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rpm", "peak.up", RPM),
+                   ("down, rpm", "peak.down", RPM), ("read to, rpm", "read", RPM), ("from linear, %", "departure", 100),
                    ("ln of growth", "growth.measured"), ("linear", "growth.with_factor"))  # fmt: skip
-        where = (("closest at, rad/s", "h_min_speed"), ("going", "h_min_way"))
+        where = (("closest at, rpm", "h_min_speed", RPM), ("going", "h_min_way"))
         return [([_plain(row) for row in answer["rows"]], (*columns, *where, *ends))]
     columns = ((f"rate, {answer['rate_unit']}", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
                ("misalignment, %", "overshoot.relative_misalignment", 100),

@@ -22,6 +22,7 @@ from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.method_selection import choose_method
 from ...simulation.stability import critical_speed
+from .._words import speed
 from .grid import INERTIA_RATIO, Grid
 
 REFUSES = ("secondary-seal",)
@@ -290,7 +291,7 @@ def _verdict(answer, scenario, axes, total) -> list[str]:
     said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g}{known} 1/s."]
     if margin["critical_speed"]:
         times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
-        said.append(f"Critical speed {margin['critical_speed']:.5g} rad/s{times}.")
+        said.append(f"Critical speed {speed(margin['critical_speed'])}{times}.")
     else:
         said.append("No critical speed.")
     if limit["limit"]:
