@@ -7,19 +7,20 @@ from pathlib import Path
 
 import h5py
 
+from .columns import columns
 from .fields import sayable
 from .run import ODD
 from .seal import is_whole, seal
 from .soundness import ArchiveError, is_sound, must_be_sound
 from .space import DATASET, FILE, hdf5_with_room
-from .tables import columns, unit_of, units_of
+from .tables import unit_of, units_of
 
 FORMAT = "sealdyn study 1"
 
 
 def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=()) -> Path:
     """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers or truths in it as a float64
-    dataset `/data/KEY` (tables.columns) with its unit, so that any HDF5 reader can plot it.  `units` and `along` as in
+    dataset `/data/KEY` (columns.py) with its unit, so that any HDF5 reader can plot it.  `units` and `along` as in
     `tables.variables` are kept as JSON, so that the archive can be shown without its study.
     `meta` becomes root attributes.  Replaces an existing file only when complete; returns its path."""
     path = Path(path)

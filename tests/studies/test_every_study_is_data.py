@@ -12,7 +12,7 @@ import xarray
 
 import sealdyn
 from sealdyn.archive import answer_tables, read_study, tables_as_dataset
-from sealdyn.archive.tables import columns
+from sealdyn.archive.columns import columns
 from sealdyn.studies._runner import study_names
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
