@@ -132,10 +132,14 @@ def _read(path: Path, overrides):
 @contextlib.contextmanager
 def _reads(path):
     """What is read and drawn of an archive: errors that a file made or changed elsewhere leads to end here."""
+    from numpy import errstate
+
     from .archive import ODD, ArchiveError
 
     try:
-        yield
+        # Numbers of no world, times what makes them micrometres.
+        with errstate(over="raise"):
+            yield
     except ArchiveError as error:
         raise Stop(Status.INVALID, str(error)) from None
     except BrokenPipeError:

@@ -88,6 +88,19 @@ def test_a_figure_of_lines_is_written_twice_alike(suffix, begin, folder):
     assert not list(folder.glob("*.new"))
 
 
+def test_a_number_of_no_world_in_an_archive_ends_in_a_line(folder):
+    """Micrometres of it are beyond all numbers: once a warning of Python stood before the line."""
+    path = folder / "huge.h5"
+    path.write_bytes((folder / "first.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        # As somebody else might have written it: without the seal.
+        del file.attrs["seal"]
+        for name in ("h_min", "rotor_tilt_x"):
+            file[name][3] = 1e308
+    answer = sealdyn("plot", "huge.h5", cwd=folder)
+    assert answer.code == 2 and len(answer.err.splitlines()) == 1, answer.err
+
+
 def test_a_figure_of_another_kind_is_refused(folder):
     answer = sealdyn("plot", "first.h5", "--out", "orbit.jpg", cwd=folder)
     assert answer.code == 2 and answer.err.count("\n") == 1 and all(f".{form}" in answer.err for form in ("svg", "pdf"))
