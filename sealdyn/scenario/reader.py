@@ -53,7 +53,8 @@ class Run:
 
     `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
     all) or `samples` in all.  `start` "auto": on the linear steady response where that is stable and leaves the film
-    open; at rest with `[initial]`, contact, a secondary seal, a film with unknowns of its own, or tables.
+    open; at rest with `[initial]`, and, unless the faces would overlap there, with contact, a secondary seal, a film
+    with unknowns of its own, or tables.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
