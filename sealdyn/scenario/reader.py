@@ -28,6 +28,7 @@ from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
 from .overrides import override_key, without_arrays
 from .unquoted import unquoted_quantity
+from .version import SCHEMA, refuse_newer
 
 __all__ = [
     "Run",
@@ -43,8 +44,8 @@ SMALLEST, LARGEST = 1e-25, 1e15
 # Of a file.
 MOST_BYTES = 1 << 21
 STARTS = r"^(auto|rest|steady|.+\.h5)$"
-# Tables on which no number of a run hangs.
-BESIDE_THE_RUN = ("study", "application")
+# What no number of a run hangs on.
+BESIDE_THE_RUN = ("study", "application", "schema")
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,8 @@ class ScenarioFile(Scene):
     """What the seal is asked to do: for design rules, no number of a run hangs on it."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Settings of studies, one table [study.NAME] each."""
+    schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
+    """Version of these keys; without it the present one."""
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
     told, without those on which no run hangs.
     Raises `ScenarioError`."""
+    refuse_newer(raw, name)
     wrong = [*_odd_numbers(raw, name)]
     raw, halved = with_radii(raw, ScenarioFile, name, wrong)
     given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)

@@ -37,6 +37,8 @@ JSON schema (`sealdyn schema`), which editors read too.
   the rotor (FMR), both make both float (FMSR).
 - `sealdyn list` names the shipped ones, wherever sealdyn is installed; `sealdyn.example("fms_reference")` reads one in
   Python.
+- `schema = 1` at the head of a file says which version of these keys it is written in; without it the present one.  A
+  file of a newer version is refused in a line that says so.
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
 - `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` ([README](../README.md)): no
   number of a run hangs on it.
