@@ -22,6 +22,7 @@ def test_the_first_screen_says_what_to_do_and_fits(tmp_path):
     assert all(line in helped for line, _ in FIRST_STEPS[:-2])
 
 
+@pytest.mark.slow
 def test_its_commands_work_one_after_the_other(tmp_path):
     """As typed, in an empty folder."""
     for line, _ in FIRST_STEPS:
