@@ -1,11 +1,13 @@
 """Files of other versions: older ones open, newer ones name what reads them."""
 
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
 
 import sealdyn
-from sealdyn.archive import ArchiveError, ArchiveWriter, is_study, read_info, read_study, write_study
+from sealdyn.archive import ArchiveError, ArchiveWriter, is_study, read_info, read_study, run, study, write_study
 from sealdyn.archive.fields import Series
 from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
@@ -45,6 +47,14 @@ def test_the_version_changes_nothing_of_a_run():
     assert said.with_(film__coning="2 mrad").to_toml().startswith("# Does")
 
 
+def test_the_page_names_what_this_version_reads():
+    page = (Path(__file__).parents[2] / "README.md").read_text()
+    _, _, changed = page.partition("## What changed")
+    (latest,) = [line for line in changed.splitlines() if line.startswith(f"- {sealdyn.__version__}")]
+    assert f"version = {{{sealdyn.__version__}}}" in page and f"`schema = {SCHEMA}`" in latest
+    assert all(f"`{name}`" in changed for name in (run.FORMAT, *run.OLDER, study.FORMAT))
+
+
 def test_scenarios_to_begin_with_and_the_schema_name_it():
     assert all(parse_scenario(template(kind), kind).to_dict()["schema"] == SCHEMA for kind in kinds())
     assert json_schema()["properties"]["schema"]["maximum"] == SCHEMA
@@ -54,9 +64,11 @@ def test_scenarios_to_begin_with_and_the_schema_name_it():
 
 
 def run_archive(path):
-    run = ArchiveWriter(path, scenario_text="", resolved={}, meta={"version": "0.1.0"}, series={"z": Series("m", "z")})
-    run.append({"time": np.arange(3.0), "z": np.zeros(3)}, {})
-    return run.finish("ok", "", {})
+    writer = ArchiveWriter(
+        path, scenario_text="", resolved={}, meta={"version": "0.1.0"}, series={"z": Series("m", "z")}
+    )
+    writer.append({"time": np.arange(3.0), "z": np.zeros(3)}, {})
+    return writer.finish("ok", "", {})
 
 
 def study_archive(path):
