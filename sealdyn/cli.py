@@ -45,14 +45,26 @@ PATIENCE = 1.0
 LONGEST = 1000
 # Bytes of an archive whose size is worth a line.
 WORTH_SAYING = 1e9
-# What figures are written as.
+# Figures of a run, and what they are written as.
+CHARTS = ("overview", "orbit", "film", "spectrum", "poincare")
 FIGURES = (".png", ".svg", ".pdf")
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
 GARBAGE = 100_000
 
+# What `sealdyn` alone prints.
+FIRST_STEPS = (
+    ("sealdyn new fms", "writes a commented seal to change: fms.toml"),
+    ("sealdyn check fms.toml", "says what is wrong with it, and what design rules say"),
+    ("sealdyn run fms.toml", "computes its motion: outputs/fms.h5 and a figure"),
+    ("sealdyn plot outputs/fms.h5", "draws it again; with --kind orbit otherwise"),
+    ("sealdyn study stability fms.toml", "answers a question; sealdyn study --help names them"),
+    ("sealdyn list", "names the scenarios that come with the program"),
+    ("sealdyn --help", "lists all commands"),
+)
+
 app = typer.Typer(
     add_completion=True,
-    no_args_is_help=True,
+    epilog=f"First steps: {', '.join(line for line, _ in FIRST_STEPS[:-2])}.  sealdyn alone says what each does.",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
     help=(
@@ -70,14 +82,42 @@ def _say_version(asked: bool):
         raise typer.Exit
 
 
-@app.callback()
+@app.callback(invoke_without_command=True)
 def _options(
+    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
     ] = False,
 ):
-    # What belongs to no verb; what the program is for stands above.
-    pass
+    # What the program is for stands above.
+    if context.invoked_subcommand is None:
+        width = max(len(line) for line, _ in FIRST_STEPS)
+        print("sealdyn: how the rings of a mechanical face seal move.  First steps:\n")
+        for line, what in FIRST_STEPS:
+            print(f"  {line:{width}}  {what}")
+
+
+def _completes(names):
+    """What the shell offers for a word of which `names()` are the choices."""
+    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
+
+
+def _seal_kinds():
+    from .scenario.templates import kinds
+
+    return kinds()
+
+
+def _studies():
+    from .studies import study_names
+
+    return study_names()
+
+
+def _sources():
+    from .analysis.validation import source_names
+
+    return source_names()
 
 
 ScenarioFile = Annotated[Path, typer.Argument(help="scenario (TOML), or an archive (HDF5) whose scenario is run again")]
@@ -386,7 +426,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
 @app.command()
 def new(
-    kind: Annotated[str, typer.Argument(help="fms, fmr, fmsr, gas or wavy")],
+    kind: Annotated[str, typer.Argument(help="fms, fmr, fmsr, gas or wavy", autocompletion=_completes(_seal_kinds))],
     out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
 ):
     """Write a commented scenario to begin with."""
@@ -516,15 +556,17 @@ def _write_mat(path, columns):
 @app.command()
 def plot(
     file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
-    kind: Annotated[str, typer.Option(help="overview, orbit, film, spectrum or poincare")] = "overview",
+    kind: Annotated[
+        str, typer.Option(help="overview, orbit, film, spectrum or poincare", autocompletion=_completes(lambda: CHARTS))
+    ] = "overview",
     out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
     """Draw a figure from an archive."""
     import importlib
 
-    kinds = ("overview", "orbit", "film", "spectrum", "poincare")
-    if kind not in kinds:
-        raise Stop(Status.INVALID, f'--kind: found "{kind}"; expected one of {", ".join(kinds)}{_nearest(kind, kinds)}')
+    if kind not in CHARTS:
+        line = f'--kind: found "{kind}"; expected one of {", ".join(CHARTS)}{_nearest(kind, CHARTS)}'
+        raise Stop(Status.INVALID, line)
     if out is not None and out.suffix not in FIGURES:
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in {", ".join(FIGURES)}')
     if out is None:
@@ -635,7 +677,10 @@ def _must_be_archive(file):
 
 @app.command()
 def validate(
-    source: Annotated[str | None, typer.Argument(help="one source, e.g. zuk-1972 (default all)")] = None,
+    source: Annotated[
+        str | None,
+        typer.Argument(help="one source, e.g. zuk-1972 (default all)", autocompletion=_completes(_sources)),
+    ] = None,
     as_json: AsJson = False,
 ):
     """Compare published numbers with what the program computes: all sources, or one."""
@@ -658,7 +703,7 @@ def validate(
 
 
 class _StudyCommand(TyperCommand):
-    """`sealdyn study NAME --help` ends with the settings of that study."""
+    """`sealdyn study NAME --help` ends with the settings of that study, `sealdyn study --help` with their names."""
 
     def parse_args(self, context, args):
         if {"-h", "--help"} & set(args):
@@ -670,7 +715,7 @@ def _about_study(name: str) -> str | None:
     """What a study is, its settings and its time; of no study which there are."""
     from rich.markup import escape
 
-    from .studies._runner import study_names
+    from .studies import study_names
     from .studies._settings import about, settings_of, time_of
 
     if name.replace("_", "-") not in study_names():
@@ -685,7 +730,10 @@ def _about_study(name: str) -> str | None:
 @app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def study(
     context: typer.Context,
-    name: Annotated[str, typer.Argument(help="the study, e.g. critical-speed; an unknown name lists them")],
+    name: Annotated[
+        str,
+        typer.Argument(help="the study, e.g. critical-speed; --help lists them", autocompletion=_completes(_studies)),
+    ],
     file: ScenarioFile,
     set: Overrides = None,
     out: Annotated[Path | None, typer.Option(help="archive to write (default outputs/<scenario>-<study>.h5)")] = None,
@@ -704,7 +752,8 @@ def study(
     from .report.text import study_lines
     from .scenario.reader import ScenarioError
     from .scene.scene import SceneError
-    from .studies._runner import archive_of, journal_of, run_study, study_names, study_tables
+    from .studies import study_names
+    from .studies._runner import archive_of, journal_of, run_study, study_tables
 
     names = study_names()
     if name.replace("_", "-") not in names:

@@ -34,6 +34,7 @@ from .fields import (
     reserve,
     scale_of,
 )
+from .made_as import must_be_readable
 from .seal import is_whole, seal
 from .soundness import ArchiveError, begin_writing, end_writing, is_sound, must_be_sound
 from .space import DATASET, FILE, hdf5_with_room
@@ -415,11 +416,7 @@ def _from_json(text):
 def _opened(path):
     """The file at `path` (or the run that is still to become it) and its newest whole record."""
     with _open_file(Path(path)) as file:
-        made_as = str(file.attrs.get("format", ""))
-        if made_as not in (FORMAT, *OLDER):
-            newer = made_as.startswith(FORMAT[:-1])
-            found = f'a "{made_as}", this program reads up to "{FORMAT}"' if newer else "but not a sealdyn archive"
-            raise ArchiveError(f"{path}: an HDF5 file, {found}")
+        must_be_readable(file, path, (FORMAT, *OLDER), "a sealdyn archive")
         try:
             if not is_whole(file):
                 raise ArchiveError(f"{path}: what it says was altered since it was written")

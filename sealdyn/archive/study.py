@@ -9,6 +9,7 @@ import h5py
 
 from .columns import columns
 from .fields import sayable
+from .made_as import is_named, must_be_readable
 from .run import ODD
 from .seal import is_whole, seal
 from .soundness import ArchiveError, is_sound, must_be_sound
@@ -59,11 +60,11 @@ def _write(file, meta, texts, numbers, units) -> None:
 
 
 def is_study(path) -> bool:
-    """Whether there is the file of a study at `path`."""
+    """Whether there is the file of a study at `path`, of this format or another."""
     try:
         must_be_sound(path)
         with h5py.File(path, "r") as file:
-            return str(file.attrs.get("format")) == FORMAT
+            return is_named(str(file.attrs.get("format")), FORMAT)
     except (ArchiveError, OSError, RuntimeError):
         return False
 
@@ -77,8 +78,7 @@ def read_study(path) -> dict:
     try:
         must_be_sound(path)
         with h5py.File(path, "r") as file:
-            if str(file.attrs.get("format")) != FORMAT:
-                raise ArchiveError(f"{path}: an HDF5 file, but not a sealdyn study")
+            must_be_readable(file, path, (FORMAT,), "a sealdyn study")
             if not is_whole(file):
                 raise ArchiveError(f"{path}: what it says was altered since it was written")
             info = {}

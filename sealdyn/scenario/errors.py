@@ -16,6 +16,8 @@ NOTHING = object()
 MISSING = ("nothing", "no such table")
 # What `nearest` says of a key of the same table.
 NEAR = re.compile(r"nearest '(\w+)'$")
+# Keys that stand in no table.
+ABOVE_TABLES = ("schema",)
 # Characters of what was expected: it may list names.
 LONGEST = 600
 # Lines about one file.
@@ -34,7 +36,7 @@ class ScenarioError(Exception):
 
     def __str__(self):
         table, _, last = self.key.rpartition(".")
-        where = f"[{table}] {last}" if table else f"[{last}]" if last else ""
+        where = f"[{table}] {last}" if table else last if last in ABOVE_TABLES else f"[{last}]" if last else ""
         where = f"{cut(where)}: " if where else ""
         line = f"{cut(self.name)}: {where}found {cut(self.found)}; expected {cut(self.expected, LONGEST)}"
         return "".join(c if c.isprintable() else " " for c in line)

@@ -29,6 +29,7 @@ from .errors import ScenarioError, explained, tables, together, without_indices
 from .overrides import override_key, without_arrays
 from .rule_names import unknown_rules
 from .unquoted import unquoted_quantity
+from .version import SCHEMA, refuse_newer
 
 __all__ = [
     "Run",
@@ -44,8 +45,8 @@ SMALLEST, LARGEST = 1e-25, 1e15
 # Of a file.
 MOST_BYTES = 1 << 21
 STARTS = r"^(auto|rest|steady|.+\.h5)$"
-# Tables on which no number of a run hangs.
-BESIDE_THE_RUN = ("study", "application")
+# What no number of a run hangs on.
+BESIDE_THE_RUN = ("study", "application", "schema")
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class Run:
 
     `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
     all) or `samples` in all.  `start` "auto": on the linear steady response where that is stable and leaves the film
-    open; at rest with `[initial]`, contact, a secondary seal, a film with unknowns of its own, or tables.
+    open; at rest with `[initial]`, and, unless the faces would overlap there, with contact, a secondary seal, a film
+    with unknowns of its own, or tables.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -88,6 +90,8 @@ class ScenarioFile(Scene):
     """What the seal is asked to do: for design rules, no number of a run hangs on it."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Settings of studies, one table [study.NAME] each."""
+    schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
+    """Version of these keys; without it the present one."""
 
 
 @dataclass(frozen=True)
@@ -215,6 +219,7 @@ def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> di
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
     told, without those on which no run hangs.
     Raises `ScenarioError`."""
+    refuse_newer(raw, name)
     wrong = [*_odd_numbers(raw, name)]
     raw, halved = with_radii(raw, ScenarioFile, name, wrong)
     given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)

@@ -26,3 +26,10 @@ What every study module offers (the contract):
 The chart of a study has the same name in `charts` with the prefix `study_`, and draws from the study's archive only.
 A study knows scenarios, models and solvers; it never opens a file or draws.
 """
+
+import pkgutil
+
+
+def study_names() -> list[str]:
+    """Names of the studies there are, hyphenated."""
+    return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(__path__) if m.name[0] != "_")

@@ -18,7 +18,8 @@ from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario
 from ..scenario.settings import scenario_of
 from ..simulation.result import at_hand
-from ._runner import run_study, study_module, study_names
+from . import study_names
+from ._runner import run_study, study_module
 
 if TYPE_CHECKING:
     import xarray

@@ -3,7 +3,6 @@
 import importlib
 import json
 import os
-import pkgutil
 import platform
 import sys
 from collections.abc import Callable, Iterable, Mapping
@@ -23,11 +22,6 @@ from ..scene import variants
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..status import Status
-
-
-def study_names() -> list[str]:
-    """Names of the studies there are, hyphenated."""
-    return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(studies.__path__) if m.name[0] != "_")
 
 
 def study_tables(name: str, answer: dict) -> list:

@@ -5,7 +5,8 @@ import json
 from dataclasses import dataclass
 
 from ..scenario.schema import json_schema, table_schema
-from ._runner import study_module, study_names
+from . import study_names
+from ._runner import study_module
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Neutral stability: what each method adds to or takes from a motion that must neither grow nor decay, and its price.
 
-At the exact stability threshold (eigenvalues, linear film) the growth a method shows is its own: numerical damping.
-A ring that precesses freely without damping keeps its energy and angular momentum: drift.
+At the exact stability threshold of this seal (eigenvalues, linear film) the growth a method shows is its own: numerical
+damping.  Its ring, precessing freely without damping, keeps energy and angular momentum: drift.
 """
 
 import math

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sealdyn import read_scenario
 from sealdyn.scenario.schema import json_schema
-from sealdyn.studies._runner import study_names
+from sealdyn.studies import study_names
 from sealdyn.studies._settings import about, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -35,6 +35,8 @@ JSON schema (`sealdyn schema`), which editors read too.
   the rotor (FMR), both make both float (FMSR).
 - `sealdyn list` names the shipped ones, wherever sealdyn is installed; `sealdyn.example("fms_reference")` reads one in
   Python.
+- `schema = 1` at the head of a file says which version of these keys it is written in; without it the present one.  A
+  file of a newer version is refused in a line that says so.
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
 - `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` ([README](../README.md)): no
   number of a run hangs on it.

@@ -15,7 +15,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import study_module
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = {name: study_module(name.replace("-", "_")).TIMED[0].split() for name in study_names()}

@@ -13,7 +13,7 @@ import xarray
 import sealdyn
 from sealdyn.archive import answer_tables, read_study, tables_as_dataset
 from sealdyn.archive.columns import columns
-from sealdyn.studies._runner import study_names
+from sealdyn.studies import study_names
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
 from command import sealdyn as program

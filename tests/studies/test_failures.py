@@ -10,9 +10,10 @@ from drawn import drawn, text_trouble
 import sealdyn
 from sealdyn.archive import read_study
 from sealdyn.report.charts import study_failures
+from sealdyn.report.charts.palette import VERMILLION
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.failures.study import exhibit_names, shown
+from sealdyn.studies.failures.study import chosen_for, exhibit_names, shown, tables
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
 KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}
@@ -95,6 +96,58 @@ def test_the_gallery_is_drawn_with_its_crosses(tmp_path):
     assert {round(float(np.log10(error)), 9) for error in errors if error} <= ends
     assert sum(line.get_marker() == "x" for line in ax.lines) == errors.count(None) == 1
     assert text_trouble(figure)[1] == []
+
+
+# A scene that comes to each place: one that ships, with overrides.
+ROUGH = ["contact.roughness='0.1 um'", "contact.compressive_strength='1 GPa'"]
+MEET = {
+    "neutral_stability": ("fms_reference", ["shaft.speed=5600 rad/s", "film.model=radial"]),
+    "stiff_squeeze": ("pressure_step", []),
+    "touch_between_steps": ("impact", []),
+    "coulomb_friction": ("hang_up", []),
+    "degenerate_geometry": ("fms_reference", ["film.coning='1 nrad'"]),
+    "vanishing_inertia": ("massless_ring", []),
+    "inconsistent_start": ("impact", []),
+    "fronts": ("fms_reference", ["film.cavitation_pressure='0 bar'", "film.model=radial"]),
+    "chaos": ("fms_reference", ["shaft.speed=6500 rad/s", *ROUGH]),
+    "long_runs": ("fms_reference", ["run.samples_per_turn=1"]),
+    "several_answers": ("lebeck_elastic", []),
+    "linear_theory": ("rub", []),
+    "choked_gas": ("gas_dam_reference", []),
+    "trapped_gas": ("gas_reynolds_reference", []),
+    "moving_cavity": ("lebeck_n3", []),
+}
+
+
+def met_by(name, overrides) -> set[str]:
+    scenario = sealdyn.read_scenario(SCENARIO.with_name(f"{name}.toml"), overrides)
+    own, met = chosen_for(scenario, exhibit_names())
+    assert "refused" not in own
+    return {place for place, why in met.items() if why}
+
+
+@pytest.mark.parametrize("place", BOUNDS)
+def test_a_seal_is_told_which_places_it_comes_to(place):
+    assert place in met_by(*MEET[place])
+
+
+@pytest.mark.parametrize("name", ["fms_reference", "fmr_reference", "fmsr_both_flexible", "housing_vibration"])
+def test_an_ordinary_seal_comes_to_none_of_them(name):
+    assert met_by(name, []) == set()
+
+
+def test_the_answer_and_its_figure_speak_of_this_seal(tmp_path):
+    """Of two exhibits the seal comes to one."""
+    scenario = sealdyn.read_scenario(SCENARIO, ROUGH)
+    answer = run_study("failures", scenario, tmp_path / "f.h5", flags={"items": [3, 5]}, workers=1)
+    assert [row["item"] for row in answer["met"]] == [3] and "[contact]" in answer["met"][0]["met"]
+    assert {row["item"] for row in answer["rows"] if row["met"]} == {3} and answer["met"][0]["met"] in answer[
+        "verdict"
+    ][1]
+    assert tables(answer)[1][0] == answer["met"]
+    figure = drawn(study_failures, tmp_path / "f.h5", tmp_path / "f.png", written=False)
+    red = [text.get_text() for text in figure.axes[0].texts if text.get_color() == VERMILLION]
+    assert len(red) == 1 and red[0].startswith("3 ")
 
 
 def test_an_exhibit_that_breaks_is_a_row_with_its_reason(tmp_path, monkeypatch):

@@ -10,7 +10,8 @@ import sealdyn
 from sealdyn import studies
 from sealdyn.analysis.design_rules import rule_names
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import study_module
 
 README = (Path(__file__).parents[2] / "README.md").read_text()
 

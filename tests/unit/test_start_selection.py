@@ -49,12 +49,14 @@ def test_auto_is_the_default_and_needs_no_word_for_an_ordinary_runout():
     assert np.array_equal(left_open.y0, steady.y0) and np.any(steady.y0)
 
 
+# What else makes the response doubtful.
+CONTACT = ["contact.roughness='0.1 um'", "contact.compressive_strength='1 GPa'"]
 SEALED = ["stator.secondary_seal.friction_force=5 N", "stator.secondary_seal.radius=45 mm"]
 AT_REST = {
     "not stable": ["shaft.speed=6500 rad/s"],
     "initial": ["initial.stator.tilt_x=1 urad"],
     "secondary seal": SEALED,
-    "contact": ["contact.roughness='0.1 um'", "contact.compressive_strength='1 GPa'"],
+    "contact": CONTACT,
     "speed": ["shaft.speed={time=[0, 1], value=[900, 1000]}"],
     "pressure": ["film.outer_pressure={time=[0, 1], value=['5 bar', '6 bar']}"],
 }
@@ -67,15 +69,37 @@ def test_else_it_starts_at_rest(overrides):
     assert start.taken == "rest" and start.why
 
 
+@pytest.mark.parametrize(
+    "overrides", [CONTACT, SEALED, ["film.outer_pressure={time=[0, 1], value=['11 bar', '12 bar']}"]]
+)
+def test_faces_that_would_overlap_at_rest_start_on_the_response(overrides):
+    """Wherever there is one; what is doubtful about it stands beside it."""
+    with pytest.raises(ValueError, match="closed at the start"):
+        prepare_run(parse_scenario(PUMP, "pump", ["run.start=rest", *overrides]))
+    starts = ([], ["run.start=steady"])
+    left_open, steady = (prepare_run(parse_scenario(PUMP, "pump", [*o, *overrides]))[0] for o in starts)
+    assert left_open.start.taken == "steady" and np.array_equal(left_open.y0, steady.y0) and np.any(steady.y0)
+    doubt = begun(*overrides)[1].why.removeprefix("at rest: ")
+    assert "overlap" in left_open.start.why and left_open.start.why.endswith(doubt)
+
+
+@pytest.mark.parametrize("overrides", [["initial.stator.z='1 nm'"], ["shaft.speed='2e6 rpm'"]])
+def test_where_there_is_no_response_overlapping_faces_are_refused(overrides):
+    """The start was given; the seal is unstable."""
+    with pytest.raises(ValueError, match="closed at the start"):
+        prepare_run(parse_scenario(PUMP, "pump", [*CONTACT, *overrides]))
+
+
 def test_a_response_that_closes_the_film_is_no_start():
     """A stator so far out of square that linear theory closes the film, open as long as it stands straight."""
     run, *_ = prepare_run(seal("stator.misalignment=6 mrad"))
     assert run.start.taken == "rest" and not np.any(run.y0)
 
 
-def test_where_both_are_closed_no_other_start_is_advised():
+@pytest.mark.parametrize("overrides", [[], CONTACT])
+def test_where_both_are_closed_no_other_start_is_advised(overrides):
     with pytest.raises(ValueError, match="closed at the start") as told:
-        prepare_run(seal("stator.misalignment=6 mrad", "rotor.runout=6 mrad"))
+        prepare_run(seal("stator.misalignment=6 mrad", "rotor.runout=6 mrad", *overrides))
     assert "run.start" not in str(told.value)
 
 

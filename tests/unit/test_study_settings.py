@@ -10,8 +10,8 @@ from sealdyn.cli import _about_study
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
-from sealdyn.studies import contact_onset, steady_state, sweep
-from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies import contact_onset, steady_state, study_names, sweep
+from sealdyn.studies._runner import study_module
 from sealdyn.studies._settings import schema_with_studies, settings_of
 from sealdyn.studies.failures import study as failures
 from sealdyn.studies.rub import study as rub

@@ -6,7 +6,8 @@ import re
 import pytest
 
 from sealdyn.report.text import MOST_ROWS, question_of, study_lines
-from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import study_module
 
 COLUMNS = (("motion", "class"), ("film, um", "film.least", 1e6), ("touch", "touch"), ("of no row", "period"))
 

@@ -14,11 +14,17 @@ NAMES, NUMBERS = 0.235, 0.715
 
 @look()
 def draw(path, out):
-    """One line of bars per exhibit, its name and unit to the left, what the program does by default to the right."""
+    """One line of bars per exhibit, its name and unit to the left, in colour where the seal comes to its place,
+    what the program does by default to the right."""
     rows = read_study(path)["answer"]["rows"]
     height = 1.4 + 0.42 * len(rows)
     figure = sheet(14.5, height)
-    heading(figure, "Where methods fail, by how much, and what survives", "")
+    met = any(row.get("met") for row in rows)
+    heading(
+        figure,
+        "Where methods fail, by how much, and what survives",
+        "names in colour: where this seal comes to" if met else "",
+    )
     bottom = 0.6 / height
     ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
     for at, row in enumerate(rows):
@@ -46,7 +52,8 @@ def _frame(figure, ax, count, height):
 def _line(ax, row, y):
     ax.axhline(y - 0.5, color=PALE, lw=0.5)
     beside = {"transform": ax.get_yaxis_transform(), "va": "center"}
-    ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", ha="right", fontsize=9, weight="bold", **beside)
+    place = {"ha": "right", "fontsize": 9, "weight": "bold", "color": VERMILLION if row.get("met") else BLACK}
+    ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", **place, **beside)
     ax.text(-0.012, y - 0.2, shortened(row.get("unit", ""), 62), ha="right", fontsize=7.5, color=GREY, **beside)
     if "failed" in row:
         ax.text(LEAST, y, f" the exhibit failed: {row['failed']}", color=VERMILLION, va="center")

@@ -1,6 +1,8 @@
-"""Failures: thirteen places where methods fail, each failing method run beside the one that survives it.
+"""Failures: fourteen places where methods fail, each failing method run beside the one that survives it, and which of
+them this seal comes to.
 
-The exhibits are small scenes of the reference seal (exhibits/); the scenario is told what the program does with it.
+The exhibits are small scenes of published seals (cases/), so that their errors are known; of the scenario the study
+says which places it meets and why, and what the program does with it.
 """
 
 import importlib
@@ -41,10 +43,13 @@ def run(scenario, settings, tools) -> dict:
     chosen = [name for name, item in names.items() if item in wanted or not wanted]
     found = tools.map(shown, [{"exhibit": name} for name in chosen], "exhibit")
     rows = []
+    own, met = chosen_for(scenario, chosen)
     for name, part in zip(chosen, found, strict=True):
         title = name.replace("_", " ")
-        rows += part.get("rows") or [{"item": names[name], "title": title, "failed": part["failed"]}]
-    answer = {"rows": rows, "items": sorted({row["item"] for row in rows}), "scenario": chosen_for(scenario)}
+        shows = part.get("rows") or [{"item": names[name], "title": title, "failed": part["failed"]}]
+        rows += [{**row, "met": met.get(name, "")} for row in shows]
+    places = [{"item": names[name], "place": name.replace("_", " "), "met": why} for name, why in met.items() if why]
+    answer = {"rows": rows, "items": sorted({row["item"] for row in rows}), "scenario": own, "met": places}
     if any("failed" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer)}
@@ -62,25 +67,30 @@ def shown(point: dict) -> dict:
     return {"rows": importlib.import_module(f"{cases.__name__}.{point['exhibit']}").show()}
 
 
-def chosen_for(scenario) -> dict:
-    """Method, why, and warnings that the program has for the scenario before it runs."""
+def chosen_for(scenario, exhibits) -> tuple[dict, dict[str, str]]:
+    """Method, why, and warnings that the program has for the scenario before it runs; and {exhibit: what of the
+    scenario brings it there, or empty}."""
     try:
         run, method, why, *_ = prepare_run(scenario)
     except SceneError as error:
-        return {"refused": str(error)}
-    return {
+        return {"refused": str(error)}, {}
+    own = {
         "film": run.model.interface.name,
         "method": method,
         "why": why,
         "warnings": [caution.sentence for caution in run.cautions],
     }
+    return own, {
+        name: importlib.import_module(f"{cases.__name__}.{name}").meets(scenario.scene, run) for name in exhibits
+    }
 
 
 def tables(answer) -> list:
-    """Each method that fails beside the one that survives."""
+    """Each method that fails beside the one that survives; then the places this seal comes to."""
     columns = (("", "item"), ("place", "title"), ("fails", "failing"), ("error", "failing_error"),
                ("survives", "survivor"), ("error", "survivor_error"), ("unit", "unit"))  # fmt: skip
-    return [(answer["rows"], columns)]
+    met = (("", "item"), ("this seal comes to", "place"), ("since", "met"))
+    return [(answer["rows"], columns), (answer.get("met", []), met)]
 
 
 def sentences(answer) -> list[str]:
@@ -91,6 +101,9 @@ def sentences(answer) -> list[str]:
     if "refused" in own:
         lines.append(f"This scenario is refused: {own['refused']}.")
     else:
+        met = ", ".join(f"{row['place']} ({row['met']})" for row in answer["met"])
+        count = f"{len(answer['met'])} of their {len(answer['items'])} kinds: {met}" if met else "none of them"
+        lines.append(f"This seal comes to {count}.")
         warned = f"; warned: {'; '.join(own['warnings'])}" if own["warnings"] else ""
         lines.append(
             f"For this scenario the program takes {own['method']} ({own['why']}) on the {own['film']} film{warned}."

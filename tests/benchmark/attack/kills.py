@@ -9,7 +9,8 @@ import time
 from pathlib import Path
 
 from sealdyn.archive import ArchiveError, partial_path, read_info
-from sealdyn.studies._runner import journal_of, study_names
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import journal_of
 
 from .outcome import judged
 from .runs import unsound

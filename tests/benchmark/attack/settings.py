@@ -4,7 +4,8 @@ import dataclasses
 import random
 from pathlib import Path
 
-from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies import study_names
+from sealdyn.studies._runner import study_module
 
 from .outcome import SLOW, command, judged
 

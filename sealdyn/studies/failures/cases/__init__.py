@@ -7,6 +7,7 @@ What every exhibit module offers (the contract):
              (Green, 1989); at most some seconds.  A row is a dict: `item`, `title`, `failing` and `survivor` (what each
              is), `failing_error` and `survivor_error` (numbers in `unit`; None: no answer at all), `unit`, and
              `default`, a sentence on what the program does by itself.
+`meets(scene, run)`  what of a scene and its run (RunState, made ready) leads to this place, in words, or empty.
 
 An exhibit may use a bare library method: the naive use of it is what fails.
 """

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....analysis.sources.green_1989 import reference_scene
+from ....dynamics.modes import verdict
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
 from ....scene.contact import Contact
@@ -45,6 +46,13 @@ def followed(accuracy: float):
     h_min = signals(last, t[late] - last.time, q[late], rate[late])["h_min"] / run.model.clearance
     x = run.model.unknowns.names.index("stator_tilt_x")
     return (q[late, x] + 1j * q[late, x + 1])[::PER_TURN] * run.model.face[1] / run.model.clearance, h_min
+
+
+def meets(scene, run) -> str:
+    """Asperities on which an unstable ring lands."""
+    if run.model.contact is None or verdict(run.model.linear_scene().modes()) != "unstable":
+        return ""
+    return "an unstable ring with [contact]: it may hit its asperities without end"
 
 
 def show() -> list[dict]:

@@ -110,6 +110,15 @@ def upstream(films) -> float:
     return brentq(lambda mach: mach - arrived(mach), 1e-3, most, xtol=1e-14, rtol=1e-14)
 
 
+def meets(scene, run) -> str:
+    """A dam that chokes somewhere at the start."""
+    film = run.model.interface.film
+    if not hasattr(film, "exit_mach"):
+        return ""
+    mach = film.exit_mach(run.model.f, run.segment(0).gap_state(0.0, run.y0))[1]
+    return "its gas is as fast as sound at the exit" if mach >= 1.0 else ""
+
+
 def show() -> list[dict]:
     """Leakage of a choked dam, and where a march through a widening one arrives."""
     found, right = solved(NARROWING), entrance(upstream(NARROWING), NARROWING[0])[0]

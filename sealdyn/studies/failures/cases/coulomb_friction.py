@@ -4,7 +4,7 @@ import math
 from dataclasses import replace
 
 from ....analysis.sources.green_1989 import reference_scene
-from ....scene.rings import Rotor
+from ....scene.rings import RING_NAMES, Rotor
 from ....scene.secondary_seal import SecondarySeal
 from ._common import ZERO_FILM, integrated, row, run_from
 
@@ -29,6 +29,12 @@ def off_rest(seal) -> tuple[float, int]:
     while abs(rest) > dead:
         rest = -math.copysign(abs(rest) - 2 * dead, rest)
     return abs(outcome.y[0] - rest) / run.model.clearance, outcome.counts.rhs
+
+
+def meets(scene, run) -> str:
+    """A ring on an O-ring."""
+    held = [RING_NAMES[k] for k in run.model.unknowns.seals]
+    return f"[{held[0]}.secondary_seal]: the ring sticks and slips" if held else ""
 
 
 def show() -> list[dict]:

@@ -14,6 +14,8 @@ from ....films.radial import film as radial
 from ._common import integrated, row, run_from
 
 ITEM = 5
+# Coning, of the clearance, at which logarithms of film thicknesses cancel.
+FLAT = 0.01
 # Coning over the face, of the clearance: a nanometre.
 CONE = 1e-4
 END, STEPS, MISS, OWN = 2e-3, 200, 1e-6, 10e-6
@@ -127,6 +129,17 @@ def zero_tilt() -> list[dict]:
             ("tilts about fixed axes", apart), "tilt, of clearance / radius",
             default),
     ]  # fmt: skip
+
+
+def meets(scene, run) -> str:
+    """Faces all but parallel."""
+    gaps = [h for _, h in run.model.aligned_gaps()]
+    apart = (max(gaps) - min(gaps)) / run.model.clearance
+    return (
+        f"its film is {100 * apart:.2g} % of the clearance thicker at one edge than at the other"
+        if apart < FLAT
+        else ""
+    )
 
 
 def show() -> list[dict]:

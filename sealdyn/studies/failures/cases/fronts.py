@@ -111,6 +111,16 @@ def choking() -> dict:
     )  # fmt: skip
 
 
+def meets(scene, run) -> str:
+    """A film with a floor of its pressure, or a dam that chokes on a part of the circle."""
+    film = run.model.interface.film
+    if hasattr(film, "exit_mach"):
+        low, high = film.exit_mach(run.model.f, run.segment(0).gap_state(0.0, run.y0))
+        return "its gas is as fast as sound on a part of the circle" if low < 1.0 <= high else ""
+    floored = scene.film.cavitation_pressure is not None and run.model.unknowns.film_unknowns is None
+    return "film.cavitation_pressure: where the film tears its force has a kink" if floored else ""
+
+
 def show() -> list[dict]:
     """Both fronts."""
     return [cavitation(), choking()]

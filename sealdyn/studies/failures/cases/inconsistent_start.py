@@ -126,6 +126,17 @@ def unsettled_pressures() -> dict:
     )  # fmt: skip
 
 
+def meets(scene, run) -> str:
+    """A start that film and loads need not agree with."""
+    if not run.model.loads_are_balanced(run.model.start):
+        return "no clearance at which the film holds its loads"
+    if run.model.unknowns.film_unknowns is not None:
+        return "its film has pressures of its own to begin with"
+    if run.model.unknowns.massless:
+        return "a ring without mass has rates that follow from its position"
+    return "[initial] gives a start of its own" if scene.initial.given else ""
+
+
 def show() -> list[dict]:
     """All four."""
     return [closed_start(), no_equilibrium(), contradicting_rates(), unsettled_pressures()]

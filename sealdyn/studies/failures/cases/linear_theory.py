@@ -9,9 +9,12 @@ from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
 from ....dynamics.steady_extremes import steady_extremes
+from ....simulation.steady_tilt import steady_tilt
 from ._common import integrated, row
 
 ITEM = 12
+# Share of the tilt at which parallel faces touch, above which linear theory is doubted.
+SMALL = 0.1
 TURNS, ACCURACY = 20, 1e-7
 # Of the linear onset: the way to it, and beyond.
 SHARES = (0.4, 0.6, 0.8, 0.9, 1.0, 1.1, 1.2)
@@ -54,6 +57,13 @@ def orbits(shares, touching: float) -> list:
         known.append((share, orbit.start - linear))
         found.append(orbit)
     return found
+
+
+def meets(scene, run) -> str:
+    """A tilt that is no small part of the one at which aligned faces touch."""
+    tilt, _, _ = steady_tilt(run.model)
+    share = abs(tilt) * scene.film.outer_radius / run.model.clearance
+    return f"its steady tilt is {share:.2g} clearances at the outer radius" if share > SMALL else ""
 
 
 def show() -> list[dict]:

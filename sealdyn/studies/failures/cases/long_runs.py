@@ -26,6 +26,8 @@ from ....simulation.simulate import prepare_run
 from ._common import row
 
 ITEM = 10
+# Turns after which the digits of an angle are worth a thought.
+MANY = 1e5
 SPEED, TURNS, STEPS_PER_TURN = 1047.1975511965977, 1e6, 4
 TONE, SHAFT, SAMPLES = 5400.0, 16.0, 36
 
@@ -98,6 +100,14 @@ def aliasing() -> dict:
         (f"{said} right at {enough} a turn", abs(right - TONE)), "Hz off",
         "compares the fastest forcing with the sampling before the run and says how many samples it takes",
     )  # fmt: skip
+
+
+def meets(scene, run) -> str:
+    """So many turns that the angle of the shaft loses digits, or a tone between the samples."""
+    if any(caution.concern == Concern.ALIASING for caution in run.cautions):
+        return "something is faster than its samples"
+    turns = run.duration * abs(run.model.speed_at(run.intervals[-1])) / (2 * math.pi)
+    return f"{turns:.3g} turns of the shaft" if turns > MANY else ""
 
 
 def show() -> list[dict]:

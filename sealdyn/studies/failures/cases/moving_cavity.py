@@ -113,6 +113,11 @@ def leakage_of_the_mean_cube() -> float:
     return 2.0 * math.pi * cube * fall / (12.0 * film.viscosity * math.log(film.outer_radius / film.inner_radius))
 
 
+def meets(scene, run) -> str:
+    """A film of cells that tear and fill."""
+    return "cavities that keep their liquid move in its film" if hasattr(run.model.interface.film, "settle") else ""
+
+
 def show() -> list[dict]:
     """Stiffness of slow motion, damping of a frozen cavity, implicit Euler, Reynolds' condition."""
     interface, rest, linear = seal()

@@ -13,6 +13,8 @@ from ....solvers.fixed_step import REFERENCE_METHODS
 from ._common import row
 
 ITEM = 1
+# Growth in a turn of the whirl that a method may hide.
+SLOW = 0.05
 # Whirl followed, over the tilt that closes the gap; turns of it; a solver tolerance as a user might set it.
 AMPLITUDE, TURNS, BARE = 0.1, 60, 1e-5
 
@@ -44,6 +46,14 @@ def growth(run, whirling, method: str, tolerance: float, most: float = math.inf)
     late = t > 0.25 * t[-1]
     exact = max(mode.value.real for mode in run.model.linear_scene().modes() if mode.kind == "tilt")
     return float(np.polyfit(t[late] - t[-1], np.log(size[late]), 1)[0]) - exact, counts.rhs
+
+
+def meets(scene, run) -> str:
+    """A whirl that hardly grows or decays."""
+    whirls = [mode.value for mode in run.model.linear_scene().modes() if mode.value.imag]
+    slowest = min(whirls, key=lambda value: abs(value.real / value.imag), default=1.0 + 1.0j)
+    share = math.expm1(2 * math.pi * slowest.real / abs(slowest.imag))
+    return f"a whirl that grows or decays by {100 * abs(share):.1g} % a turn of its own" if abs(share) < SLOW else ""
 
 
 def show() -> list[dict]:

@@ -103,6 +103,14 @@ def three_wavinesses() -> dict:
     )  # fmt: skip
 
 
+def meets(scene, run) -> str:
+    """More than one clearance or waviness."""
+    if scene.stator.elastic is not None:
+        return "[stator.elastic]: a ring that its load bends may have several wavinesses"
+    found = len(run.model.interface.equilibria)
+    return f"{found} clearances at which film and closing force balance" if found > 1 else ""
+
+
 def show() -> list[dict]:
     """Clearances, and wavinesses."""
     return [one_that_holds(), another_that_holds(), three_wavinesses()]

@@ -24,6 +24,12 @@ def squeezed():
                    rotor_z=0.99 * CLEARANCE)  # fmt: skip
 
 
+def meets(scene, run) -> str:
+    """Whether the program calls the run stiff."""
+    method, why = choose_method(run)
+    return why.partition(":")[0] if method == "bdf" else ""
+
+
 def show() -> list[dict]:
     """Right-hand sides that a second of motion costs: DOP853 given 20 000, BDF to the end."""
     run, counts, reached = squeezed(), Counts(), 0.0

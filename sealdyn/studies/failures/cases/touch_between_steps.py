@@ -55,6 +55,11 @@ def by_the_watch(scene) -> int:
     return len(events)
 
 
+def meets(scene, run) -> str:
+    """A scene with asperities."""
+    return "[contact]: its faces may touch between two steps" if run.model.contact is not None else ""
+
+
 def show() -> list[dict]:
     """Dips missed by CVODE's root search and by the search on every step's own polynomial."""
     scene = reference_scene("FMS")

@@ -19,7 +19,7 @@ from ....faces.geometry import GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, T
 from ....films.gas_reynolds import film as gas
 from ....films.gas_reynolds.cells import GRADING
 from ....scene.film import Film
-from ....scene.gas import GasReynolds
+from ....scene.gas import GasReynolds, gas_of
 from ._common import row
 
 ITEM = 13
@@ -57,6 +57,12 @@ def of_the_film(squeeze_number: float, grading: float = GRADING) -> tuple[comple
         k, d = linear.matrices(frequency)
         both.append(complex(k[0, 0], omega * d[0, 0]) / stiff)
     return both[0], both[1]
+
+
+def meets(scene, run) -> str:
+    """A gas film that stores."""
+    stores = run.model.unknowns.film_unknowns is not None and gas_of(scene.film) is not None
+    return "its film stores gas" if stores else ""
 
 
 def show() -> list[dict]:

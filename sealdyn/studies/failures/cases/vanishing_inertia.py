@@ -56,6 +56,11 @@ def without_mass() -> tuple[float | None, float]:
     return off(y[-1]) if np.isfinite(y[-1]).all() else None, by_ida
 
 
+def meets(scene, run) -> str:
+    """A ring without mass."""
+    return "a floating ring without mass or inertia" if run.model.unknowns.massless else ""
+
+
 def show() -> list[dict]:
     """Adams at a ten-millionth of the inertia, and CVODE at none, beside IDA at none."""
     by_cvode, by_ida = without_mass()
