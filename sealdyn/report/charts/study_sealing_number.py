@@ -44,7 +44,7 @@ def _numbers(ax, answer, rows):
     settled = [{**r, **r["quasi_static"]} for r in answer["balance"]
                if r.get("quasi_static", {}).get("status") == "settled"]  # fmt: skip
     for rows_of, mark, label, style in (
-        (line, "-", "closed form, Ludwig & Allen", {"color": BLACK, "lw": 1.6, "zorder": 3}),
+        (line, "-", "closed form, Ludwig & Allen (their Fig. 8)", {"color": BLACK, "lw": 1.6, "zorder": 3}),
         (_columns(held), ":", "same balance, actual film", {"color": ORANGE, "lw": 3.2, "zorder": 2}),
         (answer["foreseen"], "--", "released on its own support, foreseen", {"color": GREEN, "lw": 1.3, "zorder": 2}),
         (_columns(settled), "D", "same balance in time, settled", {"ms": 9, "mec": BLUE, "mew": 1.3, "zorder": 4}),
@@ -61,7 +61,9 @@ def _numbers(ax, answer, rows):
     _zones(ax, answer)
     ax.set(ylabel="sealing number  h0² F_s / (µ U ΔR³)",
            title="Mean film, as the sealing number (bars: least and largest)")  # fmt: skip
-    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.44))
+    # Their film, which the scene's has to be for the figure to be theirs.
+    film = "Fig. 8 needs a flat planar film, constant over the face,\nits pressure ambient where it diverges"
+    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.46), title=film, alignment="left", title_fontsize=8)
 
 
 def _columns(rows) -> dict:
