@@ -44,7 +44,7 @@ def _numbers(ax, answer, rows):
     settled = [{**r, **r["quasi_static"]} for r in answer["balance"]
                if r.get("quasi_static", {}).get("status") == "settled"]  # fmt: skip
     for rows_of, mark, label, style in (
-        (line, "-", "closed form, Ludwig & Allen (their Fig. 8)", {"color": BLACK, "lw": 1.6, "zorder": 3}),
+        (line, "-", "closed form, Ludwig & Allen", {"color": BLACK, "lw": 1.6, "zorder": 3}),
         (_columns(held), ":", "same balance, actual film", {"color": ORANGE, "lw": 3.2, "zorder": 2}),
         (answer["foreseen"], "--", "released on its own support, foreseen", {"color": GREEN, "lw": 1.3, "zorder": 2}),
         (_columns(settled), "D", "same balance in time, settled", {"ms": 9, "mec": BLUE, "mew": 1.3, "zorder": 4}),
@@ -61,9 +61,7 @@ def _numbers(ax, answer, rows):
     _zones(ax, answer)
     ax.set(ylabel="sealing number  h0² F_s / (µ U ΔR³)",
            title="Mean film, as the sealing number (bars: least and largest)")  # fmt: skip
-    # Their film, which the scene's has to be for the figure to be theirs.
-    film = "Fig. 8 needs a flat planar film, constant over the face,\nits pressure ambient where it diverges"
-    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.46), title=film, alignment="left", title_fontsize=8)
+    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.44))
 
 
 def _columns(rows) -> dict:
@@ -86,6 +84,9 @@ def _zones(ax, answer):
     ax.axvspan(0.1, least, color=GREY, alpha=0.16, lw=0)
     ax.axvspan(least, attracting, color=SKY, alpha=0.3, lw=0)
     words = f"closed form: hang-up, no balance below {least:.3f} (grey),\none that repels below {attracting:.3f} (blue)"
+    # Their film, which the scene's has to be for the figure to be theirs.
+    words += "\n\nLudwig & Allen's Fig. 8 needs a flat planar film, constant"
+    words += "\nover the face, its pressure ambient where it diverges"
     ax.annotate(words, (attracting, 0.80), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0),
                 textcoords="offset points", annotation_clip=True)  # fmt: skip
 
