@@ -134,6 +134,31 @@ def tilt_roots(speed, flexible, *, inertia, polar, k_s, d_s, k, d):
     return np.roots([inertia, d_s + d - 1j * polar * spin, k_s + k - 1j * (d_s * spin + d * speed / 2)])
 
 
+def tilts_in_turning_axes(frame, w, k, d, rotor, stator, own_rotor=0.0, own_stator=0.0):
+    """Relative tilt (2,), stator less rotor, that stands still in axes turning at `frame` (rad/s), of a film of tilt
+    stiffness k and damping d between two rings (transverse inertia, polar inertia, support stiffness, damping), a rigid
+    one None, tilted by `own_rotor`, `own_stator` about the first axis in their springs or, rigid, in space.
+
+    Moments of every part on pairs of real numbers; seen from the axes a rate is the turn of what stands still.
+    """
+    turn, one = np.array([[0.0, -1.0], [1.0, 0.0]]), np.eye(2)
+    film = k * one + d * (frame - w / 2) * turn
+    matrix, push = np.zeros((4, 4)), np.zeros(4)
+    for at, other, ring, spin, own in ((0, 2, rotor, w, own_rotor), (2, 0, stator, 0.0, own_stator)):
+        mine, partner = slice(at, at + 2), slice(other, other + 2)
+        if ring is None:
+            matrix[mine, mine], push[at] = one, own
+            continue
+        inertia, polar, k_s, d_s = ring
+        # Angular momentum: that of the tilt's rate, and of the spin about the tilted axis.
+        matrix[mine, mine] = inertia * frame**2 * (turn @ turn) - polar * spin * frame * (turn @ turn)
+        matrix[mine, mine] += k_s * one + d_s * (frame - spin) * turn + film
+        matrix[mine, partner] = -film
+        push[at] = k_s * own
+    tilts = np.linalg.solve(matrix, push)
+    return tilts[2:] - tilts[:2]
+
+
 def opening_force(clearance, coning, p_i, p_o, r_i=0.032, r_o=0.040, geometry="cylindrical"):
     """Opening force (N) from the pressure line itself: r h^3 p' = const, then int p 2 pi r dr, by quadrature."""
 

@@ -1,4 +1,4 @@
-"""Both arrangements of a seal, flexible rotor and flexible stator: their linear answers and the published formulas."""
+"""The arrangements of a seal, its rotor flexible, its stator or both: their linear answers and the closed forms."""
 
 from dataclasses import replace
 
@@ -10,17 +10,19 @@ from ..dynamics.model import Model
 from ..scene.excitation import Housing
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Initial, Scene
-from ..scene.variants import frozen_at_start, with_single_flexible_ring
+from ..scene.variants import frozen_at_start, with_both_flexible_rings, with_single_flexible_ring
 
-SEALS = ("fmr", "fms")
+SEALS = ("fmr", "fms", "fmsr")
 FORMULAS = {"fmr": (cf.fmr_static, cf.fmr_dynamic), "fms": (cf.fms_static, cf.fms_dynamic)}
 
 
 class Arrangement:
-    """One arrangement ("fmr" or "fms") of the scenario's seal: its linear answers at any shaft speed (rad/s)."""
+    """One arrangement (of SEALS) of the scenario's seal: its linear answers at any shaft speed (rad/s)."""
 
     def __init__(self, scene: Scene, name: str):
-        self.name, self.scene = name, with_single_flexible_ring(scene, name.upper())
+        both = name == "fmsr"
+        self.name = name
+        self.scene = with_both_flexible_rings(scene) if both else with_single_flexible_ring(scene, name.upper())
         self.model = Model(self.scene)
         self.stator_speed = scene.stator.speed
 
@@ -41,11 +43,14 @@ class Arrangement:
         return tuple(found)
 
     def formula_tilts(self, speeds) -> np.ndarray:
-        """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives; complex, shape (2, n), at
-        speeds (n,) (rad/s).
+        """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives, of two floating rings by
+        fmsr_relative_tilts; complex, shape (2, n), at speeds (n,) (rad/s).
 
-        **Source**, **Valid** closed_form/response.py.
+        **Source**, **Valid** closed_form/response.py, closed_form/both_rings.py.
         """
+        if self.name == "fmsr":
+            rotor, stator = map(tilting, (self.scene.rotor, self.scene.stator))
+            return np.array(cf.fmsr_relative_tilts(speeds, *self.film_numbers(speeds), rotor, stator))
         n = self.tilt_numbers(speeds)
         w, k_s, d_s, k, d = (n[name] for name in ("speed", "support_stiffness", "support_damping",
                                                        "film_stiffness", "film_damping"))  # fmt: skip
@@ -66,21 +71,17 @@ class Arrangement:
         """Growth rate (1/s) of the least damped tilt mode; 0 within its uncertainty."""
         return modes.growth([mode for mode in self.linear(speed).modes() if mode.kind == "tilt"])
 
-    def tilt_numbers(self, speed) -> dict:
-        """The seven keywords of the closed forms (SI), speed (rad/s, number or array) among them; film coefficients
-        re-evaluated at each speed."""
+    def film_numbers(self, speed) -> tuple[np.ndarray, np.ndarray]:
+        """Tilt stiffness (N m/rad) and tilt damping (N m s/rad) of the film at a speed (rad/s, number or array)."""
         films = [(s.film_k[1, 1], s.film_d[1, 1]) for s in map(self.linear, np.atleast_1d(speed))]
-        ring = self.scene.rotor if self.name == "fmr" else self.scene.stator
-        stiffness, damping = ring.support.tilt()
-        return {
-            "speed": speed,
-            "transverse_inertia": ring.transverse_inertia,
-            "polar_inertia": ring.polar_inertia,
-            "support_stiffness": stiffness,
-            "support_damping": damping,
-            "film_stiffness": np.array([k for k, _ in films]).reshape(np.shape(speed)),
-            "film_damping": np.array([d for _, d in films]).reshape(np.shape(speed)),
-        }
+        return tuple(np.array(column).reshape(np.shape(speed)) for column in zip(*films, strict=True))
+
+    def tilt_numbers(self, speed) -> dict:
+        """The seven keywords of the closed forms of one floating ring (SI), speed (rad/s, number or array) among them;
+        film coefficients re-evaluated at each speed."""
+        ring = tilting(self.scene.rotor if self.name == "fmr" else self.scene.stator)
+        stiffness, damping = self.film_numbers(speed)
+        return {"speed": speed, **ring._asdict(), "film_stiffness": stiffness, "film_damping": damping}
 
     def formula_holds(self, speed: float) -> bool:
         """Whether the film is isotropic with the wedge of the mean spin and stores nothing, and the stator stands."""
@@ -94,12 +95,21 @@ class Arrangement:
     def formula(self, speed):
         """Static, dynamic, total transmissibility (rad/rad) by the closed forms, at a speed (rad/s, number or
         array)."""
-        static, dynamic = (f(**self.tilt_numbers(speed)) for f in FORMULAS[self.name])
+        if self.name == "fmsr":
+            tilts = self.formula_tilts(np.atleast_1d(speed))
+            static, dynamic = np.abs(tilts).reshape(2, *np.shape(speed))
+        else:
+            static, dynamic = (f(**self.tilt_numbers(speed)) for f in FORMULAS[self.name])
         return static, dynamic, static + dynamic
 
 
+def tilting(ring) -> cf.TiltingRing:
+    """What a floating ring of a scene is in tilt (SI)."""
+    return cf.TiltingRing(ring.transverse_inertia, ring.polar_inertia, *ring.support.tilt())
+
+
 def seals_of(scene: Scene) -> dict[str, Arrangement]:
-    """Both arrangements {"fmr": ..., "fms": ...} of the scene's seal, nothing imposed, clearance kept."""
+    """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept."""
     clearance = Model(frozen_at_start(scene)).clearance
     scene = frozen_at_start(scene, clearance=clearance)
     quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[]))

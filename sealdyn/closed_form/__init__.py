@@ -7,6 +7,7 @@ film thickness at the inner radius of the aligned seal, `h = clearance + coning 
 is outer minus inner pressure.
 """
 
+from .both_rings import TiltingRing, fmsr_relative_tilts
 from .film import (
     FilmCoefficients,
     aligned_leakage,
@@ -17,6 +18,7 @@ from .film import (
 )
 from .flow_regime import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from .green_1989 import GREEN_1989, GREEN_1989_ROUNDED, GREEN_1989_SEAL, Published, green_1989_tilt
+from .green_groups import film_groups, ring_groups, seal_parameter
 from .response import (
     contact_tilt,
     critical_coning,
@@ -45,6 +47,7 @@ __all__ = [
     "GREEN_1989_SEAL",
     "FilmCoefficients",
     "Published",
+    "TiltingRing",
     "aligned_leakage",
     "aligned_opening_force",
     "axial_mode_stable",
@@ -56,6 +59,7 @@ __all__ = [
     "critical_tilt_inner",
     "critical_tilt_outer",
     "film_coefficients",
+    "film_groups",
     "fmr_absolute_static",
     "fmr_critical_speed",
     "fmr_dynamic",
@@ -65,10 +69,13 @@ __all__ = [
     "fms_dynamic",
     "fms_static",
     "fms_whirl_ratio",
+    "fmsr_relative_tilts",
     "green_1989_tilt",
     "narrow_seal_opening_force",
     "poiseuille_reynolds",
     "radial_film_coefficients",
+    "ring_groups",
+    "seal_parameter",
     "superposed",
     "unconditional_inertia_ratio",
 ]

@@ -1,5 +1,5 @@
 """Scenes made of a scene: other values at dotted keys, everything held constant, nothing imposed, the other ring
-flexible.
+flexible, or both.
 
 The counterpart carries the same ring on the other side: mass, inertias, support and own misalignment move over; the
 rigid partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film stays.
@@ -174,6 +174,20 @@ def counterpart(scene: Scene) -> Scene:
         new_stator = Stator(misalignment=rotor.runout, misalignment_direction=rotor.runout_phase, speed=stator.speed)
     start = Initial(rotor=scene.initial.stator, stator=scene.initial.rotor)
     return replace(scene, rotor=new_rotor, stator=new_stator, initial=start)
+
+
+def with_both_flexible_rings(scene: Scene) -> Scene:
+    """The scene as FMSR: itself, or with the ring that floats a second time in place of its rigid partner, mass,
+    inertias, support and O-ring; the partner's misalignment or runout is that of the new ring in its springs."""
+    present = arrangement(scene)
+    if present == "FMSR":
+        return scene
+    old, new = (scene.rotor, scene.stator) if present == "FMR" else (scene.stator, scene.rotor)
+    carried = {name: getattr(old, name) for name in CARRIED if name != "misalignment"}
+    if present == "FMR":
+        return replace(scene, stator=replace(new, **carried))
+    own = {"misalignment": new.runout, "misalignment_phase": new.runout_phase, "runout": 0.0, "runout_phase": 0.0}
+    return replace(scene, rotor=replace(new, **carried, **own))
 
 
 def with_single_flexible_ring(scene: Scene, wanted: str) -> Scene:

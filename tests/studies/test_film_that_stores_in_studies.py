@@ -15,10 +15,11 @@ from sealdyn.dynamics.whirl_speeds import one_by_one
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.studies import campbell, contact_onset, critical_speed, transmissibility
+from sealdyn.studies import campbell, contact_onset, critical_speed
 from sealdyn.studies.runup.plan import planned
 from sealdyn.studies.runup.study import Settings as RunupSettings
 from sealdyn.studies.stability import study as stability
+from sealdyn.studies.transmissibility import study as transmissibility
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 STORING = 1e-6

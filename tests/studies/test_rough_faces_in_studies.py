@@ -11,6 +11,7 @@ from oracles import christensen, opening_force
 from scenes import started
 from scipy.optimize import brentq
 
+from sealdyn.analysis.arrangements import seals_of
 from sealdyn.analysis.whirl import growth_rate
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
@@ -18,9 +19,10 @@ from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
-from sealdyn.studies import coefficients, critical_speed, equilibrium, transmissibility
+from sealdyn.studies import coefficients, critical_speed, equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.stability.grid import Grid
+from sealdyn.studies.transmissibility.in_time import measured
 
 R_I, R_O, ROUGH, STRENGTH = 0.025, 0.029, 0.15e-6, 180e6
 P_O, P_I, RATIO, SPRING = 12e5, 1e5, 0.8, 100.0
@@ -164,10 +166,10 @@ def test_stability_map_follows_the_roughness(pump):
 
 
 def test_transmissibility_in_time_is_that_of_linear_algebra(pump):
-    seals = transmissibility.seals_of(pump.scene)
-    for seal in ("fms", "fmr"):
+    seals = seals_of(pump.scene)
+    for seal in seals:
         point = {"seal": seal, "speed": 309.0, "accuracy": 1e-8, "longest": 4000.0}
-        row = transmissibility.measured(pump.scene, point)
+        row = measured(pump.scene, point)
         assert [row[q] for q in ("static", "dynamic")] == pytest.approx(seals[seal].algebra(309.0)[:2], rel=1e-4)
 
 

@@ -27,7 +27,8 @@ from sealdyn.report.charts.film import thickness
 from sealdyn.report.charts.orbit import hull
 from sealdyn.report.charts.record import Run
 from sealdyn.report.charts.spectrum import order_spectrum
-from sealdyn.studies import campbell, transmissibility
+from sealdyn.studies import campbell
+from sealdyn.studies.transmissibility import study as transmissibility
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 KINDS = {"overview": overview, "orbit": orbit, "film": film, "spectrum": spectrum, "poincare": poincare}
@@ -329,7 +330,7 @@ def test_study_charts_are_legible(tmp_path, modules, name, overrides, settings):
     study, chart = modules
     scenario = read_scenario(SCENARIOS / f"{name}.toml", overrides)
     answer = study.run(scenario, study.Settings(**settings), InProcess())
-    meta = {"study": study.__name__.split(".")[-1], "name": name, "question": scenario.question}
+    meta = {"study": chart.__name__.split(".study_")[-1], "name": name, "question": scenario.question}
     path = write_study(tmp_path / "s.h5", scenario.text, {}, meta, answer, study.units)
     figure = drawn(chart, path, tmp_path / "s.png", written=False)
     assert text_trouble(figure) == ([], [])

@@ -84,8 +84,9 @@ ANSWERS = {
     },
     "transmissibility": {
         "speed": THREE, "unit": "rad/s", "formula_holds": False, "phase": WHY, "crossings": [], "table": [],
-        "better": dict.fromkeys(("static", "dynamic", "total")), "time_domain": [{"seal": "fmr", **LOST}],
-        **{name: {**SEAL, "linear_algebra": SEAL} for name in ("fmr", "fms")},
+        "best": {name: [{"seal": None, "from": 1.0, "to": 3.0}] for name in ("static", "dynamic", "total")},
+        "film": WHY, "time_domain": [{"seal": "fmr", **LOST}],
+        **{name: {**SEAL, "linear_algebra": SEAL} for name in ("fmr", "fms", "fmsr")},
     },
     "wear": {"history": {"time": []}, "end": {"said": WHY}},
     "work_precision": {

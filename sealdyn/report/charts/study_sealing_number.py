@@ -84,6 +84,9 @@ def _zones(ax, answer):
     ax.axvspan(0.1, least, color=GREY, alpha=0.16, lw=0)
     ax.axvspan(least, attracting, color=SKY, alpha=0.3, lw=0)
     words = f"closed form: hang-up, no balance below {least:.3f} (grey),\none that repels below {attracting:.3f} (blue)"
+    # Their film, which the scene's has to be for the figure to be theirs.
+    words += "\n\nLudwig & Allen's Fig. 8 needs a flat planar film, constant"
+    words += "\nover the face, its pressure ambient where it diverges"
     ax.annotate(words, (attracting, 0.80), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0),
                 textcoords="offset points", annotation_clip=True)  # fmt: skip
 

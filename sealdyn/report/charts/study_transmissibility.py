@@ -1,5 +1,5 @@
-"""Bode plot of the FMR and the FMS seal over speed, three independent methods on one chart: transmissibilities above,
-phases below them, and the table at the foot."""
+"""Bode plot of the FMR, the FMS and the FMSR seal over speed, three independent methods on one chart:
+transmissibilities above, a strip that shows which is best below each, then phases, and the table at the foot."""
 
 from textwrap import wrap
 
@@ -8,10 +8,15 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
 from .page import logarithmic, look, number, save, stacked, study_page
-from .palette import BLACK, GREY, PALE, RING
+from .palette import BLACK, GREEN, GREY, PALE, RING
 from .record import done
 
-COLOUR, MARK = {"fmr": RING["rotor"], "fms": RING["stator"]}, {"fmr": "o", "fms": "s"}
+COLOUR = {"fmr": RING["rotor"], "fms": RING["stator"], "fmsr": GREEN}
+MARK = {"fmr": "o", "fms": "s", "fmsr": "D"}
+# Height of the strip that shows which arrangement is best, of the axes.
+STRIP = 0.035
+# Most lines of words in a panel.
+MOST = 4
 TITLES = {
     "static": "Static: fixed in space",
     "dynamic": "Dynamic: turns with the shaft",
@@ -33,8 +38,8 @@ def draw(archive_path, out_path):
     study = read_study(archive_path)
     answer, title = study["answer"], "How much misalignment reaches the film?"
     mosaic = [list(TITLES), ["static phase", "dynamic phase", "legend"]] + ([3 * ["table"]] if answer["table"] else [])
-    heights = (9, 6, 6)[: len(mosaic)]
-    figure, ax = study_page(study, 11.5, 9.6 if answer["table"] else 7.2, mosaic, title, height_ratios=heights)
+    heights = (9, 8, 6)[: len(mosaic)]
+    figure, ax = study_page(study, 11.5, 10.4 if answer["table"] else 8.0, mosaic, title, height_ratios=heights)
     for quantity in ("static", "dynamic"):
         stacked(ax[quantity], ax[f"{quantity} phase"])
         _phases(ax[f"{quantity} phase"], answer, f"{quantity}_phase")
@@ -46,7 +51,7 @@ def draw(archive_path, out_path):
     ax["static phase"].set_ylabel("phase behind the forcing, deg")
     _legend(ax["legend"], answer)
     if answer["table"]:
-        _table(ax["table"], answer["table"])
+        _table(ax["table"], answer["table"], answer["formula_holds"])
     return save(figure, out_path)
 
 
@@ -60,7 +65,11 @@ def _roads(ax, answer, quantity: str):
         ax.plot(speed, np.where(stable, line, np.nan), color=colour, lw=2.2, alpha=0.75)
         ax.plot(speed, np.where(stable, np.nan, line), color=colour, lw=1.0, alpha=0.5, ls=":")
         ax.plot(speed, np.where(stable, dashes, np.nan), color=BLACK, lw=0.8, ls=(0, (4, 5)))
-        for row in (row for row in done(answer["time_domain"]) if row["seal"] == seal):
+        inside = sorted((answer["speed"][0], answer["speed"][-1]))
+        for row in done(answer["time_domain"]):
+            # The scenario's own speed may lie elsewhere.
+            if row["seal"] != seal or not inside[0] <= row["speed"] <= inside[1]:
+                continue
             ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt=MARK[seal], ms=4.5, lw=1.0,
                         mfc="white", mec=colour, ecolor=colour, capsize=3, clip_on=False)  # fmt: skip
     ax.set(xlim=(speed[0], speed[-1]))
@@ -72,8 +81,8 @@ def _amplitudes(ax, answer, quantity: str):
     """One transmissibility."""
     both = _roads(ax, answer, quantity)
     lowest, highest = max(both.min(), 1e-9), np.percentile(both, 99)
-    # Above the curves: a line of words for every crossing.
-    room = 0.12 + 0.1 * max(1, sum(c["quantity"] == quantity for c in answer["crossings"]))
+    # Above the curves: a line of words for every stretch.
+    room = 0.12 + 0.1 * len(answer["best"][quantity][:MOST])
     if highest > 8 * lowest:
         # Far apart: the crossing is seen on a logarithmic axis only.
         logarithmic(ax, "y")
@@ -83,7 +92,7 @@ def _amplitudes(ax, answer, quantity: str):
     else:
         ax.set_ylim(0, (1 + room) * highest)
     ax.set_title(TITLES[quantity])
-    _crossings(ax, answer, quantity)
+    _best(ax, answer, quantity)
 
 
 def _phases(ax, answer, name: str):
@@ -96,14 +105,23 @@ def _phases(ax, answer, name: str):
     ax.yaxis.set_major_formatter(lambda value, _: number(value))
 
 
-def _crossings(ax, answer, quantity):
-    found = [c for c in answer["crossings"] if c["quantity"] == quantity][:4]
-    better = answer["better"][quantity]
-    lines = [] if found else [f"{better.upper()} better at every speed" if better else "both the same"]
-    for crossing in found:
-        at = crossing["speed"] * (RPM if answer["unit"] == "rpm" else 1.0)
-        ax.axvline(at, color=GREY, lw=0.8, ls=":")
-        lines.append(f"{crossing['better_above'].upper()} better above {at:.6g} {answer['unit']}")
+def _best(ax, answer, quantity):
+    """A strip in the colour of the arrangement that transmits least, and the speeds at which that changes, in words."""
+    factor, unit = (RPM if answer["unit"] == "rpm" else 1.0), answer["unit"]
+    stretches, lines = answer["best"][quantity], []
+    for stretch in stretches:
+        seal, ends = stretch["seal"], [factor * stretch[end] for end in ("from", "to")]
+        ax.axvspan(*ends, ymax=STRIP, color=COLOUR.get(seal, PALE), lw=0)
+        name = seal.upper() if seal else "none"
+        if len(stretches) == 1:
+            lines.append(f"{name} best at every speed")
+            continue
+        last = stretch is stretches[-1]
+        lines.append(f"{name} best beyond {ends[0]:.6g} {unit}" if last else f"{name} best to {ends[1]:.6g} {unit}")
+        if not last:
+            ax.axvline(ends[1], color=GREY, lw=0.8, ls=":")
+    if len(lines) > MOST:
+        lines = [*lines[: MOST - 1], f"and {len(lines) - MOST + 1} stretches more"]
     ax.text(0.03, 0.96, "\n".join(lines), transform=ax.transAxes, va="top", fontsize=8, color=GREY, linespacing=1.5,
             backgroundcolor="white")  # fmt: skip
 
@@ -123,21 +141,24 @@ def _legend(ax, answer):
         ax.plot([], [], "o", color=GREY, mfc="white", label=label)
     if not all(all(answer[seal]["stable"]) for seal in COLOUR):
         ax.plot([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped")
+    ax.plot([], [], color=GREY, lw=6, label="strip: the one that transmits least")
     ax.legend(loc="upper left", borderaxespad=0.0, fontsize=8.5)
-    words = "\n".join(wrap(answer["phase"], 48))
+    words = "\n".join([*wrap(answer["film"], 48), "", *wrap(answer["phase"], 48)])
     ax.text(0.0, 0.0, words, fontsize=8.5, color=GREY, va="bottom", linespacing=1.4, transform=ax.transAxes)
 
 
-def _table(ax, rows):
-    """FMR against FMS, as Green's Table 1."""
+def _table(ax, rows, by_formula: bool):
+    """The arrangements, as Green's Table 1."""
     ax.axis("off")
-    roads = ("formula", "linear_algebra", "time_domain")
-    heads = ("At the scenario's speed (Green's Table 1)", "FMR", "", "", "FMS", "", "")
-    below = ("", *(r.replace("_", " ") for r in roads), *(r.replace("_", " ") for r in roads))
-    columns = (0.0, 0.32, 0.435, 0.55, 0.68, 0.795, 0.91)
+    roads = {"formula": "formula", "linear_algebra": "lin. algebra", "time_domain": "in time"}
+    heads = ["At the scenario's speed (Green's Table 1)"]
+    for seal in COLOUR:
+        heads += [seal.upper(), "", ""]
+    below = ("", *(len(COLOUR) * list(roads.values())))
+    columns = (0.0, *(0.28 + 0.25 * i + 0.08 * j for i in range(len(COLOUR)) for j in range(len(roads))))
     lines = [heads, below]
     for row in rows:
-        cells = [_cell(row, row[road][seal], road) for seal in COLOUR for road in roads]
+        cells = [_cell(row, seal, road, by_formula) for seal in COLOUR for road in roads]
         lines.append((WORDS[row["quantity"]], *cells))
     for i, cells in enumerate(lines):
         y = 1 - i / (len(lines) - 0.5)
@@ -149,7 +170,10 @@ def _table(ax, rows):
     ax.set(xlim=(0, 1), ylim=(0, 1))
 
 
-def _cell(row, value, road) -> str:
-    if value is None:
-        return "none" if row["quantity"] == "critical_speed" and road != "time_domain" else "–"
-    return f"{value:.5g}"
+def _cell(row, seal, road, by_formula: bool) -> str:
+    value = row[road][seal]
+    if value is not None:
+        return f"{value:.5g}"
+    # No critical speed is an answer; no formula for it, and no search for it in time, are none.
+    answers = road == "linear_algebra" or (road == "formula" and by_formula and seal != "fmsr")
+    return "none" if row["quantity"] == "critical_speed" and answers else "–"

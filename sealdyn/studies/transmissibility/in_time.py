@@ -1,0 +1,101 @@
+"""The third road: static, dynamic and total transmissibility of one arrangement, from runs in time."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ...analysis.arrangements import Arrangement, seals_of
+from ...dynamics.extrema import MOST
+from ...dynamics.model import Model
+from ...dynamics.run_state import RunState
+from ...dynamics.signals import signals
+from ...scene.coning import coning_change
+from ...scene.film import Coefficients, aligned_gaps
+from ...scene.scene import Scene
+from ...scene.variants import frozen_at_start
+from ...simulation.method_selection import choose_method
+from ...solvers.contract import Status
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+from .._words import speed as speed_words
+from .curves import PHASES, QUANTITIES, phases
+
+# Forcing of a time-domain point, as part of the thinnest edge film, and what may be left of its transient.
+AMPLITUDE, LEFT, PER_TURN = 0.2, 1e-9, 64
+COARSER = 100.0
+
+
+def measured(scene, point: dict) -> dict:
+    """Static, dynamic and total of one arrangement at one speed, from a run on the linear film in the film's own
+    coefficients; `error`: the difference to a run at a hundred times coarser accuracy."""
+    seal = seals_of(scene)[point["seal"]]
+    if seal.model.interface.stores:
+        raise ValueError("a film that stores: no linear film with one stiffness and damping stands for it in time")
+    decay = -seal.growth(point["speed"])
+    if point["speed"] == seal.stator_speed:
+        raise ValueError("the stator turns with the shaft: static and dynamic are one")
+    turn = 2 * math.pi / abs(point["speed"] - seal.stator_speed)
+    if decay <= 0:
+        kind = "unstable" if decay < 0 else "undamped"
+        raise ValueError(f"{kind} at {speed_words(point['speed'])}: no steady state")
+    turns = math.ceil(-math.log(LEFT) / decay / turn) + 4
+    if turns > point["longest"]:
+        raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
+    amplitude = _amplitude(seal, point["speed"])
+    scene = _forced(seal, point["speed"], amplitude)
+    fine = np.array(_steady(scene, turns, point["accuracy"], amplitude))
+    coarse = np.array(_steady(scene, turns, COARSER * point["accuracy"], amplitude))
+    away = np.abs(fine - coarse)
+    # 359 deg apart is 1 deg apart.
+    away[3:] = np.minimum(away[3:], 360.0 - away[3:])
+    names = (*QUANTITIES, *PHASES)
+    return dict(zip(names, fine.tolist(), strict=True)) | {
+        "error": dict(zip(names, away.tolist(), strict=True)), "turns": turns
+    }  # fmt: skip
+
+
+def _amplitude(seal: Arrangement, speed: float) -> float:
+    """Forcing (rad) that leaves the film open."""
+    film, change = seal.scene.film, coning_change(seal.scene, float, speed)
+    thinnest = min(h for _, h in aligned_gaps(film, film.clearance, change))
+    return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
+
+
+def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
+    """The arrangement with both forcings, on the linear film, which has the stiffness of asperities that touch too."""
+    linear = seal.linear(speed)
+    own = Coefficients(
+        tilt_stiffness=linear.film_k[1, 1],
+        tilt_damping=linear.film_d[1, 1],
+        axial_stiffness=linear.film_k[0, 0],
+        axial_damping=linear.film_d[0, 0],
+    )
+    scene = frozen_at_start(seal.scene, speed)
+    return replace(
+        scene,
+        film=replace(scene.film, model="linear", coefficients=own),
+        contact=None,
+        stator=replace(scene.stator, misalignment=amplitude, misalignment_direction=0.0),
+        rotor=replace(scene.rotor, misalignment=amplitude, runout=amplitude, misalignment_phase=0.0, runout_phase=0.0),
+    )
+
+
+def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tuple:
+    """Relative tilt per unit forcing over the last turn of a run from rest: what turns with the stator, what with
+    the shaft, the largest, and the phases (deg) of the first two."""
+    speed = scene.shaft.speed
+    # A turn of the shaft seen from the stator: over it the two frequencies are orthogonal and meet once.
+    turn = 2 * math.pi / abs(speed - scene.stator.speed)
+    run = RunState(Model(scene, accuracy), turns * turn)
+    run.extrema.windows[1] = [run.duration - turn, run.duration]
+    recorder = Recorder(turn / PER_TURN)
+    outcome = solve(run, choose_method(run)[0], accuracy, recorder)
+    if outcome.status != Status.OK:
+        raise ValueError(outcome.message)
+    t, q, rate = (a[-PER_TURN:] for a in recorder.arrays())
+    seen = signals(run.segment(0), t, q, rate)
+    tilt = seen["relative_tilt_x"] + 1j * seen["relative_tilt_y"]
+    static, dynamic = (np.mean(tilt * np.exp(-1j * w * t)) / amplitude for w in (scene.stator.speed, speed))
+    largest = run.extrema.records[1, MOST] / amplitude
+    return tuple(float(v) for v in (abs(static), abs(dynamic), largest, *phases(speed, static, dynamic)))
