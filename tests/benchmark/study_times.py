@@ -25,6 +25,7 @@ COMMANDS = {
     "steady-state": ["fms_reference"],
     "stability": ["fmr_reference"],
     "campbell": ["fms_reference"],
+    "vibration": ["housing_vibration"],
     "contact-onset": ["fms_reference", "--set", "stator.misalignment=0"],
     "sweep": ["fms_reference", "--vary", "rotor.runout=0:1mrad:21"],
     "tolerance": ["tolerance"],
