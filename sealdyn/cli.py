@@ -483,6 +483,9 @@ def _show_study(file, csv, mat, as_json):
     answer, table = study["answer"], study["answer"].get("table")
     if (csv or mat is not None) and not isinstance(table, dict):
         raise Stop(Status.INVALID, f"{file}: study {study['study']} has no table of columns; --json prints all of it")
+    if csv or mat is not None:
+        # Of a point that cannot be there is no number.
+        table = {name: [float("nan") if v is None else v for v in values] for name, values in table.items()}
     if mat is not None:
         _write_mat(mat, table)
     elif csv:

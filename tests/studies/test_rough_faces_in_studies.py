@@ -18,8 +18,9 @@ from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
-from sealdyn.studies import coefficients, critical_speed, equilibrium, transmissibility
+from sealdyn.studies import critical_speed, equilibrium, transmissibility
 from sealdyn.studies._runner import run_study
+from sealdyn.studies.coefficients import study as coefficients
 from sealdyn.studies.stability.grid import Grid
 
 R_I, R_O, ROUGH, STRENGTH = 0.025, 0.029, 0.15e-6, 180e6

@@ -15,7 +15,7 @@ from sealdyn import read_scenario, run_study
 from sealdyn.dynamics.model import Model
 from sealdyn.report.charts import study_vibration
 from sealdyn.scene.scene import SceneError
-from sealdyn.studies.coefficients import State, matrices
+from sealdyn.studies.coefficients.matrices import State, matrices
 from sealdyn.studies.vibration import in_time, study
 from sealdyn.studies.vibration.small_motion import ShakenSeal
 from sealdyn.studies.vibration.study import Settings

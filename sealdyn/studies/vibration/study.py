@@ -202,9 +202,9 @@ def _weakest(answer, k: int) -> str:
     ends = "" if found["inside"] else ", an end of the range"
     if found["touch"] == 0.0:
         return f"{WORDS[direction]} vibration: the scene's own runout and misalignment close the film without any."
-    amplitude = 1e6 * arm * found["touch"] / (2 * math.pi * found["frequency"]) ** 2
+    amplitude = 1e3 * arm * found["touch"] / (2 * math.pi * found["frequency"]) ** 2
     return (f"{WORDS[direction]} vibration {where} touches most easily at {found['frequency']:.4g} Hz{ends}: from "
-            f"{in_g(arm * found['touch'])} on, {digits(amplitude)} um (linear theory); at most "
+            f"{in_g(arm * found['touch'])} on, {digits(amplitude)} mm (linear theory); at most "
             f"{100 * peak['gain']:.3g} % of it moves the gap, at {peak['frequency']:.4g} Hz.")  # fmt: skip
 
 
