@@ -168,6 +168,18 @@ def test_slow_vibration_touches_where_springs_overcome_the_film(arrangement):
     assert 1.5 < row["ratio"] < 2.0
 
 
+def test_rough_faces_touch_where_their_asperities_meet():
+    """At 3 rms, by linear theory and, slowly, by the balance of forces."""
+    rough = ["contact.roughness=0.5 um", "contact.compressive_strength=100 MPa"]
+    left = CLEARANCE - 1.5e-6
+    found = answer("fms", *rough, direction="axial")["table"]
+    w = 2 * math.pi * np.array(found["frequency"])
+    assert found["axial_touch_aligned"] == pytest.approx(left * w**2 / np.array(found["axial_gain"]), rel=1e-7)
+    more = opening_force(1.5e-6, CONING, 0.0, 5e5) - opening_force(CLEARANCE, CONING, 0.0, 5e5)
+    row = in_time.measured(scenario("fms", *rough).scene, {"direction": "axial", "frequency": 1.0})
+    assert row["touch"] == pytest.approx((left + more / K_Z) * (2 * math.pi) ** 2, rel=0.03)
+
+
 def test_a_linear_film_touches_in_time_where_linear_theory_says():
     row = in_time.measured(scenario("fms", "film.model=linear").scene, {"direction": "axial", "frequency": 150.0})
     assert row["ratio"] == pytest.approx(1.0, rel=0.02)

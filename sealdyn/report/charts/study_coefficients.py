@@ -16,9 +16,10 @@ SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed, rad/s"), "clearance": ("Ove
 # Axes of the map, the one with the most to show first: factor, label, and how a line is named.
 AXES = {"coning": (1e3, "coning, mrad", "{:.4g} mrad"), "frequency": (1 / (2 * np.pi), "frequency, Hz", "{:.4g} Hz"),
         "speed": (60 / (2 * np.pi), "shaft speed, rpm", "{:.5g} rpm")}  # fmt: skip
-MAP = {"map axial": ("Axial stiffness, N/µm", "stiffness", 0, 1e-6),
-       "map tilt": ("Tilt stiffness, N m/rad", "stiffness", 1, 1.0),
-       "map damping": ("Tilt damping, N m s/rad", "damping", 1, 1.0)}  # fmt: skip
+MAP = {"map axial": ("Axial K, N/µm", "stiffness", (0, 0), 1e-6),
+       "map tilt": ("Tilt K, N m/rad", "stiffness", (1, 1), 1.0),
+       "map cross": ("Cross K, N m/rad", "stiffness", (1, 2), 1.0),
+       "map damping": ("Tilt D, N m s/rad", "damping", (1, 1), 1.0)}  # fmt: skip
 MOST_LINES = 6
 FREQUENCY = {"frequency": ("Over frequency", 1.0, "frequency of the motion, rad/s")}
 
@@ -32,7 +33,7 @@ def draw(archive_path, out_path):
     sweeps, matrices = [[f"{matrix} {name}" for name in shown] for matrix in "KD"], [["aligned", "tilted"]]
     mosaic, heights = [[sweeps], [matrices]], (9, 4)
     if "map" in answer:
-        mosaic, heights = [*mosaic, [[[*MAP, "map clearance", "map key"]]]], (9, 4, 5)
+        mosaic, heights = [*mosaic, [[[*MAP, *_clearance(answer["map"]), "map key"]]]], (9, 4, 5)
     figure, ax = study_page(study, 11.5, 2.6 + 0.415 * sum(heights), mosaic, title, height_ratios=heights)
     for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
@@ -44,15 +45,22 @@ def draw(archive_path, out_path):
         if name == "clearance":
             logarithmic(below, "x")
     ax["K speed"].set_ylabel("tilt stiffness, N m/rad")
-    # Outside of the panel: no curve is below it.
-    ax["K speed"].legend(loc="lower left", bbox_to_anchor=(0.28, 0.985), ncols=4, columnspacing=0.8, handlelength=1.4,
-                         borderaxespad=0.0, fontsize=7.5)  # fmt: skip
+    # Beside the title: no curve is below it.
+    ax["K speed"].legend(loc="lower right", bbox_to_anchor=(1.01, 0.985), ncols=4, columnspacing=0.6, handlelength=1.1,
+                         handletextpad=0.3, borderaxespad=0.0, fontsize=7)  # fmt: skip
     ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
     _matrix(ax["aligned"], answer, answer["at"], "Aligned")
     _matrix(ax["tilted"], answer["tilted"], answer["tilted"]["at"], "Tilted: " + answer["tilted"]["said"])
     if "map" in answer:
         _map(ax, answer["map"])
     return save(figure, out_path)
+
+
+def _clearance(found) -> list[str]:
+    """The panel of the clearance, where it is not everywhere the same."""
+    known = np.array(found["clearance"], dtype=float)
+    known = known[np.isfinite(known)]
+    return ["map clearance"] if len(known) and np.ptp(known) > 1e-6 * known.max() else []
 
 
 def _map(ax, found):
@@ -63,19 +71,23 @@ def _map(ax, found):
     factor, label, _ = AXES[along]
     places = list(np.ndindex(*(len(found[name]) for name in others)))
     shown = sorted({round(k) for k in np.linspace(0, len(places) - 1, MOST_LINES)})
-    for colour, place in zip(CYCLE, [places[k] for k in shown], strict=False):
+    for nth, (colour, place) in enumerate(zip(CYCLE, [places[k] for k in shown], strict=False)):
+        # Lines that lie on each other are seen.
+        style = {"color": colour, "lw": 3.6 - 0.5 * nth, "ms": 3}
         at = dict(zip(others, place, strict=True))
         index = tuple(at.get(name, slice(None)) for name in axes)
         words = ", ".join(AXES[n][2].format(AXES[n][0] * found[n][k]) for n, k in at.items() if len(found[n]) > 1)
         mark = "-o" if len(found[along]) < 3 else "-"
-        for panel, (title, name, k, scale) in MAP.items():
-            values = scale * np.array(found[name], dtype=float)[(*index, k, k)]
-            ax[panel].plot(factor * np.array(found[along]), values, mark, ms=3, color=colour, lw=1.5)
+        for panel, (title, name, entry, scale) in MAP.items():
+            values = scale * np.array(found[name], dtype=float)[(*index, *entry)]
+            ax[panel].plot(factor * np.array(found[along]), values, mark, **style)
             ax[panel].set(title=title, xlabel=label)
+        ax["map key"].plot([], [], **style, label=words or "scene's speed,\nslow motion")
+        if "map clearance" not in ax:
+            continue
         clearance = 1e6 * np.array(found["clearance"], dtype=float)[index]
-        ax["map clearance"].plot(factor * np.array(found[along]), clearance, mark, ms=3, color=colour, lw=1.5)
-        ax["map key"].plot([], [], color=colour, lw=1.5, label=words or "the scene's speed, slow motion")
-    ax["map clearance"].set(title="Clearance, µm", xlabel=label)
+        ax["map clearance"].plot(factor * np.array(found[along]), clearance, mark, **style)
+        ax["map clearance"].set(title="Clearance, µm", xlabel=label)
     ax["map key"].axis("off")
     ax["map key"].legend(loc="upper left", borderaxespad=0.0)
 

@@ -9,7 +9,9 @@ from .palette import BLACK, GREY, PALE, RING, VERMILLION
 
 GRAVITY = 9.80665
 COLOUR, MARK = {"axial": RING["rotor"], "angular": RING["stator"]}, {"axial": "o", "angular": "s"}
-WORDS = {"axial": "axial", "angular": "angular (at the outer edge of the face)"}
+# Curves that lie on each other are seen.
+WIDTH = {"axial": 3.0, "angular": 1.5}
+WORDS = {"axial": "axial", "angular": "angular (outer edge of the face)"}
 # Amplitudes of the housing (m) drawn as lines, and their names.
 AMPLITUDES = {1e-7: "0.1 µm", 1e-6: "1 µm", 1e-5: "10 µm", 1e-4: "0.1 mm", 1e-3: "1 mm", 1e-2: "10 mm"}
 
@@ -24,12 +26,12 @@ def draw(archive_path, out_path):
     figure, ax = study_page(study, 11.5, 7.6, mosaic, title, said, height_ratios=(10, 7), width_ratios=(10, 4.4))
     stacked(ax["touch"], ax["gain"])
     frequency = np.array(answer["table"]["frequency"])
+    factor, unit = (100.0, "%") if _largest_gain(answer) > 1e-3 else (1e6, "millionths")
     for direction in answer["directions"]:
         _touch(ax["touch"], answer, direction, frequency)
-        ax["gain"].plot(
-            frequency, 100.0 * np.array(answer["table"][f"{direction}_gain"]), lw=2.0, color=COLOUR[direction]
-        )
-    _times(ax, answer)
+        gain = factor * np.array(answer["table"][f"{direction}_gain"])
+        ax["gain"].plot(frequency, gain, lw=WIDTH[direction], color=COLOUR[direction])
+    _times(ax, answer, factor)
     _asked(ax["touch"], answer, frequency)
     for mode in answer["modes"]:
         if frequency[0] < mode.get("frequency", 0.0) < frequency[-1] and mode["damping_ratio"] < 1.0:
@@ -39,7 +41,7 @@ def draw(archive_path, out_path):
     logarithmic(ax["gain"], "x")
     _decades_only(ax["touch"])
     ax["gain"].set(xlim=(frequency[0], frequency[-1]), xlabel="frequency, Hz", ylim=(0.0, None),
-                   ylabel="motion of the gap, % of the housing's")  # fmt: skip
+                   ylabel=f"gap's motion, {unit} of the housing's")  # fmt: skip
     ax["touch"].set(ylabel="acceleration of the housing at touch, g")
     _lines_of_amplitude(ax["touch"], frequency)
     _key(ax["key"], answer)
@@ -57,9 +59,14 @@ def _touch(ax, answer, direction, frequency):
     arm = _arm(answer, direction)
     touch, aligned = (arm * np.array(answer["table"][f"{direction}_touch{part}"]) for part in ("", "_aligned"))
     if np.any(touch > 0.0):
-        ax.plot(frequency, np.where(touch > 0.0, touch, np.nan), lw=2.0, color=COLOUR[direction])
+        ax.plot(frequency, np.where(touch > 0.0, touch, np.nan), lw=WIDTH[direction], color=COLOUR[direction])
     if _own_matters(answer):
         ax.plot(frequency, aligned, lw=1.0, ls=(0, (5, 2)), color=COLOUR[direction])
+
+
+def _largest_gain(answer) -> float:
+    """Of all directions."""
+    return max((max(answer["table"][f"{d}_gain"]) for d in answer["directions"]), default=1.0)
 
 
 def _own_matters(answer) -> bool:
@@ -69,14 +76,14 @@ def _own_matters(answer) -> bool:
                for d in answer["directions"])  # fmt: skip
 
 
-def _times(ax, answer):
+def _times(ax, answer, factor):
     """Points of the time domain."""
     for row in answer["time_domain"]:
         if "failed" in row:
             continue
         style = {"marker": MARK[row["direction"]], "ms": 5, "mfc": "white", "mec": COLOUR[row["direction"]],
                  "clip_on": False, "zorder": 5, "ls": "none"}  # fmt: skip
-        ax["gain"].plot(row["frequency"], 100.0 * row["gain"], **style)
+        ax["gain"].plot(row["frequency"], factor * row["gain"], **style)
         if row["touch"] is not None:
             ax["touch"].plot(row["frequency"], _arm(answer, row["direction"]) * row["touch"], **style)
 
@@ -107,11 +114,13 @@ def _lines_of_amplitude(ax, frequency):
     low, high = ax.get_ylim()
     for amplitude, words in AMPLITUDES.items():
         line = (2 * np.pi * frequency) ** 2 * amplitude / GRAVITY
-        inside = np.nonzero((line > low) & (line < 0.6 * high))[0]
+        inside = np.nonzero((line > low * (high / low) ** 0.02) & (line < high))[0]
         ax.plot(frequency, line, color=PALE, lw=0.8, zorder=0)
         if len(inside) > len(frequency) // 6:
             at = inside[len(inside) // 12]
-            ax.text(frequency[at], line[at], words, fontsize=7, color=GREY, ha="left", va="top", zorder=0, clip_on=True)
+            ax.text(
+                frequency[at], line[at], words, fontsize=7, color=GREY, ha="right", va="bottom", zorder=0, clip_on=True
+            )
     ax.set_ylim(low, high)
 
 
@@ -119,7 +128,7 @@ def _key(ax, answer):
     """What the lines are."""
     ax.axis("off")
     for direction in answer["directions"]:
-        ax.plot([], [], color=COLOUR[direction], lw=2.0, label=f"{WORDS[direction]},\nlinear theory")
+        ax.plot([], [], color=COLOUR[direction], lw=WIDTH[direction], label=f"{WORDS[direction]},\nlinear theory")
         if any(row["direction"] == direction and "failed" not in row for row in answer["time_domain"]):
             ax.plot([], [], ls="none", marker=MARK[direction], mfc="white", mec=COLOUR[direction], ms=5,
                     label=f"{direction}, in time, faces aligned")  # fmt: skip
@@ -131,20 +140,21 @@ def _key(ax, answer):
         )
     ax.plot([], [], "*", ls="none", ms=12, color=VERMILLION, mec=BLACK, mew=0.5, label="gear mesh, 45 g")
     ax.plot([], [], color=PALE, lw=1.2, label="amplitude of the housing")
-    ax.plot([], [], color=GREY, lw=0.8, ls=":", label="natural frequency (below)")
+    if any("frequency" in mode for mode in answer["modes"]):
+        ax.plot([], [], color=GREY, lw=0.8, ls=":", label="natural frequency (below)")
     ax.legend(loc="upper left", borderaxespad=0.0, fontsize=8.5, labelspacing=0.7)
 
 
 def _numbers(ax, answer):
     """Modes and gear mesh as numbers."""
     ax.axis("off")
-    lines = [("Modes on the film", "Hz", "damping ratio")]
+    lines = [("Modes on the film", "Hz", "damping ratio")] if answer["modes"] else []
     for mode in answer["modes"][:7]:
         words = mode["kind"] if mode["direction"] in ("none", "axial") else f"{mode['kind']}, {mode['direction']}"
         swings = "frequency" in mode
         lines.append((words, number(mode["frequency"], ".4g") if swings else "–",
                       number(mode["damping_ratio"], ".3g") if swings else "does not swing"))  # fmt: skip
-    lines += [("", "", ""), ("Gear mesh, linear", "touch, g", "times 45 g")]
+    lines += ([("", "", "")] if lines else []) + [("Gear mesh, linear", "touch, g", "times 45 g")]
     for row in answer["gear_mesh"][:4]:
         lines.append((f"{row['direction']}, {number(row['frequency'], '.4g')} Hz",
                       _digits(row["touch"] / GRAVITY), _digits(row["margin"])))  # fmt: skip

@@ -29,6 +29,8 @@ from ...scene.waviness import waves_of
 # Motion of the housing (z, tilt about x, tilt about y), and which modes it excites.
 SHAPES = {"axial": (1.0, 0.0, 0.0), "angular": (0.0, 1.0, 0.0)}
 KINDS = {"axial": "axial", "angular": "tilt"}
+# Damping ratio from which a mode is not said to swing.
+STILL = 0.995
 
 
 class ShakenSeal:
@@ -102,13 +104,13 @@ class ShakenSeal:
 
     def resonances(self) -> list[dict]:
         """Modes at rest on the film: `kind` ("axial" | "tilt"), `direction` of whirl, natural `frequency` abs(p)/(2 pi)
-        and `damped_frequency` (Hz), `damping_ratio` -Re p/abs(p) of the eigenvalue p; of one that does not swing the
-        `growth_rate` (1/s) alone."""
+        and `damped_frequency` (Hz), `damping_ratio` -Re p/abs(p) of the eigenvalue p; of one that hardly
+        swings the `growth_rate` (1/s) alone."""
         found = []
         for mode in sorted(self.modes, key=lambda mode: (mode.kind, abs(mode.value))):
             row = {"kind": mode.kind, "direction": mode.direction, "growth_rate": mode.value.real}
-            if mode.value.imag:
-                size = abs(mode.value)
+            size = abs(mode.value)
+            if mode.value.imag and -mode.value.real < STILL * size:
                 row |= {"frequency": size / (2 * math.pi), "damped_frequency": mode.value.imag / (2 * math.pi),
                         "damping_ratio": -mode.value.real / size}  # fmt: skip
             found.append(row)

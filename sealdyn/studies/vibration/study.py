@@ -25,6 +25,8 @@ REFUSES = ("secondary-seal",)
 DIRECTIONS = ("axial", "angular")
 # The gear mesh of the guide (m/s^2), where the scenario's application has no frequencies (Hz) of its own.
 GEAR_MESH, GEAR_MESH_ACCELERATION = (5400.0,), 45.0 * g
+# Points about a resonance, in its width.
+NEAR = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
 ALONG = {"table": ("frequency",)}
 units = {"table/frequency": "Hz", "table/axial_gain": "m/m", "table/angular_gain": "rad/rad",
          "table/axial_per_acceleration": "m/(m/s^2)", "table/angular_per_acceleration": "rad/(rad/s^2)",
@@ -35,9 +37,10 @@ units = {"table/frequency": "Hz", "table/axial_gain": "m/m", "table/angular_gain
 
 @dataclass(frozen=True)
 class Settings:
-    """`direction` "axial", "angular" or "both"; frequencies from `lowest` to `highest`, `points` of them, evenly on a
-    logarithmic axis; `accelerations` of the housing (of angular vibration that of the outer edge of the face): at which
-    frequencies does it close the film; `runs` frequencies in the time domain, and that of the easiest touch."""
+    """`direction` "axial", "angular" or "both"; frequencies from `lowest` to `highest`, `points` of them evenly on a
+    logarithmic axis, and some about each resonance; `accelerations` of the housing (of angular vibration that of the
+    outer edge of the face): at which frequencies do they close the film; `runs` frequencies in the time domain, and
+    that of the easiest touch."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -56,9 +59,7 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.vibration.highest", found, "a range of frequencies above 0 Hz")
     seal = ShakenSeal(scenario.scene)
     directions = DIRECTIONS if settings.direction == "both" else (settings.direction,)
-    frequencies = np.geomspace(settings.lowest, settings.highest, max(2, settings.points))
-    # geomspace rounds its ends.
-    frequencies[[0, -1]] = settings.lowest, settings.highest
+    frequencies = _frequencies(settings, seal.resonances())
     columns = {"frequency": frequencies.tolist()}
     for direction in directions:
         columns |= curves(seal, direction, frequencies)
@@ -89,6 +90,15 @@ def run(scenario, settings, tools) -> dict:
     apart = [row["deviation"] for row in answer["time_domain"] if "failed" not in row]
     answer["deviation"] = max(apart, default=None)
     return answer | {"verdict": _verdict(answer)}
+
+
+def _frequencies(settings, modes) -> np.ndarray:
+    """Frequencies (Hz) of the curves: even on a logarithmic axis, and closer about every resonance."""
+    low, high = settings.lowest, settings.highest
+    even = np.geomspace(low, high, max(2, settings.points))
+    near = [mode["frequency"] * (1 + k * mode["damping_ratio"]) for mode in modes if "frequency" in mode for k in NEAR]
+    # geomspace rounds its ends.
+    return np.unique([low, high, *even[1:-1], *(f for f in near if low < f < high)])
 
 
 def curves(seal: ShakenSeal, direction: str, frequencies) -> dict:
