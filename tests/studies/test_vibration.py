@@ -135,6 +135,10 @@ def test_peaks_bands_and_gear_mesh():
     gain = abs(axial_transmissibility("fms", 2 * math.pi * 5400.0))
     left = CLEARANCE - gain * 45 * G / (2 * math.pi * 5400.0) ** 2
     assert mesh["film_left"] == pytest.approx(left, rel=1e-9)
+    angular, k = found["gear_mesh"][1], 2 * math.pi * 5400.0
+    edge = OUTER * (1 - own) * CLEARANCE / INNER * k**2 / tilt_transmissibility("fms", k)
+    assert angular["touch"] == pytest.approx(edge, rel=1e-7)
+    assert angular["margin"] == pytest.approx(edge / (45 * G), rel=1e-7)
     given = answer("fms", "application.gear_mesh_frequency=[2100, 3000]", direction="axial")["gear_mesh"]
     assert [row["frequency"] for row in given] == [2100.0, 3000.0]
 
