@@ -158,7 +158,7 @@ def test_coning_that_leaves_no_film_is_told():
     found = balanced(coning="-1:3 mrad:3")
     assert found["map"]["stiffness"][0][0][0] == [[None] * 3] * 3 and found["table"]["k_axial_axial"][0] is None
     assert found["map"]["failed"][0]["points"] == [{"speed": 1000.0, "coning": -0.001}]
-    assert any("1 conings leave no film" in said for said in found["verdict"])
+    assert any("At 1 of the conings there is no film" in said for said in found["verdict"])
 
 
 def test_a_film_that_stores_has_its_own_matrices_at_every_frequency_of_the_map():

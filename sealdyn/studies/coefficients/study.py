@@ -194,11 +194,12 @@ def _coning(answer) -> list[str]:
     (low, first, _), (high, last, _) = known[0], known[-1]
     at, _, stiffest = max(known, key=lambda point: point[2])
     lost = len(found["coning"]) - len(known)
+    why = found["failed"][0]["reason"] if found["failed"] else ""
     stays = abs(last - first) < 1e-6 * first
     course = f"stays at {1e6 * first:.4g} um" if stays else f"goes from {1e6 * first:.4g} to {1e6 * last:.4g} um"
     return [f"Over a coning of {1e3 * low:.4g} to {1e3 * high:.4g} mrad the clearance {course}; the tilt stiffness is "
             f"largest at {1e3 * at:.4g} mrad, {stiffest:.5g} N m/rad."
-            + (f"  {lost} conings leave no film: {found['failed'][0]['reason']}" if lost else "")]  # fmt: skip
+            + (f"  At {lost} of the conings there is no film: {why}" if lost else "")]  # fmt: skip
 
 
 def _hammer(answer) -> list[str]:

@@ -40,7 +40,7 @@ class ShakenSeal:
     they may touch first, crests of waves taken off; `level` (m): the film at which they touch, the height of the
     asperities, or nothing where the faces are smooth or their asperities touch at rest (`riding`); `own` (m, rad): by
     how much the scene's own runout and misalignment close the gap axially, and tilt it.  Raises SceneError for a seal
-    that is not stable.
+    that is not stable, or not damped.
     """
 
     def __init__(self, scene: Scene):
@@ -49,8 +49,8 @@ class ShakenSeal:
         self.model = Model(self.scene)
         self.linear, self._at = self.model.linear_scene(), {}
         self.modes = self.linear.modes()
-        if verdict(self.modes) == "unstable":
-            found = f"{scene.shaft.speed:.5g} rad/s, at which small motion grows by itself"
+        if verdict(self.modes) != "stable":
+            found = f"{scene.shaft.speed:.5g} rad/s, at which small motion does not die out"
             raise SceneError("shaft.speed", found, "a speed at which the seal is stable (sealdyn study critical-speed)")
         crests, shift = sum(wave.amplitude for wave in waves_of(self.model.scene)), self.model.axial_shift()
         self.gaps = [(r, h + shift - crests) for r, h in self.model.aligned_gaps()]
