@@ -29,7 +29,7 @@ from ..scene.gas import density_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Angle, Quantity, QuantityError, quoted
-from .coefficients import State, gap_state
+from .coefficients.matrices import State, gap_state
 
 WITH_WAVES = True
 # What `at` may set.

@@ -1,14 +1,24 @@
 """Coefficients study: against differences of forces from a solver of Reynolds' equation that shares no code."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles import radial_wrench
+from drawn import drawn, text_trouble
+from oracles import opening_force, radial_wrench
+from scipy.optimize import brentq
 
+import sealdyn
 from sealdyn import read_scenario, run_study
-from sealdyn.studies import coefficients
-from sealdyn.studies.coefficients import Settings
+from sealdyn.closed_form import radial_film_coefficients
+from sealdyn.dynamics.model import Model
+from sealdyn.report.charts import study_coefficients
+from sealdyn.scenario.settings import with_values
+from sealdyn.scene.variants import frozen_at_start
+from sealdyn.studies.coefficients import study as coefficients
+from sealdyn.studies.coefficients.matrices import State, matrices
+from sealdyn.studies.coefficients.study import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FACE = (0.032, 0.040, 10e-6, 3.125e-3, False, False)
@@ -108,3 +118,67 @@ def test_wavy_rough_faces(tmp_path):
     assert [k[1, 1], k[1, 2], d[1, 1]] == pytest.approx([k[2, 2], -k[2, 1], d[2, 2]], rel=1e-6)
     assert np.abs(k[0, 1:]).max() < 1e-6 * k[0, 0] * 0.05
     assert any("table of slow motion" in said for said in found["verdict"])
+
+
+def balanced(*overrides, **settings):
+    """Green's face on a closing force, which decides the clearance."""
+    seal = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=radial"])
+    film = replace(seal.scene.film, clearance=None)
+    closing = replace(seal.scene.closing, balance_ratio=0.85, spring_force=40.0)
+    seal = replace(seal, scene=replace(seal.scene, film=film, closing=closing))
+    return coefficients.run(with_values(seal, dict(overrides)), Settings(**{"points": 2} | settings), None)
+
+
+def test_a_point_of_the_map_is_the_study_at_that_speed_and_coning():
+    found = balanced(speed="500:2000 rad/s:3", coning="2:4 mrad:3")["map"]
+    assert found["speed"] == [500.0, 1250.0, 2000.0] and found["coning"] == [0.002, 0.003, 0.004]
+    assert found["frequency"] == [0.0] and np.shape(found["stiffness"]) == (3, 1, 3, 3, 3)
+    alone = balanced(("shaft.speed", 2000.0), ("film.coning", 0.003))
+    for name in ("stiffness", "damping"):
+        assert found[name][2][0][1] == alone[name]
+    assert found["clearance"][2][0][1] == alone["at"]["clearance"]
+
+
+def test_the_map_over_coning_is_the_closed_form_at_the_clearance_of_the_closing_force():
+    found = balanced(coning="2:4 mrad:3")["map"]
+    r_i, r_o, area = 0.032, 0.040, np.pi * (0.040**2 - 0.032**2)
+    closing = 0.85 * 5e5 * area + 40.0
+    for c, coning in enumerate(found["coning"]):
+        clearance = brentq(lambda h, b=coning: opening_force(h, b, 0.0, 5e5) - closing, 1e-6, 1e-4, xtol=1e-16)
+        assert found["clearance"][0][0][c] == pytest.approx(clearance, rel=1e-8)
+        wanted = radial_film_coefficients(
+            inner_radius=r_i, outer_radius=r_o, clearance=clearance, coning=coning, viscosity=0.5e-3,
+            pressure_drop=5e5,
+        )  # fmt: skip
+        k, d = (np.array(found[name][0][0][c]) for name in ("stiffness", "damping"))
+        assert [k[1, 1], d[1, 1], k[0, 0], d[0, 0]] == pytest.approx(list(wanted), rel=1e-6)
+
+
+def test_coning_that_leaves_no_film_is_told():
+    found = balanced(coning="-1:3 mrad:3")
+    assert found["map"]["stiffness"][0][0][0] == [[None] * 3] * 3 and found["table"]["k_axial_axial"][0] is None
+    assert found["map"]["failed"][0]["points"] == [{"speed": 1000.0, "coning": -0.001}]
+    assert any("At 1 of the conings there is no film" in said for said in found["verdict"])
+
+
+def test_a_film_that_stores_has_its_own_matrices_at_every_frequency_of_the_map():
+    seal = read_scenario(SCENARIOS / "gas_reynolds_reference.toml", ["film.gas_reynolds.cells=[6, 8]"])
+    settings = Settings(points=2, frequency="0:2 kHz:3", speed="500, 1000")
+    found = coefficients.run(seal, settings, None)["map"]
+    assert np.shape(found["damping"]) == (2, 3, 3, 3)
+    model = Model(frozen_at_start(seal.scene, speed=1000.0), 1e-10)
+    k, d = matrices(model, State(), omega=2 * np.pi * 1000.0)
+    for name, wanted in (("stiffness", k), ("damping", d)):
+        assert np.max(np.abs(found[name][1][1] - wanted)) < 1e-8 * np.max(np.abs(wanted))
+    assert found["stiffness"][1][2][0][0] > 1.01 * found["stiffness"][1][0][0][0]
+
+
+def test_its_dataset_lies_along_speed_frequency_and_coning(tmp_path):
+    axes = {"speed": "500:2000 rad/s:4", "frequency": "0, 100 Hz", "coning": "2:4 mrad:3"}
+    seal, out = SCENARIOS / "fmr_reference.toml", tmp_path / "c.h5"
+    data = sealdyn.study("coefficients", seal, points=2, workers=1, out=out, **axes).data
+    axes = ("map.speed", "map.frequency", "map.coning")
+    assert data["map.stiffness"].dims[:3] == axes and data["map.clearance"].dims == axes
+    assert data["map.coning"].attrs["units"] == "rad" and data["map.speed"].size == 4
+    figure = drawn(study_coefficients, tmp_path / "c.h5", tmp_path / "c.png")
+    assert text_trouble(figure) == ([], [])

@@ -41,6 +41,7 @@ SMALL = {
     "sweep": ("fms_reference", {"run.turns": 4}, {"vary": "rotor.runout=10:30 urad:3"}),
     "tolerance": ("tolerance", {"run.turns": 2}, {"samples": 16}),
     "transmissibility": ("fmr_reference", {}, {"points": 31, "time_points": 2}),
+    "vibration": ("housing_vibration", {}, {"points": 31, "runs": 1}),
     "wear": ("run_in", {}, {"duration": "30 min"}),
     "work-precision": ("fmr_reference", {"run.turns": 2}, {"tolerances": 2, "tightest": 1e-4, "repeats": 1,
                                                            "samples": 20}),

@@ -19,8 +19,9 @@ from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
-from sealdyn.studies import coefficients, critical_speed, equilibrium
+from sealdyn.studies import critical_speed, equilibrium
 from sealdyn.studies._runner import run_study
+from sealdyn.studies.coefficients import study as coefficients
 from sealdyn.studies.stability.grid import Grid
 from sealdyn.studies.transmissibility.in_time import measured
 

@@ -88,6 +88,11 @@ ANSWERS = {
         "film": WHY, "time_domain": [{"seal": "fmr", **LOST}],
         **{name: {**SEAL, "linear_algebra": SEAL} for name in ("fmr", "fms", "fmsr")},
     },
+    "vibration": {
+        "directions": ["axial"], "outer_radius": 0.04, "accelerations": [], "modes": [], "gear_mesh": [],
+        "table": {"frequency": THREE, "axial_gain": THREE, "axial_touch": 3 * [0.0], "axial_touch_aligned": THREE},
+        "time_domain": [{"direction": "axial", "frequency": 1.0, **LOST}],
+    },
     "wear": {"history": {"time": []}, "end": {"said": WHY}},
     "work_precision": {
         "where": "end", "judge_error": None, "methods": {}, "models": [], "scene": {"turns": 1.0},

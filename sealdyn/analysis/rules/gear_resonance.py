@@ -4,7 +4,7 @@ from ._finding import missing
 from ._ring_on_springs import resonances
 
 SOURCE = "gear mesh up to 5400 Hz, 45 g"
-COMMAND = "sealdyn run FILE, with the tones under [[housing.axial]]"
+COMMAND = "sealdyn study vibration FILE"
 
 
 def finding(seal):

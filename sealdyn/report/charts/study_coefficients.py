@@ -1,10 +1,11 @@
-"""Film stiffness and damping over speed, clearance and tilt, and the matrices themselves."""
+"""Film stiffness and damping over speed, clearance and tilt, the matrices themselves, and the map over speed, frequency
+and coning if there is one."""
 
 import numpy as np
 
 from ...archive import read_study
 from .page import logarithmic, look, number, right_axis, save, shortened, stacked, study_page
-from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from .palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 
 DASHED = (0, (5, 2))
 TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{xy}$", 1, 2, VERMILLION, "-"),
@@ -12,6 +13,14 @@ TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{
 NAMES = ("z", "x", "y")
 SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed, rad/s"), "clearance": ("Over clearance", 1e6, "clearance, µm"),
           "tilt": ("Over tilt (axially balanced)", 1e6, "relative tilt about x, µrad")}  # fmt: skip
+# Axes of the map, the one with the most to show first: factor, label, and how a line is named.
+AXES = {"coning": (1e3, "coning, mrad", "{:.4g} mrad"), "frequency": (1 / (2 * np.pi), "frequency, Hz", "{:.4g} Hz"),
+        "speed": (60 / (2 * np.pi), "shaft speed, rpm", "{:.5g} rpm")}  # fmt: skip
+MAP = {"map axial": ("Axial K, N/µm", "stiffness", (0, 0), 1e-6),
+       "map tilt": ("Tilt K, N m/rad", "stiffness", (1, 1), 1.0),
+       "map cross": ("Cross K, N m/rad", "stiffness", (1, 2), 1.0),
+       "map damping": ("Tilt D, N m s/rad", "damping", (1, 1), 1.0)}  # fmt: skip
+MOST_LINES = 6
 FREQUENCY = {"frequency": ("Over frequency", 1.0, "frequency of the motion, rad/s")}
 
 
@@ -22,7 +31,10 @@ def draw(archive_path, out_path):
     answer, title = study["answer"], "How stiff is the film, and how does it damp?"
     shown = SWEEPS | (FREQUENCY if "against_frequency" in answer else {})
     sweeps, matrices = [[f"{matrix} {name}" for name in shown] for matrix in "KD"], [["aligned", "tilted"]]
-    figure, ax = study_page(study, 11.5, 8.0, [[sweeps], [matrices]], title, height_ratios=(9, 4))
+    mosaic, heights = [[sweeps], [matrices]], (9, 4)
+    if "map" in answer:
+        mosaic, heights = [*mosaic, [[[*MAP, *_clearance(answer["map"]), "map key"]]]], (9, 4, 5)
+    figure, ax = study_page(study, 11.5, 2.6 + 0.415 * sum(heights), mosaic, title, height_ratios=heights)
     for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
         stacked(above, below)
@@ -33,11 +45,51 @@ def draw(archive_path, out_path):
         if name == "clearance":
             logarithmic(below, "x")
     ax["K speed"].set_ylabel("tilt stiffness, N m/rad")
-    ax["K speed"].legend(loc="best", ncols=2)
+    # Beside the title: no curve is below it.
+    ax["K speed"].legend(loc="lower right", bbox_to_anchor=(1.01, 0.985), ncols=4, columnspacing=0.6, handlelength=1.1,
+                         handletextpad=0.3, borderaxespad=0.0, fontsize=7)  # fmt: skip
     ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
     _matrix(ax["aligned"], answer, answer["at"], "Aligned")
     _matrix(ax["tilted"], answer["tilted"], answer["tilted"]["at"], "Tilted: " + answer["tilted"]["said"])
+    if "map" in answer:
+        _map(ax, answer["map"])
     return save(figure, out_path)
+
+
+def _clearance(found) -> list[str]:
+    """The panel of the clearance, where it is not everywhere the same."""
+    known = np.array(found["clearance"], dtype=float)
+    known = known[np.isfinite(known)]
+    return ["map clearance"] if len(known) and np.ptp(known) > 1e-6 * known.max() else []
+
+
+def _map(ax, found):
+    """The map over its longest axis but for the coning, which goes before; a line for each of some of the others."""
+    axes = [name for name in ("speed", "frequency", "coning") if name in found]
+    along = next((name for name in AXES if len(found.get(name, ())) > 1), "speed")
+    others = [name for name in axes if name != along]
+    factor, label, _ = AXES[along]
+    places = list(np.ndindex(*(len(found[name]) for name in others)))
+    shown = sorted({round(k) for k in np.linspace(0, len(places) - 1, MOST_LINES)})
+    for nth, (colour, place) in enumerate(zip(CYCLE, [places[k] for k in shown], strict=False)):
+        # Lines that lie on each other are seen.
+        style = {"color": colour, "lw": 3.6 - 0.5 * nth, "ms": 3}
+        at = dict(zip(others, place, strict=True))
+        index = tuple(at.get(name, slice(None)) for name in axes)
+        words = ", ".join(AXES[n][2].format(AXES[n][0] * found[n][k]) for n, k in at.items() if len(found[n]) > 1)
+        mark = "-o" if len(found[along]) < 3 else "-"
+        for panel, (title, name, entry, scale) in MAP.items():
+            values = scale * np.array(found[name], dtype=float)[(*index, *entry)]
+            ax[panel].plot(factor * np.array(found[along]), values, mark, **style)
+            ax[panel].set(title=title, xlabel=label)
+        ax["map key"].plot([], [], **style, label=words or "scene's speed,\nslow motion")
+        if "map clearance" not in ax:
+            continue
+        clearance = 1e6 * np.array(found["clearance"], dtype=float)[index]
+        ax["map clearance"].plot(factor * np.array(found[along]), clearance, mark, **style)
+        ax["map clearance"].set(title="Clearance, µm", xlabel=label)
+    ax["map key"].axis("off")
+    ax["map key"].legend(loc="upper left", borderaxespad=0.0)
 
 
 def _entries(sweep, name, i, j):

@@ -36,7 +36,7 @@ SAME, LOCATED = 1e-9, 1e-9
 
 ALONG = {seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
 ALONG |= {"time_domain": ("speed",), "crossings": ("speed",)}
-units = {"speed": "rad/s", "turns": "1", "groups/seal_parameter": "Pa", "from": "rad/s", "to": "rad/s"}
+units = {"speed": "rad/s", "turns": "1", "groups/seal_parameter": "Pa", "from": "rad/s", "to": "rad/s", "pairs": "1"}
 units |= dict.fromkeys(PHASES, "deg") | dict.fromkeys(QUANTITIES, "1")
 units |= {f"stability_ends/{seal}": "rad/s" for seal in SEALS}
 units |= dict.fromkeys(

@@ -7,43 +7,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics.equilibrium import axial_excess, crossing
-from ..dynamics.fluid import set_conditions
-from ..dynamics.model import Model
-from ..faces.film_thickness import h_min
-from ..faces.geometry import (
-    COLLAPSE,
-    DZ,
-    FLOOR,
-    GAP_STATE_SIZE,
-    GX,
-    GX_RATE,
-    GY,
-    GY_RATE,
-    MEAN_SPIN,
-    SPIN_DIFFERENCE,
-)
-from ..scenario.settings import values_in_si
-from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
-from ..scene.waviness import waves_of
-from ..simulation.steady_tilt import steady_tilt
-from ..units import Angle, Length, Speed
-from ._words import frequencies
-from ._words import speed as speed_words
+from ...dynamics.model import Model
+from ...faces.film_thickness import h_min
+from ...scenario.settings import values_in_si
+from ...scene.scene import SceneError
+from ...scene.variants import frozen_at_start
+from ...scene.waviness import waves_of
+from ...simulation.steady_tilt import steady_tilt
+from ...units import Angle, Length, Speed
+from .._words import frequencies
+from .._words import speed as speed_words
+from .matrices import ORDER, State, gap_state, matrices, opened
+from .table import columns, lines, mapped
 
 WITH_WAVES = True
-# Rows and columns of the matrices.
-ORDER = ("axial", "tilt_x", "tilt_y")
+ACCURACY = 1e-10
 STIFFNESS_UNITS = [["N/m", "N/rad", "N/rad"], ["N", "N*m/rad", "N*m/rad"], ["N", "N*m/rad", "N*m/rad"]]
 DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u else u + "*s" for u in row]
                  for row in STIFFNESS_UNITS]  # fmt: skip
-STEP = 0.02
-
-ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")} | {"table": ("row",)}
+ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")}
+ALONG |= {"map": ("speed", "frequency", "coning"), "table": ("row",)}
 units = {
     "speed": "rad/s",
     "frequency": "rad/s",
+    "coning": "rad",
     "clearance": "m",
     "tilt": "rad",
     "axial_opening": "m",
@@ -80,22 +67,17 @@ class Settings:
     """Number of speeds, of clearances and of tilts."""
     frequency: str | float | None = None
     """Frequencies of the motion, "0:2kHz:60" or a list; with it the answer has a table of the aligned film's matrices
-    over speed and frequency for a rotordynamics code."""
-
-
-@dataclass(frozen=True)
-class State:
-    """Where the film is linearised: axial gap change (m), relative tilt (rad, complex), its rate of turning (rad/s)."""
-
-    dz: float = 0.0
-    tilt: complex = 0.0
-    whirl: float = 0.0
+    for a rotordynamics code, over speed, frequency and coning."""
+    speed: str | float | None = None
+    """Shaft speeds of that table, "500:2000 rad/s:7" or a list, each at the clearance that follows there."""
+    coning: str | float | None = None
+    """Conings of that table, "0:6 mrad:13" or a list."""
 
 
 def run(scenario, settings, tools) -> dict:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
-    model, speed = Model(scene, 1e-10), scene.shaft.speed
+    model, speed = Model(scene, ACCURACY), scene.shaft.speed
     answer = {
         "order": list(ORDER),
         "film": model.interface.name,
@@ -108,58 +90,19 @@ def run(scenario, settings, tools) -> dict:
         "against_clearance": _against_clearance(scene, model, settings),
         "against_tilt": _against_tilt(model, settings),
     }
-    asked = settings.frequency
-    frequencies = None if asked is None else values_in_si(scenario, str(asked), "rad/s", "--frequency")
+    asked = {name: None if given is None else values_in_si(scenario, str(given), unit, f"--{name}")
+             for name, given, unit in (("frequency", settings.frequency, "rad/s"), ("speed", settings.speed, "rad/s"),
+                                       ("coning", settings.coning, "rad"))}  # fmt: skip
+    motion = asked["frequency"]
     if model.interface.stores:
-        answer["against_frequency"] = against_frequency(model, settings, speed, frequencies)
+        answer["against_frequency"] = against_frequency(model, settings, speed, motion)
         answer["synchronous"] = _listed(matrices(model, State(), omega=abs(speed))) if speed else None
-    if frequencies is not None:
-        answer["table"] = table(model, _speeds(settings, speed), frequencies)
+    if any(values is not None for values in asked.values()):
+        # Speeds that nobody asked go with frequencies only.
+        speeds = asked["speed"] or ([speed] if motion is None else _speeds(settings, speed))
+        answer["map"] = mapped(scene, ACCURACY, speeds, motion or [0.0], asked["coning"])
+        answer["table"] = columns(answer["map"])
     return answer | {"verdict": _verdict(answer)}
-
-
-def matrices(
-    model: Model, state: State, speed: float | None = None, omega: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping (3, 3) of film and asperities about a state: what the opening force and the moments on the
-    stator lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to
-    a film that stores only.  Raises ValueError where the faces touch."""
-    s = gap_state(model, state, speed)
-    thinnest = h_min(model.face, s)[0]
-    if thinnest <= model.face[COLLAPSE]:
-        raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
-    # Eight differences reach four steps to either side: stay clear of the other face, which rough ones may pass.
-    length = STEP * min(model.clearance, max(thinnest, model.face[FLOOR]))
-    tilt = length / model.face[1]
-    pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return model.interface.about(s, (length, tilt, length * pace, tilt * pace), omega)
-
-
-def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
-    """The gap-state array of a state at a shaft speed (rad/s)."""
-    scene, s = model.scene, np.zeros(GAP_STATE_SIZE)
-    w_r, w_s = scene.shaft.speed if speed is None else speed, scene.stator.speed
-    s[DZ], s[GX], s[GY] = state.dz, state.tilt.real, state.tilt.imag
-    turning = 1j * state.whirl * state.tilt
-    s[GX_RATE], s[GY_RATE] = turning.real, turning.imag
-    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (w_r + w_s), w_r - w_s
-    set_conditions(s, scene, float, w_r)
-    return s
-
-
-def opened(model: Model, tilt: complex, whirl: float) -> float:
-    """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
-    s = gap_state(model, State(0.0, tilt, whirl))
-    thinnest, excess = h_min(model.face, s)[0], axial_excess(model, s, model.closing_force())
-    # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
-    closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
-    low, reach = closed - thinnest, model.clearance
-    high = max(low, 0.0)
-    while excess(high) > 0 and high < 100 * reach:
-        low, high = high, high + 0.25 * reach
-    if excess(low) * excess(high) > 0:
-        raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
-    return crossing(excess, low, high)
 
 
 def _tilted(model, settings, speed) -> dict:
@@ -214,26 +157,11 @@ def _against_speed(model, settings, speed) -> dict:
     return _columns("speed", speeds, [_listed(matrices(model, State(), w)) for w in speeds])
 
 
-def against_frequency(model, settings, speed, frequencies=None) -> dict:
-    """Of a film that stores: what a motion of another frequency (rad/s) meets; without `frequencies` those of the
+def against_frequency(model, settings, speed, motion=None) -> dict:
+    """Of a film that stores: what a motion of another frequency (rad/s) meets; without `motion` those of the
     speeds."""
-    frequencies = _speeds(settings, speed) if frequencies is None else frequencies
-    return _columns("frequency", frequencies, [_listed(matrices(model, State(), omega=w)) for w in frequencies])
-
-
-def table(model, speeds, frequencies) -> dict:
-    """Columns of numbers, SI: shaft `speed` and `frequency` of the motion (rad/s), every pair of them, and there the
-    aligned film's k_ROW_COLUMN and d_ROW_COLUMN for rows and columns of ORDER.  A film that does not store has the same
-    at every frequency."""
-    rows = []
-    for speed in speeds:
-        found = None
-        for omega in frequencies:
-            if found is None or model.interface.stores:
-                found = np.concatenate([part.ravel() for part in matrices(model, State(), speed, omega)])
-            rows.append([speed, omega, *found])
-    names = [f"{letter}_{row}_{column}" for letter in "kd" for row in ORDER for column in ORDER]
-    return dict(zip(("speed", "frequency", *names), np.array(rows).T.tolist(), strict=True))
+    motion = _speeds(settings, speed) if motion is None else motion
+    return _columns("frequency", motion, [_listed(matrices(model, State(), omega=w)) for w in motion])
 
 
 def _against_clearance(scene, model, settings) -> dict:
@@ -242,7 +170,7 @@ def _against_clearance(scene, model, settings) -> dict:
     clearances, rows = np.geomspace(low, high, max(2, settings.points)), []
     for clearance in clearances:
         try:
-            rows.append(_listed(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), 1e-10), State())))
+            rows.append(_listed(matrices(Model(frozen_at_start(scene, clearance=float(clearance)), ACCURACY), State())))
         except (SceneError, ValueError) as error:
             rows.append({"failed": str(error)})
     return _columns("clearance", clearances, rows)
@@ -262,6 +190,35 @@ def _against_tilt(model, settings) -> dict:
             rows.append({"failed": str(error)})
             opening.append(None)
     return {**_columns("tilt", tilts, rows), "axial_opening": opening}
+
+
+def tables(answer) -> list:
+    """The map, point by point."""
+    heads = (("coning, mrad", "coning", 1e3), ("speed, rad/s", "speed"), ("frequency, rad/s", "frequency"),
+             ("clearance, um", "clearance", 1e6), ("axial k, N/m", "k_axial_axial"), ("d, N s/m", "d_axial_axial"),
+             ("tilt k, N m/rad", "k_tilt_x_tilt_x"), ("cross k, N m/rad", "k_tilt_x_tilt_y"),
+             ("d, N m s/rad", "d_tilt_x_tilt_x"))  # fmt: skip
+    return [(lines(answer["map"]), heads if "coning" in answer["map"] else heads[1:])] if "map" in answer else []
+
+
+def _coning(answer) -> list[str]:
+    """How clearance and tilt stiffness follow the coning, at the first speed and frequency of the map."""
+    found = answer.get("map", {})
+    if len(found.get("coning", ())) < 2:
+        return []
+    known = [(v, c, k[1][1]) for v, c, k in zip(found["coning"], found["clearance"][0][0], found["stiffness"][0][0],
+                                                strict=True) if c is not None]  # fmt: skip
+    if not known:
+        return ["No coning asked leaves a film."]
+    (low, first, _), (high, last, _) = known[0], known[-1]
+    at, _, stiffest = max(known, key=lambda point: point[2])
+    lost = len(found["coning"]) - len(known)
+    why = found["failed"][0]["reason"] if found["failed"] else ""
+    stays = abs(last - first) < 1e-6 * first
+    course = f"stays at {1e6 * first:.4g} um" if stays else f"goes from {1e6 * first:.4g} to {1e6 * last:.4g} um"
+    return [f"Over a coning of {1e3 * low:.4g} to {1e3 * high:.4g} mrad the clearance {course}; the tilt stiffness is "
+            f"largest at {1e3 * at:.4g} mrad, {stiffest:.5g} N m/rad."
+            + (f"  At {lost} of the conings there is no film: {why}" if lost else "")]  # fmt: skip
 
 
 def _hammer(answer) -> list[str]:
@@ -301,7 +258,7 @@ def _verdict(answer) -> list[str]:
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]
-    said += _table_error(answer) + _hammer(answer)
+    said += _coning(answer) + _table_error(answer) + _hammer(answer)
     if tilted["stiffness"] is None:
         return [*said, f"Tilted: {tilted['said']}."]
     t, where = np.array(tilted["stiffness"]), tilted["at"]

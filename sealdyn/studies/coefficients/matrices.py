@@ -1,0 +1,79 @@
+"""Stiffness and damping of film and asperities about any state of the gap, and the axial balance of tilted faces."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...dynamics.equilibrium import axial_excess, crossing
+from ...dynamics.fluid import set_conditions
+from ...dynamics.model import Model
+from ...faces.film_thickness import h_min
+from ...faces.geometry import (
+    COLLAPSE,
+    DZ,
+    FLOOR,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    MEAN_SPIN,
+    SPIN_DIFFERENCE,
+)
+
+# Rows and columns of the matrices.
+ORDER = ("axial", "tilt_x", "tilt_y")
+STEP = 0.02
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the film is linearised: axial gap change (m), relative tilt (rad, complex), its rate of turning (rad/s)."""
+
+    dz: float = 0.0
+    tilt: complex = 0.0
+    whirl: float = 0.0
+
+
+def matrices(
+    model: Model, state: State, speed: float | None = None, omega: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and damping (3, 3) of film and asperities about a state: what the opening force and the moments on the
+    stator lose per displacement and per rate of (dz, g_x, g_y), moving at a frequency `omega` (rad/s), which matters to
+    a film that stores only.  Raises ValueError where the faces touch."""
+    s = gap_state(model, state, speed)
+    thinnest = h_min(model.face, s)[0]
+    if thinnest <= model.face[COLLAPSE]:
+        raise ValueError(f"the faces touch at a tilt of {abs(state.tilt):.4g} rad")
+    # Eight differences reach four steps to either side: stay clear of the other face, which rough ones may pass.
+    length = STEP * min(model.clearance, max(thinnest, model.face[FLOOR]))
+    tilt = length / model.face[1]
+    pace = max(abs(s[MEAN_SPIN]), 1.0)
+    return model.interface.about(s, (length, tilt, length * pace, tilt * pace), omega)
+
+
+def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
+    """The gap-state array of a state at a shaft speed (rad/s)."""
+    scene, s = model.scene, np.zeros(GAP_STATE_SIZE)
+    w_r, w_s = scene.shaft.speed if speed is None else speed, scene.stator.speed
+    s[DZ], s[GX], s[GY] = state.dz, state.tilt.real, state.tilt.imag
+    turning = 1j * state.whirl * state.tilt
+    s[GX_RATE], s[GY_RATE] = turning.real, turning.imag
+    s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 0.5 * (w_r + w_s), w_r - w_s
+    set_conditions(s, scene, float, w_r)
+    return s
+
+
+def opened(model: Model, tilt: complex, whirl: float) -> float:
+    """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
+    s = gap_state(model, State(0.0, tilt, whirl))
+    thinnest, excess = h_min(model.face, s)[0], axial_excess(model, s, model.closing_force())
+    # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
+    closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
+    low, reach = closed - thinnest, model.clearance
+    high = max(low, 0.0)
+    while excess(high) > 0 and high < 100 * reach:
+        low, high = high, high + 0.25 * reach
+    if excess(low) * excess(high) > 0:
+        raise ValueError(f"no axial balance at a tilt of {abs(tilt):.4g} rad")
+    return crossing(excess, low, high)

@@ -1,0 +1,1 @@
+"""Vibration: what a shaking housing does to the film, over frequency."""

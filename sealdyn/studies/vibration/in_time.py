@@ -1,0 +1,139 @@
+"""Vibration in the time domain: the nonlinear film shaken by a tone of the housing, until its motion repeats."""
+
+import math
+
+import numpy as np
+from scipy.constants import g
+
+from ...dynamics.extrema import H
+from ...dynamics.model import Model
+from ...dynamics.run_state import RunState
+from ...faces.geometry import DZ, GX, GY
+from ...simulation.method_selection import choose_method
+from ...solvers.contract import Status
+from ...solvers.integrate import solve
+from ...solvers.recorder import Recorder
+from .small_motion import ShakenSeal, sizes
+
+# Small motion: share of the acceleration that closes the film by linear theory; what may be left of the transient, at
+# first and of a step in acceleration; samples of a period.
+SMALL, LEFT, LEFT_OF_STEP, PER_PERIOD = 2e-3, 1e-6, 1e-3, 64
+# Accuracy of small motion, of films that store, which cost a hundred times more, and on the way to touch.
+ACCURACY, STORED, ROUGHLY = 1e-8, 1e-6, 1e-5
+# The way to touch, in the linear one: where it begins, first and last step (factors), where it ends.
+BEGIN, STEP, LAST, MOST = 0.5, 1.25, 1.01, 10.0
+# Acceleration (m/s^2) of linear touch, of angular vibration at the outer edge, beyond which nobody shakes a seal; and
+# right-hand sides that a tone may cost.
+BEYOND, MOST_WORK = 1000.0 * g, 300_000
+# Periods that a transient may take, and how often it may take more than expected.
+LONGEST, AGAIN = 1000, 4
+
+
+def measured(scene, point: dict) -> dict:
+    """A tone of the housing in time on aligned faces, `point` {direction, frequency (Hz)}: `gain` of small motion and
+    its `deviation` from linear theory, phase and all, as a share; `touch` (m/s^2, rad/s^2), the acceleration at which
+    the faces touch, None where it was not found, which `said` tells; `ratio` to that of linear theory."""
+    seal, direction, frequency = ShakenSeal(scene), point["direction"], point["frequency"]
+    decay, linear = seal.decay(direction), seal.touch(direction, frequency, aligned=True)
+    if decay <= 0.0:
+        raise ValueError("a motion that is not damped: its transient does not die out")
+    periods = math.ceil(-math.log(LEFT) * frequency / decay) + 2
+    if periods > LONGEST:
+        raise ValueError(f"the transient takes {periods} periods to die out, more than {LONGEST}")
+    foretold = seal.gap_motion(direction, frequency)
+    seen = _small_motion(seal, direction, frequency, SMALL * linear, periods)
+    place = 0 if direction == "axial" else 1
+    row = {"gain": sizes(seen)[place],
+           "deviation": float(np.linalg.norm(seen - foretold) / np.linalg.norm(foretold)),
+           "linear_touch": linear, "touch": None, "ratio": None, "said": ""}  # fmt: skip
+    if seal.model.interface.stores:
+        return row | {"said": "a film that stores is not followed to touch"}
+    if linear * (seal.model.scene.film.outer_radius if direction == "angular" else 1.0) > BEYOND:
+        return row | {"said": f"beyond {BEYOND / g:g} g touch is not looked for in time"}
+    periods = math.ceil(-math.log(LEFT_OF_STEP) * frequency / decay) + 2
+    ratio, said = _touch(seal, direction, frequency, linear, periods)
+    return row | {"touch": None if ratio is None else ratio * linear, "ratio": ratio, "said": said}
+
+
+def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods) -> np.ndarray:
+    """Complex amplitude (3,) of the gap per unit motion of the housing in the last period of a run, which begins with
+    half the motion that linear theory foretells."""
+    period, accuracy = 1.0 / frequency, STORED if seal.model.interface.stores else ACCURACY
+    run = RunState(Model(seal.shaken(direction, frequency, acceleration), accuracy), periods * period)
+    with_housing = _carried(seal, run.model, direction, frequency, acceleration)
+    run.y0 = 0.5 * (run.steady_start() + with_housing)
+    recorder = Recorder(period / PER_PERIOD)
+    outcome = solve(run, choose_method(run)[0], accuracy, recorder)
+    if outcome.status != Status.OK:
+        raise ValueError(outcome.message)
+    times, q, rates = (part[-PER_PERIOD:] for part in recorder.arrays())
+    segment, model = run.segment(0), run.model
+    gaps = np.array(
+        [segment.gap_state(t, model.vector(*y))[[DZ, GX, GY]] for t, *y in zip(times, q, rates, strict=True)]
+    )
+    turned = np.exp(-2j * math.pi * frequency * times)
+    # The housing's displacement is minus its acceleration over w^2.
+    return 2.0 * (turned @ gaps) / PER_PERIOD / (-acceleration / (2 * math.pi * frequency) ** 2)
+
+
+def _touch(seal: ShakenSeal, direction, frequency, linear, periods) -> tuple[float | None, str]:
+    """The acceleration at which the faces touch in the motion that repeats, over that of linear theory, or None; and
+    why, if there is none.  Acceleration grows in steps, ever smaller ones where the film closes; each run begins where
+    the one before ended, so that no transient of its own closes it."""
+    ratio, step, good, y, work = BEGIN, STEP, 0.0, None, 0
+    while ratio <= MOST:
+        end, cost = _run(seal, direction, frequency, (good * linear, ratio * linear), periods, y)
+        work += cost
+        if work > MOST_WORK:
+            return None, f"touch was not reached with {MOST_WORK} right-hand sides"
+        if end is not None:
+            good, y = ratio, end
+        elif y is None:
+            ratio *= 0.5
+            if ratio < 1e-3 * BEGIN:
+                return None, "the film closes at any acceleration"
+            continue
+        else:
+            step = math.sqrt(step)
+            if step < LAST:
+                return good * step, ""
+        ratio = good * step
+    return None, f"no touch up to {MOST:g} times the linear acceleration"
+
+
+def _carried(seal: ShakenSeal, model, direction, frequency, acceleration) -> np.ndarray:
+    """Unknowns (size,) that keep the gap as it is while the housing stands where this acceleration begins: a rotor goes
+    with a rigid stator, a stator that floats stays."""
+    y = np.zeros(model.unknowns.size)
+    if not seal.scene.stator.support:
+        name = {"axial": "rotor_z", "angular": "rotor_tilt_x"}[direction]
+        y[model.unknowns.names.index(name)] = -acceleration / (2 * math.pi * frequency) ** 2
+    return y
+
+
+def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y) -> tuple[np.ndarray | None, int]:
+    """Unknowns (size,) at the end of a run whose last two periods are alike, None if the faces touch in them or the
+    film closes; and the right-hand sides it cost.  It begins with the gap of `y`, the end of a run at the first of two
+    `accelerations`, or, without, with what linear theory foretells, and is shaken with the second."""
+    before, acceleration = accelerations
+    model, period = Model(seal.shaken(direction, frequency, acceleration), ROUGHLY), 1.0 / frequency
+    if y is not None:
+        y = y + _carried(seal, model, direction, frequency, acceleration - before)
+    cost = 0
+    for _ in range(AGAIN):
+        run = RunState(model, periods * period)
+        run.y0 = run.steady_start() if y is None else y
+        end = run.duration
+        run.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
+        outcome = solve(run, choose_method(run)[0], ROUGHLY, Recorder())
+        cost += outcome.counts.rhs
+        if outcome.status == Status.COLLAPSED:
+            return None, cost
+        if outcome.status != Status.OK:
+            raise ValueError(outcome.message)
+        last, one_before = run.extrema.records[1:, H]
+        y = outcome.y.copy()
+        y[run.segment(0).works] = 0.0
+        if abs(last - one_before) < LEFT_OF_STEP * model.clearance:
+            break
+    return (None if min(last, one_before) <= seal.level else y), cost
