@@ -137,6 +137,12 @@ def test_a_heading_tells_all_and_warns(tmp_path):
         assert text_trouble(figure) == ([], [])
 
 
+def test_a_study_repeats_the_question_not_the_whole_comment(tmp_path):
+    asked = "Does it ride?  It is a seal of nobody.  Expected: no."
+    figure = study(tmp_path, "contact_onset", ONSET, question=asked)
+    assert said(figure)[:2] == ["When do the faces first touch?", "seal: Does it ride?"]
+
+
 def test_speeds_are_read_as_they_were_written(tmp_path):
     assert speed_unit({"scenario": RPM})[0] == speed_unit({"overrides": ["shaft.speed=9550 rpm"]})[0] == "rpm"
     assert speed_unit({"scenario": "[shaft]\nspeed = 1000  # 9550 rpm\n# speed = 9550 rpm"}) == ("rad/s", 1.0)

@@ -56,7 +56,8 @@ def study_page(study, width: float, height: float, mosaic, title: str = "", belo
     title = title or question_of(question) or study["name"]
     status = study["answer"].get("status", Status.OK)
     colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
-    below = below or f"{study['name']}: {question}"
+    asked = question_of(question)
+    below = below or (f"{study['name']}: {asked}" if asked and asked != title else study["name"])
     top = heading(figure, title, below, bold, colour)
     return figure, panels(figure, top, mosaic, **layout)
 
