@@ -614,6 +614,7 @@ def report(
     title: Annotated[str, typer.Option(help="its heading")] = "",
 ):
     """Write one page for a design review: it opens anywhere, without a network."""
+    from .analysis.validation import of_film
     from .report.review import review
     from .studies._runner import study_tables
 
@@ -624,7 +625,7 @@ def report(
             _must_be_archive(file)
     with _reads(files[0]):
         try:
-            review(files, out, title, _rules_of, study_tables)
+            review(files, out, title, _rules_of, study_tables, of_film)
         except OSError as error:
             raise _not_written(error, out, "the archives are whole") from None
     print(out)

@@ -22,15 +22,16 @@ FIGURES = {
 }
 
 
-def review(archives, out_path, title: str = "", rules=None, tables=None) -> Path:
+def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None) -> Path:
     """Write the page of some archives (paths) of runs and studies.
 
     `rules(path, info)` gives the rows of the design rules of a run (`findings` of analysis/design_rules.py),
-    `tables(name, answer)` those of a study (`study_tables` of studies).  Returns the path.  **Raises** ArchiveError for
+    `tables(name, answer)` those of a study (`study_tables` of studies), `validation(film)` the sources that a film was
+    held against (`of_film` of analysis/validation.py).  Returns the path.  **Raises** ArchiveError for
     what is no archive."""
     from jinja2 import Environment, StrictUndefined
 
-    parts = [_study(path, tables) if is_study(path) else _run(path, rules) for path in map(Path, archives)]
+    parts = [_study(path, tables) if is_study(path) else _run(path, rules, validation) for path in map(Path, archives)]
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         title=title or f"Design review: {', '.join(part['name'] for part in parts)}", parts=parts
@@ -47,7 +48,7 @@ def review(archives, out_path, title: str = "", rules=None, tables=None) -> Path
     return out_path
 
 
-def _run(path: Path, rules) -> dict:
+def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
     rows = list(run_rows(summary)) if summary else []
@@ -61,6 +62,8 @@ def _run(path: Path, rules) -> dict:
         "warnings": [words for name, words in rows if name == "WARNING"],
         "figures": [(words, _drawn(path, chart)) for chart, words in FIGURES.items()],
         "rules": rules(path, info) if rules else [],
+        "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
+        "validation": validation(film) if validation and film else [],
         "verdict": [],
         "table": "",
         "scene": list(_scene(info["resolved"])),
@@ -83,6 +86,8 @@ def _study(path: Path, tables) -> dict:
         "warnings": [],
         "figures": [(f"Study {study['study']}", _drawn(path, f"study_{study['study']}"))],
         "rules": [],
+        "film": "",
+        "validation": [],
         "verdict": answer["verdict"],
         "table": "\n".join(lines),
         "scene": list(_scene(study["resolved"])),

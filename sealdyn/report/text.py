@@ -1,6 +1,7 @@
 """Words for people: the summary of a run, a resolved scene, the answer of a study, what an archive holds."""
 
 import math
+import re
 
 from ..status import Status
 from ..toml_line import toml_line
@@ -19,6 +20,17 @@ def question_of(comment: str) -> str:
     if "?" in comment:
         return comment[: comment.index("?") + 1]
     return comment.split(". ")[0]
+
+
+# A key of a speed, and rpm in its value or its table of times and values.
+RPM = re.compile(r"^[^#\n]*speed\s*=[^#\n]*\brpm\b", re.MULTILINE)
+
+
+def speed_unit(info: dict) -> tuple[str, float]:
+    """What the speeds of a run or study are read in, "rpm" where its scenario or command line has them so, else
+    "rad/s", and how many of it make one rad/s."""
+    written = [info.get("scenario") or "", *map(str, info.get("overrides") or [])]
+    return ("rpm", 30 / math.pi) if any(map(RPM.search, written)) else ("rad/s", 1.0)
 
 
 def _table(title, status, message, rows) -> list[str]:

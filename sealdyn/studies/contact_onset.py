@@ -20,7 +20,7 @@ from ._words import quantity, shown_in
 REFUSES = ("secondary-seal",)
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
-ALONG = {"path": ("forcing",), "curve": ("value",)}
+ALONG = {"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)}
 # Of the key itself the answer knows the unit.
 units = dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m") | {"tilt": "rad"}
 units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {"cavitation_pressure": "Pa", "start": "SI"}
@@ -96,7 +96,11 @@ def onset(scenario, point: dict) -> dict:
         given = with_values(scenario, {key: value, "film.floor": floor, "run.start": "steady"}).scene
         return variants.with_values(given, {"contact": None})
 
-    formula, touching = linear_onset(scene, key, rough)
+    try:
+        formula, touching = linear_onset(scene, key, rough)
+    except NoOrbit as reason:
+        return {"key": key, "margin": point["margin"], "touch": rough, "failed": str(reason),
+                **linear_films(scene, key, rough, scenario.scene)}  # fmt: skip
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
               "times_own": times_own(scenario.scene, key, formula),
               "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
@@ -160,14 +164,8 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
 
     def excess(value):
         model = Model(scene(value), 1e-6)
-        linear = model.linear_scene()
-        answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
-        most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
-        coning = model.face[3] + model.coning_change()
-        inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
-        inner_left = inner - closing - model.face[0] * most
-        outer_left = outer - closing - model.face[1] * most
-        return (min(inner_left, outer_left) - rough) / model.clearance, model.face[0 if inner_left <= outer_left else 1]
+        film, radius = linear_film(model)
+        return (film - rough) / model.clearance, radius
 
     if excess(0.0)[0] <= 0.0:
         raise NoOrbit(f"linear theory touches without any {key}")
@@ -178,6 +176,34 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
             raise NoOrbit(f"linear theory never touches however large {key} grows")
     value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
     return float(value), float(excess(value)[1])
+
+
+def linear_film(model) -> tuple[float, float]:
+    """Smallest film thickness (m) of the linear steady state, negative beyond touch, and its radius (m)."""
+    linear = model.linear_scene()
+    answers = [(h, linear.response(h)) for h in model.segment().harmonics()]
+    most, _, closing = steady_extremes(linear, answers, RunState(model, 1.0).period())
+    coning = model.face[3] + model.coning_change()
+    inner, outer = model.clearance, model.clearance + coning * (model.face[1] - model.face[0])
+    inner_left = inner - closing - model.face[0] * most
+    outer_left = outer - closing - model.face[1] * most
+    return float(min(inner_left, outer_left)), float(model.face[0 if inner_left <= outer_left else 1])
+
+
+def linear_films(scene, key: str, rough: float, own) -> dict:
+    """Of a seal that linear theory never sees touch: the clearance (m), and `linear`, the films (m) that it sees over
+    the key, to ten times the value of the scene `own`, or 10 mrad where it has none."""
+    value = variants.part(variants.frozen_at_start(own), key)
+    value = abs(value) if isinstance(value, int | float) and value else None
+    forcing = np.linspace(0.0, 10.0 * value if value else 1e-2, 11).tolist()
+    films = [linear_film(Model(scene(v), 1e-6))[0] for v in forcing]
+    if films[0] <= rough:
+        # Nothing to see: it touches unforced.
+        return {}
+    return {
+        "clearance": Model(scene(0.0), 1e-6).clearance,
+        "linear": {"forcing": forcing, "h_min": films, "own": value},
+    }
 
 
 class Follower:

@@ -8,6 +8,8 @@ import pytest
 from command import REFERENCE, sealdyn
 from PIL import Image
 
+from sealdyn.analysis.validation import of_film
+
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 ODD = "# Does <script>alert(1)</script> & co. stay words?  More of it.\n"
 
@@ -69,6 +71,15 @@ def test_it_says_what_the_program_says(folder):
     study = sealdyn("show", "b.h5", cwd=folder).out.splitlines()
     # The last line is for those who want a table.
     assert all(" ".join(line.split()) in text for line in study[1:-1])
+
+
+def test_it_shows_what_the_film_was_held_against(folder):
+    """The reference run has the radial film: Ludwig and Allen, number by number."""
+    text = " ".join(Page((folder / "review.html").read_text()).text.split())
+    (source,) = of_film("radial")
+    assert "Validation of the film radial" in text and source["command"] in text
+    assert f"{len(source['rows'])} numbers" in text and text.count("Validation of the film") == 1
+    assert all(" ".join(row["where"].split()) in text for row in source["rows"])
 
 
 @pytest.mark.parametrize(

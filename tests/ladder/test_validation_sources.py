@@ -2,12 +2,14 @@
 
 import json
 import math
+import pkgutil
 
 import numpy as np
 import pytest
 
+from sealdyn import films as films_there_are
 from sealdyn.analysis.sources import ludwig_allen, zuk_1972
-from sealdyn.analysis.validation import report, source_module, source_names
+from sealdyn.analysis.validation import brief, kept, of_film, report, source_module, source_names
 from sealdyn.closed_form import zuk_1972 as zuk
 
 COMMON = {"source", "quantity", "published", "deviation", "roads_apart", "verdict", "remark"}
@@ -147,3 +149,30 @@ def test_another_group_is_not_the_print(monkeypatch):
     monkeypatch.setattr(ludwig_allen, "_films", lambda q: np.tile(ludwig_allen.closed.equilibrium(q, 4.2e-13), (3, 1)))
     failed = {row["quantity"] for row in ludwig_allen.checks() if row["verdict"] == "FAILED"}
     assert failed == {"mean_film", "least_film"}
+
+
+def test_every_source_is_kept_for_pages_with_its_film():
+    assert list(kept()) == source_names()
+    films = {source_module(name).FILM for name in source_names()}
+    assert films <= {module.name for module in pkgutil.iter_modules(films_there_are.__path__)}
+    assert sum(len(of_film(film)) for film in films) == len(source_names()) and of_film("profiled") == []
+
+
+def same_as_kept(name, rows):
+    """Whether what is kept of a source is what was just computed; deviations to a thousandth."""
+    now, before = brief(name, rows), kept()[name]
+    for new, old in zip(now, before, strict=True):
+        assert {**new, "deviation": 0, "remark": ""} == {**old, "deviation": 0, "remark": ""}
+        assert (new["deviation"] is None) == (old["deviation"] is None)
+        assert new["deviation"] is None or new["deviation"] == pytest.approx(old["deviation"], rel=0.1, abs=1e-3)
+
+
+def test_what_is_kept_is_what_is_computed(dams, rings):
+    same_as_kept("zuk-1972", dams)
+    same_as_kept("ludwig-allen", rings)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["green-1989", "lebeck-1979", "lebeck-1979-plateaus"])
+def test_what_is_kept_of_the_others_is_what_is_computed(name):
+    same_as_kept(name, source_module(name).checks())

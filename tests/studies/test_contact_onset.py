@@ -104,6 +104,20 @@ def test_an_onset_far_away_is_not_followed():
     assert row["times_own"] == pytest.approx(row["formula"] / 1e-9) and row["times_own"] > 1e6
 
 
+def test_a_seal_that_never_touches_has_the_films_of_linear_theory():
+    """h_min falls by the same for each step of the runout: the response is linear in it."""
+    scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml", ["stator.misalignment=0", "rotor.runout=1e-6"])
+
+    def scene(value):
+        return with_values(scenario, {"rotor.runout": value, "run.start": "steady"}).scene
+
+    answer = contact_onset.linear_films(scene, "rotor.runout", 0.0, scenario.scene)
+    forcing, h_min = np.array(answer["linear"]["forcing"]), np.array(answer["linear"]["h_min"])
+    assert answer["linear"]["own"] == 1e-6 and forcing[0] == 0.0 and forcing[-1] == pytest.approx(1e-5)
+    assert h_min[0] == pytest.approx(answer["clearance"], rel=1e-12) and np.all(np.diff(h_min) < 0)
+    np.testing.assert_allclose(np.diff(h_min), h_min[1] - h_min[0], rtol=1e-3)
+
+
 def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):
     """Linear theory's line from the clearance to touch, and where the scenario is on it."""
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", ["stator.misalignment=1e-7"])

@@ -142,7 +142,7 @@ def test_without_threshold_the_order_lags(tmp_path):
     assert far[1] / far[0] == pytest.approx(4.0, rel=0.4)
     assert far[2] / far[1] == pytest.approx(4.0, rel=0.4)
     figure = drawn(study_runup, tmp_path / "r.h5", tmp_path / "r.png")
-    assert not panel(figure, "Free whirl").lines and text_trouble(figure)[1] == []
+    assert not any("Free whirl" in ax.get_title("left") for ax in figure.axes) and text_trouble(figure)[1] == []
 
 
 def test_without_threshold_an_unstable_seal_is_not_called_stable(tmp_path):
@@ -222,7 +222,7 @@ def test_pressure_ramps_and_a_step(tmp_path):
     figure = drawn(study_runup, tmp_path / "r.h5", tmp_path / "r.png")
     ramps = [row for row in answer["rows"] if row["rate"]]
     films = [1e6 * row["h_min"] for row in ramps]
-    assert has_points(panel(figure, "Thinnest film, µm"), [row["rate"] for row in ramps], films)
+    assert has_points(panel(figure, "Thinnest film, µm"), [1e-5 * row["rate"] for row in ramps], films)
     assert text_trouble(figure)[1] == []
 
 

@@ -158,3 +158,10 @@ def test_the_values_of_an_axis_come_in_order():
     with pytest.raises(ScenarioError) as refused:
         stability.si_axis(read_scenario(FMR), "film.coning=1 mrad,5 mrad,2 mrad", "x")
     assert refused.value.key.endswith("x")
+
+
+def test_the_map_reaches_as_far_as_the_threshold():
+    near, far = (read_scenario(FMS, [f"shaft.speed={speed}"]) for speed in (1000.0, 100.0))
+    ends = [stability.si_axis(s, stability._default_x(s.scene), "x")["values"][-1] for s in (near, far)]
+    critical = stability.critical_speed(Model(far.scene))
+    assert ends[0] == pytest.approx(15e3) and critical > 15 * 100.0 and ends[1] == pytest.approx(2 * critical)

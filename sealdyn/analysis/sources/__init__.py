@@ -3,6 +3,8 @@
 What every source offers:
 
 `TITLE`     a line: the source, what is held against it, the units of its table.
+`FILM`      the film that it is held against, by the name of its file.
+`COVERS`    what of a seal it stands for, in a few words.
 `checks()`  a list of rows (dicts), one per printed number, SI units:
               source        str, publication and place in it
               quantity      str
@@ -17,4 +19,6 @@ What every source offers:
 `HEAD`      headings of its table.
 `cells(row)`  a line of it, a str per heading.
 `about(row)`  which line a remark speaks of, a few words.
+
+results.json keeps the rows for pages that must be quick: tests/benchmark/validation_results.py writes it.
 """

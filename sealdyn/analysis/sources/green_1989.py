@@ -20,6 +20,8 @@ from ...solvers.recorder import Recorder
 from ..growth import ACCURACY, growth_rate, run_over
 
 TITLE = "Green (1989), J. Tribology 111, Table 1; linear film, Green's coefficients; speeds in rad/s"
+FILM = "linear"
+COVERS = "transmissibilities and critical speeds of FMR and FMS seals"
 HEAD = ("seal", "c", "quantity", "published", "formula", "lin. algebra", "time domain", "deviation", "verdict")
 
 # The three methods must agree to this, relative.

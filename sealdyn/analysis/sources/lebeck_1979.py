@@ -19,6 +19,8 @@ from ...scene.scene import Closing, Scene
 from ...scene.waviness import Waviness
 
 TITLE = "Lebeck, Teale & Pierce (1979), ONR ME-95(79)ONR-414-1, wavy rough seal at balance; reynolds, 24 x 180 a wave"
+FILM = "reynolds"
+COVERS = "load support, friction and leakage of a wavy rough seal at rest"
 HEAD = ("waves", "h_n/c", "quantity", "published", "reynolds", "independent", "deviation", "verdict")
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 3-1"
 # The scene: units of length are the outer radius and the half height of the asperities.

@@ -11,6 +11,8 @@ from ..truncated_heights import carried, plateaus
 from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
 
 TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; film of 24 x 180 a wave"
+FILM = "reynolds"
+COVERS = "the same with faces worn to plateaus"
 HEAD = ("plateau/sigma_1", "quantity", "published", "computed", "independent", "deviation", "verdict")
 SOURCE = "Lebeck, Teale & Pierce (1979), Table 2-7"
 # Units of length are the outer radius and the composite rms roughness; three waves.

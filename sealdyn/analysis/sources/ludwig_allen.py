@@ -12,6 +12,8 @@ from ...closed_form import ludwig_allen as closed
 from .. import quasi_static
 
 TITLE = "Ludwig & Allen (1976), NASA TN D-8102; radial film, planar, half-Sommerfeld; films in um"
+FILM = "radial"
+COVERS = "film thickness and motion of a ring held by secondary-seal friction (FMR)"
 HEAD = ("F_s/F_d", "quantity", "published", "formula", "static", "time domain", "deviation", "verdict")
 
 SOURCE, CURVE = "Ludwig & Allen (1976), example", "Ludwig & Allen (1976), Fig. 8"

@@ -25,6 +25,8 @@ from ...scene.film import Film
 from ...scene.gas import Gas, GasDam, viscosity_of
 
 TITLE = "Zuk (1972), NASA TM X-68022, sealing dam at cruise; gas_dam, laminar, width constant (parallel) or radial"
+FILM = "gas_dam"
+COVERS = "leakage, force, its centre and exit Mach number of a sealing dam"
 HEAD = ("tilt, mrad", "film, mil", "quantity", "published", "gas_dam", "independent", "tilt twice", "deviation",
         "verdict")  # fmt: skip
 

@@ -46,10 +46,10 @@ def draw(archive_path, out_path, turns: float = 6.0):
 
 
 def _axes(figure, left: float, width: float, height: float, projection=None):
-    """Axes from `left` (inches), `width` wide (inches) and `height` high (share of the sheet)."""
-    whole = figure.get_figwidth()
+    """Axes from `left` (inches), `width` wide (inches) and `height` high (share of a sheet with a short heading)."""
+    whole, share = figure.get_figwidth(), HEIGHT / figure.get_figheight()
     low = 0.1 if projection else 0.11
-    return figure.add_axes((left / whole, low, width / whole, height), projection=projection)
+    return figure.add_axes((left / whole, low * share, width / whole, height * share), projection=projection)
 
 
 def thickness(run: Run, radius, angle, first: int, stop: int):

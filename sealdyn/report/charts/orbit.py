@@ -13,6 +13,10 @@ DIRECTIONS = 72
 def draw(archive_path, out_path, turns: float = 8.0):
     """The orbit of the last `turns` turns of the shaft, inside the reach of the whole run."""
     run = Run(archive_path)
+    if not any(run.largest(f"{prefix}_tilt_x") for prefix in ("relative", *RING) if run.has(f"{prefix}_tilt_x")):
+        figure, ax = run_page(run, 8.5, 3.4, [["relative"]])
+        absent(ax["relative"], "Orbit of the relative tilt", "faces aligned throughout")
+        return save(figure, out_path)
     figure, ax = run_page(run, 11.5, 6.4, [["relative", "rings"]])
     panel(ax["relative"], run, turns=turns)
     rings = [(f"{ring}_tilt", colour, ring) for ring, colour in RING.items()]
@@ -25,12 +29,13 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     tilts = [tilt for tilt in tilts or [("relative_tilt", TILT, None)] if run.has(f"{tilt[0]}_x", f"{tilt[0]}_y")]
     if not tilts:
         return absent(ax, title)
-    hulls = [hull(run, prefix) for prefix, _, _ in tilts]
+    first = run.last(turns)
+    # The coarsest unit of what is drawn.
+    per, unit = min((run.shown(f"{prefix}_x", first)[::-1] for prefix, _, _ in tilts), key=lambda found: found[0])
+    hulls = [hull(run, prefix, per) for prefix, _, _ in tilts]
     whole = max(np.hypot(*outer).max() for outer in hulls)
     if not whole > 0:
         return absent(ax, title, "faces aligned throughout")
-    unit, per = run.shown(f"{tilts[0][0]}_x")
-    first = run.last(turns)
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
@@ -47,6 +52,7 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     ax.axvline(0, color=GREY, lw=0.5)
     ax.set(xlim=(-limit, limit), ylim=(-limit, limit * 1.3), aspect="equal", title=title)
     ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
+    ax.locator_params(nbins=7)
     ax.legend(loc="upper left", ncols=2, borderaxespad=0.1, handlelength=1.4, columnspacing=1.0)
 
 
@@ -57,9 +63,9 @@ def window(run: Run, first: int) -> str:
     return f"last {amount:.{digits}g} {'turns' if run.turning else 'ms'}" if first else "whole run"
 
 
-def hull(run: Run, prefix: str) -> np.ndarray:
-    """How far the tilt went towards each direction in the whole run: a convex polygon, (2, n), in the series'
-    unit for people."""
+def hull(run: Run, prefix: str, per: float | None = None) -> np.ndarray:
+    """How far the tilt went towards each direction in the whole run: a convex polygon, (2, n), in a unit of which
+    `per` make a radian; without it in the series' unit for people."""
     angles = np.arange(DIRECTIONS) * 2 * np.pi / DIRECTIONS
     towards = np.stack([np.cos(angles), np.sin(angles)], 1)
     furthest, corners = np.full(DIRECTIONS, -np.inf), np.zeros((2, DIRECTIONS))
@@ -70,7 +76,7 @@ def hull(run: Run, prefix: str) -> np.ndarray:
         reached = reached[np.arange(DIRECTIONS), at]
         corners = np.where(reached > furthest, tilt[:, at], corners)
         furthest = np.maximum(reached, furthest)
-    return run.shown(f"{prefix}_x")[1] * corners
+    return (per or run.shown(f"{prefix}_x")[1]) * corners
 
 
 def mark_turns(ax, run: Run, first: int, x, y) -> None:

@@ -4,25 +4,31 @@ import numpy as np
 from matplotlib import rc_context
 
 from ...status import Status
+from ..text import speed_unit
 from . import orbit, spectrum
-from .page import PAPER, absent, header, level, look, save, sheet
+from .page import PAPER, absent, free_side, header, level, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
-from .record import Run
+from .record import Run, fitting
 
-LEFT, RIGHT = (("orbit",), ("numbers",)), (("film", "film, end"), ("tilt", "tilt, end"), ("flow", "spectrum"))
+# Rows of the right-hand side; the first of each pair is of the whole run.
+ROWS = {"film": "film, end", "tilt": "tilt, end", "flow": "spectrum"}
 # Height of a name beside a line, as a share of the panel.
-NAME_HEIGHT = 0.08
+NAME_HEIGHT = 0.1
+# Of the thickest film: a line further off is not drawn.
+FAR = 4.0
+# A speed, in the unit that the scenario has.
+SPEED = "{} speed"
 # Name of a row, and what stands in it: key of the summary, factor, words, digits.
 NUMBERS = (
     ("smallest film", ("h_min.value", 1e6, "{} µm", 4), ("h_min.of_clearance", 100, "{} % of clearance", 3)),
-    ("tilt max / min / mean", *((f"relative_misalignment.{k}", 1e6, "{}", 3) for k in ("max", "min", "mean"))),
-    ("steady max / min", *((f"relative_misalignment.steady_{k}", 1e6, "{}", 4) for k in ("max", "min"))),
-    ("closed form max / min", *((f"closed_form.relative_{k}", 1e6, "{}", 4) for k in ("max", "min"))),
+    ("tilt max / min / mean", *((f"relative_misalignment.{k}", 1e6, "{} µrad", 3) for k in ("max", "min", "mean"))),
+    ("steady max / min", *((f"relative_misalignment.steady_{k}", 1e6, "{} µrad", 4) for k in ("max", "min"))),
+    ("closed form max / min", *((f"closed_form.relative_{k}", 1e6, "{} µrad", 4) for k in ("max", "min"))),
     ("mean leakage", ("leakage.mean_ml_per_h", 1, "{} ml/h", 4)),
     ("mean friction", ("friction.power", 1, "{} W", 3), ("friction.torque", 1, "{} N m", 3)),
     ("film stiffness", ("film.axial_stiffness", 1e-6, "{} N/µm", 3), ("film.tilt_stiffness", 1, "{} N m/rad", 3)),
     ("closing force", ("closing.force", 1, "{} N", 4), ("closing.balance_ratio", 1, "balance ratio {}", 3)),
-    ("critical speed", ("stability.critical_speed", 1, "{} rad/s", 4)),
+    ("critical speed", ("stability.critical_speed", 1, SPEED, 4)),
     ("margin to contact", ("contact_margin", 1, "{} × this forcing", 3)),
     ("touches", ("contact.touches", 1, "{}", 4), ("contact.depth", 1e6, "{} µm deep", 3)),
     ("wear rate", ("contact.wear_rate", 3.6e9, "{} µm/h", 3)),
@@ -37,35 +43,51 @@ NUMBERS = (
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
     run = Run(archive_path)
-    figure = sheet(13.5, 9.0)
-    ax = _placed(figure, header(figure, run) - 0.025)
-    ax["orbit"].set_anchor("N")
-    orbit.panel(ax["orbit"], run)
+    first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
+    figure = sheet(13.5, 9.0 if tilts else 6.6)
+    ax = _placed(figure, header(figure, run) - 0.225 / figure.get_figheight(), tilts, first > 0, moves)
     key_numbers(ax["numbers"], run)
-    for column, first in (("", 0), (", end", run.last(turns))):
-        film, tilt = ax["film" + column], ax["tilt" + column]
-        tilt.sharex(film)
-        film_panel(film, run, first)
-        tilt_panel(tilt, run, first)
+    if tilts:
+        ax["orbit"].set_anchor("N")
+        orbit.panel(ax["orbit"], run)
+    for column, start in (("", 0), (", end", first)):
+        if film := ax.get("film" + column):
+            film_panel(film, run, start)
+        if tilt := ax.get("tilt" + column):
+            tilt.sharex(film)
+            tilt_panel(tilt, run, start)
     ax["flow"].sharex(ax["film"])
     (contact_panel if run.touches else leakage_panel)(ax["flow"], run)
     # Panels above share their x axis with the lowest of the column.
-    for name in ("flow", "tilt, end"):
-        ax[name].set_xlabel(run.progress_label)
-    spectrum.panel(ax["spectrum"], run)
+    for name in ("flow", "tilt, end" if tilts else "film, end"):
+        if name in ax:
+            ax[name].set_xlabel(run.progress_label)
+    if moves:
+        spectrum.panel(ax["spectrum"], run)
     return save(figure, out_path)
 
 
-def _placed(figure, top: float) -> dict:
-    """Axes by name, by hand: every run draws this page, and a layout engine would take half of its time."""
-    left = figure.add_gridspec(2, 1, left=0.056, right=0.326, bottom=0.07, top=top, height_ratios=(5, 3), hspace=0.17)
-    right = figure.add_gridspec(3, 2, left=0.385, right=0.975, bottom=0.082, top=top, wspace=0.26, hspace=0.33)
-    return {
-        name: figure.add_subplot(grid[row, column])
-        for grid, names in ((left, LEFT), (right, RIGHT))
-        for row, across in enumerate(names)
-        for column, name in enumerate(across)
-    }
+def _tilts(run: Run) -> bool:
+    """Whether the faces tilt against each other."""
+    return run.has("relative_misalignment") and run.largest("relative_misalignment") > 0
+
+
+def _placed(figure, top: float, tilts: bool, ends: bool, moves: bool) -> dict:
+    """Axes by name, by hand: every run draws this page, and a layout engine would take half of its time.  Aligned faces
+    have no panels of tilts, a short run none of its end, one without orders no spectrum: the others take their room."""
+    height = figure.get_figheight()
+    low, ratios = 0.63 / height, {"height_ratios": (5, 3), "hspace": 0.17} if tilts else {}
+    left = figure.add_gridspec(1 + tilts, 1, left=0.056, right=0.326, bottom=low, top=top, **ratios)
+    rows = [name for name in ROWS if tilts or name != "tilt"]
+    right = figure.add_gridspec(len(rows), 2, left=0.385, right=0.975, bottom=0.74 / height, top=top, wspace=0.26,
+                                hspace=0.33)  # fmt: skip
+    ax = {name: figure.add_subplot(left[row]) for row, name in enumerate(["orbit"] * tilts + ["numbers"])}
+    for row, name in enumerate(rows):
+        beside = moves if name == "flow" else ends
+        ax[name] = figure.add_subplot(right[row, 0] if beside else right[row, :])
+        if beside:
+            ax[ROWS[name]] = figure.add_subplot(right[row, 1])
+    return ax
 
 
 def film_panel(ax, run: Run, first: int) -> None:
@@ -73,24 +95,31 @@ def film_panel(ax, run: Run, first: int) -> None:
     title = "Smallest film thickness" + (f", {orbit.window(run, first)}" if first else "")
     if _lacking(ax, run, title, "h_min"):
         return
-    per, (x, h, unit) = run.shown("h_min")[1], run.drawn("h_min", first)
+    per, (x, h, unit) = run.shown("h_min", first)[1], run.drawn("h_min", first)
     ax.plot(x, h, color=FILM)
     ax.set(title=title, ylabel=f"h_min, {unit}")
     _span(ax, run, first)
     low, top = np.nanmin(h), np.nanmax(h)
+    clearance, touch = per * (run.clearance or 0.0), per * run.touch_at
+    lines = [(clearance, "clearance", {"colour": GREY})] if run.clearance else []
+    lines += [(touch, "asperities meet" if touch else "contact", {"colour": CONTACT, "ls": "-", "lw": 1.2})]
     if first:
         margin = max(0.3 * (top - low), 2e-3 * top)
         ax.set_ylim(low - margin, top + margin)
+        for at, _, style in lines:
+            level(ax, at, "", **style)
     else:
-        top = 1.15 * max(top, per * (run.clearance or 0))
+        # Where asperities meet far above all films, that line is left out.
+        lines = [line for line in lines if line[0] < FAR * max(top, clearance)]
+        top = 1.2 * max(top, *(line[0] for line in lines))
+        room = NAME_HEIGHT * top
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
-        # Two lines close together: the lower one's name goes below it.
-        apart = per * ((run.clearance or np.inf) - run.touch_at)
-        close = abs(apart) < NAME_HEIGHT * top
-    if run.clearance:
-        level(ax, per * run.clearance, "" if first else "clearance", below=not first and close and apart <= 0)
-    words = "" if first else "asperities meet" if run.touch_at else "contact"
-    level(ax, per * run.touch_at, words, CONTACT, below=not first and close and apart > 0, ls="-", lw=1.2)
+        for at, name, style in lines:
+            others = [np.full_like(x, other) for other, *_ in lines if other != at]
+            found = free_side(x, [h, *others], at, room)
+            level(ax, at, name, **found, **style)
+            if found["below"] and at < 1.5 * room:
+                ax.set_ylim(bottom=min(ax.get_ylim()[0], at - 1.5 * room))
     if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
         ax.plot(x[-1], h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
@@ -103,7 +132,7 @@ def tilt_panel(ax, run: Run, first: int) -> None:
     title = "Relative misalignment" + (f", {orbit.window(run, first)}" if first else "")
     if _lacking(ax, run, title, "relative_misalignment"):
         return
-    per, (x, tilt, unit) = run.shown("relative_misalignment")[1], run.drawn("relative_misalignment", first)
+    per, (x, tilt, unit) = run.shown("relative_misalignment", first)[1], run.drawn("relative_misalignment", first)
     top = np.nanmax(tilt)
     if not top > 0:
         return absent(ax, title, "faces aligned")
@@ -166,7 +195,7 @@ def key_numbers(ax, run: Run) -> None:
     """A short table from the summary; rows the run does not have are left out."""
     ax.set_axis_off()
     ax.set_title("Key numbers")
-    rows = list(_numbers(run.summary)) or [("no summary", run.status)]
+    rows = list(_numbers(run.summary, speed_unit(run.info))) or [("no summary", run.status)]
     step = min(0.082, 0.97 / len(rows))
     for line, (name, value) in enumerate(rows):
         y = 0.95 - step * line
@@ -176,22 +205,44 @@ def key_numbers(ax, run: Run) -> None:
     ax.hlines(below, 0, 1, color=PALE, lw=0.5, capstyle="projecting", transform=ax.transAxes)
 
 
-def _numbers(summary: dict):
-    """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name."""
+def _numbers(summary: dict, speed: tuple[str, float]):
+    """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name.
+    `speed`: unit of speeds, and how many of it make one rad/s."""
     for name, *parts in NUMBERS:
-        words = [_said(summary, *part) for part in parts]
+        values = [_value(summary, key) for key, *_ in parts]
         # Faces of no wear coefficient say nothing of wear.
-        if any(words) and words != ["0 µm/h"]:
-            yield name, " / ".join(w or "–" for w in words) + " µrad" if "/" in name else ", ".join(filter(None, words))
+        if all(value is None for value in values) or (name == "wear rate" and values == [0.0]):
+            continue
+        if "/" not in name:
+            yield (
+                name,
+                ", ".join(_said(v, *part[1:], speed) for v, part in zip(values, parts, strict=True) if v is not None),
+            )
+            continue
+        # One unit for all of them.
+        largest = max(abs(value) for value in values if value is not None)
+        if not largest:
+            continue
+        unit, finer = fitting("µrad", 1e6 * largest)
+        told = ["–" if v is None else written(1e6 * finer * v, part[-1]) for v, part in zip(values, parts, strict=True)]
+        yield name, f"{' / '.join(told)} {unit}"
 
 
-def _said(summary: dict, key: str, factor: float, words: str, digits: int) -> str | None:
-    """A number of the summary in words; None if it is not there, or no number."""
+def _value(summary: dict, key: str) -> float | None:
+    """A number of the summary; None if it is not there, or no number."""
     value = summary
     for part in key.split("."):
         value = value.get(part) if isinstance(value, dict) else None
-    known = isinstance(value, int | float) and np.isfinite(value)
-    return words.format(written(factor * value, digits)) if known else None
+    return value if isinstance(value, int | float) and np.isfinite(value) else None
+
+
+def _said(value: float, factor: float, words: str, digits: int, speed: tuple[str, float]) -> str:
+    """A number in words, in a finer unit or in that of speeds where its own does not fit."""
+    if words == SPEED:
+        words, factor = f"{{}} {speed[0]}", speed[1]
+    number, _, unit = words.partition(" ")
+    finer, more = fitting(unit, abs(factor * value))
+    return f"{number} {finer}".format(written(more * factor * value, digits)).rstrip()
 
 
 def written(value: float, digits: int) -> str:

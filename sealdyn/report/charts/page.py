@@ -27,6 +27,10 @@ DPI = 150
 LINES = {".svg": "Date", ".pdf": "CreationDate"}
 # Of the value: a series that changes by less differs by rounding only.
 ROUNDING = 1e-6
+# Of the value: a panel whose values change by less shows a flat line, not ticks that differ in the sixth digit.
+EVEN = 1e-4
+# Lines of a heading that a sheet has room for, and the most it has: it grows by what is beyond.
+ROOM, MOST_LINES = 3, 14
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
 
@@ -52,7 +56,8 @@ def study_page(study, width: float, height: float, mosaic, title: str = "", belo
     title = title or question_of(question) or study["name"]
     status = study["answer"].get("status", Status.OK)
     colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
-    below = below or shortened(f"{study['name']}: {question}", int(14 * width))
+    asked = question_of(question)
+    below = below or (f"{study['name']}: {asked}" if asked and asked != title else study["name"])
     top = heading(figure, title, below, bold, colour)
     return figure, panels(figure, top, mosaic, **layout)
 
@@ -74,23 +79,36 @@ def panels(figure, top: float, mosaic, space: float = 0.04, **layout) -> dict:
 
 
 def header(figure, run) -> float:
-    """The scene's question, then name, model and verdict, then what happened; returns where they end, as `heading`."""
+    """The scene's question, then name, model and verdict, warnings, then what happened; returns where they end, as
+    `heading`."""
     ended = f"{run.status}: {run.message}" if run.message else run.status
-    return heading(figure, run.question, run.description, ended, STATUS.get(run.status, BLACK))
+    # Of a warning what stands before its reason.
+    warnings = dict.fromkeys(str(words).split(":")[0] for words in run.summary.get("warnings") or [])
+    below = run.description + (f"\nwarning: {'; '.join(warnings)}" if warnings else "")
+    return heading(figure, run.question, below, ended, STATUS.get(run.status, BLACK))
 
 
 def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK) -> float:
-    """The title of a page, up to three lines below it and up to two bold ones in `colour`, cut to its width.  Returns
-    where they end, as a share of the height."""
+    """The title of a page, the lines below it and the bold ones in `colour`, wrapped to its width.  The page grows
+    where there are many.  Returns where they end, as a share of the height."""
     width, height = figure.get_size_inches()
-    figure.text(0.4 / width, 1 - 0.26 / height, shortened(title, int(9.5 * width)), fontsize=13, weight="bold",
-                va="center")  # fmt: skip
-    lines = [(words, {}) for words in wrap(below, int(14 * width), max_lines=3, placeholder=" …")]
-    style = {"color": colour, "weight": "bold"}
-    lines += [(words, style) for words in wrap(bold, int(12 * width), max_lines=2, placeholder=" …")]
+    titles = _lines(title, int(9.5 * width)) or [""]
+    lines = [(words, {}) for words in _lines(below, int(14 * width))]
+    lines += [(words, {"color": colour, "weight": "bold"}) for words in _lines(bold, int(12 * width))]
+    # A second line of the title is higher than those below.
+    more = 0.24 * (len(titles) - 1)
+    height += max(0.0, 0.2 * (len(lines) - ROOM) + more)
+    figure.set_size_inches(width, height)
+    for k, words in enumerate(titles):
+        figure.text(0.4 / width, 1 - (0.26 + 0.24 * k) / height, words, fontsize=13, weight="bold", va="center")
     for k, (words, style) in enumerate(lines):
-        figure.text(0.4 / width, 1 - (0.52 + 0.2 * k) / height, words, fontsize=9, va="center", **style)
-    return 1 - (0.48 + 0.2 * len(lines)) / height
+        figure.text(0.4 / width, 1 - (0.52 + more + 0.2 * k) / height, words, fontsize=9, va="center", **style)
+    return 1 - (0.48 + more + 0.2 * len(lines)) / height
+
+
+def _lines(words: str, length: int) -> list[str]:
+    """Lines of at most `length` characters; a text without end is cut."""
+    return [line for part in words.split("\n") for line in wrap(part, length, max_lines=MOST_LINES, placeholder=" …")]
 
 
 def shortened(words: str, length: int) -> str:
@@ -148,10 +166,10 @@ def absent(ax, title: str, why: str = "not in this scene") -> None:
 
 
 def flatten(ax) -> None:
-    """Values that differ by rounding only are a flat line beside a plain number: the y axis does not enlarge them."""
+    """Values that hardly differ are a flat line beside a plain number: the y axis does not enlarge them."""
     low, high = ax.dataLim.intervaly
     size = max(abs(low), abs(high))
-    if ax.get_autoscaley_on() and size > 0 and 0 <= high - low <= ROUNDING * size:
+    if ax.get_autoscaley_on() and ax.get_yscale() == "linear" and 0 <= high - low <= EVEN * size and size > 0:
         middle = 0.5 * (low + high)
         ax.set_ylim(middle - 0.1 * abs(middle), middle + 0.1 * abs(middle))
 
@@ -163,6 +181,19 @@ def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", be
     ax.annotate(words, (right, at), xycoords=("axes fraction", "data"), xytext=(-2 if right else 2, offset),
                 textcoords="offset points", color=colour, fontsize=8, ha=side, va="top" if below else "bottom",
                 bbox=PAPER)  # fmt: skip
+
+
+def free_side(x, curves, at: float, room: float) -> dict:
+    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`; `room` is the height
+    that the name takes, in data."""
+    start, end = x[0], x[-1]
+    for below in (False, True):
+        for side in ("right", "left"):
+            part = x >= end - 0.3 * (end - start) if side == "right" else x <= start + 0.3 * (end - start)
+            away = [(at - y if below else y - at)[part] for y in curves]
+            if not any(((0.15 * room < far) & (far < room)).any() for far in away):
+                return {"side": side, "below": below}
+    return {"side": "right", "below": False}
 
 
 def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", **line) -> None:

@@ -13,6 +13,17 @@ BLOCK = 1 << 16
 POINTS = 20_000
 
 
+# A number in µ below this is read better in n, in n below it in p.
+SMALL = 0.05
+
+
+def fitting(unit: str, size: float) -> tuple[str, float]:
+    """A unit finer than one in µ where numbers of this size would be mostly zeros, and how many of it make one."""
+    if unit[:1] != "µ" or not 0 < size < SMALL:
+        return unit, 1.0
+    return ("n" + unit[1:], 1e3) if size >= 1e-3 * SMALL else ("p" + unit[1:], 1e6)
+
+
 def done(rows) -> list[dict]:
     """The rows of a study's points that did not fail."""
     return [row for row in rows if "failed" not in row]
@@ -27,6 +38,7 @@ class Run:
         self.rows, self.summary, self.status = self.info["rows"], self.info["summary"], self.info["status"]
         self.message = self.info.get("message", "")
         self.resolved = self.info["resolved"]
+        self._sizes: dict[tuple[str, int], float] = {}
 
     def has(self, *names: str) -> bool:
         """Whether all these series are there, with at least two rows."""
@@ -36,10 +48,24 @@ class Run:
         """Rows `start` to `stop` of a series (SI)."""
         return column(self.path, name, slice(start, self.rows if stop is None else min(stop, self.rows)))
 
-    def shown(self, name: str) -> tuple[str, float]:
-        """The unit that people read a series in, and how many of it make one SI unit: what the archive says."""
+    def shown(self, name: str, first: int = 0) -> tuple[str, float]:
+        """The unit that people read a series in from row `first` on, and how many of it make one SI unit: what the
+        archive says, or a finer one where that would leave zeros before the first digit.  Both components of a tilt
+        have one unit."""
         series = self.info["series"][name]
-        return series.display_unit or series.units, series.display_factor
+        unit, per = series.display_unit or series.units, series.display_factor
+        unit, finer = fitting(unit, per * self.largest(name, first))
+        return unit, per * finer
+
+    def largest(self, name: str, first: int = 0) -> float:
+        """Largest magnitude of a series (SI), or of both components of a tilt."""
+        key = (name.removesuffix("_x").removesuffix("_y"), first)
+        if key not in self._sizes:
+            names = [f"{key[0]}_{axis}" for axis in "xy"] if name != key[0] else [name]
+            parts = [(n, start) for n in names if n in self.info["series"] for start in range(first, self.rows, BLOCK)]
+            sizes = [np.abs(self.values(n, start, start + BLOCK)) for n, start in parts]
+            self._sizes[key] = float(max((np.nanmax(s, initial=0.0) for s in sizes), default=0.0))
+        return self._sizes[key]
 
     @cached_property
     def turns(self) -> np.ndarray:
@@ -100,7 +126,7 @@ class Run:
 
     def drawn(self, name: str, first: int = 0) -> tuple[np.ndarray, np.ndarray, str]:
         """Progress, values and unit of a series as people read it, from row `first`, as `envelope`."""
-        (unit, per), (x, values) = self.shown(name), self.envelope(name, first)
+        (unit, per), (x, values) = self.shown(name, first), self.envelope(name, first)
         return x, per * values, unit
 
     # -- the scene in numbers and words ------------------------------------------------------------

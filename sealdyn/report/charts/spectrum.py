@@ -21,11 +21,25 @@ def draw(archive_path, out_path, turns: float | None = None):
     """Spectra of the relative tilt (forward and backward), the axial gap and h_min over the last `turns`
     turns; default the last half of the run."""
     run = Run(archive_path)
-    figure, ax = run_page(run, 11.5, 7.2, [["tilt", "tilt"], ["axial", "film"]], height_ratios=(5, 4))
+    tilts = [name for name in ("relative_tilt_x", "relative_tilt_y") if run.has(name)]
+    # Aligned faces have their axial motion in the place of the tilt.
+    aligned = not any(run.largest(name) for name in tilts)
+    mosaic = [["tilt"], ["film"]] if aligned else [["tilt", "tilt"], ["axial", "film"]]
+    figure, ax = run_page(run, 11.5, 7.2, mosaic, height_ratios=(5, 4))
     panel(ax["tilt"], run, turns)
-    real_panel(ax["axial"], run, "axial_gap_change", "Axial motion", turns, said=False)
+    if not aligned:
+        real_panel(ax["axial"], run, "axial_gap_change", "Axial motion", turns, said=False)
     real_panel(ax["film"], run, "h_min", "h_min", turns, said=False)
     return save(figure, out_path)
+
+
+def has_orders(run: Run) -> bool:
+    """Whether there is a spectrum at all: two turns, and something that moves."""
+    if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
+        return False
+    first = run.last(run.turns[-1] / 2, MOST_ROWS)
+    names = ("relative_tilt_x", "relative_tilt_y", "axial_gap_change")
+    return any(np.ptp(run.values(name, first)) > NOTHING for name in names if run.has(name))
 
 
 def panel(ax, run: Run, turns: float | None = None) -> None:
@@ -69,13 +83,17 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     named = [at for n, at in enumerate(named) if (np.abs(orders[named[:n]] - orders[at]) > room).all()]
     ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
     ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
-    ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * 12))
+    share = at_the_edge(orders, amplitude, resolution)
+    # Room for the names of peaks, and above them for a warning.
+    top = 2000 if share > FOLDED else 20
+    ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * top))
     decades(ax.yaxis)
     for at in named:
         words = f"{number(orders[at], '.3g')}×\n{number(amplitude[at], '.3g')}"
-        ax.annotate(words, (orders[at], amplitude[at]), xytext=(0, 3), textcoords="offset points", ha="center",
-                    fontsize=7.5)  # fmt: skip
-    share = at_the_edge(orders, amplitude, resolution)
+        # A name at the left edge of the panel would lie on its ticks.
+        edge = not two_sided and orders[at] < 0.08 * reach
+        ax.annotate(words, (orders[at], amplitude[at]), xytext=(2 * edge, 3), textcoords="offset points",
+                    ha="left" if edge else "center", fontsize=7.5)  # fmt: skip
     if share > FOLDED:
         words = f"{100 * share:.2g} % of the power in the top tenth of the band:\nmay be folded, raise samples_per_turn"
         ax.text(0.99, 0.97, words, transform=ax.transAxes, ha="right", va="top", fontsize=7.5, color=CONTACT)

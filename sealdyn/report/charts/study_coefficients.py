@@ -4,6 +4,7 @@ and coning if there is one."""
 import numpy as np
 
 from ...archive import read_study
+from ..text import speed_unit
 from .page import logarithmic, look, number, right_axis, save, shortened, stacked, study_page
 from .palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 
@@ -11,7 +12,7 @@ DASHED = (0, (5, 2))
 TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{xy}$", 1, 2, VERMILLION, "-"),
         ("K$_{yx}$", 2, 1, ORANGE, DASHED))  # fmt: skip
 NAMES = ("z", "x", "y")
-SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed, rad/s"), "clearance": ("Over clearance", 1e6, "clearance, µm"),
+SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed"), "clearance": ("Over clearance", 1e6, "clearance, µm"),
           "tilt": ("Over tilt (axially balanced)", 1e6, "relative tilt about x, µrad")}  # fmt: skip
 # Axes of the map, the one with the most to show first: factor, label, and how a line is named.
 AXES = {"coning": (1e3, "coning, mrad", "{:.4g} mrad"), "frequency": (1 / (2 * np.pi), "frequency, Hz", "{:.4g} Hz"),
@@ -21,6 +22,8 @@ MAP = {"map axial": ("Axial K, N/µm", "stiffness", (0, 0), 1e-6),
        "map cross": ("Cross K, N m/rad", "stiffness", (1, 2), 1.0),
        "map damping": ("Tilt D, N m s/rad", "damping", (1, 1), 1.0)}  # fmt: skip
 MOST_LINES = 6
+# Large stiffnesses (N m/rad) in units with fewer digits.
+LARGE = ((1e7, 1e-6, "MN m/rad"), (1e4, 1e-3, "kN m/rad"), (0.0, 1.0, "N m/rad"))
 FREQUENCY = {"frequency": ("Over frequency", 1.0, "frequency of the motion, rad/s")}
 
 
@@ -35,22 +38,26 @@ def draw(archive_path, out_path):
     if "map" in answer:
         mosaic, heights = [*mosaic, [[[*MAP, *_clearance(answer["map"]), "map key"]]]], (9, 4, 5)
     figure, ax = study_page(study, 11.5, 2.6 + 0.415 * sum(heights), mosaic, title, height_ratios=heights)
+    speeds, rpm = speed_unit(study)
+    per, unit = _stiffness_unit(answer[f"against_{name}"] for name in shown)
     for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
         stacked(above, below)
+        scale, label = (rpm, f"{label}, {speeds}") if name == "speed" else (scale, label)
         x = scale * np.array(sweep[name])
-        _stiffness(above, sweep, x, words)
+        _stiffness(above, sweep, x, words, per)
         _damping(below, sweep, x, name, name == list(shown)[-1])
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
             logarithmic(below, "x")
-    ax["K speed"].set_ylabel("tilt stiffness, N m/rad")
+    ax["K speed"].set_ylabel(f"tilt stiffness, {unit}")
     # Beside the title: no curve is below it.
     ax["K speed"].legend(loc="lower right", bbox_to_anchor=(1.01, 0.985), ncols=4, columnspacing=0.6, handlelength=1.1,
                          handletextpad=0.3, borderaxespad=0.0, fontsize=7)  # fmt: skip
     ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
-    _matrix(ax["aligned"], answer, answer["at"], "Aligned")
-    _matrix(ax["tilted"], answer["tilted"], answer["tilted"]["at"], "Tilted: " + answer["tilted"]["said"])
+    said = (f"{number(rpm * answer['at']['speed'], '.5g')} {speeds}", "Tilted: " + answer["tilted"]["said"])
+    _matrix(ax["aligned"], answer, answer["at"], "Aligned", said[0])
+    _matrix(ax["tilted"], answer["tilted"], answer["tilted"]["at"], said[1], said[0])
     if "map" in answer:
         _map(ax, answer["map"])
     return save(figure, out_path)
@@ -96,9 +103,16 @@ def _entries(sweep, name, i, j):
     return np.array([np.nan if m is None else m[i][j] for m in sweep[name]], dtype=float)
 
 
-def _stiffness(ax, sweep, x, title):
+def _stiffness_unit(sweeps) -> tuple[float, str]:
+    """How many of the unit of tilt stiffnesses make one N m/rad, and its name, by the largest of them."""
+    every = [np.abs(_entries(sweep, "stiffness", i, j)) for sweep in sweeps for _, i, j, *_ in TILT]
+    largest = np.nanmax(np.concatenate([*every, [0.0]]))
+    return next((per, unit) for least, per, unit in LARGE if largest >= least)
+
+
+def _stiffness(ax, sweep, x, title, per):
     for label, i, j, colour, dashes in TILT:
-        ax.plot(x, _entries(sweep, "stiffness", i, j), color=colour, ls=dashes, lw=1.7, label=label)
+        ax.plot(x, per * _entries(sweep, "stiffness", i, j), color=colour, ls=dashes, lw=1.7, label=label)
     ax.axhline(0.0, color=BLACK, lw=0.8)
     ax.set_title(title)
 
@@ -114,7 +128,9 @@ def _damping(ax, sweep, x, name, last):
     if name == "clearance" and len(shown) and shown.min() > 0:
         ax.set(yscale="log", ylim=(shown.min() / 2, shown.max() * 2))
     else:
-        ax.set_ylim(1.15 * shown.min(initial=0.0), 1.15 * max(shown.max(initial=0.0), 1e-12))
+        # A film without damping has an axis, too.
+        low, high = shown.min(initial=0.0), shown.max(initial=0.0)
+        ax.set_ylim(1.15 * low, 1.15 * high if high > 0 or low < 0 else 1.0)
     other = right_axis(ax, "axial stiffness, N/µm" if last else "", GREY)
     axial = 1e-6 * _entries(sweep, "stiffness", 0, 0)
     other.plot(x, axial, color=GREY, lw=1.7)
@@ -122,7 +138,7 @@ def _damping(ax, sweep, x, name, last):
     other.set_ylim(1.15 * low, 1.15 * high if high > 0 else 0.1)
 
 
-def _matrix(ax, found, at, title):
+def _matrix(ax, found, at, title, speed):
     """Both matrices as numbers."""
     ax.axis("off")
     ax.set(xlim=(0, 1), ylim=(0, 1))
@@ -131,7 +147,7 @@ def _matrix(ax, found, at, title):
         return
     tilt = 1e6 * np.hypot(at["tilt_x"], at["tilt_y"])
     words = f"clearance {1e6 * at['clearance']:.4g} µm, opening {1e6 * at['axial_opening']:.3g} µm, "
-    words += f"tilt {tilt:.4g} µrad, {at['speed']:.5g} rad/s, thinnest film {1e6 * at['h_min']:.4g} µm"
+    words += f"tilt {tilt:.4g} µrad, {speed}, thinnest film {1e6 * at['h_min']:.4g} µm"
     ax.text(0, 0.87, words, va="top", fontsize=8, color=GREY)
     for left, name, letter, unit in ((0.01, "stiffness", "K", "N, m, rad"), (0.52, "damping", "D", "N, m, s, rad")):
         ax.text(left, 0.72, f"{letter}  ({unit})", va="top", fontsize=8.5)
@@ -143,4 +159,5 @@ def _matrix(ax, found, at, title):
             for j in range(3):
                 value = found[name][i][j]
                 words = number(value, ".2e" if abs(value) >= 9999.5 or 0 < abs(value) < 1e-3 else ".4g")
-                ax.text(left + 0.17 + 0.15 * j, y, words, va="top", ha="right", fontsize=8.5)
+                words = words.replace("e+0", "e").replace("e−0", "e−")
+                ax.text(left + 0.17 + 0.15 * j, y, words, va="top", ha="right", fontsize=8)

@@ -9,16 +9,20 @@ from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
 
 @look()
 def draw(archive_path, out_path):
-    """Three panels from a study's archive."""
+    """The film over the forcing, how the seal lifts, and the onset over another key: panels of what is there."""
     study = read_study(archive_path)
     answer, title = study["answer"], "When do the faces first touch?"
     bold = " ".join(answer["verdict"]) if "failed" in answer else answer["verdict"][0]
-    figure, ax = study_page(study, 12, 5.2, [["film", "opening", "curve"]], title, bold=bold)
     # What linear theory says stands where nothing was followed, too.
-    known = answer.get("path") or (answer["formula"] and answer.get("clearance"))
-    _film(ax["film"], answer) if known else absent(ax["film"], "Smallest film thickness", _why(answer))
-    _opening(ax["opening"], answer) if answer.get("path") else absent(ax["opening"], "Axial opening", _why(answer))
-    _curve(ax["curve"], answer)
+    known = answer.get("path") or answer.get("linear") or (answer["formula"] and answer.get("clearance"))
+    panels = {_film: known, _opening: answer.get("path"), _curve: answer["curve"]}
+    panels = {draws.__name__: draws for draws, there in panels.items() if there}
+    mosaic, size = [list(panels) or ["nothing"]], (12, 5.2) if len(panels) > 1 else (8.5, 5.2 if panels else 3.0)
+    figure, ax = study_page(study, *size, mosaic, title, bold=bold)
+    for name, draws in panels.items():
+        draws(ax[name], answer)
+    if not panels:
+        absent(ax["nothing"], "Smallest film thickness", _why(answer))
     return save(figure, out_path)
 
 
@@ -39,13 +43,19 @@ def _film(ax, answer):
     if answer.get("path"):
         forcing, h_min = _path(answer, "h_min")
         ax.plot(forcing, 1e6 * h_min, "o-", color=FILM, ms=3.5, label="nonlinear orbit")
-    touch, onset = 1e6 * (answer.get("touch") or 0.0), 1e3 * answer["formula"]
-    ax.plot([0, onset], [1e6 * answer["clearance"], touch], "--", color=THEORY, label="linear theory")
-    ax.axhline(touch, color=CONTACT, lw=1.2)
-    if answer.get("times_own"):
-        upright(ax, onset / answer["times_own"], "the scenario's own", BLUE, height=0.4, ls=":")
+    touch, linear = 1e6 * (answer.get("touch") or 0.0), answer.get("linear")
+    if linear:
+        forcing, h_min = 1e3 * np.array(linear["forcing"]), 1e6 * np.array(linear["h_min"])
+    else:
+        forcing, h_min = [0, 1e3 * answer["formula"]], [1e6 * answer["clearance"], touch]
+    ax.plot(forcing, h_min, "--", color=THEORY, label="linear theory")
+    ax.axhline(touch, color=CONTACT, lw=1.2, label="asperities meet" if touch else "touch")
+    own = linear["own"] if linear else answer.get("times_own") and answer["formula"] / answer["times_own"]
+    if own:
+        upright(ax, 1e3 * own, "the scenario's own", BLUE, height=0.4, ls=":")
     ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, mrad", ylabel="h_min, µm")
-    ax.legend(loc="upper right")
+    ax.set_ylim(top=1.25 * ax.get_ylim()[1])
+    ax.legend(loc="upper right", ncols=3)
 
 
 def _opening(ax, answer):
@@ -59,8 +69,6 @@ def _opening(ax, answer):
 
 def _curve(ax, answer):
     rows = answer["curve"]
-    if not rows:
-        return absent(ax, "Onset over another key", "no study.contact_onset.over asked for")
     words = any(isinstance(row["value"], str) for row in rows)
     at = list(range(len(rows))) if words else [row["value"] for row in rows]
     floored = [row.get("floored", {}) for row in rows]

@@ -35,10 +35,11 @@ def draw(archive_path, out_path):
     below = {draws.__name__: draws for draws, there in below.items() if there}
     left = 5 * [6 * ["diagram"]] + 3 * [6 * ["exponents"]]
     left += 3 * [[panel for panel in below for _ in range(6 // len(below))]] if below else []
-    right = [[f"section {k}", f"spectrum {k}"] if k < len(points) else [".", "."] for k in range(MOST)]
+    right = [[f"section {k}", f"spectrum {k}"] for k in range(len(points))]
     words = next((v for v in answer["verdict"] if v.startswith(answer["key"])), answer["verdict"][0])
     words = f"{study['name']}: {words}"
-    figure, ax = study_page(study, 13.0, 8.6, [[left, right]], below=words, width_ratios=(5, 4))
+    sides = {"mosaic": [[left, right]], "width_ratios": (5, 4)} if right else {"mosaic": left}
+    figure, ax = study_page(study, 13.0 if right else 8.0, 8.6, below=words, **sides)
     stacked(ax["diagram"], ax["exponents"])
     _diagram(ax["diagram"], answer, rows, factor)
     _exponents(ax["exponents"], answer, rows, factor)

@@ -1,11 +1,13 @@
 """Stability map: growth rate over two values, the threshold, the scenario itself, and points confirmed in time."""
 
 import numpy as np
-from matplotlib.colors import SymLogNorm
+from matplotlib import colormaps
+from matplotlib.colors import ListedColormap, Normalize, SymLogNorm
 from scipy.ndimage import distance_transform_cdt
 
 from ...archive import read_study
-from .page import absent, look, once, save, study_page
+from ..text import speed_unit
+from .page import absent, look, number, once, save, study_page
 from .palette import BLACK, PALE, VERMILLION, YELLOW
 
 # Axis values as an engineer reads them.
@@ -21,20 +23,22 @@ def draw(archive_path, out_path):
     answer, title = study["answer"], "Where does the seal whirl by itself?"
     figure, ax = study_page(study, 11.5, 7.0, [["map"]], title, bold=" ".join(answer["verdict"][:3]))
     if np.isfinite(np.array(answer["tilt_growth_rate"], dtype=float)).any():
-        mesh = _map(ax["map"], answer)
+        shown = [_shown(answer["axes"][name], *speed_unit(study)) for name in "xy"]
+        mesh = _map(ax["map"], answer, shown)
         bar = figure.colorbar(mesh, ax=ax["map"], fraction=0.025, pad=0.02, ticks=_ticks(mesh),
                               label="growth rate of the least damped tilt mode, 1/s   (− decays, + grows)")  # fmt: skip
         bar.ax.minorticks_off()
-        _marks(ax["map"], answer)
+        bar.ax.yaxis.set_major_formatter(lambda rate, _: number(rate))
+        _marks(ax["map"], answer, *(factor for factor, _ in shown))
         figure.legend(loc="outside lower left", ncols=5, borderaxespad=1.5)
     else:
         absent(ax["map"], "Growth rate", "no possible scene on this map")
     return save(figure, out_path)
 
 
-def _map(ax, answer):
+def _map(ax, answer, shown):
     x, y = (answer["axes"][name] for name in "xy")
-    (per_x, label_x), (per_y, label_y) = _shown(x), _shown(y)
+    (per_x, label_x), (per_y, label_y) = shown
     at_x, at_y = per_x * np.array(x["values"]), per_y * np.array(y["values"])
     rates = np.array(answer["tilt_growth_rate"], dtype=float)
     every = np.array(answer["growth_rate"], dtype=float)
@@ -44,14 +48,15 @@ def _map(ax, answer):
         values = np.array(axis["values"])
         if len(values) > 2 and np.all(values > 0) and not np.allclose(np.diff(values), values[1] - values[0]):
             scale("log")
+            # Plain numbers, as on axes that are not logarithmic.
+            (ax.xaxis if axis is x else ax.yaxis).set_major_formatter(lambda value, _: number(value))
     ax.patch.set(hatch="///", edgecolor="white")
-    largest = float(np.nanmax(np.abs(rates))) or 1.0
-    norm = SymLogNorm(linthresh=max(largest / 300, 1e-12), vmin=-largest, vmax=largest)
-    mesh = ax.pcolormesh(at_x, at_y, np.ma.masked_invalid(rates), norm=norm, cmap=COLOURS, shading="nearest",
+    norm, colours = _colours(rates)
+    mesh = ax.pcolormesh(at_x, at_y, np.ma.masked_invalid(rates), norm=norm, cmap=colours, shading="nearest",
                          rasterized=True)  # fmt: skip
     if np.nanmin(every) < 0 < np.nanmax(every):
         ax.contour(at_x, at_y, np.ma.masked_invalid(every), [0.0], colors=BLACK, linewidths=2.0)
-    ax.plot([], [], color=BLACK, lw=2.0, label="threshold (eigenvalues)")
+        ax.plot([], [], color=BLACK, lw=2.0, label="threshold (eigenvalues)")
     # Where the axial motion is unstable and the tilt is not.
     axial = (every > 0) & (rates <= 0)
     if axial.any():
@@ -68,8 +73,21 @@ def _map(ax, answer):
     return mesh
 
 
+def _colours(rates):
+    """Scale and colours: logarithmic on both sides of zero, or of one side alone, evenly, where no other is there."""
+    low, high = float(np.nanmin(rates)), float(np.nanmax(rates))
+    largest = max(abs(low), abs(high)) or 1.0
+    if low < 0 < high:
+        return SymLogNorm(linthresh=max(largest / 300, 1e-12), vmin=-largest, vmax=largest), COLOURS
+    half = np.linspace(0.08, 0.5, 256) if high <= 0 else np.linspace(0.5, 0.92, 256)
+    room = 1e-3 * largest if high - low < 1e-3 * largest else 0.0
+    return Normalize(low - room, high + room), ListedColormap(colormaps[COLOURS](half))
+
+
 def _ticks(mesh):
-    """Zero and whole powers of ten clear of it."""
+    """Zero and whole powers of ten clear of it; of an even scale what suits."""
+    if not isinstance(mesh.norm, SymLogNorm):
+        return None
     top = np.log10(mesh.norm.vmax)
     powers = [10.0**k for k in range(int(np.floor(top)) - 1, int(np.floor(top)) + 1)]
     return [*(-p for p in reversed(powers)), 0.0, *powers]
@@ -87,9 +105,8 @@ def _say(ax, x, y, rates):
                 bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 2})  # fmt: skip
 
 
-def _marks(ax, answer):
+def _marks(ax, answer, per_x, per_y):
     x, y = (answer["axes"][name] for name in "xy")
-    per_x, per_y = _shown(x)[0], _shown(y)[0]
     if all(a["here"] is not None and min(a["values"]) <= a["here"] <= max(a["values"]) for a in (x, y)):
         ax.plot(x["here"] * per_x, y["here"] * per_y, "*", ms=15, mfc=YELLOW, mec=BLACK, clip_on=False, zorder=5,
                 label="this scenario")  # fmt: skip
@@ -102,9 +119,12 @@ def _marks(ax, answer):
                 label=once(ax, words))  # fmt: skip
 
 
-def _shown(axis) -> tuple[float, str]:
-    """How many of the unit for people make one SI unit, and what stands at the axis; radii in mm, films in µm."""
+def _shown(axis, speeds: str, per: float) -> tuple[float, str]:
+    """How many of the unit for people make one SI unit, and what stands at the axis; radii in mm, films in µm, speeds
+    as the scenario has them (`speeds`, of which `per` make one rad/s)."""
     factor, unit = SHOWN.get(axis["unit"], (1.0, axis["unit"].replace("*", " ")))
+    if axis["unit"] == "rad/s":
+        factor, unit = per, speeds
     if axis["unit"] == "m" and max(map(abs, axis["values"])) > 2e-3:
         factor, unit = 1e3, "mm"
     words = WORDS.get(axis["key"], axis["key"].replace(".", " ").replace("_", " "))

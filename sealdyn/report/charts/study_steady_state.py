@@ -10,15 +10,24 @@ from .record import done
 
 @look()
 def draw(archive_path, out_path):
-    """Four panels from a study's archive."""
+    """Up to four panels from a study's archive: what there is nothing for is left out."""
     study = read_study(archive_path)
-    answer, mosaic = study["answer"], [["orbit", "multipliers"], ["film", "cost"]]
+    answer = study["answer"]
+    linear, orbit = answer.get("linear") or {}, answer.get("orbit")
+    shown = {
+        _orbit: orbit or answer.get("defects"),
+        _multipliers: answer.get("multipliers") or linear.get("multipliers"),
+        _film: orbit or "h_min" in linear,
+        _cost: done(answer.get("near_threshold", [])),
+    }
+    panels = [draws for draws, there in shown.items() if there] or [_orbit]
+    names = [draws.__name__ for draws in panels]
+    rows = [names] if len(names) < 3 else [names[:2], names[2:] * (1 + (len(names) == 3))]
     title = "Periodic steady state by shooting"
-    figure, ax = study_page(study, 11, 7, mosaic, title, bold=answer["verdict"][0], height_ratios=(6, 5))
-    _orbit(ax["orbit"], answer)
-    _film(ax["film"], answer)
-    _multipliers(ax["multipliers"], answer)
-    _cost(ax["cost"], answer)
+    layout = {"height_ratios": (6, 5)} if len(rows) > 1 else {}
+    figure, ax = study_page(study, 11, 1.2 + 2.9 * len(rows), rows, title, bold=answer["verdict"][0], **layout)
+    for draws in panels:
+        draws(ax[draws.__name__], answer)
     return save(figure, out_path)
 
 

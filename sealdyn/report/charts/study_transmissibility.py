@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
+from ..text import speed_unit
 from .page import logarithmic, look, number, save, stacked, study_page
 from .palette import BLACK, GREEN, GREY, PALE, RING
 from .record import done
@@ -37,6 +38,9 @@ def draw(archive_path, out_path):
     """Amplitudes and phases over speed and a table, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "How much misalignment reaches the film?"
+    # As the scenario has it, or as it was asked.
+    if speed_unit(study)[0] == "rpm":
+        answer = {**answer, "unit": "rpm"}
     mosaic = [list(TITLES), ["static phase", "dynamic phase", "legend"]] + ([3 * ["table"]] if answer["table"] else [])
     heights = (9, 8, 6)[: len(mosaic)]
     figure, ax = study_page(study, 11.5, 10.4 if answer["table"] else 8.0, mosaic, title, height_ratios=heights)

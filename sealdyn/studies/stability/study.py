@@ -139,7 +139,11 @@ def _unit(holds) -> str:
 
 
 def _default_x(scene) -> str:
+    """From a tenth to fifteen times the scene's speed, or as far as the threshold where that is above."""
     speed = abs(scene.shaft.speed) or 1000.0
+    critical = critical_speed(Model(scene))
+    if critical and critical > 14 * speed:
+        return f"shaft.speed={speed / 10}:{2 * critical}:240:log"
     return f"shaft.speed={speed / 10}:{15 * speed}:240"
 
 

@@ -1,0 +1,272 @@
+"""Charts of seals that nobody tuned: tiny tilts, aligned faces, no threshold, nothing that touches."""
+
+import re
+import warnings
+from importlib import import_module
+
+import numpy as np
+import pytest
+from drawn import drawn, panel, text_trouble
+from made_up_run import SUMMARY, drop, whirling, write
+
+from sealdyn.archive import write_study
+from sealdyn.report.charts import film, orbit, overview, spectrum
+from sealdyn.report.charts.page import free_side
+from sealdyn.report.charts.record import fitting
+from sealdyn.report.text import speed_unit
+
+RPM = '# Does it ride?\n[shaft]\nspeed = "9550 rpm"\n'
+LONG = 9
+
+
+def ticks(ax):
+    """Labels of the ticks in view of both axes, and what stands beside an axis as a factor of them."""
+    ax.figure.draw_without_rendering()
+    shown = []
+    for axis, limits in ((ax.xaxis, ax.get_xlim()), (ax.yaxis, ax.get_ylim())):
+        low, high = sorted(limits)
+        at = zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
+        words = [label.get_text() for place, label in at if low <= place <= high]
+        shown.append([re.sub(r"[${}]|\\mathdefault", "", word) for word in words if word])
+    return shown, [axis.get_offset_text().get_text() for axis in (ax.xaxis, ax.yaxis)]
+
+
+def must_be_legible(figure):
+    """No text on another or off the page, no empty panel, and ticks that are short, distinct and without a factor."""
+    assert text_trouble(figure) == ([], [])
+    for ax in figure.axes:
+        if not (ax.axison and ax.xaxis.get_visible()):
+            continue
+        labels, factors = ticks(ax)
+        assert factors == ["", ""], ax.get_title("left")
+        for words in labels:
+            assert len(set(words)) == len(words) and all(len(word) <= LONG for word in words), words
+
+
+def empty(figure):
+    """Titles of panels that say only why they are empty."""
+    return [ax.get_title("left") for ax in figure.axes if ax.axison and not ax.xaxis.get_visible()]
+
+
+def said(figure):
+    return [text.get_text() for text in figure.texts]
+
+
+def study(tmp_path, name, answer, scenario="", **meta):
+    """The figure of a study's answer, as it is saved."""
+    meta = {"study": name, "name": "seal", "question": "Does it ride?", "overrides": [], "version": "1", **meta}
+    path = write_study(tmp_path / "s.h5", scenario, {}, meta, {"verdict": ["It rides."], **answer}, {})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return drawn(import_module(f"sealdyn.report.charts.study_{name}"), path, tmp_path / "s.png")
+
+
+# --- runs --------------------------------------------------------------------------------------------------
+
+
+def test_units_follow_the_size():
+    assert fitting("µrad", 3.0) == ("µrad", 1.0) and fitting("ml/h", 1e-6) == ("ml/h", 1.0)
+    assert fitting("µrad", 0.0142) == ("nrad", 1e3) and fitting("µm", 3e-5) == ("pm", 1e6)
+    assert fitting("µm", 0.0) == ("µm", 1.0)
+
+
+@pytest.mark.parametrize("chart", [overview, orbit, film, spectrum], ids=lambda chart: chart.__name__.split(".")[-1])
+def test_tiny_tilts_are_read_in_tiny_units(tmp_path, chart):
+    archive = write(tmp_path / "seal.h5", whirling(tilt=2e-11))
+    figure = drawn(chart, archive, tmp_path / "chart.png")
+    must_be_legible(figure)
+    words = [text.get_text() for ax in figure.axes for text in (ax.xaxis.label, ax.yaxis.label)]
+    assert chart is film or any("prad" in word for word in words)
+
+
+def test_aligned_faces_have_no_panel_of_tilts(tmp_path):
+    columns = whirling()
+    columns |= {name: 0 * columns[name] for name in columns if "tilt" in name or "misalignment" in name}
+    archive = write(tmp_path / "seal.h5", columns)
+    for chart in (overview, spectrum):
+        figure = drawn(chart, archive, tmp_path / "chart.png")
+        must_be_legible(figure)
+        assert empty(figure) == [] and not any("ilt" in ax.get_title("left") for ax in figure.axes)
+    assert len(drawn(orbit, archive, tmp_path / "chart.png").axes) == 1
+
+
+def test_a_run_of_two_turns_is_not_drawn_twice(tmp_path):
+    figure = drawn(overview, write(tmp_path / "seal.h5", whirling(samples=200, turns=1.5)), tmp_path / "chart.png")
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert len(titles) == len(set(titles)) and not any("last" in title for title in titles) and empty(figure) == []
+    must_be_legible(figure)
+
+
+@pytest.mark.parametrize("touch, there", [(1.6e-5, True), (2e-4, False)], ids=["near", "far"])
+def test_asperities_that_meet_above_the_film_are_named_in_the_panel(tmp_path, touch, there):
+    archive = write(tmp_path / "seal.h5", whirling(), summary={**SUMMARY, "contact": {"touch_at": touch, "touches": 1}})
+    ax = panel(drawn(overview, archive, tmp_path / "chart.png"), "Smallest film thickness")
+    ax.figure.draw_without_rendering()
+    names = {text.get_text(): text for text in ax.texts}
+    assert ("asperities meet" in names) == there and "clearance" in names
+    inside = ax.get_window_extent()
+    for name in names.values():
+        box = name.get_window_extent()
+        assert inside.y0 <= box.y0 and box.y1 <= inside.y1 + 1
+
+
+def test_a_name_of_a_level_hides_no_curve():
+    x = np.linspace(0.0, 1.0, 101)
+    assert free_side(x, [0.5 + 0 * x], 0.0, 0.1) == {"side": "right", "below": False}
+    assert free_side(x, [0.05 * x], 0.0, 0.1) == {"side": "left", "below": False}
+    assert free_side(x, [0.05 + 0 * x], 0.0, 0.1) == {"side": "right", "below": True}
+
+
+def test_a_curve_that_hardly_changes_is_a_flat_line(tmp_path):
+    columns = whirling(samples=400)
+    flow = 1.24205e-3 * (1 + 4e-6 * np.sin(np.arange(400)))
+    archive = write(tmp_path / "seal.h5", {**columns, "leakage_inner": flow, "leakage_outer": flow})
+    ax = panel(drawn(overview, archive, tmp_path / "chart.png"), "Leakage")
+    low, high = ax.get_ylim()
+    assert high - low > 0.1 * high and all(len(word) <= 5 for word in ticks(ax)[0][1])
+
+
+def test_a_heading_tells_all_and_warns(tmp_path):
+    message = " ".join(f"sentence number {n} of what happened," for n in range(30)) + " the end"
+    summary = {**SUMMARY, "warnings": ["not isothermal: friction heats", "perhaps turbulent: a Reynolds number"]}
+    for chart in (overview, film, orbit):
+        archive = write(tmp_path / "seal.h5", whirling(), "collapsed", message, summary)
+        figure = drawn(chart, archive, tmp_path / "chart.png")
+        words = " ".join(said(figure))
+        assert message in words and "…" not in words and "not isothermal; perhaps turbulent" in words
+        assert text_trouble(figure) == ([], [])
+
+
+def test_a_study_repeats_the_question_not_the_whole_comment(tmp_path):
+    asked = "Does it ride?  It is a seal of nobody.  Expected: no."
+    figure = study(tmp_path, "contact_onset", ONSET, question=asked)
+    assert said(figure)[:2] == ["When do the faces first touch?", "seal: Does it ride?"]
+
+
+def test_speeds_are_read_as_they_were_written(tmp_path):
+    assert speed_unit({"scenario": RPM})[0] == speed_unit({"overrides": ["shaft.speed=9550 rpm"]})[0] == "rpm"
+    assert speed_unit({"scenario": "[shaft]\nspeed = 1000  # 9550 rpm\n# speed = 9550 rpm"}) == ("rad/s", 1.0)
+    archive = write(tmp_path / "seal.h5", whirling(), text=RPM)
+    figure = drawn(overview, archive, tmp_path / "chart.png")
+    assert "82 930 rpm" in [text.get_text() for ax in figure.axes for text in ax.texts]
+
+
+def test_without_waves_of_tilt_nothing_is_left_of_the_orbit(tmp_path):
+    figure = drawn(overview, write(tmp_path / "seal.h5", drop(whirling(), "tilt", "misalignment")), tmp_path / "c.png")
+    must_be_legible(figure)
+    assert "Orbit of the relative tilt" not in [ax.get_title("left") for ax in figure.axes]
+
+
+# --- studies -----------------------------------------------------------------------------------------------
+
+ONSET = {"key": "rotor.runout", "formula": None, "nonlinear": None, "failed": "linear theory never touches",
+         "over": None, "curve": [], "status": "failed"}  # fmt: skip
+
+
+def test_an_onset_without_an_answer_shows_what_linear_theory_sees(tmp_path):
+    linear = {"forcing": [0.0, 1e-3, 2e-3], "h_min": [8e-7, 7.9e-7, 7.8e-7], "own": 2e-4}
+    figure = study(tmp_path, "contact_onset", {**ONSET, "clearance": 8e-7, "linear": linear})
+    (ax,) = figure.axes
+    assert empty(figure) == [] and ax.get_ylim()[0] <= 0 and ax.get_ylim()[1] >= 0.8
+    must_be_legible(figure)
+    assert len(study(tmp_path, "contact_onset", ONSET).axes) == 1
+
+
+@pytest.mark.parametrize("scenario, unit", [(RPM, "1000 rpm"), ("", "krad/s")], ids=["rpm", "rad per second"])
+def test_growth_without_a_threshold_is_seen_at_every_speed(tmp_path, scenario, unit):
+    speed, rates = [1.6e5, 5.2e5, 1.6e6, 5.2e6], [-9.9, -15.0, -68.0, -670.0]
+    growth = {"speed": speed, "eigenvalue": rates, "time_domain": rates, "uncertainty": 4 * [1e-3]}
+    nothing = {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+    answer = {"formula": None, "eigenvalue": None, "time_domain": {"value": None}, "growth": growth,
+              "nonlinear": nothing}  # fmt: skip
+    figure = study(tmp_path, "critical_speed", answer, scenario)
+    must_be_legible(figure)
+    (ax,) = figure.axes
+    assert ax.get_xlabel().endswith(unit) and ax.get_xscale() == "log"
+    box, title = ax.get_legend().get_window_extent(), ax._left_title.get_window_extent()
+    assert not box.overlaps(title) and box.y1 < ax.get_window_extent().y0
+    # Each point apart from its neighbours, and zero in view.
+    low, high = ax.get_ylim()
+    assert low < min(rates) and high > 0
+    at = ax.transData.transform(np.column_stack([ax.lines[1].get_xdata(), ax.lines[1].get_ydata()]))
+    assert np.abs(np.diff(at[:, 1])).min() > 10
+
+
+def test_a_map_of_one_sign_shows_its_own_range(tmp_path):
+    axes = {"x": {"key": "shaft.speed", "unit": "rad/s", "values": [100.0, 200.0, 300.0], "here": 200.0},
+            "y": {"key": "film.coning", "unit": "rad", "values": [0.0, 1e-3, 2e-3], "here": 1e-3}}  # fmt: skip
+    rates = [[-31.0, -30.5, -30.2], [-30.9, -30.4, -30.1], [-30.8, -30.3, -30.0]]
+    answer = {"axes": axes, "growth_rate": rates, "tilt_growth_rate": rates, "unconditional": {"limit": None},
+              "confirmed": []}  # fmt: skip
+    figure = study(tmp_path, "stability", answer, RPM)
+    must_be_legible(figure)
+    mesh = figure.axes[0].collections[0]
+    shades = {tuple(colour) for colour in mesh.to_rgba(np.array(rates).ravel()).round(2).tolist()}
+    assert (mesh.norm.vmin, mesh.norm.vmax) == (-31.0, -30.0) and len(shades) == 9
+    assert figure.axes[0].get_xlabel() == "shaft speed, rpm" and figure.axes[0].get_xlim()[1] > 300 * 30 / np.pi
+    mixed = {**answer, "growth_rate": [[-1.0, 0.5, 1.0]] * 3, "tilt_growth_rate": [[-1.0, 0.5, 1.0]] * 3}
+    norm = study(tmp_path, "stability", mixed).axes[0].collections[0].norm
+    assert norm.vmin == -norm.vmax == -1.0
+
+
+def test_coefficients_of_millions_have_short_ticks_and_a_legend_of_their_own(tmp_path):
+    speed = np.linspace(0.0, 4000.0, 9)
+    at = {"tilt_x": 0.0, "tilt_y": 0.0, "clearance": 1e-5, "axial_opening": 0.0, "speed": 1256.6, "h_min": 1e-5}
+    full = [[1.23e8, -6608.0, 7934.0], [-3538.0, 3.76e4, 1.92e5], [3741.0, -1.92e5, 3.76e4]]
+
+    def sweep(name, values):
+        cross = [[[3e8, 0, 0], [0, 2e5, 1e4 * v], [0, -1e4 * v, 2e5]] for v in values]
+        return {f"against_{name}": {name: list(values), "stiffness": cross, "damping": np.zeros((9, 3, 3)).tolist()}}
+
+    answer = {"stiffness": full, "damping": full, "at": at, "tilted": {"stiffness": full, "damping": full, "at": at,
+              "said": "turning tilt of the linear steady state, at one instant"}}  # fmt: skip
+    answer |= sweep("speed", speed) | sweep("clearance", 1e-6 + 1e-9 * speed) | sweep("tilt", 1e-9 * speed)
+    figure = study(tmp_path, "coefficients", answer, RPM)
+    must_be_legible(figure)
+    ax = panel(figure, "Over speed")
+    figure.draw_without_rendering()
+    box = ax.get_legend().get_window_extent()
+    for line in ax.lines[:4]:
+        points = ax.transData.transform(np.column_stack(line.get_data()))
+        assert not any(box.contains(*point) for point in points)
+    assert any("12000 rpm" in text.get_text() for ax in figure.axes for text in ax.texts)
+
+
+def rub_row(value):
+    return {"value": value, "status": "ok", "direction": "up", "class": "no contact", "contact_share": 0.0,
+            "h_min": [7e-6, 7.1e-6], "exponent": -1.0, "uncertainty": 0.1, "section": [[1e-4, 2e-4], [1e-4, 2.1e-4]],
+            "orders": [0.0, 1.0, 2.0], "amplitude": [0.0, 1e-4, 1e-6]}  # fmt: skip
+
+
+@pytest.mark.parametrize("points", [1, 2, 3])
+def test_a_rub_of_few_points_leaves_no_part_of_the_page_empty(tmp_path, points):
+    answer = {"key": "rotor.runout", "touch": 1e-6, "rows": [rub_row(1e-4 * (k + 1)) for k in range(points)],
+              "judge": None, "methods": None, "separation": None, "whirl": None}  # fmt: skip
+    figure = study(tmp_path, "rub", answer)
+    must_be_legible(figure)
+    boxes = [ax.get_position() for ax in figure.axes]
+    for x in (0.3, 0.9):
+        lowest = min(box.y0 for box in boxes if box.x0 < x < box.x1)
+        assert lowest < 0.15
+
+
+def test_a_runup_whose_rate_does_not_matter_says_so(tmp_path):
+    way = {"speed": [10.0, 50.0, 100.0], "amplitude": [9e-9, 8e-9, 7e-9], "phase": [0.0, 0.1, 0.2]}
+    answer = {"key": "shaft.speed", "begin": 10.0, "end": 100.0, "order": 1.0, "tilting": True, "threshold": None,
+              "whirl": None, "linear": way, "waterfall": None, "touch_rate": None, "disturbance": None,
+              "rows": [{"rate": rate, "up": way, "down": way} for rate in (10.0, 1e3)],
+              "curve": {"rate": [10.0, 1e3], "h_min": [8e-7, 8.001e-7], "relative_misalignment": [9e-9, 9.01e-9],
+                        "leakage": [1.0, 1.0], "touched": [False, False]}}  # fmt: skip
+    figure = study(tmp_path, "runup", answer, RPM)
+    must_be_legible(figure)
+    assert len(figure.axes) == 2 and empty(figure) == [] and figure.axes[1].get_xlabel() == "shaft speed, rpm"
+    assert "At every rate the largest relative tilt is 9.01 nrad and the thinnest film 0.8 µm" in " ".join(said(figure))
+    answer["curve"]["relative_misalignment"] = [9e-9, 5e-8]
+    assert "How fast must one pass?" in [ax.get_title("left") for ax in study(tmp_path, "runup", answer).axes]
+
+
+def test_a_steady_state_that_was_not_found_shows_linear_theory_alone(tmp_path):
+    linear = {"time": [0.0, 0.01, 0.02], "h_min": [2e-6, 2.1e-6, 2e-6], "multipliers": [[0.5, 0.0], [-0.5, 0.0]]}
+    figure = study(tmp_path, "steady_state", {"linear": linear, "status": "failed", "reason": "a trial orbit"})
+    must_be_legible(figure)
+    assert empty(figure) == [] and len(figure.axes) == 2
