@@ -128,8 +128,8 @@ def _read(path: Path, overrides):
             with _reads(path):
                 info = read_info(path)
                 text, name = str(info["scenario"]), str(info.get("name", path.stem))
-                given = [*map(str, info.get("overrides", [])), *(overrides or [])]
-            scenario = parse_scenario(text, name, given)
+                given, held = [*map(str, info.get("overrides", [])), *(overrides or [])], info.get("resolved")
+            scenario = parse_scenario(text, name, given, held=held if isinstance(held, dict) else None)
         else:
             scenario = read_scenario(path, overrides or ())
         if scenario.application is not None:
@@ -267,7 +267,11 @@ def _check_resumable(out, scenario):
         info = read_info(source)
     if info["status"] not in (Status.RUNNING, Status.INTERRUPTED):
         raise Stop(Status.OK, f"{source}: nothing to continue, the run is complete ({info['status']})")
-    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
+    held, now = (
+        [(tables.get(name) or {}).get("motion") for name in ("shaft", "housing")]
+        for tables in (info["resolved"], scenario.resolved())
+    )
+    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides) or held != now:
         raise Stop(
             Status.INVALID, f"{source}: was made from another scenario text or other --set; run without --continue"
         )
