@@ -19,7 +19,7 @@ from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import largest_value
-from ..dynamics.sampled_motion import COARSE, PER_PERIOD, check_covers, motions
+from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
 from ..dynamics.signals import PARTS
 from ..scenario.reader import Scenario
 from ..scene.rings import RING_NAMES
@@ -211,7 +211,6 @@ def prepare_run(scenario):
         _start(run, scenario, chosen[0])
 
     run, by_model = select_film(scenario.scene, settings, begin)
-    check_covers(scenario.scene, run.duration)
     interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
     run.check_loads()
     method, why = settings.solver, "asked for"

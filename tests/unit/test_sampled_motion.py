@@ -27,7 +27,10 @@ from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scene.excitation import AxialVibration, Housing, Shaft
 from sealdyn.scene.motion import Motion
 from sealdyn.scene.scene import SceneError
+from sealdyn.simulation.batch import run_many
+from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run
+from sealdyn.studies._runner import run_study
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
 TONE, AMPLITUDE, TILT = 400.0, 2e-7, 3e-6
@@ -142,6 +145,22 @@ def test_a_run_beyond_the_samples_is_refused_and_coarse_ones_are_told():
         ready, *_ = prepare_run(scenario_of(tone(rate, 0.02), duration=0.01))
         told = [caution for caution in ready.cautions if caution.concern is Concern.ALIASING]
         assert bool(told) == warned
+
+
+def test_runs_together_are_those_by_themselves():
+    scenario = scenario_of(tone(8000.0, tilt=TILT))
+    points = [{"set": {"rotor.mass": mass}, "outputs": ["relative_misalignment.mean"]} for mass in (0.5, 1.0)]
+    together = [row["relative_misalignment.mean"] for row in run_many(scenario, points)]
+    alone = [evaluate(scenario, p["set"], p["outputs"])["relative_misalignment.mean"] for p in points]
+    assert together == pytest.approx(alone, rel=1e-5)
+    still = evaluate(parse_scenario(FMR, "seal.toml"), {"run.duration": 0.02, "run.samples": 100}, points[0]["outputs"])
+    assert abs(still["relative_misalignment.mean"] - alone[1]) > 1e-4 * alone[1]
+
+
+def test_no_study_goes_on_beyond_the_samples(tmp_path):
+    with pytest.raises(SceneError) as error:
+        run_study("steady-state", scenario_of(tone(8000.0, tilt=TILT)), tmp_path / "s.h5", workers=1)
+    assert error.value.key == "shaft.motion.time"
 
 
 # --- scenarios and files ------------------------------------------------------------------------------
