@@ -295,7 +295,11 @@ def _check_resumable(out, scenario):
         info = read_info(source)
     if info["status"] not in (Status.RUNNING, Status.INTERRUPTED):
         raise Stop(Status.OK, f"{source}: nothing to continue, the run is complete ({info['status']})")
-    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides):
+    held, now = (
+        [(tables.get(name) or {}).get("motion") for name in ("shaft", "housing")]
+        for tables in (info["resolved"], scenario.resolved())
+    )
+    if info["scenario"] != scenario.text or list(info.get("overrides", [])) != list(scenario.overrides) or held != now:
         raise Stop(
             Status.INVALID, f"{source}: was made from another scenario text or other --set; run without --continue"
         )

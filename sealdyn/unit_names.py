@@ -97,8 +97,9 @@ COMMON = {
     (2, 1, -1, 0): {"N*m*s": "1"},
     (1, -1, 2, 0): {"1/Pa": "1"},
 }
-# A unit is names, one-digit powers, * / ( ) and blanks: nothing that could be made to compute for long.
-UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|[*/() ])+")
+# A unit is names, one-digit powers, squares of brackets, * / ( ) and blanks: nothing that could be made to compute for
+# long.
+UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|\)(?:\^|\*\*) ?2(?!\d)|[*/() ])+")
 # As engineers also write them: "mPa.s" and "lbf-in" for products, "kg/m3" for powers.
 PRODUCT = re.compile(r"(?<=[a-zA-Z\d)]) ?[.-] ?(?=[a-zA-Z(])")
 POWER = re.compile(r"(?<=[a-zA-Z])([2-9])(?!\d)")

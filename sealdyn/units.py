@@ -18,6 +18,8 @@ from .unit_names import dimension_and_factor, unknown_unit
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
 # Of a table.
 MOST_POINTS = 20_000
+# Of a list.
+MOST_LISTED = 200_000
 # A unit of pressure that counts from the air's, "barg", "bar(g)", "psi gauge", and that pressure (Pa).
 GAUGE = re.compile(r"(.+?) ?(?:\(g\)|\(?\bgau?ge\b\)?)|(\w*(?:bar|psi|Pa|atm)) ?g")
 AIR = 101325
@@ -94,7 +96,7 @@ class Quantity:
         if not unit:
             raise QuantityError(f"{quoted(text)} (no unit)", self.expected())
         unit = unit.translate(UNICODE_UNITS)
-        if self.name == "acceleration":
+        if self.name.startswith("acceleration"):
             # The field's g is standard gravity; elsewhere g is the gram.
             unit = re.sub(r"\b([mu]?)g\b", r"\1standard_gravity", unit)
         if re.search(r"\bTIR\b", unit):
@@ -275,6 +277,54 @@ class Varying:
         return Annotated[float | PiecewiseLinear, VaryingQuantity(kind.__metadata__[0])]
 
 
+@dataclass(frozen=True)
+class ListedQuantity:
+    """Several of a `Quantity`: a list, or, where `alone`, also one that stands for all."""
+
+    quantity: Quantity
+    alone: bool = False
+
+    def read(self, value: Any) -> "float | tuple[float, ...]":
+        """Floats in SI.  Raises `QuantityError`."""
+        if self.alone and not isinstance(value, list | tuple):
+            return self.quantity.read(value)
+        if not isinstance(value, list | tuple):
+            raise QuantityError(quoted(value), self.expected())
+        if len(value) > MOST_LISTED:
+            raise QuantityError(f"a list of {len(value)}", f"at most {MOST_LISTED}")
+        return _entries(self.quantity, value, "entry ")
+
+    def expected(self) -> str:
+        """What the key expects, in words, for a message."""
+        one = self.quantity.expected()
+        return f"{one}, or a list of them" if self.alone else f"a list, each {one}"
+
+    def __get_pydantic_core_schema__(self, source, handler):
+        from pydantic_core import core_schema
+
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema, handler) -> dict:
+        entry = self.quantity.__get_pydantic_json_schema__(None, None)
+        about = {"description": self.expected(), "quantity": self.quantity.name, "unit": self.quantity.unit}
+        column = {"type": "array", "maxItems": MOST_LISTED, "items": entry}
+        return about | ({"anyOf": [*entry["anyOf"], column]} if self.alone else column)
+
+
+class Listed:
+    """`Listed[X]`: the field type of a list of X."""
+
+    def __class_getitem__(cls, kind):
+        return Annotated[tuple[float, ...], ListedQuantity(kind.__metadata__[0])]
+
+
+class OneOrListed:
+    """`OneOrListed[X]`: the field type of an X or a list of them."""
+
+    def __class_getitem__(cls, kind):
+        return Annotated[float | tuple[float, ...], ListedQuantity(kind.__metadata__[0], alone=True)]
+
+
 SECONDS = Quantity("time", "s", '"0.5 s"')
 Time = Annotated[float, SECONDS]
 Length = Annotated[float, Quantity("length", "m", '"10 um"')]
@@ -289,6 +339,12 @@ Frequency = Annotated[float, Quantity("frequency", "Hz", '"50 Hz", "3000 rpm", "
 Velocity = Annotated[float, Quantity("velocity", "m/s", '"1 mm/s"')]
 Acceleration = Annotated[float, Quantity("acceleration", "m/s^2", '"20 m/s^2", "2 g"')]
 AngularAcceleration = Annotated[float, Quantity("angular acceleration", "rad/s^2", '"30 rad/s^2"')]
+AccelerationDensity = Annotated[
+    float, Quantity("acceleration density", "(m/s^2)^2/Hz", '"0.1 g^2/Hz", "10 (m/s^2)^2/Hz"', (), 0, True)
+]
+AngularAccelerationDensity = Annotated[
+    float, Quantity("angular acceleration density", "(rad/s^2)^2/Hz", '"1e4 (rad/s^2)^2/Hz"', (), 0, True)
+]
 Mass = Annotated[float, Quantity("mass", "kg", '"1 kg"', (), 0)]
 Inertia = Annotated[float, Quantity("inertia", "kg*m^2", '"8e-4 kg*m^2"', (), 0)]
 Stiffness = Annotated[float, Quantity("stiffness", "N/m", '"5e5 N/m"', (), 0)]

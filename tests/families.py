@@ -121,7 +121,8 @@ def gas_reynolds(random, other_faces=True) -> Drawn:
 
     rotor = ring(scene.rotor)
     rotor = replace(rotor, axial_runout=[resized(wave, "amplitude") for wave in rotor.axial_runout])
-    shaken = {kind: [resized(tone, "displacement") for tone in tones] for kind, tones in vars(scene.housing).items()}
+    tones = {kind: getattr(scene.housing, kind) for kind in ("axial", "angular")}
+    shaken = {kind: [resized(tone, "displacement") for tone in of_kind] for kind, of_kind in tones.items()}
     shaft = replace(scene.shaft, whirl=[resized(whirl, "angle") for whirl in scene.shaft.whirl])
     table = replace(
         film, model="gas_reynolds", gas=name, temperature=temperature, viscosity=None, clearance=clearance,

@@ -127,7 +127,7 @@ class OwnSeal:
 
     def _reference_rate(self):
         ends = [self._at(self.edges[k + j], k) for k in range(len(self.pieces)) for j in (0, 1)]
-        tones = [2 * math.pi * tone.frequency for table in vars(self.scene.housing).values() for tone in table]
+        tones = [2 * math.pi * tone.frequency for tone in (*self.scene.housing.axial, *self.scene.housing.angular)]
         return max(*(abs(now["spin_r"]) for now in ends), *(abs(now["spin_r"] - now["spin_s"]) for now in ends), *tones)
 
     # --- conditions and motion ------------------------------------------------------------------------

@@ -112,6 +112,6 @@ def seals_of(scene: Scene) -> dict[str, Arrangement]:
     """The arrangements {"fmr": ..., "fms": ..., "fmsr": ...} of the scene's seal, nothing imposed, clearance kept."""
     clearance = Model(frozen_at_start(scene)).clearance
     scene = frozen_at_start(scene, clearance=clearance)
-    quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[]))
+    quiet = replace(scene, housing=Housing(), initial=Initial(), shaft=replace(scene.shaft, whirl=[], motion=None))
     quiet = replace(quiet, rotor=replace(quiet.rotor, axial_runout=[]))
     return {name: Arrangement(quiet, name) for name in SEALS}

@@ -3,7 +3,7 @@
 Block layout: for each varying quantity its value and slope over the interval, the coning's with what follows the
 shaft speed squared, then both rings' angles at its start,
 then the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2`
-with the phase `a0 + a1 tau + a2 tau^2`.
+with the phase `a0 + a1 tau + a2 tau^2`, then what moves by samples.
 """
 
 import math
@@ -14,12 +14,15 @@ import numpy as np
 from ..numerics.kernel import inner_kernel, outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
+from .sampled_motion import motion_at, motions, piece_at
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both
 # rings at the segment's start.
 CONING_AT, CONING_PER_SPEED_SQUARED = 14, 16
-ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT, OSCILLATORS = 17, 18, 19, 20
+ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT = 17, 18, 19
+# Where the sampled motion of stator's and rotor's carrier stands (sampled_motion.py), 0 if there is none.
+MOTION_AT, OSCILLATORS = 20, 22
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
@@ -66,13 +69,23 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
         add(ROTOR, TURNING, whirl.angle, whirl.phase, order=whirl.ratio)
     for runout in rotor.axial_runout:
         add(ROTOR, AXIAL, runout.amplitude, runout.phase, order=runout.order)
-    for source, kind in [(s, AXIAL) for s in housing.axial] + [(s, FIXED_AXIS) for s in housing.angular]:
+    for source, kind in [(s, AXIAL) for s in housing.axial_tones] + [(s, FIXED_AXIS) for s in housing.angular_tones]:
         amplitude = source.displacement
         if amplitude is None:
             amplitude = -source.acceleration / (2 * math.pi * source.frequency) ** 2
         direction = getattr(source, "direction", 0.0)
         add(STATOR, kind, amplitude, source.phase, frequency=source.frequency, direction=direction)
     return np.array(rows, dtype=np.float64).reshape(-1, ROW)
+
+
+def imposed_block(head, rows, scene, interval: Interval) -> np.ndarray:
+    """The block over an interval: `head` the slots before MOTION_AT, the harmonics `rows`, and the scene's sampled
+    motion."""
+    places, blocks, at = [0.0, 0.0], [], OSCILLATORS + rows.size
+    for ring, sampled in motions(scene).items():
+        blocks.append(sampled.block(interval.time, interval.length))
+        places[ring], at = at, at + len(blocks[-1])
+    return np.concatenate([head, places, rows.ravel(), *blocks])
 
 
 @inner_kernel()
@@ -89,6 +102,15 @@ def imposed_state(tau, p, c):
     tau (s) from the block `p` (the layout above)."""
     for i in range(len(c)):
         c[i] = 0.0
+    for ring in range(2):
+        at = int(p[MOTION_AT + ring])
+        if at > 0:
+            piece, base = piece_at(tau, p, at), PER_RING * ring
+            for part in range(3):
+                x, x_rate, x_acceleration = motion_at(tau, p, at, piece, part)
+                c[base + Z + part] += x
+                c[base + Z_RATE + part] += x_rate
+                c[base + Z_ACCELERATION + part] += x_acceleration
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k
         base = PER_RING * int(p[row])

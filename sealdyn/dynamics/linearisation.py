@@ -112,7 +112,11 @@ def _whirl(linear) -> Whirl | None:
 
 
 def harmonics(segment) -> list[Harmonic]:
-    """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed)."""
+    """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed).  Raises SceneError
+    where samples move a carrier."""
+    for ring in segment.sampled:
+        key = "housing.motion" if ring == STATOR else "shaft.motion"
+        raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time from rest")
     found = []
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)

@@ -14,6 +14,7 @@ from .equilibrium import axial_shift
 from .fluid import fluid_conditions
 from .interface import FAST, Interface
 from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
+from .sampled_motion import check_covers
 from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
 from .unknowns import Unknowns
@@ -87,7 +88,9 @@ class Model:
     # --- time ---------------------------------------------------------------------------------------
 
     def intervals(self, duration: float) -> Intervals:
-        """The intervals of a run of `duration` (s), on each of which everything imposed is linear."""
+        """The intervals of a run of `duration` (s), on each of which everything imposed is linear.  Raises SceneError
+        for one beyond the samples of a motion."""
+        check_covers(self.scene, duration)
         return split_at_breaks(duration, self.scene.shaft.speed, self.scene.stator.speed, self._imposed())
 
     def time_of(self, turns: float) -> float:

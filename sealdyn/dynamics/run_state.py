@@ -13,6 +13,7 @@ from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
 from .intervals import constant_and_slope
 from .model import Model
+from .sampled_motion import motions
 from .segments import Segment
 from .stick_slip import StickSlip
 
@@ -34,7 +35,8 @@ class RunState:
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         remark = getattr(model.interface.film, "REMARK", None)
-        self.reasons, self.cautions = [*model.unknowns.reasons, *([remark] if remark else [])], []
+        self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks()]
+        self.cautions = []
         self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
 
@@ -89,7 +91,7 @@ class RunState:
             if len(rows):
                 speed, slope = constant_and_slope(scene.shaft.speed, interval)
                 fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
-        return fastest
+        return max([fastest, *(sampled.rate for sampled in motions(scene).values())])
 
     # --- the start ----------------------------------------------------------------------------------
 

@@ -13,10 +13,11 @@ from ..solvers.contract import SolverFailure
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
 from .fluid import fluid_conditions, thermal_coning
-from .imposed_motion import CONING_PER_SPEED_SQUARED, ROTOR_SPEED, coning_at, harmonics_of_segment
+from .imposed_motion import CONING_PER_SPEED_SQUARED, ROTOR_SPEED, coning_at, harmonics_of_segment, imposed_block
 from .intervals import Interval, constant_and_slope, modulo_turn
+from .sampled_motion import motions
 from .steady_extremes import common_period
-from .step_bounds import largest_swing
+from .step_bounds import BEND, REACH, largest_swing
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -35,9 +36,10 @@ class Segment:
     """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
-    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics,
-    `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan; `index` among the segments of a run, `last` of
-    them; `stuck` {ring: True, False, or the velocity of its onset (3,) in m/s and rad/s}.
+    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `sampled`
+    {ring: what moves its carrier by samples}, `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan;
+    `index` among the segments of a run, `last` of them; `stuck` {ring: True, False, or the velocity of its onset (3,)
+    in m/s and rad/s}.
     """
 
     def __init__(self, model, interval: Interval, index: int = 0, last: bool = True, stuck=None):
@@ -51,7 +53,9 @@ class Segment:
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
         self.may_change = bool(unknowns.coulomb_rings)
         self.p, self.rows = self._parameters()
-        self.imposed_pace = max((max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows), default=0.0)
+        self.sampled = motions(model.scene)
+        paces = [max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows]
+        self.imposed_pace = max([*paces, *(motion.pace for motion in self.sampled.values())], default=0.0)
         self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
         self._bind()
@@ -67,7 +71,7 @@ class Segment:
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
         coned = [film.coning_per_speed_squared]
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
-        p = np.concatenate([self.model.unknowns.ring_block, head, rows.ravel()])
+        p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, scene, interval)])
         for k, held in self.stuck.items():
             at = equations.RING * k
             p[at + equations.STUCK] = held is True
@@ -89,7 +93,12 @@ class Segment:
         floats, leg = self.model.unknowns.floats, self.p[equations.LEG_AT :]
         # Change of the coning as a parabola in time.
         bend = leg[CONING_PER_SPEED_SQUARED] * leg[ROTOR_SPEED + 1] ** 2
-        return largest_swing(self.model.face, self.rows, floats, spins, (*coning_at(0.0, leg), bend), self.length)
+        swing = largest_swing(self.model.face, self.rows, floats, spins, (*coning_at(0.0, leg), bend), self.length)
+        for ring in (ring for ring in self.sampled if not floats[ring]):
+            reach, fourth = self.sampled[ring].reach(self.time, self.length)
+            swing[REACH : REACH + 2] += reach
+            swing[BEND : BEND + 2] += fourth
+        return swing
 
     def _speeds(self):
         """Speeds (rad/s) of stator and rotor."""
@@ -282,7 +291,7 @@ class Segment:
     def period(self) -> float | None:
         """Common period (s) of the forcing; one shaft turn if nothing moves but the shaft, 0.0 if nothing moves at all
         (any time is a period); None if the frequencies are incommensurate or change."""
-        if np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
+        if self.sampled or np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
             return None
         speed, slope = constant_and_slope(self.model.scene.shaft.speed, self.interval)
         if slope:

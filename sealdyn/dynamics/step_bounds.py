@@ -19,7 +19,8 @@ from ..faces.geometry import CLEARANCE, INNER_RADIUS, OUTER_RADIUS, smallest_gap
 from ..faces.waviness import wave_rows
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
-from .imposed_motion import AXIAL, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, TURNING
+from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, TURNING
+from .sampled_motion import motion_at, piece_at
 
 # The three measures that are made small: the film thickness, minus the squared tilt, the squared tilt (smooth through
 # zero).
@@ -93,6 +94,15 @@ def imposed_gap(tau, p, at):
     their rates, into `at` (6,); imposed_state of imposed_motion.py gives the same to each ring."""
     for i in range(len(at)):
         at[i] = 0.0
+    for ring in range(2):
+        place = int(p[LEG_AT + MOTION_AT + ring])
+        if place > 0 and p[RING * ring + FLOATS] == 0.0:
+            place += LEG_AT
+            piece, sign = piece_at(tau, p, place), 1.0 - 2.0 * ring
+            for part in range(3):
+                x, x_rate, _ = motion_at(tau, p, place, piece, part)
+                at[part] += sign * x
+                at[3 + part] += sign * x_rate
     for k in range(int(p[LEG_AT + OSCILLATOR_COUNT])):
         row = LEG_AT + OSCILLATORS + ROW * k
         ring, kind = int(p[row]), int(p[row + 1])

@@ -14,6 +14,7 @@ from .fluid import fluid_conditions
 from .function_values import SEAL, Value
 from .imposed_motion import AXIAL, harmonics_of_segment
 from .intervals import largest_value
+from .sampled_motion import motions
 from .secondary_seal import friction_on_ring
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
@@ -55,6 +56,8 @@ class Unknowns:
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
+        # Samples have no frequency: nothing that needs one, a steady response or a period, is there.
+        self.constant = self.constant and not (scene.shaft.motion or scene.housing.motion)
         self._choose(tilt_is_given(scene) or tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
@@ -167,7 +170,8 @@ class Unknowns:
         values, _ = model.linear_scene().eigen()
         slowest = float(np.max(np.abs(values), initial=0.0)) or 1.0
         natural = float(np.max(np.abs(values.imag), initial=0.0)) or slowest
-        forced = [2 * math.pi * v.frequency for v in (*scene.housing.axial, *scene.housing.angular)]
+        forced = [2 * math.pi * v.frequency for v in scene.housing.tones]
+        forced += [sampled.rate for sampled in motions(scene).values()]
         rate = largest_value(scene.shaft.speed) or max(forced, default=natural)
         scales = np.full(self.size, self._energy(model, length, tilt))
         scales[: self.n] = displacement
@@ -187,6 +191,9 @@ class Unknowns:
         scene, amplitude = self.scene, 0.1 if self.loaded else 1e-3
         for row in harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, model.start):
             amplitude = max(amplitude, row[2] / (length if row[1] == AXIAL else tilt))
+        for motion in filter(None, (scene.housing.motion, scene.shaft.motion)):
+            for column, scale in zip(motion.columns(), (length, tilt, tilt), strict=True):
+                amplitude = max(amplitude, max(map(abs, column)) / scale)
         for start in (scene.initial.stator, scene.initial.rotor):
             for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
                 amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
@@ -200,7 +207,8 @@ class Unknowns:
 def _axial_motion_is_imposed(scene) -> bool:
     """Whether anything but its own start ever moves a ring axially."""
     runouts = any(runout.amplitude for runout in scene.rotor.axial_runout)
-    return runouts or any(_moves(shaken) for shaken in scene.housing.axial)
+    sampled = any(any(m.axial or ()) for m in (scene.housing.motion, scene.shaft.motion) if m)
+    return runouts or sampled or any(_moves(shaken) for shaken in scene.housing.axial_tones)
 
 
 def _moves(shaken) -> bool:

@@ -10,7 +10,7 @@ from functools import cache
 from typing import Any
 
 from ..scene.scene import SceneError
-from ..units import Quantity, QuantityError, RadiusQuantity, VaryingQuantity, cut, quoted
+from ..units import ListedQuantity, Quantity, QuantityError, RadiusQuantity, VaryingQuantity, cut, quoted
 
 NOTHING = object()
 MISSING = ("nothing", "no such table")
@@ -105,7 +105,7 @@ def is_list(holds: Any) -> bool:
 def expected_of(key: str, holds: Any) -> str:
     """What a key expects, in words."""
     for part in getattr(holds, "__metadata__", ()):
-        if isinstance(part, Quantity):
+        if isinstance(part, Quantity | ListedQuantity):
             return part.expected()
         if isinstance(part, VaryingQuantity):
             return part.quantity.expected()

@@ -20,12 +20,14 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, application_errors
 from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import scene_errors, unused
+from ..scene.motion import Motion
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..toml_line import toml_text
 from ..units import Length, QuantityError, Time, is_gauge, quoted
 from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
+from .motion_files import with_columns
 from .overrides import override_key, without_arrays
 from .rule_names import unknown_rules
 from .unquoted import unquoted_quantity
@@ -138,11 +140,22 @@ class Scenario:
         raw = _toml(self.text, self.name)
         for override in self.overrides:
             override_key(raw, override, self.name)
+        for table, motion in self.motions().items():
+            # Whole without the file, which is looked for from somewhere else then.
+            raw[table]["motion"] = motion
         return raw
 
     def to_toml(self) -> str:
         """Its text as a file has it; with overrides the tables are written anew, below the head of the file."""
-        return text_of(self.to_dict(), self.name, self.question) if self.overrides else self.text
+        anew = self.overrides or any("file" in motion for motion in self.motions().values())
+        return text_of(self.to_dict(), self.name, self.question) if anew else self.text
+
+    def motions(self) -> dict[str, dict[str, Any]]:
+        """Motions by samples, of "shaft" and "housing": their columns (SI), and the name of their file if they came
+        from one."""
+        tables = {"shaft": self.scene.shaft, "housing": self.scene.housing}
+        given = {name: _plain(dataclasses.asdict(table.motion)) for name, table in tables.items() if table.motion}
+        return {name: {k: v for k, v in motion.items() if v is not None} for name, motion in given.items()}
 
     def with_(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> Self:
         """The scenario with other values at dotted keys: `with_({"film.clearance": "5 um"})`, or with two underscores
@@ -186,7 +199,9 @@ def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
 
     info = (read_study if is_study(path) else read_info)(path)
     given = [*map(str, info.get("overrides", [])), *overrides]
-    return parse_scenario(str(info["scenario"]), str(info.get("name", path.stem)), given)
+    held = info.get("resolved")
+    name = str(info.get("name", path.stem))
+    return parse_scenario(str(info["scenario"]), name, given, held=held if isinstance(held, dict) else None)
 
 
 def _must_be_readable(path):
@@ -199,14 +214,15 @@ def _must_be_readable(path):
         raise ScenarioError(quoted(str(path)), "", f"{found.st_size} bytes", few)
 
 
-def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None) -> Scenario:
-    """Scenario of TOML text; `name` is what errors call it.  Raises `ScenarioError`."""
+def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None, held: dict | None = None) -> Scenario:
+    """Scenario of TOML text; `name` is what errors call it.  Files that it names are looked for beside `path`, or are
+    `held`: the resolved tables of an archive.  Raises `ScenarioError`."""
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
     bare = frozenset(f"{table}.speed" for table in ("shaft", "stator") if _is_bare(_table(raw, table).get("speed")))
     gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
-    found = read_tables(raw, name)
+    found = read_tables(raw, name, folder=path and path.parent, held=held)
     name = name.removesuffix(".toml")
     return Scenario(
         **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
@@ -214,16 +230,19 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None)
     )  # fmt: skip
 
 
-def read_tables(raw: dict, name: str, given: frozenset[str] | None = None) -> dict[str, Any]:
+def read_tables(
+    raw: dict, name: str, given: frozenset[str] | None = None, folder: Path | None = None, held: dict | None = None
+) -> dict[str, Any]:
     """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
-    told, without those on which no run hangs.
+    told, without those on which no run hangs; `folder` and `held` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
     wrong = [*_odd_numbers(raw, name)]
     raw, halved = with_radii(raw, ScenarioFile, name, wrong)
     given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
+    raw = with_columns(raw, name, folder, held or {}, wrong)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
@@ -337,7 +356,10 @@ def _odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> Iterato
 def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
     """Not a number, infinite, and numbers so large or small that products of a few of them are (in SI); whole numbers
     are at most `counted`.  Raises ScenarioError that names the key below `key`."""
-    if dataclasses.is_dataclass(value):
+    if isinstance(value, Motion):
+        # Of thousands of samples one may cross zero anywhere.
+        below = [(k, max(map(abs, held))) for k, held in vars(value).items() if isinstance(held, tuple) and held]
+    elif dataclasses.is_dataclass(value):
         below = [(f.name, getattr(value, f.name)) for f in dataclasses.fields(value) if f.name != "study"]
     else:
         below = enumerate(value) if isinstance(value, (list, tuple)) else ()

@@ -120,7 +120,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
         given |= {*given_keys({key: as_written(value)})}
-    found = read_tables(tables, scenario.name, frozenset(given))
+    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent)
     return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
 
 

@@ -10,7 +10,9 @@ from . import film as film_table
 from .body import body_errors
 from .elastic_ring import elastic_errors
 from .gas import GASES, gas_of
+from .motion import motion_errors
 from .pads import pads_errors
+from .random_vibration import random_errors
 from .reynolds import reynolds_errors
 from .scene import SceneError
 from .waviness import waves_of, waviness_errors
@@ -39,6 +41,9 @@ def scene_errors(scene, run) -> list[SceneError]:
     if not (scene.stator.support or scene.rotor.support):
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))
+    for name, table in (("housing", scene.housing), ("shaft", scene.shaft)):
+        for key, *words in motion_errors(table.motion) if table.motion else ():
+            bad.append(SceneError(f"{name}.motion.{key}", *words))
     bad += _broken(_vibrations, scene.housing) + _broken(_run, scene.shaft, run)
     if not bad and (run.start == "rest" or (run.start == "auto" and scene.initial.given)):
         bad += _broken(_open_at_start, scene)
@@ -248,6 +253,10 @@ def _vibrations(housing) -> None:
                 raise SceneError(
                     f"housing.{kind}.{n}.displacement", found, "exactly one of displacement and acceleration"
                 )
+    for kind in ("axial_random", "angular_random"):
+        for n, vibration in enumerate(getattr(housing, kind)):
+            for key, *words in random_errors(vibration):
+                raise SceneError(f"housing.{kind}.{n}.{key}", *words)
 
 
 def _run(shaft, run) -> None:

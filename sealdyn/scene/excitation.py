@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 
 from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length, Speed, Varying
+from .motion import Motion
+from .random_vibration import AngularRandom, AxialRandom, mean_square, tones_of
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,8 @@ class Shaft:
     """Shaft speed; negative turns the other way."""
     whirl: list[Whirl] = field(default_factory=list)
     """Whirling motions of the shaft."""
+    motion: Motion | None = None
+    """Motion of the shaft under the rotor by samples."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ class AngularVibration:
 
 @dataclass(frozen=True)
 class Housing:
-    """The `[[housing.axial]]` and `[[housing.angular]]` tables."""
+    """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration, and `[housing.motion]`."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -77,3 +81,41 @@ class Housing:
     """Tones along the shaft axis."""
     angular: list[AngularVibration] = field(default_factory=list)
     """Tones of tilt."""
+    axial_random: list[AxialRandom] = field(default_factory=list)
+    """Random vibrations along the shaft axis."""
+    angular_random: list[AngularRandom] = field(default_factory=list)
+    """Random vibrations of tilt."""
+    motion: Motion | None = None
+    """Motion of the housing by samples."""
+
+    @property
+    def axial_tones(self) -> list[AxialVibration]:
+        """All tones along the shaft axis, those of random vibration among them."""
+        drawn = [tones_of(random, f"axial {n}") for n, random in enumerate(self.axial_random)]
+        return [*self.axial, *(AxialVibration(f, acceleration=a, phase=p) for tones in drawn for f, a, p in tones)]
+
+    @property
+    def angular_tones(self) -> list[AngularVibration]:
+        """All tones of tilt, those of random vibration among them."""
+        found = list(self.angular)
+        for n, random in enumerate(self.angular_random):
+            found += [
+                AngularVibration(f, acceleration=a, direction=random.direction, phase=p)
+                for f, a, p in tones_of(random, f"angular {n}")
+            ]
+        return found
+
+    @property
+    def tones(self) -> list[AxialVibration | AngularVibration]:
+        """All tones."""
+        return [*self.axial_tones, *self.angular_tones]
+
+    def remarks(self) -> list[str]:
+        """A sentence for each random vibration: how strong it is, over which band, of how many tones."""
+        kinds = [("axially", "m/s^2", random) for random in self.axial_random]
+        kinds += [("angularly", "rad/s^2", random) for random in self.angular_random]
+        return [
+            f"housing shaken {how} at random: {mean_square(random) ** 0.5:.4g} {unit} rms from {random.frequency[0]:g} "
+            f"to {random.frequency[-1]:g} Hz, {random.tones} tones, seed {random.seed}"
+            for how, unit, random in kinds
+        ]

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..dynamics.interface import rest_state
 from ..dynamics.intervals import constant_and_slope
+from ..dynamics.sampled_motion import motions
 from ..dynamics.signals import samples
 from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT_Y, OUTER_PRESSURE, TORQUE
 from ..numerics.piecewise_linear import initially
@@ -93,5 +94,6 @@ def reference_rate(run) -> float:
         for tau in (0.0, interval.length):
             w = shaft + faster * tau
             found += [abs(w), abs(w - stator - turning * tau)]
-    found += [2 * math.pi * tone.frequency for tone in (*scene.housing.axial, *scene.housing.angular)]
+    found += [2 * math.pi * tone.frequency for tone in scene.housing.tones]
+    found += [sampled.rate for sampled in motions(scene).values()]
     return max(found) or run.model.reference_rate

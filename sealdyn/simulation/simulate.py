@@ -19,6 +19,7 @@ from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
 from ..dynamics.intervals import largest_value
+from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
 from ..dynamics.signals import PARTS
 from ..scenario.reader import Scenario
 from ..scene.rings import RING_NAMES
@@ -230,6 +231,14 @@ def prepare_run(scenario):
             f"in all, {count} asked: raise run.samples_per_turn"
         )
         run.cautions.append(Caution(Concern.ALIASING, sentence))
+    for ring, sampled in motions(scenario.scene).items():
+        if sampled.coarse > COARSE:
+            table, share = ("housing", "shaft")[ring], 100.0 * sampled.coarse
+            sentence = (
+                f"aliasing: {share:.2g} % of the power of the rate of {table}.motion has fewer than {PER_PERIOD} "
+                "samples a period: give it finer"
+            )
+            run.cautions.append(Caution(Concern.ALIASING, sentence))
     return run, method, why, interval, count, by_model
 
 

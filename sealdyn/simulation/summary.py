@@ -303,6 +303,8 @@ def _first(quantity, segment):
 def _linear_steady(segment, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
+    if segment.sampled:
+        return None
     if period is None and len(rows):
         frequencies = [w for w in rows[:, 7] if w]
         if frequencies and (np.any(rows[:, 3]) or np.any(rows[:, 8])):

@@ -59,7 +59,7 @@ def collocation(segment, tau, y, method, tolerance, counts):
     c, a, b, error, ends = rule(RADAU if radau else GAUSS, radau)
     rhs, n = _rates(segment, counts), segment.n_mechanical
     scale, largest = segment.scales[:n], min(segment.shortest_period / PER_PERIOD, segment.longest_step())
-    if not len(segment.rows):
+    if not segment.imposed_pace and not len(segment.rows):
         # Nothing is imposed: what creeps for many periods need not be followed by each of them.
         largest = max(largest, segment.length / MOST)
     order = len(c) + 1

@@ -115,7 +115,9 @@ def run_study(
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = archive_of(name, scenario, out)
     plain = json.loads(json.dumps(asdict(settings), default=str))
-    identity = json.dumps([__version__, name, scenario.text, list(scenario.overrides), plain, left_out], sort_keys=True)
+    asked = [__version__, name, scenario.text, list(scenario.overrides), plain, left_out]
+    # Files may have changed since.
+    identity = json.dumps([*asked, *filter(None, [scenario.motions()])], sort_keys=True)
     with only_writer(out) as out:
         journal = Checkpoint(journal_of(out), identity)
         kept = _folder(results) if results else None

@@ -23,7 +23,8 @@ ROOT = Path(__file__).parents[2]
 KEPT = ROOT / "outputs" / "work_precision"
 # What would take too long in full; the first turns tell the methods apart as well.
 SHORTENED = {
-    "housing_vibration": ["run.turns=4"], "runup_through_critical": [], "rub_chaotic": ["run.turns=15"],
+    "housing_vibration": ["run.turns=4"], "gear_mesh": ["run.turns=4"], "runup_through_critical": [],
+    "rub_chaotic": ["run.turns=15"],
     "hang_up": ["run.turns=3"], "rub": ["run.turns=50"], "fms_reference": ["run.turns=30"],
     "fmr_reference": ["run.turns=30"], "fmsr_both_flexible": ["run.turns=30"], "free_precession": ["run.turns=30"],
 }  # fmt: skip

@@ -31,6 +31,9 @@ JSON schema (`sealdyn schema`), which editors read too.
 - Where a table has a radius, its diameter may stand instead (`outer_diameter` for `outer_radius`); never both.
 - A quantity marked ~ may vary with time: `{ time = [...], value = [...] }`, linear between the times, constant before
   the first and after the last; the same time twice is a step.
+- `[shaft.motion]` and `[housing.motion]` move the carrier of rotor or stator by samples: as lists, or from a `file`
+  beside the scenario, CSV with a line of names (`time (ms), axial (um), tilt_x (urad), tilt_y (urad)`, others are not
+  read) or HDF5 (datasets with these names, units as attribute `units`); SI without a unit.
 - The arrangement follows from the supports: a table `[stator.support]` makes the stator float (FMS), `[rotor.support]`
   the rotor (FMR), both make both float (FMSR).
 - `sealdyn list` names the shipped ones, wherever sealdyn is installed; `sealdyn.example("fms_reference")` reads one in

@@ -8,10 +8,13 @@ COMMAND = "sealdyn study vibration FILE"
 
 
 def finding(seal):
-    """Fail if a ring on its springs has a resonance at a gear mesh frequency or at a tone of the housing."""
+    """Fail if a ring on its springs has a resonance at a gear mesh frequency, at a tone of the housing or in a band of
+    its random vibration."""
     housing = seal.scene.housing
     tones = [tone.frequency for tone in (*housing.axial, *housing.angular)]
     tones += seal.application.gear_mesh_frequency or ()
-    if not tones:
+    bands = [(tone, tone) for tone in tones]
+    bands += [(r.frequency[0], r.frequency[-1]) for r in (*housing.axial_random, *housing.angular_random)]
+    if not bands:
         return missing("application.gear_mesh_frequency", "housing.axial")
-    return resonances(seal.scene, [(tone, tone) for tone in tones], "what surrounds it")
+    return resonances(seal.scene, bands, "what surrounds it")

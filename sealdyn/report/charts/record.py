@@ -137,7 +137,7 @@ class Run:
         return value if isinstance(value, int | float) else None
 
     def housing(self, kind: str) -> list[dict]:
-        """The resolved `[[housing.axial]]` or `[[housing.angular]]` tables."""
+        """The resolved `[[housing.KIND]]` tables."""
         return (self.resolved.get("housing") or {}).get(kind) or []
 
     @cached_property

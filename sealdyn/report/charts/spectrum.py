@@ -110,6 +110,8 @@ def folded(run: Run, first: int, highest: float) -> str:
     """A warning when the housing shakes faster than the samples can follow: such tones show at wrong orders."""
     slowest = np.abs(run.values("shaft_speed", first)).min()
     tones = [tone.get("frequency") for kind in ("axial", "angular") for tone in run.housing(kind)]
+    bands = [band for kind in ("axial_random", "angular_random") for band in run.housing(kind)]
+    tones += [max(band["frequency"]) for band in bands]
     fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
     return f"\n{max(fast):.4g} Hz, above order {highest:.3g}, folds back: raise samples_per_turn" if fast else ""
 

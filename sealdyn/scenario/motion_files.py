@@ -1,0 +1,115 @@
+"""Files that give the motion of a carrier: their columns take their place in a scenario's tables."""
+
+import csv
+import math
+import re
+from pathlib import Path
+
+from ..scene.motion import COLUMNS
+from ..units import MOST_LISTED, SECONDS, Angle, Length, QuantityError, quoted
+from .errors import ScenarioError
+
+NAMES = ("time", *COLUMNS)
+QUANTITIES = dict(zip(NAMES, (SECONDS, Length.__metadata__[0], *[Angle.__metadata__[0]] * 2), strict=True))
+# "axial", "axial (um)" and "axial [um]".
+TITLE = re.compile(r"\s*(\w+)\s*(?:[(\[]\s*(.*?)\s*[)\]])?\s*")
+MOST_BYTES = 1 << 26
+# Below this a number is nothing: what is left of a zero.
+NOTHING = 1e-25
+A_FILE = "a CSV file with a line of names, time and axial, tilt_x or tilt_y with units in brackets, or HDF5 (.h5)"
+
+
+def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError]) -> dict:
+    """The tables `raw` of the scenario `name` with the columns of the files that their motions name, beside the files'
+    names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
+    of that name.  What is wrong with a file goes to `wrong`."""
+    for table in ("shaft", "housing"):
+        motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
+        if not isinstance(motion, dict) or not isinstance(motion.get("file"), str) or "time" in motion:
+            continue
+        file, key = motion["file"], f"{table}.motion.file"
+        kept = (held.get(table) or {}).get("motion") or {}
+        try:
+            given = kept if kept.get("file") == file else read_motion((folder or Path()) / file)
+        except QuantityError as error:
+            wrong.append(ScenarioError(name, key, error.found, error.expected))
+            # Another thing that is wrong is not this one's fault.
+            given = {"time": [float(n) for n in range(6)], "axial": [0.0] * 5 + [1e-9]}
+        columns = {column: given[column] for column in NAMES if given.get(column) is not None}
+        raw = {**raw, table: {**raw[table], "motion": {**columns, **motion}}}
+    return raw
+
+
+def read_motion(path: Path) -> dict[str, list[float]]:
+    """Columns of a file, SI: `time` (s) and what there is of `axial` (m), `tilt_x` and `tilt_y` (rad).  Raises
+    QuantityError."""
+    try:
+        size = path.stat().st_size if path.is_file() else None
+    except (OSError, ValueError):
+        size = None
+    if size is None:
+        raise QuantityError(f"{quoted(str(path))}, no such file", A_FILE)
+    if size > MOST_BYTES:
+        raise QuantityError(f"{quoted(path.name)}, {size} bytes", f"at most {MOST_BYTES} bytes")
+    columns = _hdf5(path) if path.suffix in (".h5", ".hdf5") else _csv(path)
+    if "time" not in columns or len(columns) < 2:
+        there = ", ".join(columns) or "none of them"
+        raise QuantityError(f"{quoted(path.name)} with the columns {there}", A_FILE)
+    return {name: _in_si(path.name, name, *columns[name]) for name in columns}
+
+
+def _in_si(file: str, name: str, values: list[float], unit: str) -> list[float]:
+    try:
+        factor = QUANTITIES[name].read(f"1 {unit}") if unit else 1.0
+    except QuantityError as error:
+        raise QuantityError(f"{quoted(file)}, column {name}: {error.found}", error.expected) from None
+    for n, value in enumerate(values):
+        if not math.isfinite(value):
+            raise QuantityError(f"{quoted(file)}, column {name}, sample {n + 1}: {value}", "a finite number")
+    return [factor * value if abs(factor * value) >= NOTHING else 0.0 for value in values]
+
+
+def _hdf5(path: Path) -> dict[str, tuple[list[float], str]]:
+    # Loaded only where such a file is read.
+    from ..archive import ArchiveError
+    from ..archive.foreign_columns import read_columns
+
+    try:
+        return read_columns(path, NAMES, MOST_LISTED)
+    except ArchiveError as error:
+        raise QuantityError(str(error), A_FILE) from None
+
+
+def _csv(path: Path) -> dict[str, tuple[list[float], str]]:
+    try:
+        text = path.read_text("utf-8-sig")
+    except (OSError, UnicodeDecodeError):
+        raise QuantityError(f"{quoted(path.name)}, no readable text", A_FILE) from None
+    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise QuantityError(f"{quoted(path.name)}, an empty file", A_FILE)
+    separator = next((mark for mark in (";", "\t") if mark in lines[0][1]), ",")
+    try:
+        rows = list(csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True))
+    except csv.Error as error:
+        raise QuantityError(f"{quoted(path.name)}, no CSV ({error})", A_FILE) from None
+    if len(rows) - 1 > MOST_LISTED:
+        raise QuantityError(f"{quoted(path.name)}, {len(rows) - 1} samples", f"at most {MOST_LISTED}")
+    titles = [TITLE.fullmatch(title) for title in rows[0]]
+    found = {}
+    for place, title in enumerate(titles):
+        if title is None or title[1] not in NAMES:
+            continue
+        if title[1] in found:
+            raise QuantityError(f"{quoted(path.name)}, column {title[1]} twice", "each column once")
+        values = [_number(path.name, title[1], n, row, place) for (n, _), row in zip(lines[1:], rows[1:], strict=True)]
+        found[title[1]] = values, title[2] or ""
+    return found
+
+
+def _number(file: str, name: str, line: int, row: list[str], place: int) -> float:
+    try:
+        return float(row[place])
+    except (IndexError, ValueError):
+        held = quoted(row[place]) if place < len(row) else "nothing"
+        raise QuantityError(f"{quoted(file)}, line {line}, column {name}: {held}", QUANTITIES[name].name) from None
