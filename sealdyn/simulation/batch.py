@@ -137,7 +137,7 @@ def refuse_outputs(scenario, sets: list[dict], outputs, where: str) -> None:
         except (ScenarioError, SceneError):
             continue
         if wrong := missing(parts, outputs):
-            raise ScenarioError(scenario.name, where, ", ".join(wrong), "; ".join(wrong.values()))
+            raise ScenarioError(scenario.name, where, ", ".join(wrong), f"others: {'; '.join(wrong.values())}")
         return
 
 
