@@ -561,22 +561,37 @@ def _write_mat(path, columns):
 def plot(
     file: Annotated[Path, typer.Argument(help="archive (HDF5)")],
     kind: Annotated[
-        str, typer.Option(help="overview, orbit, film, spectrum or poincare", autocompletion=_completes(lambda: CHARTS))
-    ] = "overview",
+        str | None,
+        typer.Option(
+            help="of a run: overview (default), orbit, film, spectrum or poincare",
+            autocompletion=_completes(lambda: CHARTS),
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="figure to write: png, svg, pdf (default png, beside it)")] = None,
 ):
-    """Draw a figure from an archive."""
+    """Draw a figure from an archive, of a study its own."""
     import importlib
 
-    if kind not in CHARTS:
+    from .archive import is_study, read_study
+    from .studies import study_names
+
+    if kind is not None and kind not in CHARTS:
         line = f'--kind: found "{kind}"; expected one of {", ".join(CHARTS)}{_nearest(kind, CHARTS)}'
         raise Stop(Status.INVALID, line)
     if out is not None and out.suffix not in FIGURES:
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in {", ".join(FIGURES)}')
     if out is None:
-        out = file.with_name(file.stem + ("" if kind == "overview" else f"-{kind}") + ".png")
-    chart = importlib.import_module(f"sealdyn.report.charts.{kind}")
+        out = file.with_name(file.stem + ("" if kind in (None, "overview") else f"-{kind}") + ".png")
     with _reads(file):
+        name = kind or "overview"
+        if is_study(file):
+            if kind is not None:
+                raise Stop(Status.INVALID, f'--kind: found "{kind}" of a study\'s archive; expected none, it has one')
+            asked = read_study(file)["study"]
+            if asked.replace("_", "-") not in study_names():
+                raise Stop(Status.INVALID, f'{file}: study "{asked}"; expected one of {", ".join(study_names())}')
+            name = f"study_{asked}"
+        chart = importlib.import_module(f"sealdyn.report.charts.{name}")
         try:
             chart.draw(file, out)
         except OSError as error:

@@ -13,6 +13,7 @@ import numpy as np
 from ..dynamics.extrema import H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..faces.film_thickness import h_min
 from ..simulation.method_selection import choose_method
 from ..solvers.contract import Counts, SolverFailure, Status
 from ..solvers.integrate import solve
@@ -25,6 +26,10 @@ TIGHT = 1e-13
 DIFFERENCE = 3e-3
 # Right-hand sides that each of its fastest forcing periods may cost; a healthy one takes some hundreds.
 CRAWLING = 10_000
+# Share of the clearance below which a film has closed.
+CLOSED = 0.01
+# Tolerances, by method: BDF errs more than its tolerance; and the finest that rounding leaves to each.
+SHARPER, FINEST = {"bdf": 1e-2}, {"ida": 1e-11, "bdf": 1e-12}
 # Scale of an unknown whose error is free.
 FREE = 1e30
 WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
@@ -36,6 +41,19 @@ class NoOrbit(ValueError):
 
 class TooMuchWork(NoOrbit):
     """An orbit costs more than it may."""
+
+
+class _Crawls(NoOrbit):
+    """A period takes too many steps: given up after a `share` of it, the film then `film` of the clearance."""
+
+    def __init__(self, share: float, film: float):
+        self.film = film
+        if film < CLOSED:
+            said = f"a trial motion closes the film ({film:.1g} of the clearance): the forcing is at contact or beyond"
+        else:
+            said = (f"a trial motion takes too many steps, {share:.2g} of a period done, its film {film:.2g} of the "
+                    "clearance: too stiff or too fast to follow")  # fmt: skip
+        super().__init__(f"{said}; a run in time shows whether it settles")
 
 
 @dataclass(frozen=True)
@@ -81,7 +99,7 @@ class Shooter:
         self.model.scales[probe.segment(0).works] = FREE
         # SciPy's Runge-Kutta keeps 1e-13 over a period; a massless or stiff ring needs an implicit method.
         method, _ = choose_method(RunState(self.model, self.period))
-        self.method = {"adams": "dop853", "bdf": "radau"}.get(method, method)
+        self.method = {"adams": "dop853"}.get(method, method)
         unknowns = self.model.unknowns
         n = unknowns.n if unknowns.massless else unknowns.n_mechanical
         self.size, self.scales = n, self.model.scales[:n]
@@ -89,17 +107,28 @@ class Shooter:
 
     def flow(self, start: np.ndarray) -> np.ndarray:
         """The unknowns (n,) one period later.  Raises NoOrbit where the map crawls, SolverFailure."""
+        try:
+            return self._flow(start)
+        except _Crawls as crawl:
+            # Explicit steps on an open film that is stiff after all.
+            if self.method != "dop853" or crawl.film < CLOSED:
+                raise
+        self.method = "bdf"
+        return self._flow(start)
+
+    def _flow(self, start):
         segment = RunState(self.model, self.period).segment(0).until(self.period)
         y = np.zeros(segment.size)
         y[: self.size] = start
         self.flows += 1
-        tolerance = self.tight if self.method != "ida" else max(self.tight, 1e-11)
+        tolerance = max(self.tight * SHARPER.get(self.method, 1.0), FINEST.get(self.method, 0.0))
         counts = Counts()
         try:
-            for _, block, _ in METHODS[self.method](segment, 0.0, y, self.method, tolerance, counts):
+            for tau, block, _ in METHODS[self.method](segment, 0.0, y, self.method, tolerance, counts):
                 last = block[-1]
                 if counts.rhs > CRAWLING * max(1.0, self.period / segment.shortest_period):
-                    raise NoOrbit("the period map crawls: a trial orbit runs into the closed film")
+                    film = h_min(self.model.face, segment.gap_state(tau[-1], last))[0] / self.model.clearance
+                    raise _Crawls(tau[-1] / self.period, film)
                 if self.work + counts.rhs > self.most_work:
                     raise TooMuchWork("more right-hand sides than this orbit may cost")
         finally:

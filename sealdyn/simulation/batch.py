@@ -23,7 +23,7 @@ from ..scenario.settings import scenario_of, with_values
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from .looped_run import LoopedRun, NotSampled, integrate
-from .outputs import output, unit_of, with_speeds
+from .outputs import COMMON, missing, output, unit_of, with_speeds
 from .simulate import in_memory, prepare_run
 from .summary import state_names
 
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     import xarray
 
 OUTPUTS = ("h_min.value", "relative_misalignment.max")
+# Length (s) of a run that only shows what a summary has.
+MOMENT = 1e-6
 
 
 def simulate_many(
@@ -74,7 +76,7 @@ def sweep(
     summary, the columns beside `status` and `message`; `attrs["units"]` {column: unit}.  Where a run was not possible
     numbers are NaN, the status is "not possible" and the message its reason.  `workers`, `progress` as in
     `simulate_many`.
-    Raises ScenarioError if no run can be read, or a key has no values.
+    Raises ScenarioError if no run can be read, a key has no values, or there is no such output.
     """
     import pandas
 
@@ -88,6 +90,7 @@ def sweep(
     # A grid may begin where no seal can be; kernels are loaded once for all processes in any case.
     with suppress(SceneError):
         first_ready(scenario, sets)
+    refuse_outputs(scenario, sets, outputs, "outputs")
     rows = rows_of(scenario, sets, outputs, workers, progress)
     names = list(axes)
     index = pandas.Index([place[0] for place in places], name=names[0]) if len(axes) == 1 else None
@@ -121,6 +124,21 @@ def first_ready(scenario, sets):
         else:
             return prepare_run(found)[0]
     raise first
+
+
+def refuse_outputs(scenario, sets: list[dict], outputs, where: str) -> None:
+    """Raises ScenarioError, which names `where`, for outputs that no summary of these runs has: found before any is
+    run, by a moment of the first that can be one."""
+    if set(outputs) <= {"status", "message", *COMMON}:
+        return
+    for values in sets:
+        try:
+            parts = in_memory(with_values(scenario, {**values, "run.duration": MOMENT}), with_speeds(outputs))
+        except (ScenarioError, SceneError):
+            continue
+        if wrong := missing(parts, outputs):
+            raise ScenarioError(scenario.name, where, ", ".join(wrong), f"others: {'; '.join(wrong.values())}")
+        return
 
 
 def run_many(scenario, points: list[dict]) -> list:

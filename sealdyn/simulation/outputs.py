@@ -13,6 +13,19 @@ UNITS = {
 }  # fmt: skip
 
 
+# What every summary has.
+COMMON = (
+    "h_min.value",
+    "h_min.of_clearance",
+    "relative_misalignment.max",
+    "relative_misalignment.steady_max",
+    "leakage.mean",
+    "friction.power",
+    "contact_margin",
+    "stability.verdict",
+)
+
+
 def output(parts: dict, key: str):
     """The value at a dotted key of a summary, or of its `parts` (summary.py).  Raises ValueError, which names the
     nearest key there is."""
@@ -28,6 +41,17 @@ def output(parts: dict, key: str):
     if isinstance(place, dict):
         raise ValueError(f"{key} holds several numbers: one of {', '.join(f'{key}.{k}' for k in place)}")
     return place
+
+
+def missing(parts: dict, keys) -> dict[str, str]:
+    """The dotted keys that a summary, or its `parts` (summary.py), has no value of, each with the sentence why."""
+    found = {}
+    for key in keys:
+        try:
+            output(parts, key)
+        except ValueError as error:
+            found[key] = str(error)
+    return found
 
 
 def leaves(tree: dict, key: str = "") -> list[str]:

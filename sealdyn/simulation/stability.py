@@ -25,11 +25,6 @@ def stability(model, interval, linear, speeds: bool) -> dict:
     pads."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
-    tilt = [mode for mode in found if mode.kind == "tilt"]
-    whirl = None
-    if tilt and speed:
-        sign = -1.0 if tilt[0].direction == "backward" else 1.0
-        whirl = sign * tilt[0].value.imag / speed
     searched = {}
     if speeds and model.interface.stores and (waves_of(model.scene) or model.scene.film.pads):
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
@@ -44,7 +39,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         }
     return {
         "verdict": modes.verdict(found),
-        "whirl_ratio": whirl,
+        "whirl_ratio": whirl_ratio(found, speed),
         **searched,
         "growth_rate": found[0].value.real if found else None,
         "growth_rate_uncertainty": modes.uncertainty(found) if found else None,
@@ -54,6 +49,15 @@ def stability(model, interval, linear, speeds: bool) -> dict:
             for m in found
         ],
     }
+
+
+def whirl_ratio(found, speed: float) -> float | None:
+    """Whirl frequency of the least damped tilt mode of some modes, least damped first, over the shaft speed (rad/s):
+    negative where it turns against the shaft; None without such a mode, or at rest."""
+    tilt = next((mode for mode in found if mode.kind == "tilt"), None)
+    if tilt is None or not speed:
+        return None
+    return (-1.0 if tilt.direction == "backward" else 1.0) * tilt.value.imag / speed
 
 
 def _held(model, interval) -> list[float] | None:

@@ -11,8 +11,11 @@ from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.steady_extremes import steady_extremes
+from ..numerics.piecewise_linear import points
+from ..scenario.errors import ScenarioError
 from ..scenario.settings import must_be_number, si_unit, with_values
 from ..scene import variants
+from ..scene.checks import unused
 from ..scene.contact import touch_height
 from ..status import Status
 from ._words import quantity, shown_in
@@ -20,10 +23,18 @@ from ._words import quantity, shown_in
 REFUSES = ("secondary-seal",)
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
+# A tilt (rad) that nobody calls small: gap and pressure are then wrong by a thousandth, and no seal runs so far off.
+SMALL_TILT = 0.05
+# Beyond this value of a key, SI, linear theory is not asked any more.
+LARGEST = 1e9
 ALONG = {"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)}
 # Of the key itself the answer knows the unit.
 units = dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m") | {"tilt": "rad"}
-units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {"cavitation_pressure": "Pa", "start": "SI"}
+units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {
+    "cavitation_pressure": "Pa",
+    "start": "SI",
+    "beyond_tilt": "rad",
+}
 units |= dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1")
 
 
@@ -36,7 +47,8 @@ class Settings:
     """What grows until the film touches, and what the onset is followed over."""
 
     key: str | None = None
-    """Key that grows until the film touches; without it rotor.runout of an FMS, stator.misalignment of an FMR scene."""
+    """Key that grows until the film touches; without it the tilt that the seal has: of an FMS rotor.runout before
+    stator.misalignment, of an FMR stator.misalignment, of an FMSR rotor.misalignment, each before the other."""
     margin: float = 1e-3
     """Touch is a film of so much of the clearance; of rough faces where their asperities meet."""
     over: str | None = None
@@ -48,13 +60,17 @@ class Settings:
     tolerance: float = 1e-6
     """Relative error of the onset."""
     most: float = 1000.0
-    """An onset that linear theory sees beyond so many times the scenario's own value of the key is not followed."""
+    """An onset that linear theory sees beyond so many times the scenario's own value of the key is not followed;
+    nor is one beyond any small tilt."""
 
 
 def run(scenario, settings, tools) -> dict:
     """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
-    key = settings.key or ("rotor.runout" if scenario.scene.stator.support else "stator.misalignment")
+    key = settings.key or acting(scenario.scene)[0]
     must_be_number(scenario, key, "study.contact_onset.key")
+    if unused(scenario.scene, {key}):
+        found, expected = f"{key}, which this seal does not use", " or ".join(acting(scenario.scene))
+        raise ScenarioError(scenario.name, "study.contact_onset.key", found, expected)
     base = {"key": key, "margin": settings.margin, "tolerance": settings.tolerance, "most": settings.most}
     # Plain and floored are separate points: the floored film may fail, or be interrupted, where the plain one holds.
     floors = [False, True] if settings.floor else [False]
@@ -72,8 +88,16 @@ def run(scenario, settings, tools) -> dict:
     answer["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
     answer["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
     if "failed" in answer:
-        answer["status"] = Status.FAILED
+        answer["status"] = Status.OK if answer.get("beyond_tilt") else Status.FAILED
     return {**answer, "verdict": _verdict(answer, unit)}
+
+
+def acting(scene) -> list[str]:
+    """Keys (dotted) of the tilts that may be imposed on the gap of a scene: those that it has first."""
+    keys = ["rotor.misalignment" if scene.rotor.support else "rotor.runout", "stator.misalignment"]
+    if not scene.stator.support:
+        keys.reverse()
+    return sorted(keys, key=lambda key: not any(points(variants.part(scene, key))))
 
 
 def brief(row: dict) -> dict:
@@ -83,7 +107,7 @@ def brief(row: dict) -> dict:
 
 def onset(scenario, point: dict) -> dict:
     """Linear and nonlinear onset of one scenario; `path` the orbits on the way.  Without a nonlinear onset it says why:
-    `failed`."""
+    `failed`; where that is an onset of linear theory beyond any small tilt, `beyond_tilt` (rad) is there too."""
     scenario = with_values(scenario, point["set"])
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
     key, rough = point["key"], touch_height(scenario.scene)
@@ -104,6 +128,9 @@ def onset(scenario, point: dict) -> dict:
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
               "times_own": times_own(scenario.scene, key, formula),
               "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
+    if si_unit(scenario.scene, key) == "rad" and formula > SMALL_TILT:
+        why = f"beyond any small tilt ({SMALL_TILT:g} rad): the film does not limit {key}"
+        return {**result, "beyond_tilt": SMALL_TILT, "failed": why}
     if (result["times_own"] or 0.0) > point["most"]:
         return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
@@ -172,8 +199,8 @@ def linear_onset(scene, key: str, rough: float = 0.0) -> tuple[float, float]:
     high = 1e-6
     while excess(high)[0] > 0:
         high *= 2
-        if high > 1.0:
-            raise NoOrbit(f"linear theory never touches however large {key} grows")
+        if high > LARGEST:
+            raise NoOrbit(f"linear theory does not touch at any {key}: it does not move the gap")
     value = brentq(lambda v: excess(v)[0], 0.0, high, xtol=1e-16, rtol=1e-13)
     return float(value), float(excess(value)[1])
 
@@ -341,6 +368,9 @@ def _undecided(answer, unit) -> list[str]:
     if answer["formula"] is None:
         return [answer["failed"]]
     margin = f", {answer['times_own']:.4g} times the scenario's own" if answer.get("times_own") else ""
+    if answer.get("beyond_tilt"):
+        onset = f"{answer['key']} = {answer['formula']:.4g} {unit}{margin}"
+        return [f"Linear theory touches at {onset}: {answer['failed']}."]
     reached = f"; orbits followed to {max(answer['path']['forcing']):.4g} {unit}" if answer.get("path") else ""
     return [f"Linear theory touches at {answer['key']} = {answer['formula']:.4g} {unit}{margin}.",
             f"Undecided for the nonlinear film: {answer['failed']}{reached}."]  # fmt: skip

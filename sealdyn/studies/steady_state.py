@@ -116,7 +116,7 @@ def _waves(model, waves) -> dict:
 def tables(answer) -> list:
     """Cost of shooting and of waiting near the critical speed."""
     columns = (("of critical speed", "part"), ("speed, rpm", "speed", RPM), ("periods by shooting", "shooting"),
-               ("by waiting (-: not within longest)", "transient"))  # fmt: skip
+               ("by waiting (-: not within longest)", "transient"), ("ends", "transient_ends"))  # fmt: skip
     return [(answer["near_threshold"], columns)]
 
 
@@ -137,40 +137,45 @@ def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
     points = [
         {"part": part, "speed": part * critical, "turns": settings.turns, "longest": settings.longest}
         for part in settings.approach
+        # A second frequency that does not follow the shaft has no period in common with it there.
+        if RunState(Model(with_values(scenario, {"shaft.speed": part * critical}).scene), 1.0).period()
     ]
     return tools.map(partial(cost, scenario), points, "cost")
 
 
 def cost(scenario, point: dict) -> dict:
     """Periods of integration that shooting needs at one speed, and periods until a transient from rest repeats
-    itself within the accuracy (None: not within `longest`)."""
+    itself within the accuracy (None: not within `longest`, or it ends as `transient_ends` says)."""
     scenario = with_values(scenario, {"shaft.speed": point["speed"]})
     shooter = Shooter(scenario.scene, scenario.run.accuracy, point["turns"])
     row = {"part": point["part"], "speed": point["speed"]}
     orbit = shooter.find()
     row |= {"shooting": orbit.periods_used, "multiplier": float(np.max(np.abs(orbit.multipliers)))}
-    row["transient"] = waiting(scenario.scene, shooter, orbit, scenario.run.accuracy, point["longest"])
+    row["transient"], row["transient_ends"] = waiting(
+        scenario.scene, shooter, orbit, scenario.run.accuracy, point["longest"]
+    )
     return row
 
 
-def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> int | None:
-    """Periods until a transient from rest stays within the accuracy of the orbit."""
+def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> tuple[int | None, str]:
+    """Periods until a transient from rest stays within the accuracy of the orbit; None where it does not within the
+    `longest`, or ends before: then with words why."""
     chunk, start = 32, 0
     while start < longest:
         run = RunState(Model(scene, accuracy), shooter.period * (start + chunk))
         recorder = Recorder(shooter.period)
-        outcome = solve(run, "adams", accuracy, recorder)
+        outcome = solve(run, choose_method(run)[0], accuracy, recorder)
+        if outcome.status != Status.OK:
+            return None, "the film closes" if outcome.status == Status.COLLAPSED else "the solver gives up"
         _, q, _ = recorder.arrays()
-        if outcome.status == Status.COLLAPSED:
-            return None
         away = np.max(
             np.abs(q - orbit.start[: run.model.unknowns.n]) / run.model.scales[: run.model.unknowns.n], axis=1
         )
         late = np.nonzero(away > accuracy)[0]
         if len(late) == 0 or late[-1] + 1 < len(away):
-            return int(late[-1] + 1) if len(late) else 0
+            return (int(late[-1] + 1) if len(late) else 0), ""
         start, chunk = start + chunk, 2 * (start + chunk)
-    return None
+    return None, ""
 
 
 def _time_domain(scenario, reason: str) -> dict:

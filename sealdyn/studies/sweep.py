@@ -10,23 +10,14 @@ from ..numerics.parallel import Together
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis
 from ..scene.scene import SceneError
-from ..simulation.batch import first_ready, run_many
-from ..simulation.outputs import unit_of
+from ..simulation.batch import first_ready, refuse_outputs, run_many
+from ..simulation.outputs import COMMON, unit_of
+from ..status import Status
 from ._words import shown_in
 
 WITH_WAVES = True
 # Seconds of a run at least, bytes of its row.
 LEAST, ROW = 2e-3, 500
-OUTPUTS = (
-    "h_min.value",
-    "h_min.of_clearance",
-    "relative_misalignment.max",
-    "relative_misalignment.steady_max",
-    "leakage.mean",
-    "friction.power",
-    "contact_margin",
-    "stability.verdict",
-)
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -40,7 +31,7 @@ class Settings:
     vary: list[str] | str = ()
     """"key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes that of
     its neighbours, none means SI; several make a grid."""
-    outputs: list[str] | str = OUTPUTS
+    outputs: list[str] | str = COMMON
     """Dotted keys of the run's summary."""
 
 
@@ -63,12 +54,15 @@ def run(scenario, settings, tools) -> dict:
     # What is wrong with every point is found before any is run; a point that cannot run is a row.
     with contextlib.suppress(SceneError):
         first_ready(scenario, grid)
+    refuse_outputs(scenario, grid, outputs, "study.sweep.outputs")
     found = tools.map(
         Together(partial(run_many, scenario)), [{"outputs": outputs, "set": values} for values in grid], "runs"
     )
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
     answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
+    if all("failed" in row for row in rows):
+        answer["status"] = Status.FAILED
     return {**answer, "rows": rows, "verdict": sentences(keys, rows)}
 
 

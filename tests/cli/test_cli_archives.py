@@ -186,3 +186,13 @@ def test_help_imports_nothing_heavy():
     loaded = {name.split(".")[0] for name in json.loads(done.stderr.replace("'", '"'))}
     heavy = {"numpy", "scipy", "numba", "sksundae", "matplotlib", "pint", "pydantic", "h5py", "xarray"}
     assert not loaded & heavy
+
+
+def test_the_figure_of_a_study_is_drawn_again(tmp_path):
+    found = sealdyn("study", "equilibrium", REFERENCE, "--out", "e.h5", "--workers", "1", cwd=tmp_path)
+    first = (tmp_path / "e.png").read_bytes()
+    (tmp_path / "e.png").unlink()
+    assert found.code == 0 and sealdyn("plot", "e.h5", cwd=tmp_path).code == 0
+    assert Image.open(tmp_path / "e.png").size == Image.open(io.BytesIO(first)).size
+    refused = sealdyn("plot", "e.h5", "--kind", "orbit", cwd=tmp_path)
+    assert refused.code == 2 and refused.err.count("\n") == 1

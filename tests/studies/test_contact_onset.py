@@ -12,6 +12,8 @@ from sealdyn import closed_form as cf
 from sealdyn.analysis.shooting import Shooter, TooMuchWork
 from sealdyn.films.radial import film as radial
 from sealdyn.report.charts import study_contact_onset
+from sealdyn.scenario.errors import ScenarioError
+from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
@@ -116,6 +118,62 @@ def test_a_seal_that_never_touches_has_the_films_of_linear_theory():
     assert answer["linear"]["own"] == 1e-6 and forcing[0] == 0.0 and forcing[-1] == pytest.approx(1e-5)
     assert h_min[0] == pytest.approx(answer["clearance"], rel=1e-12) and np.all(np.diff(h_min) < 0)
     np.testing.assert_allclose(np.diff(h_min), h_min[1] - h_min[0], rtol=1e-3)
+
+
+PUMP = """
+shaft.speed = "2950 rpm"
+rotor.runout = "20 um TIR"
+closing = { balance_ratio = 0.75, spring_force = "40 N" }
+film = { inner_radius = "25 mm", outer_radius = "30 mm", coning = "0.4 mrad", viscosity = "0.8 mPa*s", \
+outer_pressure = "11 bar", inner_pressure = "1 bar" }
+[stator]
+mass = "120 g"
+transverse_inertia = "5e-5 kg*m^2"
+support = { axial_stiffness = "30 N/mm", axial_damping = "50 N*s/m", radius = "27 mm" }
+"""
+
+
+def test_an_onset_beyond_any_small_tilt_is_an_answer(tmp_path):
+    """A stiff film follows its rotor: the onset of linear theory by the closed form, no orbit, and nothing failed."""
+    scenario = parse_scenario(PUMP, "pump")
+    answer = run_study("contact-onset", scenario, tmp_path / "c.h5", workers=1)
+    faces = dict(inner_radius=0.025, outer_radius=0.030, clearance=answer["clearance"], coning=4e-4)
+    c = cf.radial_film_coefficients(**faces, viscosity=8e-4, pressure_drop=1e6, geometry="cylindrical")
+    numbers = dict(speed=2950 * np.pi / 30, transverse_inertia=5e-5, polar_inertia=0.0,
+                   support_stiffness=3e4 * 0.027**2 / 2, support_damping=50 * 0.027**2 / 2,
+                   film_stiffness=c.tilt_stiffness, film_damping=c.tilt_damping)  # fmt: skip
+    expected = cf.contact_tilt(**faces) / cf.fms_dynamic(**numbers)
+    assert answer["formula"] == pytest.approx(expected, rel=1e-5) and expected > 0.5
+    assert answer["status"] == "ok" and answer["nonlinear"] is None and answer["beyond_tilt"] < answer["formula"]
+    assert "path" not in answer and answer["times_own"] == pytest.approx(answer["formula"] * 0.060 / 20e-6)
+
+
+@pytest.mark.parametrize(
+    "name, overrides, keys",
+    [
+        ("fms_reference", ["stator.misalignment=1e-5"], ["rotor.runout", "stator.misalignment"]),
+        ("fms_reference", ["rotor.runout=0", "stator.misalignment=1e-5"], ["stator.misalignment", "rotor.runout"]),
+        ("fmr_reference", [], ["stator.misalignment", "rotor.misalignment"]),
+        ("fmr_reference", ["stator.misalignment=0"], ["rotor.misalignment", "stator.misalignment"]),
+        ("fmsr_both_flexible", ["stator.misalignment=0", "rotor.misalignment=1e-5"],
+         ["rotor.misalignment", "stator.misalignment"]),
+        ("fmsr_both_flexible", ["stator.misalignment=1e-5", "rotor.misalignment=0"],
+         ["stator.misalignment", "rotor.misalignment"]),
+    ],
+)  # fmt: skip
+def test_the_key_that_grows_is_a_tilt_that_the_seal_has(name, overrides, keys):
+    scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml", overrides)
+    assert contact_onset.acting(scenario.scene) == keys
+
+
+@pytest.mark.parametrize("name, key", [("fmr_reference", "rotor.runout"), ("fms_reference", "rotor.misalignment"),
+                                       ("fmsr_both_flexible", "rotor.runout")])  # fmt: skip
+def test_a_key_that_the_seal_does_not_use_is_refused(name, key, tmp_path):
+    scenario = sealdyn.read_scenario(SCENARIOS / f"{name}.toml")
+    with pytest.raises(ScenarioError) as refused:
+        run_study("contact-onset", scenario, tmp_path / "c.h5", flags={"key": key}, workers=1)
+    assert refused.value.key == "study.contact_onset.key" and key in refused.value.found
+    assert contact_onset.acting(scenario.scene)[0] in refused.value.expected
 
 
 def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):

@@ -142,3 +142,15 @@ def test_none_is_an_answer_only_where_all_agree(tmp_path, monkeypatch):
     for least, status in ((0.0, "ok"), (1000.0, "failed")):
         monkeypatch.setattr(critical_speed, "growth", partial(growing_above, least))
         assert study("fmr_reference", tmp_path)["status"] == status
+
+
+def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
+    """Beyond the speed of any face a threshold is told by the eigenvalues alone; that there is none is run up to it."""
+    monkeypatch.setattr(critical_speed, "FASTEST", 100.0)
+    monkeypatch.setattr(critical_speed, "growth", partial(growing_above, 0.0))
+    fastest = critical_speed.FASTEST / 0.040
+    answer = study("fms_reference", tmp_path)
+    assert answer["eigenvalue"] > fastest and answer["status"] == "ok"
+    assert answer["time_domain"]["value"] is None and answer["growth"]["speed"] == []
+    assert answer["nonlinear"]["tipping"] == [] and "branch" not in answer["nonlinear"]
+    assert max(study("fmr_reference", tmp_path)["growth"]["speed"]) == pytest.approx(fastest)

@@ -165,3 +165,44 @@ def test_the_map_reaches_as_far_as_the_threshold():
     ends = [stability.si_axis(s, stability._default_x(s.scene), "x")["values"][-1] for s in (near, far)]
     critical = stability.critical_speed(Model(far.scene))
     assert ends[0] == pytest.approx(15e3) and critical > 15 * 100.0 and ends[1] == pytest.approx(2 * critical)
+
+
+COUNTER = """
+shaft.speed = "6000 rpm"
+film = { inner_radius = "30 mm", outer_radius = "36 mm", coning = "1 mrad", viscosity = "0.8 mPa*s", \
+outer_pressure = "11 bar", inner_pressure = "1 bar" }
+closing = { balance_ratio = 0.75, spring_force = "60 N" }
+[rotor]
+mass = "150 g"
+transverse_inertia = "7e-5 kg*m^2"
+polar_inertia = "1.3e-4 kg*m^2"
+misalignment = "50 urad"
+support = { axial_stiffness = "30 N/mm", axial_damping = "50 N*s/m", radius = "33 mm" }
+[stator]
+speed = "-8000 rpm"
+mass = "150 g"
+transverse_inertia = "7e-5 kg*m^2"
+polar_inertia = "1.3e-4 kg*m^2"
+misalignment = "50 urad"
+support = { axial_stiffness = "30 N/mm", axial_damping = "50 N*s/m", radius = "33 mm" }
+"""
+
+
+def test_modes_that_decay_alike_are_told_apart_in_time():
+    """Counter-rotating rings, three tilt modes within a few per cent, no threshold, least damped along the axis."""
+    scenario = parse_scenario(COUNTER, "counter")
+    settings = Settings(x="shaft.speed=24000 rpm:28000 rpm:2", y="stator.speed=-40000 rpm:-36000 rpm:2", confirm=1)
+    found = stability.run(scenario, settings, InProcess())
+    (point,) = found["confirmed"]
+    assert point["agrees"] and point["time_domain"] == pytest.approx(point["growth_rate"], rel=3e-3)
+    modes = Model(scenario.scene).linear_scene().modes()
+    tilt = next(mode for mode in modes if mode.kind == "tilt")
+    assert tilt.direction == "backward" and found["margins"]["least_damped"] == modes[0].kind == "axial"
+    assert found["margins"]["whirl_ratio"] == pytest.approx(-tilt.value.imag / scenario.scene.shaft.speed, rel=1e-9)
+
+
+@pytest.mark.parametrize("rate, agrees", [(-100.0, True), (-80.0, False), (100.0, False)])
+def test_a_growth_rate_that_is_another_one_does_not_agree(rate, agrees, monkeypatch):
+    monkeypatch.setattr(stability, "growth_rate", lambda *given: {"rate": rate, "uncertainty": 0.5})
+    point = {"values": {"shaft.speed": 1000.0}, "rate": -100.5}
+    assert stability.confirmed(read_scenario(FMS), point)["agrees"] is agrees

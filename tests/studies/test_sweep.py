@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from in_process import InProcess
 from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
@@ -15,6 +16,7 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
+from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
@@ -81,8 +83,8 @@ def test_critical_and_resonance_speeds_are_found_where_they_are_asked_for(tmp_pa
     # Runout has no part in it.
     for row in sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_speed")["rows"]:
         assert row["stability.critical_speed"] == whole["critical_speed"]
-    answer = sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_sped")
-    assert "nearest stability.critical_speed" in answer["rows"][0]["failed"]
+    with pytest.raises(ScenarioError, match=r"nearest stability\.critical_speed"):
+        sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_sped")
 
 
 def test_a_point_that_cannot_be_is_a_row_with_its_reason(tmp_path):
@@ -99,8 +101,8 @@ def test_an_unknown_key_or_output_is_named(tmp_path):
         with pytest.raises(ScenarioError) as refused:
             sweep(tmp_path, vary)
         assert key in refused.value.key
-    answer = sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
-    assert "nearest h_min.value" in answer["rows"][0]["failed"]
+    with pytest.raises(ScenarioError, match=r"nearest h_min\.value"):
+        sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
 
 
 def test_a_sweep_is_a_dataset_over_its_keys(tmp_path):
@@ -153,3 +155,33 @@ def test_a_killed_sweep_goes_on_without_repeating(tmp_path):
     for a, b, mark in zip(again["rows"], whole["rows"], marks, strict=True):
         assert {k: v for k, v in a.items() if not mark or k != "h_min.of_clearance"}.items() <= b.items()
     assert np.all(np.diff([row["h_min.value"] for row in whole["rows"]]) < 0)
+
+
+def test_outputs_that_no_run_has_are_refused_before_the_first(tmp_path, monkeypatch):
+    from sealdyn.simulation import batch
+
+    monkeypatch.setattr(batch, "integrate", lambda runs: pytest.fail("a run of the sweep"))
+    with pytest.raises(ScenarioError) as refused:
+        sweep(tmp_path, "rotor.runout=20,40 urad", "h_min.value,leakage,h_min.valeu")
+    assert refused.value.key == "study.sweep.outputs" and refused.value.found == "leakage, h_min.valeu"
+    assert "leakage.mean" in refused.value.expected and "nearest h_min.value" in refused.value.expected
+    with pytest.raises(ScenarioError):
+        sealdyn.sweep(PATH, {"rotor.runout": [2e-5]}, ["leakage"], workers=1)
+    assert not list(tmp_path.iterdir())
+
+
+class Failing(InProcess):
+    """Runs of which the first `count` cannot be."""
+
+    def __init__(self, count):
+        self.count = count
+
+    def map(self, function, points, what="points"):
+        return [{"failed": "no"} if k < self.count else {"status": "ok"} for k in range(len(points))]
+
+
+@pytest.mark.parametrize("count, status", [(2, "failed"), (1, "ok")])
+def test_a_sweep_of_which_no_run_is_possible_has_failed(count, status):
+    scenario = parse_scenario(PATH.read_text(), "fms_reference", list(SHORT))
+    answer = study.run(scenario, study.Settings(vary="rotor.runout=20,40 urad"), Failing(count))
+    assert answer.get("status", "ok") == status

@@ -8,8 +8,9 @@ import pytest
 from scenes import fmr, fms, fmsr, free_ring, started
 
 import sealdyn
+from sealdyn.analysis import shooting
 from sealdyn.analysis.shooting import NoOrbit, Shooter
-from sealdyn.scene.excitation import Whirl
+from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.simulation.method_selection import choose_method
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
@@ -76,3 +77,41 @@ def test_incommensurate_forcing_has_no_period():
 def test_an_undamped_ring_is_neutral():
     orbit = Shooter(free_ring()).find()
     assert np.max(np.abs(np.abs(orbit.multipliers) - 1)) < 1e-9
+
+
+def test_a_stiff_film_has_an_orbit():
+    """A film of a micrometre pushes the ring back 1e4 times faster than it turns: multipliers of the eigenvalues."""
+    film = replace(fms().film, clearance=1e-6, coning=3e-4, viscosity=1e-3)
+    scene = replace(fms(), film=film, shaft=Shaft(speed=300.0))
+    shooter = Shooter(scene)
+    values = np.array([mode.value for mode in shooter.model.linear_scene().modes()])
+    assert np.max(-values.real) * shooter.period > 1e4
+    orbit = shooter.find()
+    assert np.max(np.abs(orbit.start - shooter.guess()) / shooter.scales) < 1e-3
+    slowest = np.exp(np.max(values.real) * shooter.period)
+    assert np.max(np.abs(orbit.multipliers)) == pytest.approx(slowest, rel=1e-3)
+
+
+def test_explicit_steps_on_a_stiff_film_give_way_to_implicit_ones(monkeypatch):
+    wanted = Shooter(fms("radial")).find()
+    shooter = Shooter(fms("radial"))
+    monkeypatch.setattr(shooting, "METHODS", {**shooting.METHODS, "dop853": endless})
+    assert shooter.find().start == pytest.approx(wanted.start, abs=1e-8 * np.max(shooter.scales))
+    assert shooter.method == "bdf"
+
+
+def endless(segment, tau, y, method, tolerance, counts):
+    """Steps that lead nowhere."""
+    while True:
+        counts.rhs += 12
+        yield np.array([tau]), y[None, :], None
+
+
+def test_a_trial_that_closes_the_film_is_told_from_a_stiff_film(monkeypatch):
+    monkeypatch.setattr(shooting, "METHODS", {**shooting.METHODS, "dop853": endless})
+    shooter = Shooter(fms("radial"))
+    closed = np.zeros(shooter.size)
+    closed[shooter.model.unknowns.names.index("stator_z")] = -0.995 * shooter.model.clearance
+    with pytest.raises(NoOrbit) as given_up:
+        shooter.flow(closed)
+    assert given_up.value.film < shooting.CLOSED and shooter.method == "dop853"
