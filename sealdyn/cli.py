@@ -430,7 +430,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
 @app.command()
 def new(
-    kind: Annotated[str, typer.Argument(help="fms, fmr, fmsr, gas or wavy", autocompletion=_completes(_seal_kinds))],
+    kind: Annotated[
+        str, typer.Argument(help="fms, fmr, fmsr, gas, pump or wavy", autocompletion=_completes(_seal_kinds))
+    ],
     out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
 ):
     """Write a commented scenario to begin with."""

@@ -57,6 +57,7 @@ ounce_force = ounce * standard_gravity = ozf
 slug = pound_force * second**2 / foot
 newton_meter = newton * meter = Nm
 newton_second = newton * second = Ns
+kilogram_kelvin = kilogram * kelvin = kgK
 newton_meter_second = newton * meter * second = Nms
 pascal = newton / meter**2 = Pa
 pascal_second = pascal * second = Pas

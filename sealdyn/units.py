@@ -125,7 +125,9 @@ class TemperatureScale(Quantity):
     def _from_string(self, text: str) -> float:
         number, unit = self._split(text)
         # Degrees per kelvin, and where absolute zero lies.
-        scale = {"degC": ("1", "273.15"), "degF": ("1.8", "459.67")}.get(unit)
+        celsius, fahrenheit = ("1", "273.15"), ("1.8", "459.67")
+        scale = {"degC": celsius, "C": celsius, "deg C": celsius, "degF": fahrenheit, "F": fahrenheit,
+                 "deg F": fahrenheit}.get(unit)  # fmt: skip
         if scale is None:
             if re.search("deg[CF]", unit):
                 raise QuantityError(f"{quoted(text)} (a scale with another zero)", self.expected())

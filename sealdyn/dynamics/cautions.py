@@ -22,6 +22,7 @@ class Concern(StrEnum):
     TURBULENCE = "turbulence"
     WIDE_DAM = "wide dam"
     UNITS = "units"
+    WEAR = "wear"
 
 
 class Caution(NamedTuple):

@@ -32,9 +32,10 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
     from jinja2 import Environment, StrictUndefined
 
     parts = [_study(path, tables) if is_study(path) else _run(path, rules, validation) for path in map(Path, archives)]
+    seals = _seals(parts)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        title=title or f"Design review: {', '.join(part['name'] for part in parts)}", parts=parts
+        title=title or _title(parts, seals), parts=parts, seals=seals if len(seals) > 1 else []
     )
     out_path = Path(out_path)
     out_path.parent.mkdir(parents=True, exist_ok=True)
@@ -46,6 +47,24 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
         fresh.unlink(missing_ok=True)
         raise
     return out_path
+
+
+# Tables of a scenario that are no part of its seal.
+ASKED = ("run.", "study.", "application.")
+
+
+def _seals(parts: list[dict]) -> list[list[str]]:
+    """Parts by their scenes: of each scene that is another than those before it, what its parts are."""
+    found = {}
+    for part in parts:
+        scene = tuple((key, value) for key, value in part["scene"] if not key.startswith(ASKED))
+        found.setdefault(scene, []).append(f"{part['name']}, {part['kind']} ({dict(part['made'])['archive']})")
+    return [*found.values()]
+
+
+def _title(parts: list[dict], seals: list[list[str]]) -> str:
+    names = ", ".join(dict.fromkeys(part["name"] for part in parts))
+    return f"Design review: {names}" + (f" ({len(seals)} different scenes)" if len(seals) > 1 else "")
 
 
 def _run(path: Path, rules, validation) -> dict:

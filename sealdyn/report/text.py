@@ -55,11 +55,15 @@ def run_rows(summary):
     if leak["conditions"]:
         volume = f"{_n(leak['mean_ml_per_h'], 1 / 6e4)} l/min at 0 degC and 1.01325 bar"
     yield "leakage", f"{_n(leak['mean'])} m^3/s = {volume} = {_n(leak['mean_kg_per_h'])} kg/h (mean)"
-    yield "friction", (f"{_n(friction['power'])} W, torque {_n(friction['torque'])} N m; would heat the leakage by "
-                       f"{_n(friction['temperature_rise'])} K")  # fmt: skip
+    # Archives of earlier versions do not hold it.
+    if film.get("exit_mach") is not None:
+        how = "choked" if film["exit_mach"] >= 1.0 else "not choked"
+        yield "", f"aligned, the gas leaves the faces at a Mach number of {_n(film['exit_mach'])}: {how}"
+    yield "friction", _friction(friction, closing.get("face_area"))
+    rough = ", asperities included" if summary["contact"] else ""
     yield "film", (f"clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} N m/rad, "
                    f"tilt damping {_n(film['tilt_damping'])} N m s/rad, axial stiffness "
-                   f"{_n(film['axial_stiffness'])} N/m")  # fmt: skip
+                   f"{_n(film['axial_stiffness'])} N/m{rough}")  # fmt: skip
     yield "closing", (f"{_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
                       f"{_n(closing['spring_force'])} N, duty {_n(closing['duty'], 1e-5)} bar)")  # fmt: skip
     if summary["contact"]:
@@ -82,6 +86,20 @@ def run_rows(summary):
     yield "files", ", ".join(filter(None, (summary["archive"], summary.get("figure"))))
 
 
+# Rise (K) beyond which a leakage cannot carry the heat, whatever the liquid: it would boil, or be no lubricant.
+CARRIED = 100.0
+
+
+def _friction(friction, area) -> str:
+    """Power and torque, and what the heat does: on faces of an `area` (m^2; None in archives that do not hold it)."""
+    words = f"{_n(friction['power'])} W, torque {_n(friction['torque'])} N m"
+    rise = friction["temperature_rise"]
+    if rise is not None and rise <= CARRIED:
+        return f"{words}; would heat the leakage by {_n(rise)} K"
+    flux = f", {_n(friction['power'] / area, 1e-4)} W/cm^2 of face" if area and friction["power"] is not None else ""
+    return f"{words}{flux}" + ("" if rise is None else f": more than the leakage can carry (over {CARRIED:.0f} K)")
+
+
 def _contact_rows(contact):
     grazing = f"; {contact['grazing']} grazing within {_n(contact['gap_error'], MICRO)} um, undecided"
     grazing = grazing if contact["grazing"] else ""
@@ -91,10 +109,14 @@ def _contact_rows(contact):
     yield "touch", (f"{contact['touches']} contacts, first at t = {_n(contact['first'])} s, deepest "
                     f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse "
                     f"{_n(contact['impulse'])} N s{grazing}")  # fmt: skip
-    yield "", (f"carries {_n(contact['share_of_closing'], 100)} % of the closing force, up to "
-               f"{_n(contact['force']['max'])} N and {_n(contact['max_pressure'], 1e-6)} MPa on "
-               f"{_n(contact['max_area_fraction'], 100)} % of the face; wear {_n(contact['wear_rate'], 3.6e9)} "
-               "um/h")  # fmt: skip
+    # Archives of earlier versions do not hold the share of the load, nor whether the faces wear.
+    load = contact.get("share_of_load")
+    load = "" if load is None else f", which is {_n(load, 100)} % of what it is above the lower pressure"
+    wear = f"wear {_n(contact['wear_rate'], 3.6e9)} um/h" if contact.get("wears", True) else "no wear coefficient"
+    yield "", f"carries {_n(contact['share_of_closing'], 100)} % of the absolute closing force{load}"
+    yield "", (f"up to {_n(contact['force']['max'])} N and {_n(contact['max_pressure'], 1e-6)} MPa of apparent area; "
+               f"real area of the asperities up to {_n(contact['max_area_fraction'], 100)} % of the face; "
+               f"{wear}")  # fmt: skip
 
 
 def _seal_rows(seals):
@@ -221,7 +243,8 @@ def resolved_lines(found: dict) -> list[str]:
     out += [f"# {reason}" for reason in model["reasons"]]
     for root in found["equilibria"]:
         kind = "stable" if root["stable"] else "not stable by the film alone"
-        where = f"{_n(root['clearance'], MICRO)} um, film stiffness {_n(root['stiffness'])} N/m"
+        what = "stiffness of film and asperities" if found["scene"]["contact"] else "film stiffness"
+        where = f"{_n(root['clearance'], MICRO)} um, {what} {_n(root['stiffness'])} N/m"
         out.append(f"# equilibrium clearance {where}, {kind}")
     out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import difflib
+import math
 import re
 import types
 import typing
@@ -10,10 +11,29 @@ from functools import cache
 from typing import Any
 
 from ..scene.scene import SceneError
-from ..units import ListedQuantity, Quantity, QuantityError, RadiusQuantity, VaryingQuantity, cut, quoted
+from ..units import (
+    Length,
+    ListedQuantity,
+    Quantity,
+    QuantityError,
+    RadiusQuantity,
+    VaryingQuantity,
+    Velocity,
+    cut,
+    quoted,
+)
 
+LENGTH, VELOCITY = Length.__metadata__[0], Velocity.__metadata__[0]
 NOTHING = object()
 MISSING = ("nothing", "no such table")
+# Words of the trade that are no keys, and the keys that are meant, wherever the table has one.
+MEANT = {
+    "stiffness": ("axial_stiffness",), "spring_rate": ("axial_stiffness",), "damping": ("axial_damping",),
+    "hardness": ("compressive_strength",), "friction": ("friction_coefficient", "friction_force"),
+    "wear_coefficient": ("stator_wear_coefficient",), "waves": ("waviness",), "gap": ("clearance",),
+    "film_thickness": ("clearance",), "inertia": ("transverse_inertia",), "rpm": ("speed",), "od": ("outer_diameter",),
+    "id": ("inner_diameter",), "spring": ("spring_force",), "balance": ("balance_ratio",),
+}  # fmt: skip
 # What `nearest` says of a key of the same table.
 NEAR = re.compile(r"nearest '(\w+)'$")
 # Keys that stand in no table.
@@ -143,12 +163,16 @@ def nearest(kind: type, path: str, key: str) -> str:
     if top:
         above, _, last = top[0].rpartition(".")
         return f"the table is [[{top[0]}]]" if is_list(every[above][last]) else f"the table is [{top[0]}]"
+    if meant := [word for word in MEANT.get(key.lower(), ()) if word in here]:
+        return f"nearest '{meant[0]}'"
     close = difflib.get_close_matches(key, here, 1, 0.6)
     if elsewhere and not (close and close[0].startswith(key)):
         return f"'{key}' belongs to {' or '.join(elsewhere[:3])}"
     if close:
         return f"nearest '{close[0]}'"
     names = {k: table for table, keys in every.items() if table for k in keys}
+    if meant := [word for word in MEANT.get(key.lower(), ()) if word in names]:
+        return f"nearest '{meant[0]}' in [{names[meant[0]]}]"
     close = difflib.get_close_matches(key, names, 1, 0.6)
     if close:
         return f"nearest '{close[0]}' in [{names[close[0]]}]"
@@ -186,11 +210,36 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
         return ScenarioError(name, key, found, expected_of(key, holds))
     cause = error.get("ctx", {}).get("error")
     if isinstance(cause, QuantityError):
-        return ScenarioError(name, key, cause.found, cause.expected)
+        return ScenarioError(name, key, cause.found, cause.expected + _in_place(key, value, raw))
     expected = _expected_here(path, holds, error)
     words = [w for a in (holds, *typing.get_args(holds)) for w in typing.get_args(a) if isinstance(w, str)]
     near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
+    near = near or [word for word in words if isinstance(value, str) and value and value.lower() in word]
     return ScenarioError(name, key, quoted(value), expected + (f"; nearest '{near[0]}'" if near else ""))
+
+
+def _in_place(key: str, value: Any, raw: dict) -> str:
+    """What may be written in place of a `value` (as the file has it) of another dimension at a key; "" if nothing."""
+    if key == "rotor.runout" and _si(LENGTH, value) is not None:
+        return f', or a total indicator reading, "{value.strip()} TIR"'
+    film, velocity = raw.get("film"), _si(VELOCITY, value)
+    if key not in ("shaft.speed", "stator.speed") or velocity is None or not isinstance(film, dict):
+        return ""
+    radii = [_si(LENGTH, film.get(f"{edge}_radius")) for edge in ("inner", "outer")]
+    if None in radii or sum(radii) <= 0.0:
+        return ""
+    rpm = velocity / (0.5 * sum(radii)) * 30.0 / math.pi
+    return f'; {quoted(value)} at the mean radius of the face is "{rpm:.6g} rpm"'
+
+
+def _si(kind: Any, value: Any) -> float | None:
+    """SI value of a string that is a quantity of this kind (or of a number, of a length); None of anything else."""
+    if not isinstance(value, str) and kind is not LENGTH:
+        return None
+    try:
+        return kind.read(value)
+    except QuantityError:
+        return None
 
 
 def _expected_here(path: list[str], holds: Any, error: dict) -> str:

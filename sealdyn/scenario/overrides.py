@@ -52,7 +52,13 @@ def opened(table: Any) -> dict:
 
 def _entry(place: Any, step: str, key: str, name: str) -> Any:
     if isinstance(place, list):
-        if not step.isdecimal() or len(step) > 6 or int(step) >= len(place):
+        if not step.isdecimal():
+            entry = key.replace(f".{step}", f".0.{step}", 1)
+            count = f" to {entry.replace('.0.', f'.{len(place) - 1}.', 1)}" if len(place) > 1 else ""
+            raise ScenarioError(
+                name, key, f"a list of {len(place)} at {quoted(step)}", f"its entry too: {entry}{count}"
+            )
+        if len(step) > 6 or int(step) >= len(place):
             raise ScenarioError(name, key, f"entry {quoted(step)}", f"0 to {len(place) - 1}: the file has {len(place)}")
         step = int(step)
         below = place[step]

@@ -103,7 +103,8 @@ class Scenario:
     `text` and `overrides` say where the scene came from; they are not parsed again.  `study` {study: {setting: value}};
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
     `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
-    keys of speeds that were written without a unit; `gauge`: keys of the film's pressures that were written as gauge.
+    keys, table.key, of numbers that were written without a unit; `gauge`: keys of the film's pressures that were
+    written as gauge.
     Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
     seal is for (`application`, None without that table).
     """
@@ -220,7 +221,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
-    bare = frozenset(f"{table}.speed" for table in ("shaft", "stator") if _is_bare(_table(raw, table).get("speed")))
+    bare = frozenset(f"{table}.{key}" for table in raw for key, value in _table(raw, table).items() if _is_bare(value))
     gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name, folder=path and path.parent, held=held)
     name = name.removesuffix(".toml")
@@ -305,9 +306,11 @@ def film_choices() -> list[str]:
 
 def _check_film_name(name: str) -> None:
     if name not in film_choices():
-        near = difflib.get_close_matches(name, film_choices(), 1)
+        near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
+        near = near or difflib.get_close_matches(name, film_choices(), 1)
         expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
-        raise SceneError("film.model", f'"{name[:40]}"', expected + (f"; nearest '{near[0]}'" if near else ""))
+        hint = "; nearest " + " and ".join(f"'{choice}'" for choice in near) if near else ""
+        raise SceneError("film.model", f'"{name[:40]}"', expected + hint)
 
 
 @cache

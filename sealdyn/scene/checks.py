@@ -109,8 +109,13 @@ def _liquid(film) -> None:
     if film.viscosity is None:
         raise SceneError("film.viscosity", "nothing", Viscosity.__metadata__[0].expected())
     for key in ("temperature", "gas_dam", "gas_reynolds"):
-        if getattr(film, key) is not None and not (key == "temperature" and film.coning_per_kelvin):
-            raise SceneError(f"film.{key}", "a key of gases, with a liquid", f"nothing, or film.gas = {_names(GASES)}")
+        if getattr(film, key) is None or (key == "temperature" and film.coning_per_kelvin):
+            continue
+        found, expected = "a key of gases, with a liquid", f"nothing, or film.gas = {_names(GASES)}"
+        if key == "temperature":
+            found = "a temperature of a liquid, on which nothing hangs without film.coning_per_kelvin"
+            expected += ", or film.coning_per_kelvin"
+        raise SceneError(f"film.{key}", found, expected)
 
 
 def _gas(film) -> None:

@@ -19,8 +19,9 @@ from .summary import parts
 MOST_CONTACTS, MOST_OUTPUT, PATIENCE = 256, 4_000_000, 0.1
 # Parts of the summary that are made of samples, and what only a run of its own has.
 SAMPLED = (
-    "leakage", "friction", "relative_misalignment.mean", "contact.force", "contact.share_of_closing", "contact.torque",
-    "contact.max_area_fraction", "contact.max_pressure", "contact.wear_rate", "film.max_cavitated_fraction", "warnings",
+    "leakage", "friction", "relative_misalignment.mean", "contact.force", "contact.share_of_closing",
+    "contact.share_of_load", "contact.torque", "contact.max_area_fraction", "contact.max_pressure", "contact.wear_rate",
+    "film.max_cavitated_fraction", "warnings",
 )  # fmt: skip
 # Those that are extremes between steps.
 EXTREMES = ("h_min", "relative_misalignment")

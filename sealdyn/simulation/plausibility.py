@@ -2,6 +2,7 @@
 
 import math
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,10 @@ from .beside_reynolds import TORN, beside_reynolds
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
+# Rise beyond which no leakage carries the heat: it would boil, or be no lubricant.
+CARRIED = 100.0
+# Rate of wear (m/s) of a millimetre an hour.
+GONE = 1e-3 / 3600
 # Films (m) that are thinner than lapped faces are rough, and than a liquid is a continuum; widest clearance (m) of a
 # seal's faces.
 SMOOTH, CONTINUUM, WIDE = 1e-7, 1e-8, 1e-3
@@ -24,11 +29,44 @@ FAST = 0.3
 HEAVY, OFF = 0.05, 0.01
 
 
-def cautions(scenario, run, outcome, leakage, temperature_rise, h_min) -> list[Caution]:
-    """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `temperature_rise` (K) if all friction heats
-    it, thinnest film `h_min` (m)."""
+class Usual(NamedTuple):
+    """What a number without a unit is of seals, from `least` to `most` in its SI `unit`; else it may be one in the unit
+    `shown`, of which SI values less `zero` are `factor` times as many."""
+
+    least: float
+    most: float
+    unit: str
+    shown: str
+    factor: float
+    zero: float = 0.0
+
+
+WEARS = Usual(0.0, 1e-11, "1/Pa", "mm^3/(N m)", 1e9)
+SMALL_ANGLE = Usual(-0.02, 0.02, "rad", "mrad", 1e3)
+ABSOLUTE = Usual(1e3, 1e9, "Pa", "bar", 1e-5)
+OF_A_FACE = Usual(0.0, 1.0, "m", "mm", 1e3)
+OF_A_RING = Usual(0.0, 100.0, "kg", "g", 1e3)
+USUAL = {
+    "film.viscosity": Usual(1e-6, 0.1, "Pa s", "cP", 1e3),
+    "film.temperature": Usual(273.0, 330.0, "K", "degC", 1.0, 273.15),
+    "film.outer_pressure": ABSOLUTE, "film.inner_pressure": ABSOLUTE,
+    "film.outer_radius": OF_A_FACE, "film.inner_radius": OF_A_FACE,
+    "film.coning": SMALL_ANGLE, "rotor.runout": SMALL_ANGLE,
+    "rotor.misalignment": SMALL_ANGLE, "stator.misalignment": SMALL_ANGLE,
+    "film.density": Usual(100.0, 1e5, "kg/m^3", "g/cm^3", 1e-3),
+    "film.specific_heat": Usual(100.0, 1e5, "J/(kg K)", "kJ/(kg K)", 1e-3),
+    "rotor.mass": OF_A_RING, "stator.mass": OF_A_RING,
+    "contact.roughness": Usual(0.0, 1e-5, "m", "um", 1e6),
+    "contact.compressive_strength": Usual(1e6, 1e12, "Pa", "MPa", 1e-6),
+    "contact.stator_wear_coefficient": WEARS, "contact.rotor_wear_coefficient": WEARS,
+}  # fmt: skip
+
+
+def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Caution]:
+    """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `heat`: its rise (K) if all friction heats
+    it, and that friction over the face (W/m^2), thinnest film `h_min` (m), rate of `wear` (m/s)."""
     scene, model = scenario.scene, run.model
-    found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(temperature_rise)]
+    found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(*heat), *_worn(scenario, wear)]
     found += _flash(run, outcome)
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
@@ -54,10 +92,30 @@ def _units(scenario, model):
             fastest = max(points(speed), key=abs)
             read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
             yield Caution(Concern.UNITS, f"{ring}.speed without a unit is read as {read}")
+    for key, usual in USUAL.items():
+        value = _held(scenario.scene, key) if key in scenario.bare else None
+        if value is not None and not usual.least <= value <= usual.most:
+            shown = (value - usual.zero) * usual.factor
+            read = f"{value:.6g} {usual.unit}, which is {shown:.6g} {usual.shown}"
+            yield Caution(Concern.UNITS, f"{key} without a unit is read as {read}")
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
         sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
         yield Caution(Concern.UNITS, sentence)
+
+
+def _held(scene, key: str) -> float | None:
+    """The value at a dotted key, of a table its first one; None where there is none."""
+    for name in key.split("."):
+        scene = getattr(scene, name, None)
+    return None if scene is None else initially(scene)
+
+
+def _worn(scenario, rate):
+    """Faces that are gone within hours."""
+    if math.isfinite(rate) and rate > GONE:
+        how = "is the unit of the wear coefficient right, 1/Pa or mm^3/(N*m)?"
+        yield Caution(Concern.WEAR, f"the faces wear {3.6e6 * rate:.4g} mm/h, and are gone in hours: {how}")
 
 
 def _thin(scene, h_min):
@@ -83,9 +141,11 @@ def _arm(scene):
         yield Caution(Concern.CONTACT_ARM, sentence)
 
 
-def _heat(rise):
+def _heat(rise, flux):
     if math.isfinite(rise) and rise > WARM:
         heat = f"friction would heat the leakage by {rise:.4g} K"
+        if rise > CARRIED:
+            heat = f"the leakage cannot carry the friction's {1e-4 * flux:.4g} W/cm^2 of face"
         yield Caution(Concern.HEATING, f"not isothermal: {heat}, and the film has one viscosity")
 
 

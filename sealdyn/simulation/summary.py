@@ -9,9 +9,11 @@ from .. import closed_form
 from ..dynamics import modes
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
+from ..dynamics.interface import rest_state
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import TOUCH
+from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.waviness import waves_of
@@ -170,11 +172,14 @@ def _steady(run, outcome, period, begun_well):
 def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     """All that a person should know before trusting the run."""
     model = run.model
-    leakage, rise = _leakage(model, tally)["mean"], _temperature_rise(model, tally)
+    leakage = _leakage(model, tally)["mean"]
+    heat = _temperature_rise(model, tally), tally.mean("friction_power") / model.closing.area
+    wear = 0.0 if model.contact is None else tally.mean("wear_rate")
     low = run.extrema.records[0][H]
     lost = missing_energy(outcome.energy_residual, model.accuracy)
     energy = [Caution(Concern.ENERGY, lost)] if lost else []
-    return [*run.cautions, *energy, *_blown_open(model, tally), *cautions(scenario, run, outcome, leakage, rise, low)]
+    found = cautions(scenario, run, outcome, leakage, heat, low, wear)
+    return [*run.cautions, *energy, *_blown_open(model, tally), *found]
 
 
 def _blown_open(model, tally) -> list[Caution]:
@@ -202,6 +207,14 @@ def _contact(run, tally):
         closing = tally.mean("closing_force")
         return tally.mean("contact_force") / closing if closing else None
 
+    def share_of_load():
+        """Of the closing force above the lower pressure, which surrounds the ring: load support is 1 less this."""
+        edges = model.scene.film.inner_pressure, model.scene.film.outer_pressure
+        if any(isinstance(pressure, PiecewiseLinear) for pressure in edges):
+            return None
+        load = tally.mean("closing_force") - min(edges) * model.closing.area
+        return tally.mean("contact_force") / load if load else None
+
     return {
         "touches": found.count,
         "grazing": found.grazing,
@@ -214,10 +227,12 @@ def _contact(run, tally):
         "impulse": found.impulse,
         "force": lambda: {"mean": tally.mean("contact_force"), "max": largest("contact_force")},
         "share_of_closing": share,
+        "share_of_load": share_of_load,
         "torque": lambda: tally.mean("contact_torque"),
         "max_area_fraction": lambda: largest("contact_area_fraction"),
         "max_pressure": lambda: largest("contact_pressure"),
         "wear_rate": lambda: tally.mean("wear_rate"),
+        "wears": any(getattr(model.scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES),
     }
 
 
@@ -276,11 +291,20 @@ def _film(segment, linear, tally):
         "tilt_stiffness": k[1, 1],
         "tilt_damping": d[1, 1],
         "cross_stiffness": k[1, 2],
+        "exit_mach": lambda: _exit_mach(model),
         "max_cavitated_fraction": lambda: tally.largest["cavitated_fraction"] if tally.largest else math.nan,
         "equilibria": [
             {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
         ],
     }
+
+
+def _exit_mach(model):
+    """Mach number at which a gas leaves the aligned faces; None of a film that does not know."""
+    film, f = model.observed
+    if not hasattr(film, "exit_mach"):
+        return None
+    return film.exit_mach(f, rest_state(model.scene, model.clearance, model.start)[0])[1]
 
 
 def _closing(segment):

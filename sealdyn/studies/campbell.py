@@ -74,6 +74,8 @@ def run(scenario, settings, tools) -> dict:
         "modes": modes,
         "crossings": crossings(modes, speeds, lines),
         "thresholds": thresholds(modes, speeds),
+        "stator_speed": scene.stator.speed,
+        "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
     }
     return answer | {"verdict": _verdict(answer)}
 
@@ -217,6 +219,18 @@ def crossings(modes, speeds, lines) -> list[dict]:
     return found
 
 
+def stator_crossings(modes, speeds, stator_speed) -> list[dict]:
+    """Shaft speeds (rad/s) where a tilt mode (or an axial one) meets the stator's own speed, which shakes the seal with
+    the errors of a stator that turns; none of one that stands."""
+    if not stator_speed:
+        return []
+    found = []
+    for number, mode in enumerate(modes, 1):
+        away = np.array(mode["signed_frequency"]) - (stator_speed if mode["kind"] == "tilt" else abs(stator_speed))
+        found += [{"mode": number, "speed": speed} for speed in _zeros(speeds, away)]
+    return found
+
+
 def thresholds(modes, speeds) -> list[dict]:
     """Speeds (rad/s) where a mode loses or regains its damping, and where it changes its direction of whirl."""
     found = []
@@ -230,14 +244,19 @@ def thresholds(modes, speeds) -> list[dict]:
 
 
 def _verdict(answer) -> list[str]:
-    said = []
+    said, ends = [], (answer["speed"][0], answer["speed"][-1])
+    turning = answer["stator_speed"]
+    if turning:
+        said.append(f"The stator keeps its {turning:.5g} rad/s at every shaft speed.")
     for number, mode in enumerate(answer["modes"], 1):
         low, high = mode["frequency"][0], mode["frequency"][-1]
         damping = "" if any(mode["growth_rate"]) else ", undamped"
         way = {"none": "does not oscillate", "axial": "oscillates"}.get(
             mode["direction"], f"mostly {mode['direction']}"
         )
-        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {frequencies(low, high)}.")
+        words = f"{frequencies(low, high)} at a shaft speed of {speed_words(ends[0])} to {speed_words(ends[1])}"
+        words = "" if mode["direction"] == "none" and low == high == 0.0 else f": {words}"
+        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}){words}.")
     for point in answer["thresholds"]:
         if point["what"] == "damping":
             ratio = (
@@ -251,4 +270,8 @@ def _verdict(answer) -> list[str]:
         said.append(f"Mode {c['mode']} meets once per turn at {speed_words(c['speed'])}.")
     if not synchronous:
         said.append("No mode meets once per turn in this range.")
+    for c in answer["stator_crossings"]:
+        said.append(f"Mode {c['mode']} meets the stator's own speed at a shaft speed of {c['speed']:.5g} rad/s.")
+    if turning and not answer["stator_crossings"]:
+        said.append("No mode meets the stator's own speed in this range.")
     return said

@@ -301,8 +301,9 @@ def sentences(answer) -> list[str]:
     if time.get("numerical_damping") is not None:
         closest = min(abs(v) for v in answer["growth"]["time_domain"] if v is not None)
         said.append(
-            f"{time['method']} itself damps or pumps by at most {time['numerical_damping']:.1g} 1/s there (against the "
-            f"eigenvalues {time['against_eigenvalue']:.1g}); the closest verdict rests on {closest:.2g} 1/s."
+            f"The method in time, {time['method']}, adds at most {time['numerical_damping']:.1g} 1/s of damping or "
+            f"growth of its own there ({time['against_eigenvalue']:.1g} 1/s away from the eigenvalues); the smallest "
+            f"growth rate that decides a verdict is {closest:.2g} 1/s."
         )
     if answer["nonlinear"]:
         said.append(answer["nonlinear"]["verdict"])

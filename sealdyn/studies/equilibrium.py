@@ -29,6 +29,8 @@ from ..units import Length
 WITH_WAVES = True
 # Relative error of the film's integrals.
 FINE = 1e-10
+# Of which force load support is a share.
+ABOVE = "of the closing force above the lower pressure"
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
 ALONG = {"curve": ("clearance",)}
@@ -229,7 +231,7 @@ def tables(answer) -> list:
     """Every clearance of balance."""
     columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/um", "stiffness", 1e-6), ("stable", "stable"),
                ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
-               ("load support, %", "load_support", 100), ("friction", "friction_coefficient"),
+               ("load support, % above low pressure", "load_support", 100), ("friction", "friction_coefficient"),
                ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
     return [(answer["roots"], columns)]
 
@@ -251,7 +253,10 @@ def _verdict(answer) -> list[str]:
     for root in roots:
         where, rough = 1e6 * root["clearance"], root["contact_force"]
         if rough:
-            said.append(f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N.")
+            words = f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N absolute"
+            share = root["load_support"]
+            words += "" if share is None else f", {100 * (1 - share):.4g} % {ABOVE}; the film carries the rest"
+            said.append(f"{words}.")
         if "wear_rate" in root:
             said.append(f"There both faces wear off {_rate(root['wear_rate'])} on average.")
         if "stator_wear" in root:

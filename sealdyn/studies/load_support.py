@@ -8,7 +8,7 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
-from .equilibrium import find, kept_waves, root_row
+from .equilibrium import ABOVE, find, kept_waves, root_row
 
 WITH_WAVES = True
 OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "leakage": "m^3/s",
@@ -16,8 +16,8 @@ OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "
 # Of the balances within the rows.
 units = OUTPUTS | {"stiffness": "N/m", "mass_flow": "kg/s", "held": "m", "rows": "1"}
 units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
-SAID = (("load_support", "Load support", 100.0, " %"), ("friction_coefficient", "Friction coefficient", 1.0, ""),
-        ("leakage", "Leakage", 3.6e9, " ml/h"))  # fmt: skip
+SAID = (("load_support", f"Load support (share {ABOVE})", 100.0, " %"),
+        ("friction_coefficient", "Friction coefficient", 1.0, ""), ("leakage", "Leakage", 3.6e9, " ml/h"))  # fmt: skip
 # A film this much of whose face cavitates has a cavity, and what changes by less over the key stays.
 TORN, STEADY = 1e-9, 0.1
 
@@ -71,9 +71,9 @@ def tables(answer) -> list:
     (along,), unit = answer["axes"], answer["axes"][0]["unit"]
     rows = [{"value": row[along["key"]], **root} for row in answer["rows"] for root in row.get("roots", ())]
     columns = ((along["key"] + (f", {unit}" if unit else ""), "value"), ("clearance, um", "clearance", 1e6),
-               ("stable", "stable"), ("load support, %", "load_support", 100), ("by contact, N", "contact_force"),
-               ("friction", "friction_coefficient"), ("leakage, ml/h", "leakage", 3.6e9),
-               ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
+               ("stable", "stable"), ("load support, % above low pressure", "load_support", 100),
+               ("by contact, N", "contact_force"), ("friction", "friction_coefficient"),
+               ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
     return [(rows, columns)]
 
 

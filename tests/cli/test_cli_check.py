@@ -33,3 +33,10 @@ def test_check_prints_the_mass_of_a_body(tmp_path):
     answer = sealdyn("check", "seal.toml", "--set", f"{ring}.body={body}", cwd=tmp_path)
     assert answer.code == 0, answer.err
     assert f"[{ring}.body]" in answer.out and "\nmass = 3.14159" in answer.out
+
+
+def test_a_stiffness_that_counts_asperities_says_so(tmp_path):
+    rough = sealdyn("check", SCENARIOS / "run_in.toml", cwd=tmp_path).out
+    smooth = sealdyn("check", SCENARIOS / "axial_only.toml", cwd=tmp_path).out
+    assert "stiffness of film and asperities" in rough and "film stiffness" not in rough
+    assert "film stiffness" in smooth and "asperities" not in smooth

@@ -82,6 +82,18 @@ def test_it_shows_what_the_film_was_held_against(folder):
     assert all(" ".join(row["where"].split()) in text for row in source["rows"])
 
 
+def test_runs_of_different_scenes_are_told_apart(folder):
+    """a and b are one scene, asked differently; c has another clearance."""
+    assert "different scenes" not in (folder / "review.html").read_text()
+    changed = ["--set", "run.turns=1", "--set", "film.clearance=9 um", "--no-plot"]
+    sealdyn("run", "odd.toml", *changed, "--out", "c.h5", cwd=folder)
+    assert sealdyn("report", "a.h5", "c.h5", "b.h5", "--out", "two.html", cwd=folder).code == 0
+    text = " ".join(Page((folder / "two.html").read_text()).text.split())
+    assert text.count("(2 different scenes)") == 2
+    first, second = text.index("Scene 1:"), text.index("Scene 2:")
+    assert first < text.index("(a.h5)") < text.index("(b.h5)") < second < text.index("(c.h5)")
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

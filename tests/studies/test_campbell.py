@@ -4,11 +4,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drawn import drawn
 from in_process import InProcess
 from oracles import green_film, tilt_roots
 
 from sealdyn import read_scenario
+from sealdyn.report.charts import study_campbell
 from sealdyn.studies import campbell
+from sealdyn.studies._runner import run_study
 from sealdyn.studies.campbell import Settings, follow
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -118,6 +121,46 @@ def test_order_lines_meet_modes_where_they_say():
         mode = found["modes"][crossing["mode"] - 1]
         at = np.interp(crossing["speed"], found["speed"], mode["frequency"])
         assert at == pytest.approx(crossing["line"] * crossing["speed"], rel=2e-3)
+
+
+COUNTER = ["stator.speed=-800 rad/s"]
+
+
+def test_a_stator_that_turns_shakes_the_seal_with_its_own_speed():
+    found = answer("fmsr_both_flexible", COUNTER, points=61, speed_to=3000.0)
+    assert found["stator_speed"] == -800 and found["stator_crossings"]
+    for crossing in found["stator_crossings"]:
+        mode = found["modes"][crossing["mode"] - 1]
+        at = np.interp(crossing["speed"], found["speed"], mode["signed_frequency"])
+        assert abs(at) == pytest.approx(800, rel=2e-3) and (at < 0) == (mode["kind"] == "tilt")
+    told = " ".join(found["verdict"])
+    assert "stator keeps its -800 rad/s" in told and told.count("the stator's own speed at") == len(
+        found["stator_crossings"]
+    )
+    still = answer("fmsr_both_flexible", points=11)
+    assert still["stator_crossings"] == [] and "stator" not in " ".join(still["verdict"])
+
+
+def test_the_verdict_says_of_what_a_frequency_is():
+    found = answer("fms_reference", ["film.model=linear"], points=11, speed_from=100.0, speed_to=2000.0)
+    for number, mode in enumerate(found["modes"], 1):
+        (line,) = [line for line in found["verdict"] if line.startswith(f"Mode {number} (")]
+        if any(mode["frequency"]):
+            ends = (
+                f"{mode['frequency'][0]:.5g} rad/s at a shaft speed of 100 rad/s, {mode['frequency'][-1]:.5g} at 2000"
+            )
+            assert ends in line
+
+
+def test_decrements_beyond_the_figure_are_told(tmp_path):
+    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=linear"])
+    answer = run_study("campbell", scenario, tmp_path / "c.h5", flags={"points": 11}, workers=1)
+    most = max(d for mode in answer["modes"] for d in mode["log_decrement"] if d is not None)
+    for limit, told in ((0.5 * most, True), (2.0 * most, False)):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(study_campbell, "MOST_DECREMENT", limit)
+            figure = drawn(study_campbell, tmp_path / "c.h5", tmp_path / "c.png")
+        assert any("beyond" in ax.get_ylabel() for ax in figure.axes) == told
 
 
 def test_massless_ring_has_one_tilt_mode_and_no_rate():

@@ -71,6 +71,14 @@ def test_aligned_film_is_isotropic_with_half_speed_cross_stiffness():
     assert np.all(k[0, 1:] == 0) and np.all(d[0, 1:] == 0)
 
 
+def test_cross_stiffness_of_faces_that_turn_against_each_other():
+    """A wedge film turns with the mean of both faces: (w + w_s)/2 = -w/4 at w_s = -3/2 w."""
+    found = answer("fms_reference", ["stator.speed=-1500 rad/s"])
+    k, d = np.array(found["stiffness"]), np.array(found["damping"])
+    assert k[1, 2] == pytest.approx(-250 * d[1, 1], rel=1e-9)
+    assert "-0.25 of the shaft speed times the damping (-0.25 for a wedge film)" in found["verdict"][1]
+
+
 def test_tilted_state_is_the_mean_of_the_linear_steady_state_in_axial_balance():
     found = answer("fmr_reference", ["stator.misalignment=0.25 mrad"])["tilted"]
     k, d, k_s, d_s, w = 5099.5, 3.6486, 400.0, 0.24, 1000.0

@@ -34,6 +34,7 @@ def test_plane_faces_carry_what_the_pressure_does(tmp_path):
         assert row["load_support"] == pytest.approx(pressed / (0.75 * (r_o**2 - r_i**2)), rel=2e-3)
         assert row["film_force"] + row["contact_force"] == pytest.approx(closing, rel=1e-9)
     assert "nearly constant" in answer["verdict"][0]
+    assert load_support.ABOVE in answer["verdict"][0]
 
 
 def test_waves_over_rough_faces(tmp_path):

@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -246,10 +247,22 @@ def test_halving_the_step_changes_less_than_the_accuracy(accuracy, allowed):
 def test_extrapolation_only_when_asked(run_in, tmp_path):
     answer, _ = run_in
     assert answer["extrapolated"] is None
+    # What the asked hours come to is said all the same, of both faces.
+    rates = np.sum(answer["coefficients"]) * np.array(answer["pv"][-1])
+    worn = np.sum([answer["profile"][face][-1] for face in ("stator", "rotor")], axis=0)
+    total = np.max(worn) + np.mean(rates) * (100 * HOUR - answer["history"]["time"][-1])
+    (line,) = [line for line in answer["verdict"] if "100 h" in line]
+    assert "--run-in extrapolate" in line
+    assert float(re.search(r"100 h come to ([\d.]+) um", line)[1]) == pytest.approx(1e6 * total, rel=0.02)
     told = run_study("wear", read("run_in"), tmp_path / "x.h5", flags={"run_in": "extrapolate"}, workers=1)
     far = told["extrapolated"]
     hours = (far["time"] - far["from"]) / HOUR
     assert far["time"] == 100 * HOUR
+    labels = drawn(study_wear, tmp_path / "x.h5", tmp_path / "x.png").axes
+    labels = [line.get_label() for ax in labels for line in ax.lines]
+    assert sum("extrapolated to 100 h" in label for label in labels) == sum(
+        max(far[f]) > 0 for f in ("stator", "rotor")
+    )
     gained = np.array(far["stator"]) - np.array(told["profile"]["stator"][-1])
     rate = np.array(told["pv"][-1]) * told["coefficients"][0] * HOUR
     assert gained == pytest.approx(rate * hours, rel=1e-9, abs=0.0)

@@ -281,3 +281,19 @@ def test_faces_that_ride_on_their_asperities_have_no_full_film():
     )
     assert row["film_thickness"]["value"] == pytest.approx(-0.5e-6, rel=1e-9)
     assert row["heat"]["verdict"] == "not applicable" and row["heat"]["value"] is None
+
+
+def test_a_film_that_heats_more_than_dry_faces_spares_them_nothing():
+    """Dry at friction 0.25: 0.25 F w r; an oil of a hundred times the viscosity makes more."""
+    row = rows("film.viscosity=100 mPa*s", *HELD)["heat"]
+    assert row["verdict"] == "fail" and row["value"] > row["most"] == row["dry"][1]
+    assert f"{1e-4 * row['value'] / AREA:.4g} W/cm^2" in row["said"]
+    assert rows(*HELD)["heat"]["verdict"] == "note"
+
+
+def test_a_stator_that_turns_shakes_as_the_shaft_does():
+    """The pump's ring has its resonance at 73 Hz; the shaft at 49 Hz is apart from it, the stator's carrier is not."""
+    assert rows("stator.speed=-20 Hz")["shaft_resonance"]["verdict"] == "pass"
+    row = rows("stator.speed=-73 Hz")["shaft_resonance"]
+    assert row["verdict"] == "fail" and "carrier" in row["said"]
+    assert row["shaken"][1] == pytest.approx([73, 73], rel=1e-9)

@@ -82,7 +82,7 @@ def assert_same(found, expected, name):
         assert found.keys() == expected.keys(), name
         for key in expected:
             assert_same(found[key], expected[key], f"{name}.{key}")
-    elif name.rpartition(".")[2] in ("mean", "share_of_closing", "torque", "wear_rate"):
+    elif name.rpartition(".")[2] in ("mean", "share_of_closing", "share_of_load", "torque", "wear_rate"):
         assert found == pytest.approx(expected, rel=1e-12), name
     else:
         assert found == expected, name

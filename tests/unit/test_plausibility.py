@@ -67,9 +67,12 @@ def test_poiseuille_reynolds_number_of_the_leakage():
 
 
 def test_friction_that_heats_the_leakage():
-    found = cautions("film.clearance=1 um", "film.coning=0.3 mrad", "shaft.speed=800 rad/s")
-    (sentence,) = found[Concern.HEATING]
-    assert numbers(sentence)[0] > 10
+    thin = ["film.clearance=1 um", "film.coning=0.3 mrad", "film.viscosity=0.5 mPa*s"]
+    (sentence,) = cautions(*thin, "shaft.speed=80 rad/s")[Concern.HEATING]
+    assert 10 < numbers(sentence)[0] < 100 and "would heat" in sentence
+    # Beyond that a rise has no meaning: watts on the face have one.
+    (sentence,) = cautions(*thin, "shaft.speed=250 rad/s")[Concern.HEATING]
+    assert "cannot carry" in sentence and " K" not in sentence
 
 
 def test_films_of_nanometres():
@@ -113,6 +116,38 @@ def test_numbers_without_units():
     assert cautions(change={"shaft.speed": 50.0}) == {}
     far = cautions("film.clearance=1", "film.coning=0", "film.outer_pressure=0.001 Pa", "film.viscosity=1e6 Pa*s")
     assert any("metres" in sentence for sentence in far[Concern.UNITS])
+
+
+@pytest.mark.parametrize(
+    "key,slip,fine,shown",
+    [
+        ("film.viscosity", "0.8", '"0.8 Pa*s"', 800),
+        ("film.viscosity", "0.8", "0.05", 800),
+        ("film.inner_pressure", "1", '"1 Pa"', 1e-5),
+        ("film.temperature", "400", '"400 K"', 126.85),
+        ("film.coning", "0.05", '"0.05 rad"', 50),
+        ("stator.mass", "120", "0.12", 120_000),
+        ("film.density", "0.998", '"0.998 g/cm^3"', 0.000998),
+    ],
+)
+def test_numbers_without_units_that_no_seal_has(key, slip, fine, shown):
+    """Each is told in the unit that may have been meant; none with its unit, or of a usual size."""
+    light = ["stator.misalignment=0", "rotor.runout=0", "run.start='rest'"]
+    if key == "film.temperature":
+        # A liquid's matters to its coning only.
+        light += ["film.coning_per_kelvin=1e-9 rad/K", "film.coning_reference_temperature=400 K"]
+    told = [s for s in cautions(*light, f"{key}={slip}").get(Concern.UNITS, []) if s.startswith(key)]
+    assert len(told) == 1 and numbers(told[0])[0] == float(slip) and shown in numbers(told[0])
+    assert Concern.UNITS not in cautions(*light, f"{key}={fine}")
+
+
+def test_wear_of_millimetres_an_hour():
+    """1e-6 without a unit is 1e-6 1/Pa, a thousand mm^3/(N m)."""
+    rough = ["run.turns=0.5", "run.accuracy=1e-3"]
+    slip = cautions(*rough, "contact.stator_wear_coefficient=1e-6", path=SCENARIOS / "run_in.toml")
+    assert numbers(slip[Concern.UNITS][0])[::2] == [1e-6, 1000] and numbers(slip[Concern.WEAR][0])[0] > 1
+    usual = cautions(*rough, "contact.stator_wear_coefficient=1e-15", path=SCENARIOS / "run_in.toml")
+    assert not {Concern.UNITS, Concern.WEAR} & set(usual)
 
 
 GAS = ["film.viscosity=2e-5 Pa*s", "film.coning=0", "stator.misalignment=0", "rotor.runout=0"]

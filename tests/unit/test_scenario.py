@@ -114,6 +114,19 @@ BROKEN = [
     (('"radial"', '"_cavity"'), ["[film] model"]),
     (("model =", 'coefficients = "gren"\nmodel ='), ["[film] coefficients", "nearest 'green'"]),
     (("model =", "coefficients = { tilt_stiffness = 1 }\nmodel ="), ["[film.coefficients] tilt_damping", "nothing"]),
+    # words of the trade, notations of the field
+    (('axial_stiffness', "stiffness"), ["[rotor.support] stiffness", "nearest 'axial_stiffness'"]),
+    (('axial_damping', "damping"), ["[rotor.support] damping", "nearest 'axial_damping'"]),
+    (("[run]", "[contact]\nhardness = 1\n[run]"), ["[contact] hardness", "nearest 'compressive_strength'"]),
+    (("[run]", "[contact]\nfriction = 1\n[run]"), ["[contact] friction", "nearest 'friction_coefficient'"]),
+    (("[run]", "[rotor.secondary_seal]\nfriction = 1\n[run]"), ["seal] friction", "nearest 'friction_force'"]),
+    (("[stator]", "[stator]\nwaves = 3"), ["[stator] waves", "nearest 'waviness'"]),
+    (("misalignment =", 'runout = "20 um"\nmisalignment ='), ["[rotor] runout", '"20 um TIR"']),
+    (('"1000 rad/s"', '"36 m/s"'), ["[shaft] speed", '"9549.3 rpm"', "mean radius"]),
+    (("[stator]", '[stator]\nspeed = "36 m/s"'), ["[stator] speed", '"9549.3 rpm"']),
+    (('"radial"', '"gas"'), ["[film] model", "nearest 'gas_dam' and 'gas_reynolds'"]),
+    (("[stator]", '[stator.body]\nmaterial = "carbon"\n[stator]'), ["[stator.body] mat", "nearest 'carbon graphite'"]),
+    (("model =", 'temperature = "300 K"\nmodel ='), ["[film] temperature", "liquid", "coning_per_kelvin"]),
     # impossible
     (("misalignment =", "misalignment = { time = [0, 1, 1], value = [0, 0, 1e-6] } #"), ["[rotor] misal", "a step"]),
     (('"32 mm"', '"40 mm"'), ["[film] inner_radius", "less than outer_radius"]),
@@ -151,6 +164,12 @@ BROKEN = [
 def test_refused_in_one_line(swap, says):
     line = refusal(change(*swap))
     assert all(word in line for word in says), line
+
+
+def test_a_key_into_a_list_says_its_entry():
+    waves = "[[stator.waviness]]\norder = 2\namplitude = 1e-7\n"
+    for text, entry in ((FMR + waves, "stator.waviness.0.amplitude"), (FMR + 2 * waves, "stator.waviness.1.amplitude")):
+        assert entry in refusal(text, "stator.waviness.amplitude=1 um")
 
 
 def test_no_support_anywhere():

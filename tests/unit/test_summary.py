@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sealdyn.dynamics.signals import signals
+from sealdyn.report.charts import overview
 from sealdyn.report.text import lines
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
@@ -93,3 +94,51 @@ def test_asperities_that_touch_without_forcing_leave_no_margin():
     assert summary["contact"]["share_of_closing"] > 0.05 and summary["contact_margin"] == 0.0
     (said,) = [words for name, words in printed(scenario, summary) if name == "contact"]
     assert "times" not in said
+    # Both shares: of the closing force, and of it above the lower pressure.
+    low, contact = scenario.scene.film.inner_pressure, summary["contact"]
+    above = summary["closing"]["force"] - low * summary["closing"]["face_area"]
+    assert contact["share_of_load"] == pytest.approx(contact["force"]["mean"] / above, rel=1e-9)
+    assert contact["share_of_load"] > contact["share_of_closing"]
+    told = " ".join(words for _, words in printed(scenario, summary))
+    assert f"{100 * contact['share_of_closing']:.4g} % of the absolute closing force" in told
+    assert f"{100 * contact['share_of_load']:.4g} % of what" in told and "asperities included" in told
+    assert {"film and asperities"} == {"film and asperities", "film stiffness"} & set(dict(overview._numbers(summary)))
+
+
+def test_faces_without_a_wear_coefficient_have_no_rate_of_wear():
+    bare = [
+        "run.turns=0.5",
+        "run.accuracy=1e-3",
+        "contact.stator_wear_coefficient=0",
+        "contact.rotor_wear_coefficient=0",
+    ]
+    for changes, words in ((bare, "no wear coefficient"), (bare[:2], "um/h")):
+        scenario = read_scenario(SCENARIOS / "run_in.toml", changes)
+        told = printed(scenario, simulate_in_memory(scenario, speeds=True))
+        assert sum(words in line for _, line in told) == 1
+
+
+def test_heat_that_no_leakage_carries_is_told_per_area():
+    changes = ["film.clearance=1 um", "film.coning=0.3 mrad", "run.turns=1", "run.accuracy=1e-3"]
+    for speed, hot in ((80, False), (250, True)):
+        scenario = read_scenario(SEAL, [*changes, f"shaft.speed={speed} rad/s"])
+        summary = simulate_in_memory(scenario, speeds=True)
+        said = dict(printed(scenario, summary))["friction"]
+        flux = f"{1e-4 * summary['friction']['power'] / summary['closing']['face_area']:.4g} W/cm^2"
+        assert (summary["friction"]["temperature_rise"] > 100) == hot == (flux in said) == ("heat the" not in said)
+
+
+def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
+    """Zuk (1972): parallel faces at a high pressure choke, at a low one the gas is slow."""
+    for pressure, chokes in (("60 bar", True), ("1.5 bar", False)):
+        changes = [f"film.inner_pressure={pressure}", "run.turns=0.2", "run.accuracy=1e-2"]
+        scenario = read_scenario(SCENARIOS / "gas_dam_reference.toml", changes)
+        summary = simulate_in_memory(scenario, speeds=True)
+        mach = summary["film"]["exit_mach"]
+        assert (mach == pytest.approx(1.0, rel=1e-6)) if chokes else 0.0 < mach < 0.95
+        (told,) = [words for _, words in printed(scenario, summary) if "Mach" in words]
+        assert ("not choked" in told) != chokes and f"{mach:.4g}" in told
+        # The figure has the leakage of a gas as the text has it.
+        litres = 1e3 * 60 * summary["leakage"]["mean"]
+        assert dict(overview._numbers(summary))["mean leakage"].startswith(f"{litres:.4g} l/min (0 °C")
+    assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["film"]["exit_mach"] is None

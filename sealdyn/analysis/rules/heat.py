@@ -2,7 +2,7 @@
 
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import viscosity_of
-from ._finding import noted, other_seals
+from ._finding import Finding, Verdict, noted, other_seals
 
 SOURCE = "full film mu A (w D/2)^2/h, dry pi f F D N, carbon-graphite f 0.1 to 0.25"
 COMMAND = "sealdyn run FILE"
@@ -11,8 +11,8 @@ FRICTION = (0.1, 0.25)
 
 
 def finding(seal):
-    """A note: watts at the highest sliding speed, of the film at the start, and of faces that carry the closing force
-    above the lower pressure."""
+    """Watts at the highest sliding speed, of the film at the start, and of faces that carry the closing force above the
+    lower pressure: a note; fail if the film makes more than the faces do dry, and so spares them nothing."""
     speed, film = seal.sliding_speed, seal.film_thickness
     if film <= 0.0:
         # Rough faces may carry a cone that closes their mean planes.
@@ -23,4 +23,7 @@ def finding(seal):
         f"heat {full:.4g} W of a full film of {1e6 * film:.4g} um at {60 * speed:.4g} m/min; faces that run dry would "
         f"make {dry[0]:.4g} to {dry[1]:.4g} W"
     )
+    if full > dry[1] > 0.0:
+        said += f": more than without it, {1e-4 * full / seal.face_area:.4g} W/cm^2 of face"
+        return Finding(Verdict.FAIL, said, full, "W", most=dry[1], numbers={"dry": dry})
     return noted(said, full, "W", dry=dry)

@@ -35,6 +35,9 @@ NUMBERS = (
     ("energy residual", ("energy_residual", 1, "{}", 2)),
 )  # fmt: skip
 
+# Of a gas, at normal conditions.
+GAS_LEAKAGE = (("leakage.mean_ml_per_h", 1 / 6e4, "{} l/min (0 °C, 1.01325 bar)", 4),)
+
 
 # Titles stay where they are put: nothing is above them that they had to make room for, and looking takes a quarter of
 # the drawing.
@@ -178,7 +181,7 @@ def contact_panel(ax, run: Run) -> None:
     ax.fill_between(x, force, color=CONTACT, alpha=0.25, lw=0)
     ax.plot(x, force, color=CONTACT, lw=0.9)
     share = (run.summary.get("contact") or {}).get("share_of_closing")
-    words = f", {100 * share:.3g} % of the closing force on average" if isinstance(share, float) else ""
+    words = f", {100 * share:.3g} % of the absolute closing force on average" if isinstance(share, float) else ""
     ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * np.nanmax(force)))
     _span(ax, run, 0)
 
@@ -209,6 +212,9 @@ def _numbers(summary: dict, speed: tuple[str, float]):
     """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name.
     `speed`: unit of speeds, and how many of it make one rad/s."""
     for name, *parts in NUMBERS:
+        parts = GAS_LEAKAGE if name == "mean leakage" and (summary.get("leakage") or {}).get("conditions") else parts
+        if name == "film stiffness" and summary.get("contact"):
+            name = "film and asperities"
         values = [_value(summary, key) for key, *_ in parts]
         # Faces of no wear coefficient say nothing of wear.
         if all(value is None for value in values) or (name == "wear rate" and values == [0.0]):

@@ -53,6 +53,13 @@ def _frequencies(ax, answer, speed, factor):
     for c in answer["crossings"]:
         ax.plot(factor * c["speed"], factor * c["frequency"], "o", mfc="white", mec=BLACK, ms=6, zorder=4,
                 label=once(ax, "meets an order line"))  # fmt: skip
+    # Archives of earlier versions do not hold it.
+    turning = factor * abs(answer.get("stator_speed") or 0.0)
+    if 0.0 < turning < top:
+        ax.axhline(turning, color=GREY, lw=0.9, ls=(0, (6, 2, 1, 2)), label="stator's own speed")
+        for c in answer["stator_crossings"]:
+            ax.plot(factor * c["speed"], turning, "s", mfc="white", mec=BLACK, ms=6, zorder=4,
+                    label=once(ax, "meets it"))  # fmt: skip
     if speed[0] < factor * answer["own_speed"] < speed[-1]:
         ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":")
 
@@ -106,7 +113,8 @@ def _decrements(ax, answer, speed, factor):
         # Room for the threshold's number below zero.
         bottom = min(bottom, -np.sinh(0.09 * np.arcsinh(highest)))
     ax.axhspan(bottom, 0.0, color=VERMILLION, alpha=0.08, lw=0)
-    ax.set(ylim=(bottom, 1.05 * highest), ylabel="logarithmic decrement", title="Damping")
+    capped = f" (beyond {MOST_DECREMENT:g}: drawn there)" if np.nanmax(every) > MOST_DECREMENT else ""
+    ax.set(ylim=(bottom, 1.05 * highest), ylabel=f"logarithmic decrement{capped}", title="Damping")
     for at in thresholds:
         _name_threshold(ax, at, speed, shown)
     if bottom < -0.3:

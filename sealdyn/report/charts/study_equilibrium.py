@@ -14,7 +14,7 @@ SHOWN = 3.0
 
 @look()
 def draw(archive_path, out_path):
-    """Force above, film stiffness below, from a study's archive."""
+    """Force above, stiffness below, from a study's archive."""
     study = read_study(archive_path)
     answer = study["answer"]
     title = "At which clearance does the seal ride?"
@@ -61,6 +61,8 @@ def _stiffness(ax, answer, clearance):
         ax.axvline(1e6 * root["clearance"], color=GREY, lw=0.8, ls=":")
         ax.plot(1e6 * root["clearance"], 1e-6 * root["stiffness"], mark, ms=8, mfc=colour, mec=BLACK, zorder=4)
     held = [1e-6 * root["stiffness"] for root in answer["roots"]]
-    if np.any(answer["curve"].get("contact_force", [0.0])) and max(held, default=0.0) > 0:
+    rough = np.any(answer["curve"].get("contact_force", [0.0]))
+    what = "film and asperities" if rough else "the film"
+    if rough and max(held, default=0.0) > 0:
         ax.set_ylim(min(stiffness.min(), 0.0) - 0.1 * max(held), SHOWN * max(held))
-    ax.set(ylabel="stiffness, N/µm", title="Axial film stiffness (negative: the film runs away)")
+    ax.set(ylabel="stiffness, N/µm", title=f"Axial stiffness of {what} (negative: it runs away)")

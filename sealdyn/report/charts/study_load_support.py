@@ -8,7 +8,7 @@ from .palette import BLACK, BLUE, CONTACT, FILM, GREEN, PURPLE, SKY
 from .study_sweep import axis_label, positions
 
 PANELS = {
-    "load": ("load_support", 100.0, "load support, %", FILM),
+    "load": ("load_support", 100.0, "load support, % above low pressure", FILM),
     "friction": ("friction_coefficient", 1.0, "friction coefficient", CONTACT),
     "leakage": ("leakage", 6e7, "leakage, ml/min", BLUE),
     "clearance": ("clearance", 1e6, "clearance, µm", GREEN),

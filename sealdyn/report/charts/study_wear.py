@@ -66,7 +66,10 @@ def _faces(figure, ax, answer, unit, factor):
             ax[face].plot(radius, per * depth[i], color=colour(scale(time[i])), lw=1.3)
         if face in depths:
             if answer["extrapolated"]:
-                ax[face].plot(radius, per * np.array(answer["extrapolated"][face]), color=GREY, lw=1.0, ls=":")
+                later = answer["extrapolated"]
+                label = f"extrapolated to {factor * later['time']:.4g} {unit}, not computed"
+                ax[face].plot(radius, per * np.array(later[face]), color=GREY, lw=1.0, ls=":", label=label)
+                ax[face].legend(loc="best")
             ax[face].invert_yaxis()
         ax[face].margins(x=0.01)
         ax[face].set(xlabel="radius, mm", ylabel=f"{'depth' if face in depths else 'gap'}, {name}", title=title)
@@ -98,7 +101,7 @@ def _over_time(history) -> dict:
     return {
         "Leakage": (leakage[0], (leakage[1], "leakage", LEAK, "")),
         "Friction power": ("W", (1.0, "friction_power", BLACK, "")),
-        "Contact": ("%", (100.0, "contact_share", CONTACT, "of the closing force"),
+        "Contact": ("%", (100.0, "contact_share", CONTACT, "of the absolute closing force"),
                     (100.0, "contact_area_fraction", ORANGE, "of the face touches")),
         "Film": ("µm", (1e6, "mean_clearance", FILM, "mean over the face"), (1e6, "h_min", GREY, "thinnest")),
         "Worn volume": ("mm³", (1e9, "stator_volume", RING["stator"], "stator"),

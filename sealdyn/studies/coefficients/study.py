@@ -85,6 +85,8 @@ def run(scenario, settings, tools) -> dict:
         "stiffness_units": STIFFNESS_UNITS,
         "damping_units": DAMPING_UNITS,
         "at": _at(model, State(), speed),
+        "stator_speed": scene.stator.speed,
+        "asperities": scene.contact is not None,
         "tilted": _tilted(model, settings, speed),
         "against_speed": _against_speed(model, settings, speed),
         "against_clearance": _against_clearance(scene, model, settings),
@@ -252,9 +254,14 @@ def _table_error(answer) -> list[str]:
 def _verdict(answer) -> list[str]:
     k, d, at, tilted = np.array(answer["stiffness"]), np.array(answer["damping"]), answer["at"], answer["tilted"]
     pace = d[1, 1] * at["speed"]
-    ratio = f", {k[1, 2] / pace:.4g} of the shaft speed times the damping (half, for a wedge film)" if pace else ""
+    # A wedge film turns with the mean of both faces.
+    wedge = 0.5 * (1.0 + answer["stator_speed"] / at["speed"]) if at["speed"] else 0.0
+    ratio = (
+        f", {k[1, 2] / pace:.4g} of the shaft speed times the damping ({wedge:.4g} for a wedge film)" if pace else ""
+    )
+    film = f"{answer['film']} film" + (" with asperities" if answer["asperities"] else "")
     said = [
-        f"Aligned at {at['clearance'] * 1e6:.4g} um, {speed_words(at['speed'])}, {answer['film']} film: axial "
+        f"Aligned at {at['clearance'] * 1e6:.4g} um, {speed_words(at['speed'])}, {film}: axial "
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]

@@ -234,8 +234,8 @@ def tables(answer) -> list:
     names = ("time", "leakage", "friction_power", "contact_share", "coning", "h_min")
     values = zip(*(answer["history"].get(name, []) for name in names), strict=True)
     columns = (("time, h", "time", 1 / 3600), ("leakage, ml/h", "leakage", 3.6e9), ("friction, W", "friction_power"),
-               ("contact, % of closing force", "contact_share", 100), ("coning of the gap, urad", "coning", 1e6),
-               ("smallest film, um", "h_min", 1e6))  # fmt: skip
+               ("contact, % of absolute closing force", "contact_share", 100),
+               ("coning of the gap, urad", "coning", 1e6), ("smallest film, um", "h_min", 1e6))  # fmt: skip
     return [([dict(zip(names, row, strict=True)) for row in values], columns)]
 
 
@@ -251,6 +251,11 @@ def sentences(answer, settings) -> list[str]:
     if later:
         told += (f"; extrapolated at the last rates, not computed, to {_hours(later['time'])}: stator "
                  f"{_length(max(later['stator']))}, rotor {_length(max(later['rotor']))}")  # fmt: skip
+    elif answer["end"]["kind"] == "run-in":
+        total = max(map(sum, zip(*depths.values(), strict=True)))
+        total += answer["history"]["wear_rate"][-1] * (settings.duration - time[-1])
+        told += (f"; at the rate that is left, not computed, the asked {_hours(settings.duration)} come to "
+                 f"{_length(total)} of both faces together (see --run-in extrapolate)")  # fmt: skip
     limits = _limits(answer, settings)
     return [*lines, f"{told}.", *([f"Mind: {'; '.join(limits)}."] if limits else [])]
 
