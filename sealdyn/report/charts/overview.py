@@ -4,7 +4,8 @@ import numpy as np
 from matplotlib import rc_context
 
 from ...status import Status
-from . import orbit, spectrum
+from ..radial import is_radial
+from . import followers, orbit, spectrum
 from .page import PAPER, absent, header, level, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run
@@ -37,6 +38,8 @@ NUMBERS = (
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
     run = Run(archive_path)
+    if is_radial(run.info):
+        return followers.draw(archive_path, out_path, turns)
     figure = sheet(13.5, 9.0)
     ax = _placed(figure, header(figure, run) - 0.025)
     ax["orbit"].set_anchor("N")
