@@ -131,7 +131,8 @@ def equilibria(film, opening_force, closing: float, inner: float, outer: float, 
     grid = least + np.geomspace(reference / WIDEST, reference * WIDEST, POINTS)
     excess = np.array([opening_force(c, inner, outer) - closing for c in grid])
     # An excess that never leaves rounding is no root: flat faces carry the same load at any clearance.
-    noise = 1e-11 * max(abs(closing), float(np.nanmax(np.abs(excess + closing))))
+    carried = np.abs(excess + closing)
+    noise = 1e-11 * float(np.max(carried, initial=abs(closing), where=np.isfinite(carried)))
     roots = []
     for k in range(POINTS - 1):
         if excess[k] * excess[k + 1] < 0 and max(abs(excess[k]), abs(excess[k + 1])) > noise:

@@ -157,8 +157,10 @@ class ExactMotion:
     def __init__(self, segment):
         _, answers, linear = segment.steady_motion()
         kept, places = segment.model.unknowns.among_three(), [*range(segment.n), *segment.rate_places]
-        rows = np.array([*kept, *[len(linear.mass) + i for i in kept]])[np.argsort(places)]
-        self.matrix = linear.state_matrix()[np.ix_(rows, rows)]
+        order = np.argsort(places)
+        rows = np.array([*kept, *[len(linear.mass) + i for i in kept]])[order]
+        # A motion that is none of the unknowns may lack its mass.
+        self.matrix = linear.state_matrix(kept)[np.ix_(order, order)]
         self.frequencies = np.array([h.frequency for h, _ in answers])
         both = [np.concatenate([answer, 1j * h.frequency * answer])[rows] for h, answer in answers]
         self.answers = np.array(both).reshape(len(answers), len(rows))

@@ -246,18 +246,20 @@ class LinearScene:
         backward = len(left) * np.finfo(float).eps * (np.linalg.norm(left) + np.abs(values) * np.linalg.norm(right))
         return backward * minds[nearest] + np.abs(own[nearest] - values)
 
-    def state_matrix(self) -> np.ndarray:
-        """First-order matrix (2n, 2n) on (displacements, rates).  Raises ValueError for a film that stores, whose state
-        is more, and if a mass is zero."""
+    def state_matrix(self, places=None) -> np.ndarray:
+        """First-order matrix (2n, 2n) on (displacements, rates), of the displacements at these `places` alone if they
+        are given.  Raises ValueError for a film that stores, whose state is more, and if a mass is zero."""
         if self.film is not None:
             raise ValueError("a film that stores has more to its state than displacements and rates")
-        mass = np.diag(self.mass)
+        places = np.arange(len(self.mass)) if places is None else np.asarray(places)
+        kept = np.ix_(places, places)
+        mass = np.diag(self.mass)[places]
         if not np.all(mass):
             raise ValueError("a mass is zero")
         n, inverse = len(mass), 1.0 / mass[:, None]
         matrix = np.zeros((2 * n, 2 * n))
         matrix[:n, n:] = np.eye(n)
-        matrix[n:, :n], matrix[n:, n:] = -inverse * self.stiffness, -inverse * self.damping
+        matrix[n:, :n], matrix[n:, n:] = -inverse * self.stiffness[kept], -inverse * self.damping[kept]
         return matrix
 
     def response(self, harmonic: Harmonic) -> np.ndarray:

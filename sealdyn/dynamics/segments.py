@@ -9,6 +9,7 @@ import numpy as np
 from ..faces import contact
 from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
 from ..faces.waviness import highest_orders
+from ..solvers.contract import SolverFailure
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
 from .fluid import fluid_conditions, thermal_coning
@@ -21,6 +22,11 @@ from .step_bounds import largest_swing
 PER_PERIOD = 32
 # By how much of the speed below which friction fades a rate is moved to difference it.
 TURNING = 0.2
+# A ring without mass moves as its damping lets it.
+UNDAMPED = (
+    "no force tells how fast a ring without mass moves: give it a mass, or damping; look at the units of speed, "
+    "viscosity and damping"
+)
 # Longest step in radians of the fastest imposed motion: a third of its period.
 LONGEST = 2.0
 
@@ -191,7 +197,10 @@ class Segment:
                 moved[j] += scale[j]
                 self.residual(tau, y, moved, shifted)
                 jac[:, b] = (shifted[light] - res[light]) / scale[j]
-            yp[light] -= np.linalg.solve(jac, res[light])
+            try:
+                yp[light] -= np.linalg.solve(jac, res[light])
+            except np.linalg.LinAlgError:
+                raise SolverFailure(UNDAMPED) from None
         self.residual(tau, y, yp, res)
         others = [i for i in range(self.size) if i not in light and i not in self.algebraic]
         yp[others] -= res[others]

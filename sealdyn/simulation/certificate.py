@@ -28,6 +28,8 @@ from .looked_at import LookedAt
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
 TRIAL_PERIODS, TRIAL_SAFETY = 3.0, 8.0
+# Steps of a trial beyond which the method crawls there: the run itself tells how far it gets.
+TRIAL_STEPS = 20_000
 # How far a run is from a sharper one, times this, is its error.
 MEASURED = 2.0
 # What an estimate leaves out, between steps and between the instants that are compared, over the accuracy: nothing
@@ -136,7 +138,7 @@ def choose_tolerance(run: RunState, method: str) -> tuple[TrialRun | None, Globa
     """The loosest tolerance whose estimated error stays within its share of the accuracy, no looser than LOOSER times
     the cautious one, and what follows the run's errors.  No trial where the start does not represent the run: where
     errors cannot be followed, an unstable scene, errors that add up over the whole run; and where the method fails on
-    trial."""
+    trial, or crawls."""
     errors = error_estimator(run, method)
     if errors is None or run.memory * run.model.shortest_period > 0.5 * run.duration:
         return None, errors
@@ -161,6 +163,8 @@ def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun 
             parts.append((t, ys))
             steps += len(t)
             advance.see(float(t[-1]), steps)
+            if steps > TRIAL_STEPS:
+                return None
     except SolverFailure:
         return None
     t, ys = (np.concatenate([part[i] for part in parts]) for i in range(2))

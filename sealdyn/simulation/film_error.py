@@ -43,6 +43,8 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
         return None
     segment = run.segment(0)
     _, answers, linear = segment.steady_motion()
+    if not np.all(np.diag(linear.mass)):
+        return None
     matrix = linear.state_matrix()
     values = np.linalg.eigvals(matrix)
     slowest, sizes = float(np.max(values.real)), np.abs(values)

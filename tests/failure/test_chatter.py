@@ -64,3 +64,12 @@ def test_a_run_without_advance_is_a_result(monkeypatch, tmp_path):
     found = simulate(scenario, tmp_path / "x.h5").summary
     assert found["status"] == "failed" and "no advance" in found["message"] and "run.solver" in found["message"]
     assert read_info(tmp_path / "x.h5")["status"] == "failed"
+
+
+def test_a_trial_that_crawls_is_given_up(tmp_path):
+    """Springs that pull by ten radians close the film within microseconds, which only the run itself sees; the trial of
+    a tolerance went on behind it for minutes."""
+    scenario = read_scenario(
+        SQUEEZE.with_name("fms_reference.toml"), ["stator.misalignment='10 rad'", "run.turns=0.5", "run.start=rest"]
+    )
+    assert simulate(scenario, tmp_path / "x.h5").status == "collapsed"

@@ -12,7 +12,7 @@ from sealdyn.closed_form import film_coefficients
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator, Support
-from sealdyn.simulation.simulate import prepare_run
+from sealdyn.simulation.simulate import prepare_run, simulate
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
@@ -116,3 +116,18 @@ def test_stick_slip_across_from_a_massless_ring():
     massless, light = events(0.0), events(1e-3)
     assert len(massless) > 5 and [kind for kind, _ in massless] == [kind for kind, _ in light]
     assert np.array([t for _, t in massless]) == pytest.approx(np.array([t for _, t in light]), rel=1e-3)
+
+
+def test_forces_that_do_not_tell_a_rate_fail_the_run(tmp_path):
+    """At a shaft speed of rounding size the rates by which these are differenced move nothing."""
+    scenario = read_scenario(SCENARIOS / "massless_ring.toml", ["shaft.speed=1e-24", "run.turns=0.5"])
+    found = simulate(scenario, tmp_path / "x.h5")
+    assert found.status == "failed" and "how fast a ring without mass moves" in found.message
+
+
+def test_a_mass_of_a_motion_that_is_no_unknown_may_be_nothing(tmp_path):
+    """Tilts in a linear film ask for the inertia only."""
+    found = simulate(
+        read_scenario(SCENARIOS / "free_precession.toml", ["rotor.mass=0", "run.turns=0.5"]), tmp_path / "x.h5"
+    )
+    assert found.status == "ok" and found.summary["energy_residual"] < 1e-9

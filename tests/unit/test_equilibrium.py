@@ -231,3 +231,9 @@ def test_the_excess_of_opening_force_is_zero_where_the_loads_move_the_gap():
     assert abs(axial_excess(model, s, model.closing_force())(0.0)) < 1e-9 * model.closing_force()
     heavier = axial_excess(model, s, 1.02 * model.closing_force())
     assert heavier(0.0) < 0 < heavier(-0.5 * CLEARANCE)
+
+
+def test_a_force_that_is_no_number_balances_nothing():
+    """Of a face a million kilometres wide, say: a warning of Python came before the line that refuses it."""
+    found = equilibria(film(), lambda *where: math.nan, 100.0, P_I, P_O)
+    assert list(found) == []
