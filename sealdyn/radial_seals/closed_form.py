@@ -66,7 +66,7 @@ def said(followers, shaft) -> list[str]:
     needed, largest = needed_preload(followers, shaft, speed), largest_eccentricity(followers, shaft, speed)
     per = 1.0 / followers.arc
     sentences = [
-        f"preload {followers.preload * per:.4g} N/m; to ride on this shaft all the way round takes {needed * per:.4g} N/m"
+        f"preload {followers.preload * per:.4g} N/m; {needed * per:.4g} N/m are needed to ride all the way round"
     ]
     if math.isfinite(largest):
         sentences.append(f"without lobes it rides on eccentricities up to {1e3 * largest:.4g} mm at this speed")

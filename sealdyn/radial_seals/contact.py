@@ -12,6 +12,8 @@ from .equations import FREE, HELD, RIDING
 LOOKS = 8
 # What counts as nothing: of distances and speeds a share of their error, of loads of their size.
 OF_ERROR, OF_LOAD = 0.01, 1e-11
+# From a place to the next to rounding.
+HALVINGS = 48
 # Share of a segment's length in which nothing is integrated.
 CRUMB = 1e-12
 EVENTS = {"lift": "leaves the shaft", "land": "lands on the shaft", "stick": "is held by its flange",
@@ -72,7 +74,7 @@ class Contacts:
             if found and self.segment.length - found[0] > CRUMB * self.segment.length:
                 time, j = found
                 low = block.t[step]
-                y = block.ys[step].copy() if time <= low else advance(low, block.ys[step], time)
+                y = advance(low, block.ys[step], time)
                 return Transition(step, float(time), y, j)
         return None
 
@@ -160,6 +162,9 @@ class Contacts:
                     return self.guards(block, np.array([tau]))[which][0, j]
 
                 found = _first_below(guard, taus, values[:, j], least[j])
+                if found is not None:
+                    # No interval without a length.
+                    found = max(found, taus[0] + CRUMB * self.segment.length)
                 if found is not None and (first is None or found < first[0]):
                     first = (found, int(j))
         return first
@@ -199,6 +204,7 @@ def _first_below(guard, taus, values, least) -> float | None:
 
 def _bisected(guard, low, high, least) -> float:
     """The first instant at which the guard is below `least`, between `low` where it is not and `high` where it is."""
-    while low < (middle := 0.5 * (low + high)) < high:
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
         low, high = (low, middle) if guard(middle) < least else (middle, high)
     return high

@@ -13,8 +13,9 @@ from ..scene.radial import RadialScene
 from . import equations
 from .followers import followers_of
 
-# Steps per period of the fastest wave of the shaft, at least: between them contacts are looked for.
-PER_PERIOD = 24
+# Share of the accuracy that a cubic between two steps may err by: where a solver has begun anew nothing better lies
+# between its steps.
+BETWEEN = 0.1
 
 
 class RadialModel:
@@ -117,8 +118,8 @@ class RadialSegment:
         return y, yp
 
     def longest_step(self) -> float:
-        """Longest step (s): the waves of the shaft are looked at so many times a period."""
-        return 2.0 * math.pi / (PER_PERIOD * self.pace) if self.pace else math.inf
+        """Longest step (s): a cubic through both ends of a step of h radians of the fastest motion errs by h^4/384."""
+        return (384.0 * BETWEEN * self.model.accuracy) ** 0.25 / max(self.reference_rate, self.pace)
 
     def motion(self, ys, yps):
         """Displacements and rates, each (m, n), of stored steps."""

@@ -8,6 +8,9 @@ from ..solvers.energy_audit import missing_energy
 from . import closed_form
 from .signals import conductance
 
+# Share of a run in which nothing but the first look at it lies.
+AT_ONCE = 1e-9
+
 
 def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
     """The numbers of `run --json`, SI; `settled` are those of the second half of the run."""
@@ -15,6 +18,9 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
     speed = largest_value(scene.shaft.speed)
     needed = closed_form.needed_preload(followers, scene.shaft, speed)
     kind = "lip" if scene.lip else "circumferential"
+    first = contacts.first_lift
+    if first is not None and first < AT_ONCE * run.duration:
+        first = 0.0
     summary = {
         "status": outcome.status,
         "message": outcome.message,
@@ -27,7 +33,7 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
         },
         "whole": _watched(run.extrema, scene, followers),
         "settled": _watched(run.contacts, scene, followers),
-        "contact": {**contacts.counts, "first_lift": contacts.first_lift, "energy_lost": contacts.dropped,
+        "contact": {**contacts.counts, "first_lift": first, "energy_lost": contacts.dropped,
                     "followers_held_at_end": int((contacts.modes == 1.0).sum()),
                     "followers_riding_at_end": int((contacts.modes == 2.0).sum())},
         "closed_form": {
@@ -54,18 +60,18 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
 def _watched(watch, scene, followers) -> dict:
     """Shares, loads and leakage over the time that was watched."""
     time = watch.time or np.nan
-    riding = watch.riding / time
-    (gap, gap_time, gap_at), (least, least_time, least_at), (most, _, _) = (
+    riding, held = watch.share(watch.riding), watch.share(watch.held)
+    (gap, gap_time, gap_at), (least, least_time, _), (most, _, _) = (
         watch.extremes[name] for name in ("largest_gap", "least_load", "largest_load")
     )
     angle = None if gap_at is None else float(followers.angles[gap_at])
     load = float(watch.impulse.sum() / time)
     return {
         "contact_share": float(riding.mean()), "least_contact_share": float(riding.min()),
-        "held_share": float((watch.held / time).mean()),
-        "largest_gap": gap, "largest_gap_time": gap_time, "largest_gap_angle": angle,
-        "least_load": max(least, 0.0) if least_at is not None else None, "least_load_time": least_time,
-        "largest_load": most if least_at is not None else None,
+        "held_share": float(held.mean()),
+        "largest_gap": gap or 0.0, "largest_gap_time": gap_time, "largest_gap_angle": angle,
+        "least_load": None if least is None else max(least, 0.0), "least_load_time": least_time,
+        "largest_load": most,
         "load": load, "friction_torque": scene.seal.friction_coefficient * scene.shaft.radius * load,
         "leakage_estimate": conductance(scene) * followers.arc * float(watch.cubed.sum()) / time,
     }  # fmt: skip
@@ -80,9 +86,7 @@ def _warnings(summary, scene) -> list[str]:
             f"shaft {share:.3g} % of the time, up to {1e6 * whole['largest_gap']:.4g} um"
         )
     if summary["closed_form"]["hangs_up"]:
-        said.append(
-            "the friction of the flange is as large as the preload: segments hang up where the shaft leaves them"
-        )
+        said.append("the flange's friction is as large as the preload: segments hang up where the shaft leaves them")
     if scene.shaft.offset + sum(a for _, a, _ in scene.shaft.waves) > 0.1 * scene.shaft.radius:
         said.append("the shaft is off by more than a tenth of its radius: radial motion is not small")
     return said

@@ -187,6 +187,6 @@ def _certificate(run, method, outcome, seen, progress, stop):
     # Errors between the steps are not followed below this.
     error = max(error, LEAST_TOLD * run.model.accuracy)
     met = error <= run.model.accuracy
-    said = (f"asked {run.model.accuracy:.0e}, estimated {error:.1e} (twice the difference from a sharper run, at 99 % of "
-            f"{COMPARED} instants)" + ("" if met else "; NOT met"))  # fmt: skip
+    how = f"twice the difference from a sharper run, at 99 % of {COMPARED} instants"
+    said = f"asked {run.model.accuracy:.0e}, estimated {error:.1e} ({how})" + ("" if met else "; NOT met")
     return {**none, "estimated": error, "solver": error, "met": met, "said": said}, outcome

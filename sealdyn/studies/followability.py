@@ -27,6 +27,7 @@ ALONG = {"curves": "speed"}
 TURNS, ACCURACY = 3.0, 1e-6
 # Largest eccentricity that counts, of the radius.
 MOST = 0.2
+RPM = 30.0 / math.pi
 
 
 @dataclass(frozen=True)
@@ -120,8 +121,8 @@ def confirmed(scenes, point) -> dict:
     low, high = 0.9 * limit, 1.1 * limit
     for wanted, rides in ((low, True), (high, False)):
         if follows(_at(scene, speed, wanted)) != rides:
-            return {"eccentricity": None, "closed_form": limit, "apart": None, "failed": (
-                f"at {9.549296585513721 * speed:.5g} rpm the runs do not lose contact within 10 % of the closed form")}  # fmt: skip
+            found = f"at {RPM * speed:.5g} rpm the runs do not lose contact within 10 % of the closed form"
+            return {"eccentricity": None, "closed_form": limit, "apart": None, "failed": found}
     while high - low > 5e-5 * limit:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if follows(_at(scene, speed, middle)) else (low, middle)
@@ -147,14 +148,16 @@ def guide(scene) -> dict:
     else:
         amounts, speeds, words = 0.5 * radial_rules.SEGMENT_RUNOUT, radial_rules.SEGMENT_SPEED, "table 3.4, half of TIR"
     slope, start = np.polyfit(speeds**2, 1.0 / amounts, 1)
-    return {"eccentricity": amounts.tolist(), "surface_speed": speeds.tolist(), "words": words,
-            "stiffness_over_preload": float(-start), "mass_over_preload": float(slope * scene.shaft.radius**2)}  # fmt: skip
+    return {
+        "eccentricity": amounts.tolist(), "surface_speed": speeds.tolist(), "words": words,
+        "stiffness_over_preload": float(-start), "mass_over_preload": float(slope * scene.shaft.radius**2),
+    }  # fmt: skip
 
 
 def tables(answer) -> list:
     """The runs beside the closed form."""
     rows = [{**row, "name": answer["names"][row["curve"]]} for row in answer["runs"]]
-    columns = (("curve", "name"), ("speed, rpm", "speed", 30 / math.pi), ("by runs, mm", "eccentricity", 1e3),
+    columns = (("curve", "name"), ("speed, rpm", "speed", RPM), ("by runs, mm", "eccentricity", 1e3),
                ("closed form, mm", "closed_form", 1e3), ("apart", "apart"))  # fmt: skip
     return [(rows, columns)]
 
@@ -162,25 +165,23 @@ def tables(answer) -> list:
 def _verdict(scenario, answer) -> list[str]:
     own = _aligned(scenario.scene)
     speed = answer["speed"]
+    at = f"At {RPM * speed:.5g} rpm"
     limit = largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
     if limit == 0.0:
-        said = [f"At {30 / math.pi * speed:.5g} rpm nothing is followed: friction and offset take all of the preload."]
+        said = [f"{at} nothing is followed: friction and offset take all of the preload."]
     elif math.isfinite(limit):
-        said = [f"At {30 / math.pi * speed:.5g} rpm the shaft is followed up to an eccentricity of {1e3 * limit:.4g} mm; "
-                f"this one has {1e3 * answer['eccentricity']:.4g} mm."]  # fmt: skip
+        said = [
+            f"{at} the shaft is followed up to an eccentricity of {1e3 * limit:.4g} mm; this one has "
+            f"{1e3 * answer['eccentricity']:.4g} mm."
+        ]
     else:
-        said = [f"At {30 / math.pi * speed:.5g} rpm any eccentricity is followed."]
+        said = [f"{at} any eccentricity is followed."]
     apart = [abs(row["apart"]) for row in answer["runs"] if row.get("apart") is not None]
     if apart:
-        said.append(f"Runs from the following orbit lose contact within {max(apart):.1e} of the closed form.")
-    known = answer["guide"]
+        known, impossible = answer["guide"], ", which is negative: inertia is not what limits these seals"
     said.append(
         f"The guide's {known['words']}, is experience: a mass on a spring that fits it would have "
         f"{1e-3 * known['stiffness_over_preload']:.3g} per mm of stiffness over preload"
-        + (
-            ", which is negative: inertia is not what limits these seals."
-            if known["stiffness_over_preload"] < 0
-            else "."
-        )
+        f"{impossible if known['stiffness_over_preload'] < 0 else ''}."
     )
     return said

@@ -72,8 +72,8 @@ def _numbers(ax, run):
     for name, words in radial_rows({**run.summary, "wall_time": 0.0}):
         on = name in NUMBERS if name else on
         if on:
-            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(words, 46))]
+            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(words, 44))]
     for k, (name, words) in enumerate(lines):
         y = 1.0 - 0.043 * k
         ax.text(0.0, y, name, transform=ax.transAxes, fontsize=8, weight="bold", va="top")
-        ax.text(0.24, y, words, transform=ax.transAxes, fontsize=8, va="top")
+        ax.text(0.27, y, words, transform=ax.transAxes, fontsize=8, va="top")
