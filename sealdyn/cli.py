@@ -462,21 +462,22 @@ def new(
 
 
 @app.command()
-def schema():
+def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
+    from .scenario.reader import RadialFile, ScenarioFile
     from .scenario.schema import json_schema
 
-    print(json.dumps(json_schema(), indent=2))
+    print(json.dumps(json_schema(RadialFile if radial else ScenarioFile), indent=2))
 
 
 @app.command("list")
 def list_scenarios(as_json: AsJson = False):
     """Name the scenarios that come with the program, and what each asks."""
-    from .scenario.shipped import examples, shipped_folder
+    from .scenario.shipped import examples, shipped_folder, shipped_paths
 
-    folder, found = shipped_folder(), examples()
+    folder, found, paths = shipped_folder(), examples(), shipped_paths()
     if as_json:
-        rows = [{"name": n, "question": q, "file": str(folder / f"{n}.toml")} for n, q in found.items()]
+        rows = [{"name": n, "question": q, "file": str(paths[n])} for n, q in found.items()]
         print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
         return
     print(f"scenarios in {folder}:")

@@ -163,10 +163,8 @@ def tables(answer) -> list:
 
 
 def _verdict(scenario, answer) -> list[str]:
-    own = _aligned(scenario.scene)
-    speed = answer["speed"]
-    at = f"At {RPM * speed:.5g} rpm"
-    limit = largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
+    own, speed = _aligned(scenario.scene), answer["speed"]
+    at, limit = f"At {RPM * speed:.5g} rpm", largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
     if limit == 0.0:
         said = [f"{at} nothing is followed: friction and offset take all of the preload."]
     elif math.isfinite(limit):
@@ -178,7 +176,8 @@ def _verdict(scenario, answer) -> list[str]:
         said = [f"{at} any eccentricity is followed."]
     apart = [abs(row["apart"]) for row in answer["runs"] if row.get("apart") is not None]
     if apart:
-        known, impossible = answer["guide"], ", which is negative: inertia is not what limits these seals"
+        said.append(f"Runs from the following orbit lose contact within {max(apart):.1e} of the closed form.")
+    known, impossible = answer["guide"], ", which is negative: inertia is not what limits these seals"
     said.append(
         f"The guide's {known['words']}, is experience: a mass on a spring that fits it would have "
         f"{1e-3 * known['stiffness_over_preload']:.3g} per mm of stiffness over preload"
