@@ -120,25 +120,13 @@ class Stop(Exception):
 
 def _read(path: Path, overrides):
     """Scenario of a TOML file or of an archive; input errors end here."""
-    from .archive import read_info
-    from .scenario.reader import ScenarioError, parse_scenario, read_scenario
+    from .scenario.reader import ScenarioError, read_scenario
 
     try:
-        if path.suffix == ".h5":
-            with _reads(path):
-                info = read_info(path)
-                text, name = str(info["scenario"]), str(info.get("name", path.stem))
-                given = [*map(str, info.get("overrides", [])), *(overrides or [])]
-            scenario = parse_scenario(text, name, given)
-        else:
-            scenario = read_scenario(path, overrides or ())
-        if scenario.application is not None:
-            from .analysis.design_rules import refuse_unknown_rules
-
-            refuse_unknown_rules(scenario)
+        with _reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
+            return read_scenario(path, overrides or ())
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
-    return scenario
 
 
 @contextlib.contextmanager
@@ -465,9 +453,9 @@ def new(
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
     from .scenario.reader import RadialFile, ScenarioFile
-    from .scenario.schema import json_schema
+    from .studies._settings import schema_with_studies
 
-    print(json.dumps(json_schema(RadialFile if radial else ScenarioFile), indent=2))
+    print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))
 
 
 @app.command("list")
@@ -489,8 +477,9 @@ def list_scenarios(as_json: AsJson = False):
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="archive (HDF5), complete or still being written")],
-    csv: Annotated[bool, typer.Option("--csv", help="all series, or a study's table, to standard output")] = False,
+    csv: Annotated[bool, typer.Option("--csv", help="all series, or a table of a study, to standard output")] = False,
     mat: Annotated[Path | None, typer.Option("--mat", help="MATLAB file to write them to")] = None,
+    table: Annotated[str | None, typer.Option(help="which table of a study, as --csv has it or for --mat")] = None,
     as_json: AsJson = False,
 ):
     """Say what an archive holds; works while a run writes it."""
@@ -501,7 +490,9 @@ def show(
         raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
     with _reads(file):
         if is_study(file):
-            return _show_study(file, csv, mat, as_json)
+            return _show_study(file, csv, mat, as_json, table)
+        if table is not None:
+            raise Stop(Status.INVALID, f"--table: found {table!r}; expected nothing, {file} is the archive of a run")
         info = read_info(file)
         if mat is not None:
             _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])})
@@ -516,28 +507,43 @@ def show(
                 print(line)
 
 
-def _show_study(file, csv, mat, as_json):
-    """The answer of a study; its table of columns for other programs."""
-    from .archive import read_study
-    from .report.text import study_lines
+def _show_study(file, csv, mat, as_json, table):
+    """The answer of a study; a table of it for other programs."""
+    from .archive import answer_tables, read_study
+    from .report.text import csv_lines, study_lines, tables_line
     from .studies._runner import study_tables
 
     study = read_study(file)
-    answer, table = study["answer"], study["answer"].get("table")
-    if (csv or mat is not None) and not isinstance(table, dict):
-        raise Stop(Status.INVALID, f"{file}: study {study['study']} has no table of columns; --json prints all of it")
+    answer = study["answer"]
     if mat is not None:
-        _write_mat(mat, table)
-    elif csv:
-        print(",".join(table))
-        for row in zip(*table.values(), strict=True):
-            print(",".join(map(repr, row)))
+        # MATLAB has no points in names, and no units.
+        columns = _table_of(file, study, table)
+        _write_mat(mat, {name.split(" [")[0].replace(".", "_"): values for name, values in columns.items()})
+    elif csv or table is not None:
+        for line in csv_lines(_table_of(file, study, table)):
+            print(line)
     elif as_json:
         print(json.dumps(answer))
     else:
         print(f"{study['name']}, study {study['study']}:")
-        for line in study_lines(answer, study_tables(study["study"], answer)):
+        for line in [*study_lines(answer, study_tables(study["study"], answer)), *tables_line(answer_tables(study))]:
             print(line)
+
+
+def _table_of(file, study, name) -> dict:
+    """The columns of a table of a study: the one that is asked for, or that there is, or that is meant for others."""
+    from .archive import answer_tables
+
+    tables = answer_tables(study)
+    if name is None and isinstance(study["answer"].get("table"), dict):
+        name = "table"
+    if name is None and len(tables) == 1:
+        return next(iter(tables.values()))
+    if name in tables:
+        return tables[name]
+    found = "nothing" if name is None else f'"{name}"'
+    expected = f"one of {', '.join(tables)}{_nearest(name or '', tables)}" if tables else "nothing, it has no table"
+    raise Stop(Status.INVALID, f"{file}: --table: found {found}; expected {expected}")
 
 
 def _write_mat(path, columns):
@@ -708,14 +714,19 @@ class _StudyCommand(TyperCommand):
 
 
 def _about_study(name: str) -> str | None:
+    """What a study is, its settings and its time; of no study which there are."""
     from rich.markup import escape
 
-    from .studies._runner import study_module, study_names
+    from .studies._runner import study_names
+    from .studies._settings import about, settings_of, time_of
 
     if name.replace("_", "-") not in study_names():
-        return None
-    module = study_module(name.replace("-", "_"))
-    return escape("\n\n".join(" ".join((part.__doc__ or "").split()) for part in (module, module.Settings)))
+        return escape("\n\n".join(f"{known}: {about(known)}" for known in study_names()))
+    lines = [
+        f"--{s.key.replace('_', '-')} ({s.holds}{f'; default {s.default}' if s.default else ''}): {s.meaning}"
+        for s in settings_of(name)
+    ]
+    return escape("\n\n".join([about(name), *lines, f"Time: {time_of(name)}."]))
 
 
 @app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

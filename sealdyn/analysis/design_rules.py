@@ -1,31 +1,13 @@
 """A seal held against design rules (rules/), all of them."""
 
-import difflib
 import importlib
-import pkgutil
 from dataclasses import replace
 
-from ..scenario.errors import ScenarioError
+from ..scenario.rule_names import rule_names
 from ..scene.application import Application
 from . import rules
 
 GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
-
-
-def rule_names() -> list[str]:
-    """Names of the rules there are."""
-    return sorted(m.name for m in pkgutil.iter_modules(rules.__path__) if m.name[0] != "_")
-
-
-def refuse_unknown_rules(scenario) -> None:
-    """Raises ScenarioError if the scenario acknowledges a rule that there is not."""
-    known, application = rule_names(), scenario.application or Application()
-    for name in application.acknowledge:
-        if name not in known:
-            near = difflib.get_close_matches(name, known, 1, 0.0)
-            file = scenario.path.name if scenario.path else scenario.name
-            expected = f"one of {', '.join(known)}; nearest '{near[0]}'"
-            raise ScenarioError(file, f"application.acknowledge.{name}", "an unknown design rule", expected)
 
 
 def findings(scenario, model) -> list[dict]:
@@ -33,12 +15,11 @@ def findings(scenario, model) -> list[dict]:
     | "acknowledged" | "not applicable"), `value`, `unit`, `least` and `most` (SI, None where there are none), `guide`
     and `source` in it, `said` (a sentence), `command` that tests it ("" if none does), `reason` with which it is
     acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
-    Raises ScenarioError for an unknown rule, SceneError where the film has no solution."""
+    Raises SceneError where the film has no solution."""
     # Whoever asks for names alone does not wait for arrays.
     from ..simulation.summary import plain
     from .rules._seal import Seal
 
-    refuse_unknown_rules(scenario)
     seal = Seal(scenario.scene, scenario.application or Application(), model)
     return [plain(_row(name, seal)) for name in rule_names()]
 

@@ -1,7 +1,7 @@
 """HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies; dataset.py
 shows both to xarray."""
 
-from .dataset import as_dataset, columns_of, open_archive, tables_as_dataset
+from .dataset import answer_as_dataset, answer_tables, as_dataset, columns_of, open_archive, tables_as_dataset
 from .fields import FIELD_TIME, Fields, Series
 from .lock import only_writer
 from .run import ODD, ArchiveWriter, column, field, followed, last_state, partial_path, read_info
@@ -16,6 +16,8 @@ __all__ = [
     "ArchiveWriter",
     "Fields",
     "Series",
+    "answer_as_dataset",
+    "answer_tables",
     "as_dataset",
     "column",
     "columns_of",

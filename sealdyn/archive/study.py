@@ -6,30 +6,33 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import h5py
-import numpy as np
 
+from .columns import columns
 from .fields import sayable
 from .run import ODD
 from .seal import is_whole, seal
 from .soundness import ArchiveError, is_sound, must_be_sound
 from .space import DATASET, FILE, hdf5_with_room
+from .tables import unit_of, units_of
 
 FORMAT = "sealdyn study 1"
 
 
-def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict[str, str]) -> Path:
-    """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers in it as a float64 dataset
-    `/data/KEY` (keys of nested tables joined by "/") with `units` {KEY: unit}, so that any HDF5 reader can plot it.
+def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=()) -> Path:
+    """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers or truths in it as a float64
+    dataset `/data/KEY` (columns.py) with its unit, so that any HDF5 reader can plot it.  `units` and `along` as in
+    `tables.variables` are kept as JSON, so that the archive can be shown without its study.
     `meta` becomes root attributes.  Replaces an existing file only when complete; returns its path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
     texts = {"scenario": scenario_text, "resolved": json.dumps(resolved), "answer": json.dumps(answer)}
-    columns = list(number_columns(answer))
-    size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(values.nbytes for _, values in columns)
+    numbers = [(key, column.values) for key, column in columns(answer).items() if column.values.dtype.kind in "fb"]
+    meta = {**meta, "units": units, "along": dict(along)}
+    size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(8 * values.size for _, values in numbers)
     try:
-        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * len(columns)) as file:
-            _write(file, meta, texts, columns, units)
+        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * len(numbers)) as file:
+            _write(file, meta, texts, numbers, units_of(answer, units))
         os.replace(fresh, path)
     except BaseException:
         fresh.unlink(missing_ok=True)
@@ -38,7 +41,7 @@ def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: di
     return path
 
 
-def _write(file, meta, texts, columns, units) -> None:
+def _write(file, meta, texts, numbers, units) -> None:
     """All of a study, into an open file."""
     file.attrs["format"] = FORMAT
     file.attrs["program"] = "sealdyn"
@@ -48,34 +51,11 @@ def _write(file, meta, texts, columns, units) -> None:
         file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
     for name, text in texts.items():
         file.create_dataset(name, data=sayable(text), dtype=h5py.string_dtype())
-    for key, values in columns:
+    for key, values in numbers:
         column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
-        column.attrs["units"] = units.get(key, "")
+        column.attrs["units"] = unit_of(key, units)
         column.attrs["long_name"] = key
     seal(file)
-
-
-def number_columns(tree, key=""):
-    """Every list of numbers (any depth, rectangular) in the answer, with its path."""
-    if isinstance(tree, dict):
-        for name, below in tree.items():
-            yield from number_columns(below, f"{key}/{name}" if key else name)
-    elif isinstance(tree, list) and tree and key:
-        try:
-            values = np.array([_numbers(entry) for entry in tree], dtype=float)
-        except (TypeError, ValueError):
-            return
-        yield key, values
-
-
-def _numbers(entry):
-    if isinstance(entry, list):
-        return [_numbers(e) for e in entry]
-    if entry is None:
-        return np.nan
-    if isinstance(entry, bool) or not isinstance(entry, int | float):
-        raise TypeError
-    return entry
 
 
 def is_study(path) -> bool:
@@ -112,6 +92,8 @@ def read_study(path) -> dict:
             info["answer"] = json.loads(file["answer"].asstr()[()])
             if not isinstance(info["answer"], dict) or not isinstance(info["study"], str):
                 raise TypeError("its answer is no table")
+            if not all(isinstance(info.get(name, {}), dict) for name in ("units", "along")):
+                raise TypeError("its units or dimensions are no table")
             return info
     except ODD as error:
         words = " ".join(str(error).split())[:200]

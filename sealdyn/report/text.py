@@ -292,7 +292,12 @@ def _cell(row, key, factor=1.0) -> str:
     value = _value(row, key)
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return value if isinstance(value, str) else _n(value, factor)
+    return value if isinstance(value, str) else _plain(_n(value, factor))
+
+
+def _plain(words: str) -> str:
+    """Speeds and flows of five or six figures without an exponent."""
+    return f"{float(words):.0f}" if words.endswith(("e+04", "e+05")) else words
 
 
 def _value(row, key):
@@ -331,3 +336,29 @@ def csv_rows(info: dict, column, block: int = 4096):
         part = [column(name, slice(start, min(start + block, info["rows"]))) for name in names]
         for row in zip(*part, strict=True):
             yield ",".join(repr(float(x)) for x in row)
+
+
+def csv_lines(columns: dict):
+    """Header and rows of columns of equal length: numbers with every digit, words and headings quoted where they must
+    be, nothing for what there is not."""
+    yield ",".join(map(_quoted, columns))
+    for row in zip(*(values.tolist() for values in columns.values()), strict=True):
+        yield ",".join(_csv_cell(value) for value in row)
+
+
+def _csv_cell(value) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return _quoted(value)
+    return "" if math.isnan(value) else repr(value)
+
+
+def _quoted(words: str) -> str:
+    return '"' + words.replace('"', '""') + '"' if any(c in words for c in ',"\n\r') else words
+
+
+def tables_line(tables: dict) -> list[str]:
+    """Which tables an archive has, for those who want one."""
+    sizes = [f"{name} ({len(next(iter(columns.values())))} rows)" for name, columns in tables.items()]
+    return [f"  tables for --csv, --mat: {', '.join(sizes)}"] if sizes else []

@@ -28,6 +28,7 @@ from ..units import Length, QuantityError, Time, is_gauge, quoted
 from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
 from .overrides import override_key, without_arrays
+from .rule_names import unknown_rules
 from .unquoted import unquoted_quantity
 
 __all__ = [
@@ -166,8 +167,11 @@ class Scenario:
 
 
 def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
-    """Scenario of a TOML file; `overrides` are strings "rotor.runout=0.2 mrad".  Raises `ScenarioError`."""
+    """Scenario of a TOML file, or of the archive (.h5) of a run or study with its overrides; `overrides` are strings
+    "rotor.runout=0.2 mrad".  Raises `ScenarioError`, ArchiveError."""
     path = Path(path)
+    if path.suffix == ".h5":
+        return _of_archive(path, overrides)
     try:
         _must_be_readable(path)
         text = path.read_bytes().decode("utf-8-sig")
@@ -183,6 +187,15 @@ def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Sce
         why = getattr(error, "strerror", None) or str(error)
         raise ScenarioError(quoted(str(path)), "", f"an unreadable file ({why})", "a scenario file (TOML)") from None
     return parse_scenario(text, path.name, overrides, path)
+
+
+def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
+    # Whoever reads text does not wait for HDF5.
+    from ..archive import is_study, read_info, read_study
+
+    info = (read_study if is_study(path) else read_info)(path)
+    given = [*map(str, info.get("overrides", [])), *overrides]
+    return parse_scenario(str(info["scenario"]), str(info.get("name", path.stem)), given)
 
 
 def _must_be_readable(path):
@@ -290,8 +303,9 @@ def _impossible(file: ScenarioFile) -> list[SceneError]:
     except SceneError as error:
         bad.append(error)
     bad += scene_errors(file, file.run)
-    for key, found, expected in application_errors(file.application) if file.application else ():
-        bad.append(SceneError(f"application.{key}", found, expected))
+    if file.application is not None:
+        wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
+        bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
     try:
         _ = bad or film_of(file)
     except SceneError as error:

@@ -3,6 +3,7 @@
 import ast
 import dataclasses
 import inspect
+import re
 from itertools import pairwise
 from typing import Any
 
@@ -27,6 +28,15 @@ def json_schema(file: type = ScenarioFile) -> dict:
             keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])
         _add_diameters(table, kind)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "sealdyn scenario"}
+
+
+def table_schema(kind: type) -> dict:
+    """JSON schema of a table that is no part of a scene: keys with what they mean, what is expected, and defaults."""
+    table = _without_null(TypeAdapter(kind).json_schema())
+    for key, meaning in _meanings(kind).items():
+        holds = table["properties"][key]
+        holds["description"] = "\n".join([meaning, *filter(None, [holds.get("description")])])
+    return table
 
 
 def _add_diameters(table: dict, kind: type) -> None:
@@ -62,7 +72,7 @@ def _meanings(kind: type) -> dict[str, str]:
     for part in filter(dataclasses.is_dataclass, reversed(kind.__mro__)):
         for key, text in pairwise(ast.parse(inspect.getsource(part)).body[0].body):
             if isinstance(key, ast.AnnAssign) and isinstance(text, ast.Expr):
-                found[key.target.id] = text.value.value
+                found[key.target.id] = re.sub(r"\s*\n\s*", " ", text.value.value)
     return found
 
 

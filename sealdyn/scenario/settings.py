@@ -103,6 +103,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
     rings = [ring for ring in RING_NAMES if ring in tables]
     tables |= {"run": opened(scenario.run), "study": scenario.study}
+    tables |= {"application": opened(scenario.application)} if scenario.application is not None else {}
     for ring in rings:
         if body := tables[ring].pop("body", None):
             # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
@@ -125,8 +126,8 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
 
 
 def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
-    """The scenario itself or that of a file, with `overrides`: {dotted key: value}, or strings "key=value".
-    Raises ScenarioError."""
+    """The scenario itself or that of a file (TOML, or an archive), with `overrides`: {dotted key: value}, or strings
+    "key=value".  Raises ScenarioError, ArchiveError."""
     if isinstance(overrides, Mapping):
         if isinstance(source, Scenario):
             return with_values(source, overrides) if overrides else source

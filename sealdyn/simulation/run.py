@@ -38,12 +38,12 @@ def run(
     stop: Callable[[], bool] | None = None,
     allow_large: bool = False,
 ) -> Result:
-    """Run a scenario, or that of a TOML file; without `out` nothing is left on disk.
+    """Run a scenario, or that of a TOML file or of an archive; without `out` nothing is left on disk.
 
     `overrides`: {dotted key: value}, or strings "key=value".  `out`: the archive to write.  `progress`, `stop`,
     `allow_large` as in `simulate`.  The result has `status`, `message`, `summary`, `data` (xarray) and `plot`; a run
     that fails is a result with its status.
-    Raises ScenarioError for what cannot be run, ArchiveError for an archive that cannot be written.
+    Raises ScenarioError for what cannot be run, ArchiveError for an archive that cannot be read or written.
     """
     scenario = scenario_of(source, overrides)
     how = {"progress": progress, "stop": stop, "allow_large": allow_large}

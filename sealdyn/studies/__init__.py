@@ -18,9 +18,10 @@ What every study module offers (the contract):
 `REFUSES`   of "contact" and "secondary-seal" what the study cannot reckon with: a scenario that has it is refused, and
             --without leaves it out.  A study of small motion refuses secondary seals: their rings stick in it.
 `WITH_WAVES`    True if the study reckons with wavy faces, or does not ask how thin the film is; else it refuses them.
-`units`     dict: result key (joined by "/") -> units, for the archive.
-`ALONG`     (if any) dict: table of the answer -> names of those of its columns along which its others lie, in the order
-            of their axes: the dimensions of its numbers for those who ask in Python (_answer.py).
+`units`     dict: result key (joined by "/"), or its end, or "*" for all others -> units, for the archive; of elements
+            with units of their own a list.  What hangs on the scenario is in a table `units` of the answer.
+`ALONG`     (if any) dict: table of the answer, or path of a column -> names of what it lies along, in the order of its
+            axes: the dimensions of its numbers for those who open the archive (archive/tables.py).
 
 The chart of a study has the same name in `charts` with the prefix `study_`, and draws from the study's archive only.
 A study knows scenarios, models and solvers; it never opens a file or draws.

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from ..archive import as_dataset, tables_as_dataset
+from ..archive import answer_as_dataset
 from ..scenario.errors import ScenarioError, scene_errors_of
 from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario
@@ -45,10 +45,8 @@ class Answer:
         """Its numbers as an `xarray.Dataset` with units.  Of a study over keys the dimensions are the keys, the
         variables its outputs and the `status` and `message` of each point; of others every list of numbers of the
         answer, "curve.h_min", along the columns that its study names."""
-        if {"axes", "rows", "outputs"} <= set(self.answer):
-            return as_dataset(self.answer)
         module = study_module(self.study)
-        return tables_as_dataset(self.answer, getattr(module, "units", {}), getattr(module, "ALONG", {}))
+        return answer_as_dataset(self.answer, getattr(module, "units", {}), getattr(module, "ALONG", {}))
 
     def plot(self) -> Figure:
         """Its figure, of matplotlib; `figure.savefig("map.svg")` writes it."""
@@ -69,7 +67,7 @@ def study(
     without: Iterable[str] = (),
     **settings: Any,
 ) -> Answer:
-    """Answer a question about a scenario, or about that of a TOML file: `sealdyn.study("sweep", scenario,
+    """Answer a question about a scenario, or that of a TOML file or an archive: `sealdyn.study("sweep", scenario,
     vary="rotor.runout=0:1 mrad:21")`.  Without `out` nothing is left on disk.
 
     `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";

@@ -147,7 +147,8 @@ def run_study(
             "study": name,
             "settings": plain,
         }
-        write_study(out, scenario.text, scenario.resolved(), meta, answer, getattr(module, "units", {}))
+        names = (getattr(module, name, {}) for name in ("units", "ALONG"))
+        write_study(out, scenario.text, scenario.resolved(), meta, answer, *names)
         journal.done()
     return {**answer, "archive": str(out)}
 

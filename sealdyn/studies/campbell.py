@@ -12,28 +12,39 @@ from ..dynamics.model import Model
 from ..scene.variants import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
+from ._words import frequencies
+from ._words import speed as speed_words
 
 WITH_WAVES = True
 REFUSES = ("secondary-seal",)
 ALONG = {"modes": ("speed",)}
-units = {"speed": "rad/s", "modes/frequency": "rad/s"}
+units = dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s") | {"growth_rate": "1/s"}
+units |= dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1")
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 3)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Speeds from `speed_from` to `speed_to` (default six times the scenario's, no more than a film holds), `points` of
-    them; `unit` of the figure's axes; `lines`: orders of the shaft speed drawn besides 1x and 1/2x."""
+    """Speeds, and how the figure is drawn."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed_from: Speed = 0.0
+    """Lowest speed."""
     speed_to: Speed | None = None
+    """Highest speed; without it six times the scenario's, no more than a film holds."""
     points: int = 241
+    """Number of speeds."""
     unit: Literal["rpm", "rad/s"] = "rpm"
+    """Of the figure's axes."""
     lines: tuple[float, ...] | float = ()
+    """Orders of the shaft speed that are drawn besides 1x and 1/2x."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -226,18 +237,18 @@ def _verdict(answer) -> list[str]:
         way = {"none": "does not oscillate", "axial": "oscillates"}.get(
             mode["direction"], f"mostly {mode['direction']}"
         )
-        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {low:.5g} to {high:.5g} rad/s.")
+        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}): {frequencies(low, high)}.")
     for point in answer["thresholds"]:
         if point["what"] == "damping":
             ratio = (
                 "" if point["whirl_ratio"] is None else f", whirling at {point['whirl_ratio']:.3g} of the shaft speed"
             )
-            said.append(f"Mode {point['mode']} loses or regains its damping at {point['speed']:.5g} rad/s{ratio}.")
+            said.append(f"Mode {point['mode']} loses or regains its damping at {speed_words(point['speed'])}{ratio}.")
         else:
-            said.append(f"Mode {point['mode']} changes its direction of whirl at {point['speed']:.5g} rad/s.")
+            said.append(f"Mode {point['mode']} changes its direction of whirl at {speed_words(point['speed'])}.")
     synchronous = [c for c in answer["crossings"] if c["line"] == 1.0]
     for c in synchronous:
-        said.append(f"Mode {c['mode']} meets once per turn at {c['speed']:.5g} rad/s.")
+        said.append(f"Mode {c['mode']} meets once per turn at {speed_words(c['speed'])}.")
     if not synchronous:
         said.append("No mode meets once per turn in this range.")
     return said

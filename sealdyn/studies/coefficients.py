@@ -29,6 +29,8 @@ from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..simulation.steady_tilt import steady_tilt
 from ..units import Angle, Length, Speed
+from ._words import frequencies
+from ._words import speed as speed_words
 
 WITH_WAVES = True
 # Rows and columns of the matrices.
@@ -38,32 +40,47 @@ DAMPING_UNITS = [[u.replace("/m", "*s/m").replace("/rad", "*s/rad") if "/" in u 
                  for row in STIFFNESS_UNITS]  # fmt: skip
 STEP = 0.02
 
-ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")}
+ALONG = {f"against_{name}": (name,) for name in ("speed", "clearance", "tilt", "frequency")} | {"table": ("row",)}
 units = {
-    "against_speed/speed": "rad/s",
-    "against_frequency/frequency": "rad/s",
-    "table/speed": "rad/s",
-    "table/frequency": "rad/s",
-    "against_clearance/clearance": "m",
-    "against_tilt/tilt": "rad",
-    "against_tilt/axial_opening": "m",
-}
+    "speed": "rad/s",
+    "frequency": "rad/s",
+    "clearance": "m",
+    "tilt": "rad",
+    "axial_opening": "m",
+    "stiffness": STIFFNESS_UNITS,
+    "damping": DAMPING_UNITS,
+} | {
+    f"{letter}_{row}_{column}": matrix[i][j]
+    for letter, matrix in (("k", STIFFNESS_UNITS), ("d", DAMPING_UNITS))
+    for i, row in enumerate(ORDER)
+    for j, column in enumerate(ORDER)
+}  # fmt: skip
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 3)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`tilt`: relative misalignment of the tilted state (default: the mean of the linear steady state, or, if that is
-    nothing, its turning part); `tilt_direction` from the x axis; sweeps over `speed_to`, `clearance_from` to
-    `clearance_to`, and the tilt, `points` each; `frequency` of the motion, "0:2kHz:60" or a list: with it the answer
-    has a table of the aligned film's matrices over speed and frequency for a rotordynamics code, too."""
+    """The tilted state, and what the matrices are followed over."""
 
     tilt: Angle | None = None
+    """Relative misalignment of the tilted state; without it the mean of the linear steady state, or, if that is
+    nothing, its turning part."""
     tilt_direction: Angle = 0.0
+    """Its direction from the x axis."""
     speed_to: Speed | None = None
+    """Highest speed, from rest; without it three times the scenario's."""
     clearance_from: Length | None = None
+    """Least clearance; without it 0.3 of the scene's."""
     clearance_to: Length | None = None
+    """Largest clearance; without it three times the scene's."""
     points: int = 41
+    """Number of speeds, of clearances and of tilts."""
     frequency: str | float | None = None
+    """Frequencies of the motion, "0:2kHz:60" or a list; with it the answer has a table of the aligned film's matrices
+    over speed and frequency for a rotordynamics code."""
 
 
 @dataclass(frozen=True)
@@ -253,8 +270,8 @@ def _hammer(answer) -> list[str]:
     for name, k in (("axial", 0), ("tilt", 1)) if swept else ():
         negative = [w for w, d in zip(swept["frequency"], swept["damping"], strict=True) if d[k][k] < 0.0]
         if negative:
-            share, ends = f"{len(negative)} of {len(swept['frequency'])}", f"{negative[0]:.5g} to {negative[-1]:.5g}"
-            where = f"{share} frequencies, {ends} rad/s"
+            share, ends = f"{len(negative)} of {len(swept['frequency'])}", frequencies(negative[0], negative[-1])
+            where = f"{share} frequencies, {ends}"
             said.append(f"The film's {name} damping is negative (pneumatic hammer) at {where}.")
     return said
 
@@ -280,7 +297,7 @@ def _verdict(answer) -> list[str]:
     pace = d[1, 1] * at["speed"]
     ratio = f", {k[1, 2] / pace:.4g} of the shaft speed times the damping (half, for a wedge film)" if pace else ""
     said = [
-        f"Aligned at {at['clearance'] * 1e6:.4g} um, {at['speed']:.5g} rad/s ({answer['film']} film): axial "
+        f"Aligned at {at['clearance'] * 1e6:.4g} um, {speed_words(at['speed'])}, {answer['film']} film: axial "
         f"{k[0, 0]:.5g} N/m and {d[0, 0]:.5g} N s/m; tilt {k[1, 1]:.5g} N m/rad and {d[1, 1]:.5g} N m s/rad.",
         f"Cross stiffness {k[1, 2]:.5g} N m/rad{ratio}.",
     ]

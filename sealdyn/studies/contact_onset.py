@@ -15,28 +15,40 @@ from ..scenario.settings import must_be_number, si_unit, with_values
 from ..scene import variants
 from ..scene.contact import touch_height
 from ..status import Status
+from ._words import quantity, shown_in
 
 REFUSES = ("secondary-seal",)
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
-units = {"path/forcing": "SI of the key", "path/h_min": "m", "curve/value": "SI of the key"}
+ALONG = {"path": ("forcing",), "curve": ("value",)}
+# Of the key itself the answer knows the unit.
+units = dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m") | {"tilt": "rad"}
+units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {"cavitation_pressure": "Pa", "start": "SI"}
+units |= dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1")
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference --set stator.misalignment=0", 29)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`key` grows until the film touches (default: rotor.runout of an FMS, stator.misalignment of an FMR scene);
-    `margin`: touch is h_min = margin x clearance, of rough faces where their asperities meet; `over` and `values`: the
-    onset as a curve over another key; `floor`: also with the pressure floored at the lower boundary pressure, along the
-    curve too (slower); `most`: an onset that linear theory sees beyond so many times the scenario's own value of the
-    key is not followed."""
+    """What grows until the film touches, and what the onset is followed over."""
 
     key: str | None = None
+    """Key that grows until the film touches; without it rotor.runout of an FMS, stator.misalignment of an FMR scene."""
     margin: float = 1e-3
+    """Touch is a film of so much of the clearance; of rough faces where their asperities meet."""
     over: str | None = None
+    """Another key, over which the onset is a curve."""
     values: tuple[float | str, ...] = ()
+    """Values of that key."""
     floor: bool = False
+    """Also with the pressure floored at the lower boundary pressure, along the curve too (slower)."""
     tolerance: float = 1e-6
+    """Relative error of the onset."""
     most: float = 1000.0
+    """An onset that linear theory sees beyond so many times the scenario's own value of the key is not followed."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -56,9 +68,12 @@ def run(scenario, settings, tools) -> dict:
     ]
     answer = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
+    unit = si_unit(scenario.scene, key)
+    answer["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
+    answer["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
     if "failed" in answer:
         answer["status"] = Status.FAILED
-    return {**answer, "verdict": _verdict(answer, si_unit(scenario.scene, key))}
+    return {**answer, "verdict": _verdict(answer, unit)}
 
 
 def brief(row: dict) -> dict:
@@ -264,8 +279,10 @@ class Follower:
 
 def tables(answer) -> list:
     """The onset over another key."""
-    columns = ((answer["over"], "value"), ("linear, SI", "formula"), ("nonlinear, SI", "nonlinear"),
-               ("with a floor, SI", "floored.nonlinear"))  # fmt: skip
+    found = [row.get(name) for row in answer["curve"] for name in ("formula", "nonlinear")]
+    unit, factor = shown_in(answer.get("units", {}).get("nonlinear", "SI"), found)
+    columns = ((answer["over"], "value"), (f"linear, {unit}", "formula", factor),
+               (f"nonlinear, {unit}", "nonlinear", factor), ("with a floor", "floored.nonlinear", factor))  # fmt: skip
     return [(answer["curve"], columns)]
 
 
@@ -276,8 +293,8 @@ def _verdict(answer, unit) -> list[str]:
         return [f"The asperities touch without any {answer['key']}, at r = {answer['radius'] * 1e3:.4g} mm: at rest "
                 f"they carry {answer['contact_force']:.4g} N of {answer['closing_force']:.5g} N."]  # fmt: skip
     lines = [
-        f"The faces first touch at {answer['key']} = {answer['nonlinear']:.6g} {unit}, at r = "
-        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {answer['formula']:.6g}: "
+        f"The faces first touch at {answer['key']} = {quantity(answer['nonlinear'], unit, 6)}, at r = "
+        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {quantity(answer['formula'], unit, 6)}: "
         f"{100 * (answer['ratio'] - 1):+.1f} %.",
         f"The seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset.",
     ]

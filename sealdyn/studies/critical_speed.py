@@ -28,33 +28,43 @@ from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.stability import critical_speed, held_speeds, natural_frequency
 from ..status import Status
+from ._words import speed as speed_words
 
 REFUSES = ("secondary-seal",)
-ALONG = {"growth": ("speed",)}
-units = {
-    "growth/speed": "rad/s", "growth/eigenvalue": "1/s", "growth/time_domain": "1/s", "growth/uncertainty": "1/s",
-    "nonlinear/branch/speed": "rad/s", "nonlinear/branch/amplitude": "rad", "nonlinear/branch/frequency": "rad/s",
-    "nonlinear/branch/growth_rate": "1/s", "nonlinear/branch/opening": "m", "nonlinear/branch/h_min": "m",
-}  # fmt: skip
+ALONG = {"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
+         "nonlinear/directions": ("speed",)}  # fmt: skip
+units = dict.fromkeys(("speed", "frequency", "bracket"), "rad/s") | dict.fromkeys(("opening", "h_min"), "m")
+units |= dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate"), "1/s")
+units |= dict.fromkeys(
+    ("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"), "rad"
+)
+units |= dict.fromkeys(("difference", "turns"), "1")
 
 # Speeds, relative to the eigenvalues' threshold, at which a disturbance is let grow or decay.
 SHARES = (0.95, 0.98, 0.998, 1.002, 1.02, 1.05)
 NARROW = 2e-5
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 86)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`method`, `accuracy`: integrator and accuracy to begin with (tightened until it cannot decide a verdict);
-    `turns`: length of a growth measurement, of the shaft or of a whirl that turns faster; `speeds`: points along the
-    whirl family; `beyond`: go beyond linear."""
+    """How growth is measured in time, and whether to go beyond linear."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     method: str = "adams"
+    """Integrator."""
     accuracy: float = 1e-7
+    """Accuracy to begin with, tightened until it cannot decide a verdict."""
     turns: int = 200
+    """Length of a growth measurement, in turns of the shaft or of a whirl that turns faster."""
     speeds: int = 4
+    """Points along the whirl family."""
     beyond: bool = True
+    """Go beyond linear."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -288,7 +298,7 @@ def nonlinear_sentences(found, threshold) -> list[str]:
     said = [f"Beyond linear: {found['kind']} (contact: the film at its floor)."]
     unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
     speed = found["contact_speed"]
-    at = f"{speed:.5g} rad/s ({speed / threshold:.4f} of the threshold)" if speed else "no speed followed"
+    at = f"{speed_words(speed)}, {speed / threshold:.4f} of the threshold" if speed else "no speed followed"
     if found["kind"] == "subcritical":
         said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
                     f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
@@ -318,5 +328,5 @@ def fates(rows, start) -> str:
         if row["fate"] != last:
             parts.append([row["fate"], row["speed"], row["speed"]])
         parts[-1][2], last = row["speed"], row["fate"]
-    words = [f"{what} at {a:.5g}" + (f" to {b:.5g}" if b > a else "") for what, a, b in parts]
-    return f"{start.capitalize()} whirls in time: {', '.join(words)} rad/s."
+    words = [f"{what} at {speed_words(a)}" + (f" to {speed_words(b)}" if b > a else "") for what, a, b in parts]
+    return f"{start.capitalize()} whirls in time: {', '.join(words)}."

@@ -17,27 +17,30 @@ WITH_WAVES = True
 LEAST, LARGEST = 1e-3, 1.3
 # Steps of letting a ring go, and how near (as a share) it has come back.
 STEPS, NEAR = 80, 0.1
-units = {
-    "curve/net": "m",
-    "curve/initial": "m",
-    "curve/turned": "rad",
-    "curve/clearance": "m",
-    "curve/leakage": "m^3/s",
-}
+ALONG = {"curve": ("net",), "points/let_go": ("instant",)}
+units = dict.fromkeys(("net", "initial", "clearance", "from", "to"), "m") | {"turned": "rad", "leakage": "m^3/s"}
+units |= {"time": "s"} | dict.fromkeys(("load_support", "friction_coefficient", "let_go/points"), "1")
 COLUMNS = ("net", "initial", "turned", "load_support", "clearance", "leakage", "friction_coefficient")
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("lebeck_elastic", 12)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Net wavinesses from `net_from` to `net_to` (default: a thousandth of the initial one to beyond it), `points` of
-    the curve; each operating point is let go from a waviness `disturbance` (a share) less and more, and followed for a
-    `duration`."""
+    """The curve of initial over net waviness, and how a ring is let go."""
 
     net_from: Length | None = None
+    """Least net waviness; without it a thousandth of the initial one."""
     net_to: Length | None = None
+    """Largest net waviness; without it a little beyond the initial one."""
     points: int = 33
+    """Points of the curve."""
     disturbance: float = 0.05
+    """Share by which a ring is let go from less and from more than an operating point."""
     duration: Time = 1.0
+    """How long it is followed."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -32,17 +32,26 @@ FINE = 1e-10
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
 ALONG = {"curve": ("clearance",)}
-units = {"curve/clearance": "m", "curve/opening_force": "N", "curve/contact_force": "N", "curve/stiffness": "N/m"}
+units = dict.fromkeys(("opening_force", "film_force", "contact_force"), "N") | {"stiffness": "N/m", "range": "m"}
+units |= {"clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s"}
+units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
+units |= dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1")
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("run_in", 3)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Clearances from `clearance_from` to `clearance_to` (default: a range that shows every equilibrium), `points`
-    of the curve of opening force."""
+    """The curve of the opening force."""
 
     clearance_from: Length | None = None
+    """Least clearance; without it a range that shows every equilibrium."""
     clearance_to: Length | None = None
+    """Largest clearance; without it as above."""
     points: int = 241
+    """Points of the curve."""
 
 
 @dataclass(frozen=True)
@@ -218,7 +227,7 @@ def _range(film, surfaces, roots, settings) -> tuple[float, float]:
 
 def tables(answer) -> list:
     """Every clearance of balance."""
-    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/m", "stiffness"), ("stable", "stable"),
+    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/um", "stiffness", 1e-6), ("stable", "stable"),
                ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
                ("load support, %", "load_support", 100), ("friction", "friction_coefficient"),
                ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip

@@ -30,19 +30,24 @@ MOST = 0.2
 RPM = 30.0 / math.pi
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("radial/circumferential_reference", 9)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`speed`: "from:to:count", default a tenth to four times the scenario's; `vary`: "key=a,b,c", one curve each
-    (preload, loss factor, offset, friction); `runs`: at so many speeds of each curve the limit is found by runs to
-    1e-4."""
+    """Speeds, curves, and how many runs confirm them."""
 
     speed: str = ""
+    """Shaft speeds, "from:to:count" with a unit: a tenth to four times the scenario's."""
     vary: str = ""
+    """One key more and its values, "key=a,b,c", a curve each: preload, loss factor, offset, friction."""
     runs: int = 3
+    """At so many speeds of each curve the limit is found by runs, to 1e-4."""
 
 
-units = {"curves.speed": "rad/s", "curves.eccentricity": "m", "curves.surface_speed": "m/s",
-         "runs.speed": "rad/s", "runs.eccentricity": "m"}  # fmt: skip
+units = {"speed": "rad/s", "eccentricity": "m", "radius": "m", "surface_speed": "m/s", "curve": "1", "apart": "1",
+         "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m"}  # fmt: skip
 
 
 def run(scenario, settings, tools) -> dict:

@@ -11,20 +11,27 @@ from ..scene.variants import frozen_at_start
 from .equilibrium import find, kept_waves, root_row
 
 WITH_WAVES = True
-OUTPUTS = {"clearance": "m", "load_support": "", "friction_coefficient": "", "leakage": "m^3/s",
-           "cavitated_fraction": "", "film_force": "N", "contact_force": "N"}  # fmt: skip
+OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "leakage": "m^3/s",
+           "cavitated_fraction": "1", "film_force": "N", "contact_force": "N"}  # fmt: skip
+# Of the balances within the rows.
+units = OUTPUTS | {"stiffness": "N/m", "mass_flow": "kg/s", "held": "m", "rows": "1"}
+units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
 SAID = (("load_support", "Load support", 100.0, " %"), ("friction_coefficient", "Friction coefficient", 1.0, ""),
         ("leakage", "Leakage", 3.6e9, " ml/h"))  # fmt: skip
 # A film this much of whose face cavitates has a cavity, and what changes by less over the key stays.
 TORN, STEADY = 1e-9, 0.1
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 10)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`vary`: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c", as in a sweep; one key, aligned
-    faces."""
+    """What is varied, faces aligned."""
 
     vary: str = ""
+    """One key and its values: "key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c", as in a sweep."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -20,25 +20,34 @@ from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
+from ._words import RPM, speed
 
 WITH_WAVES = True
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
-ALONG = {"orbit": ("time",), "linear": ("time",)}
-units = {"period": "s", "orbit/time": "s", "orbit/relative_tilt_x": "rad", "orbit/relative_tilt_y": "rad",
-         "orbit/h_min": "m", "linear/time": "s", "linear/h_min": "m", "near_threshold/speed": "rad/s"}  # fmt: skip
+ALONG = {"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
+         "near_threshold": ("speed",)}  # fmt: skip
+units = {"period": "s", "time": "s", "h_min": "m", "speed": "rad/s"}
+units |= dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalignment", "shaft_angle"), "rad")
+units |= dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transient", "defects"), "1")
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 26)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`turns` of the forcing's common period taken as one period (2 finds half-frequency responses); `samples` per
-    period in the figure; `approach`: speeds, as parts of the critical speed, at which the cost is compared with a
-    transient (empty: no comparison); `longest` transient tried, in periods."""
+    """The period, and the comparison with waiting."""
 
     turns: int = 1
+    """Common periods of the forcing that are taken as one period (2 finds half-frequency responses)."""
     samples: int = 256
+    """Samples of a period in the figure."""
     approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
+    """Speeds, as parts of the critical speed, at which the cost is compared with a transient's; empty: none."""
     longest: int = 4000
+    """Longest transient tried, in periods."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -52,7 +61,7 @@ def run(scenario, settings, tools) -> dict:
     try:
         orbit = shooter.find()
     except NoOrbit as reason:
-        threshold = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
+        threshold = f"critical speed {speed(critical)}" if critical else "no critical speed"
         said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
         values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
         foretold = [complex(np.exp(v * shooter.period)) for v in values]
@@ -106,7 +115,7 @@ def _waves(model, waves) -> dict:
 
 def tables(answer) -> list:
     """Cost of shooting and of waiting near the critical speed."""
-    columns = (("of critical speed", "part"), ("speed, rad/s", "speed"), ("periods by shooting", "shooting"),
+    columns = (("of critical speed", "part"), ("speed, rpm", "speed", RPM), ("periods by shooting", "shooting"),
                ("by waiting (-: not within longest)", "transient"))  # fmt: skip
     return [(answer["near_threshold"], columns)]
 

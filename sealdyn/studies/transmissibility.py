@@ -33,6 +33,7 @@ from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
 from ..units import Speed
+from ._words import speed as speed_words
 
 QUANTITIES = ("static", "dynamic", "total")
 PHASES = ("static_phase", "dynamic_phase")
@@ -53,25 +54,38 @@ REFUSES = ("secondary-seal",)
 SAME = 1e-9
 
 ALONG = {seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
-units = {"speed": "rad/s"} | {
-    f"{seal}/{road}{phase}": "deg" for seal in SEALS for road in ("", "linear_algebra/") for phase in PHASES
-}
+ALONG |= {"time_domain": ("speed",), "crossings": ("speed",)}
+units = {"speed": "rad/s", "turns": "1"} | dict.fromkeys(PHASES, "deg") | dict.fromkeys(QUANTITIES, "1")
+units |= dict.fromkeys(
+    (f"table{road}/{seal}" for seal in SEALS for road in ("", "/formula", "/linear_algebra", "/time_domain")),
+    "the row's unit",
+)
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 8)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Speeds from `speed_from` to `speed_to` (default three times the scenario's), `points` of them; `unit` of the
-    figure's axis; `time_points` speeds in the time domain at `accuracy`, of runs of at most `longest` turns."""
+    """Speeds, and the time domain beside them."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     speed_from: Speed = 0.0
+    """Lowest speed."""
     speed_to: Speed | None = None
+    """Highest speed; without it three times the scenario's."""
     points: int = 301
+    """Number of speeds."""
     unit: Literal["rad/s", "rpm"] = "rad/s"
+    """Of the figure's axis."""
     time_points: int = 12
+    """Speeds in the time domain."""
     accuracy: float = 1e-7
+    """Accuracy of these runs."""
     longest: float = 4000.0
+    """Turns that they may take."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -191,7 +205,7 @@ def measured(scene, point: dict) -> dict:
     turn = 2 * math.pi / abs(point["speed"] - seal.stator_speed)
     if decay <= 0:
         kind = "unstable" if decay < 0 else "undamped"
-        raise ValueError(f"{kind} at {point['speed']:.5g} rad/s: no steady state")
+        raise ValueError(f"{kind} at {speed_words(point['speed'])}: no steady state")
     turns = math.ceil(-math.log(LEFT) / decay / turn) + 4
     if turns > point["longest"]:
         raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
@@ -317,15 +331,16 @@ def _verdict(answer: dict, own_speed: float) -> list[str]:
             said.append(f"{quantity}: {better.upper()} is better over the whole range." if better else
                         f"{quantity}: both arrangements transmit the same.")  # fmt: skip
         for c in found:
-            said.append(f"{quantity}: {c['better_above'].upper()} is better above {c['speed']:.6g} rad/s.")
+            said.append(f"{quantity}: {c['better_above'].upper()} is better above {speed_words(c['speed'], 6)}.")
     for row in answer["table"][:3]:
         name = row["quantity"].replace("_", " ")
-        said.append(f"At {own_speed:.5g} rad/s {name}: FMR {row['fmr']:.4g}, FMS {row['fms']:.4g}.")
+        said.append(f"At {speed_words(own_speed)} {name}: FMR {row['fmr']:.4g}, FMS {row['fms']:.4g}.")
     for name in SEALS:
         stable = answer[name]["stable"]
         if not all(stable):
             first = answer["speed"][stable.index(False)]
-            said.append(f"{name.upper()} is not damped at speeds from about {first:.4g} rad/s: no steady state there.")
+            about = speed_words(first, 4)
+            said.append(f"{name.upper()} is not damped at speeds from about {about}: no steady state there.")
     failed = [r for r in answer["time_domain"] if "failed" in r]
     good = len(answer["time_domain"]) - len(failed)
     said.append(f"Formula and linear algebra agree to {answer['roads_apart']:.1e}, phases to "

@@ -6,17 +6,15 @@ Keys come from the JSON schema (`sealdyn schema`), settings from the studies, sc
 of each file.
 """
 
-import dataclasses
-import inspect
 import json
-import pkgutil
 import re
 from pathlib import Path
 
-from sealdyn import read_scenario, studies
+from sealdyn import read_scenario
 from sealdyn.scenario.reader import RadialFile
 from sealdyn.scenario.schema import json_schema
-from sealdyn.studies._runner import study_module
+from sealdyn.studies._runner import study_names
+from sealdyn.studies._settings import about, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PAGE = SCENARIOS / "README.md"
@@ -57,7 +55,7 @@ def page() -> str:
     # `[run]` is that of face seals.
     parts += keys({**radial, "properties": {k: v for k, v in radial["properties"].items() if k != "run"}})
     parts += ["## Settings of studies\n", "Keys of `[study.NAME]`, or flags `--key value` of `sealdyn study`.\n"]
-    parts += [settings(m.name) for m in pkgutil.iter_modules(studies.__path__) if m.name[0] != "_"]
+    parts += map(settings, study_names())
     return "\n".join(parts)
 
 
@@ -123,18 +121,13 @@ def row(key: str, holds: dict, required: bool) -> str:
     return f"| `{key}` | {what} | {default} | {holds['description'].splitlines()[0]} |"
 
 
-def settings(module: str) -> str:
-    """What a study is for, and its settings with their defaults."""
-    study = study_module(module)
-    keys = ", ".join(f"`{f.name}`{default(f)}" for f in dataclasses.fields(study.Settings))
-    about = inspect.cleandoc(study.__doc__).split("\n\n")[0]
-    words = re.sub(r"\s+", " ", f"{about}  \n*Keys (default):* {keys}.  {study.Settings.__doc__}")
-    return f"**{module.replace('_', '-')}**  {words}\n"
-
-
-def default(field: dataclasses.Field) -> str:
-    """The default in brackets, if there is one to print."""
-    return "" if field.default in (None, ()) else f" ({shown(field.default)})"
+def settings(name: str) -> str:
+    """What a study is for, how long it takes, and its settings."""
+    rows = settings_of(name)
+    lines = [f"| `{s.key}` | {s.holds} | {f'`{s.default}`' if s.default else 'none'} | {s.meaning} |" for s in rows]
+    head = f"### `[study.{name.replace('-', '_')}]`\n\n{about(name)}  *Time:* {time_of(name)}.\n"
+    table = ["| key | value, SI unit | default | meaning |", "|---|---|---|---|", *lines]
+    return "\n".join([head, *table, ""])
 
 
 def shown(value) -> str:

@@ -1,4 +1,5 @@
-"""What each study costs: processor time of one run of every study with its default settings, on one core.
+"""What each study costs: processor time of one run of every study with its default settings, on one core: what TIMED
+in its file and the table of the README say.
 
     python tests/benchmark/study_times.py [study ...]
 
@@ -14,29 +15,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from sealdyn.studies._runner import study_module, study_names
+
 ROOT = Path(__file__).parents[2]
-COMMANDS = {
-    "equilibrium": ["run_in"],
-    "load-support": ["lebeck_n3", "--vary", "contact.roughness=0.1:0.4um:7"],
-    "elastic-ring": ["lebeck_elastic"],
-    "pressure": ["fms_reference", "--at", "tilt=0.15mrad"],
-    "coefficients": ["fmr_reference"],
-    "transmissibility": ["fmr_reference"],
-    "steady-state": ["fms_reference"],
-    "stability": ["fmr_reference"],
-    "campbell": ["fms_reference"],
-    "contact-onset": ["fms_reference", "--set", "stator.misalignment=0"],
-    "sweep": ["fms_reference", "--vary", "rotor.runout=0:1mrad:21"],
-    "tolerance": ["tolerance"],
-    "wear": ["run_in"],
-    "runup": ["runup_past_threshold"],
-    "critical-speed": ["fms_reference"],
-    "failures": ["fms_reference"],
-    "neutral-stability": ["fms_reference"],
-    "sealing-number": ["ludwig_allen"],
-    "work-precision": ["fmr_reference"],
-    "rub": ["rub_chaotic"],
-}
+COMMANDS = {name: study_module(name.replace("-", "_")).TIMED[0].split() for name in study_names()}
 
 
 def cost(study: str, scenario: str, *flags: str) -> tuple[float, str]:

@@ -24,7 +24,8 @@ def test_coefficients_over_speed_and_frequency(tmp_path):
 
     printed = sealdyn("show", "c.h5", "--csv", cwd=tmp_path).out
     rows = list(csv.DictReader(io.StringIO(printed)))
-    assert [float(row["k_tilt_x_tilt_y"]) for row in rows] == table["k_tilt_x_tilt_y"]
+    assert [float(row["k_tilt_x_tilt_y [N*m/rad]"]) for row in rows] == table["k_tilt_x_tilt_y"]
+    assert [float(row["frequency [rad/s]"]) for row in rows] == table["frequency"]
     assert sealdyn("show", "c.h5", "--mat", "c.mat", cwd=tmp_path).code == 0
     found = loadmat(tmp_path / "c.mat")
     assert {name: found[name][:, 0].tolist() for name in table} == table
@@ -42,6 +43,16 @@ def test_a_run_for_matlab(tmp_path):
 
 def test_what_cannot_be_exported_says_so(tmp_path):
     sealdyn("study", "equilibrium", REFERENCE, "--no-plot", "--out", "e.h5", cwd=tmp_path)
-    for words, hint in ((("e.h5", "--csv"), "no table"), (("e.h5", "--mat", "e.txt"), ".mat")):
+    sealdyn("run", REFERENCE, "--set", "run.turns=1", "--no-plot", "--out", "r.h5", cwd=tmp_path)
+    asked = {
+        ("e.h5", "--csv"): "one of roots, curve",
+        ("e.h5", "--table", "curv", "--mat", "e.mat"): 'nearest "curve"',
+        ("e.h5", "--mat", "e.txt"): ".mat",
+        ("r.h5", "--table", "curve"): "archive of a run",
+    }
+    for words, hint in asked.items():
         done = sealdyn("show", *words, cwd=tmp_path)
         assert done.code == 2 and hint in done.err and len(done.err.splitlines()) == 1
+    assert not (tmp_path / "e.mat").exists()
+    assert sealdyn("show", "e.h5", "--table", "curve", "--mat", "e.mat", cwd=tmp_path).code == 0
+    assert loadmat(tmp_path / "e.mat")["opening_force"].shape == (241, 1)

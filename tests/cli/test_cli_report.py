@@ -67,7 +67,8 @@ def test_it_says_what_the_program_says(folder):
     rules = sealdyn("check", REFERENCE, "--json", cwd=folder).found["design_rules"]
     assert all(" ".join(rule["said"].split()) in text for rule in rules) and text.count("not applicable") >= 5
     study = sealdyn("show", "b.h5", cwd=folder).out.splitlines()
-    assert all(" ".join(line.split()) in text for line in study[1:])
+    # The last line is for those who want a table.
+    assert all(" ".join(line.split()) in text for line in study[1:-1])
 
 
 @pytest.mark.parametrize(

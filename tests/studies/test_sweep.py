@@ -10,7 +10,7 @@ import pytest
 from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
-from sealdyn.archive import ArchiveError, as_dataset
+from sealdyn.archive import as_dataset
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis
@@ -118,7 +118,7 @@ def test_a_sweep_is_a_dataset_over_its_keys(tmp_path):
         ]
         assert list(data["film.model"]) == ["linear", "radial"] and "units" not in data["film.model"].attrs
         units = {name: data[name].attrs.get("units") for name in ("rotor.runout", "h_min.value", "contact_margin")}
-        assert units == {"rotor.runout": "urad", "h_min.value": "m", "contact_margin": None}
+        assert units == {"rotor.runout": "urad", "h_min.value": "m", "contact_margin": "1"}
         for row, place in zip(answer["rows"], itertools.product(range(3), range(3), range(2)), strict=True):
             at = {name: data[name][place].item() for name in data.data_vars}
             assert row["rotor.runout"] == data["rotor.runout"][place[0]]
@@ -132,13 +132,6 @@ def test_a_sweep_is_a_dataset_over_its_keys(tmp_path):
         assert as_dataset(answer).equals(data)
         # Any netCDF reader takes it on.
         data.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
-
-
-def test_a_study_without_a_grid_is_no_dataset(tmp_path):
-    scenario = parse_scenario(PATH.read_text(), "fms_reference", SHORT)
-    answer = run_study("coefficients", scenario, tmp_path / "c.h5", workers=1)
-    with pytest.raises(ArchiveError, match="no grid"):
-        sealdyn.open_archive(answer["archive"])
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ import sealdyn
 from sealdyn import studies
 from sealdyn.analysis.design_rules import rule_names
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.studies._runner import study_module, study_names
 
 README = (Path(__file__).parents[2] / "README.md").read_text()
 
@@ -54,6 +55,13 @@ def test_every_study_has_its_question_in_the_readme():
     for module in pkgutil.iter_modules(studies.__path__):
         if not module.name.startswith("_"):
             assert f"| `{module.name.replace('_', '-')}`, " in README
+
+
+@pytest.mark.parametrize("name", study_names())
+def test_times_in_the_readme_are_those_beside_the_studies(name):
+    words, seconds = study_module(name.replace("-", "_")).TIMED
+    (row,) = re.findall(rf"^\|.* \| `{name}`, (\w+).*\| (\d+) \|$", README, re.MULTILINE)
+    assert row == (words.split()[0], str(seconds))
 
 
 def test_every_rule_is_in_the_table_of_the_readme():

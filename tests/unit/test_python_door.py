@@ -74,6 +74,37 @@ def test_a_run_in_memory_is_that_of_an_archive(results):
     assert isinstance(in_memory.data.h_min.data, np.ndarray)
 
 
+def test_an_archive_is_run_again(results, tmp_path):
+    """Its own overrides are kept, more are taken; of a study the scenario is the one that it was asked about."""
+    kept = results[1]
+    again, more = sealdyn.run(kept.archive), sealdyn.run(kept.archive, {"rotor.runout": "50 urad"})
+    xarray.testing.assert_identical(again.data.drop_attrs(), kept.data.drop_attrs())
+    assert more.data.h_min.size == kept.data.h_min.size and more.data.h_min.min() < kept.data.h_min.min()
+    asked = sealdyn.read_scenario(TILTED, ["film.clearance=9 um"])
+    study = sealdyn.study("equilibrium", asked, out=tmp_path / "e.h5", workers=1, points=5)
+    assert sealdyn.read_scenario(study.archive) == asked != sealdyn.read_scenario(TILTED)
+    with pytest.raises(sealdyn.ArchiveError, match="no such file"):
+        sealdyn.run(tmp_path / "nothing.h5")
+
+
+def test_an_unknown_rule_is_refused_however_a_scenario_is_made():
+    tables = sealdyn.read_scenario(TILTED).to_dict()
+    tables["application"] = {"bore": "50 mm", "acknowledge": {"leakage": "drained"}}
+    scenario = sealdyn.Scenario.from_dict(tables)
+    with pytest.raises(sealdyn.ScenarioError) as refused:
+        scenario.with_({"application.acknowledge": {"leakege": "drained"}})
+    assert refused.value.key == "application.acknowledge.leakege" and "nearest 'leakage'" in str(refused.value)
+    tables["application"]["acknowledge"] = {"runnout": "new shaft"}
+    for make in (lambda: sealdyn.Scenario.from_dict(tables), lambda: sealdyn.read_scenario(
+            TILTED, ['application.acknowledge.runnout="new"'])):  # fmt: skip
+        with pytest.raises(
+            sealdyn.ScenarioError, match=r"\[application.acknowledge\] runnout: found an unknown design"
+        ):
+            make()
+    # What the seal is for stays where other values are set.
+    assert scenario.with_({"rotor.runout": 1e-5}).application == scenario.application
+
+
 @pytest.mark.parametrize("chart", CHARTS)
 def test_figures_of_a_run_are_written_as_lines_or_pixels(results, chart):
     figure = getattr(results[0].plot, chart)()

@@ -1,14 +1,18 @@
 """Settings of a study: lists given as one flag, and errors of one line."""
 
+import dataclasses
 import math
 from pathlib import Path
 
 import pytest
 
+from sealdyn.cli import _about_study
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
 from sealdyn.studies import contact_onset, steady_state, sweep
+from sealdyn.studies._runner import study_module, study_names
+from sealdyn.studies._settings import schema_with_studies, settings_of
 from sealdyn.studies.failures import study as failures
 from sealdyn.studies.rub import study as rub
 from sealdyn.studies.sealing_number import study as sealing_number
@@ -102,3 +106,28 @@ def test_units_of_keys():
     for key in ("rotor.runuot", "rotar.runout", "runout", "film.model.x"):
         with pytest.raises((AttributeError, KeyError)):
             si_unit(SCENARIO.scene, key)
+
+
+@pytest.mark.parametrize("name", study_names())
+def test_every_setting_is_described_wherever_it_is_asked_for(name):
+    """Help, JSON schema: what it holds, its unit, its default, what it means; and the time that the study takes."""
+    _, seconds = study_module(name.replace("-", "_")).TIMED
+    help = " ".join(_about_study(name).replace("\\\\[", "[").split())
+    table = schema_with_studies()["properties"]["study"]["properties"][name.replace("-", "_")]
+    assert f"{seconds} s of processor time" in help and f"{seconds} s of processor time" in table["description"]
+    fields = dataclasses.fields(study_module(name.replace("-", "_")).Settings)
+    assert fields and set(table["properties"]) == {field.name for field in fields}
+    for field, told in zip(fields, settings_of(name), strict=True):
+        assert told.key == field.name and told.meaning[-1] == "." and told.holds != "value"
+        assert (
+            f"--{field.name.replace('_', '-')} ({told.holds}" in help.replace("\\[", "[") and told.meaning[:20] in help
+        )
+        assert table["properties"][field.name]["description"].startswith(told.meaning)
+        if isinstance(field.default, float | bool | int):
+            assert table["properties"][field.name]["default"] == field.default
+
+
+def test_units_of_settings_are_told():
+    told = {setting.key: setting for setting in settings_of("equilibrium")}
+    assert told["clearance_from"].holds == "length, m" and told["points"].default == "241"
+    assert [s.holds for s in settings_of("rub") if s.key == "whirl_speeds"] == ["list of speed of rotation, rad/s"]

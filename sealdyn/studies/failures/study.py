@@ -13,14 +13,20 @@ from ...simulation.simulate import prepare_run
 from ...status import Status
 from . import cases
 
-units = {"rows/failing_error": "the row's unit", "rows/survivor_error": "the row's unit"}
+units = {"failing_error": "the row's unit", "survivor_error": "the row's unit", "item": "1", "items": "1"}
+ALONG = {"rows": ("item",)}
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fms_reference", 28)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`items`: numbers of the exhibits to show (default all)."""
+    """Which exhibits."""
 
     items: tuple[int, ...] | int = ()
+    """Numbers of the exhibits to show; empty: all."""
 
 
 def run(scenario, settings, tools) -> dict:

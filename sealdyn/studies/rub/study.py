@@ -21,34 +21,61 @@ from ...scene.variants import part
 from ...simulation.stability import critical_speed
 from ...status import Status
 from ...units import Speed
+from .._words import RPM, quantity, shown_in, speed
 from .statistics import evaluate_point, touch_level
 
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
-UNITS = {"rotor.runout": "rad", "rotor.misalignment": "rad", "stator.misalignment": "rad", "shaft.speed": "rad/s"}
-units = {"rows/h_min": "m", "rows/section": "rad", "separation/apart": "of clearance/outer radius"}
+ALONG = {
+    "rows": ("value",), "rows/section": ("rows/kept",), "rows/h_min": ("rows/kept",),
+    "rows/orders": ("rows/line",), "rows/amplitude": ("rows/line",), "separation/apart": ("separation/period",),
+    "whirl/rows": ("speed",), "whirl/rows/amplitudes": ("whirl/rows/turn",),
+}  # fmt: skip
+units = {"apart": "of clearance/outer radius", "h_min": "m", "impulse": "N*s", "wall_time": "s", "speed": "rad/s",
+         "end": "SI", "rows/lines/between": "1"}  # fmt: skip
+units |= dict.fromkeys(("section", "amplitude", "amplitudes", "from"), "rad")
+units |= dict.fromkeys((f"rows/lines/{order}" for order in ("0.5", "1", "1.5", "2", "3", "4")), "rad")
+units |= dict.fromkeys(("contact_power", "friction_power"), "W")
+units |= {f"{name}/{what}": unit for what in ("values", "uncertainties") for name, unit in (
+    *((f"h_min_{n}", "m") for n in ("mean", "std", "median", "q05", "q95")),
+    *((f"section_{n}", "rad") for n in ("x_mean", "y_mean", "x_std", "y_std")), ("impulse", "N*s"))}  # fmt: skip
+units |= dict.fromkeys(("period", "distinct", "contacts", "contact_share", "contact_force", "exponent", "uncertainty",
+                        "multiplier", "orders", "evaluations", "first_contact", "turns", "whirl_ratio", "values",
+                        "uncertainties", "spectrum", "accuracies"), "1")  # fmt: skip
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("rub_chaotic", 408)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`key` grows over `values` ("from:to:count", any unit; default 0.6 to 1.2 times the scenario's): rotor.runout of a
-    seal with a flexible stator, else stator.misalignment; `down`: also back again.  At each point `ramp` periods lead
-    to it, `drop` pass and `keep` count; `exponent_turns` for its exponent.  `judge`: value at which two methods compare
-    over `judge_turns` (default: where the exponent is largest; 0 turns: nowhere).  `whirl`: also where a small whirl of
-    the unforced seal settles, at `whirl_speeds` (default 1.02, 1.1 and 1.3 of the critical speed)."""
+    """The path, and what is looked at along it."""
 
     key: str | None = None
+    """Key that grows; without it rotor.runout of a seal with a flexible stator, else stator.misalignment."""
     values: str | None = None
+    """Its values, "from:to:count" in any unit; without them 0.6 to 1.2 times the scenario's."""
     down: bool = False
+    """Also back again."""
     ramp: int = 15
+    """Periods that lead to each value."""
     drop: int = 80
+    """Periods that pass before any counts."""
     keep: int = 96
+    """Periods that count."""
     exponent_turns: int = 200
+    """Periods for the exponent."""
     judge: float | str | None = None
+    """Value at which two methods are compared; without it where the exponent is largest."""
     judge_turns: int = 600
+    """Periods of that comparison (0: none)."""
     accuracy: float = 1e-6
+    """Accuracy of the runs."""
     whirl: bool = False
+    """Also where a small whirl of the unforced seal settles."""
     whirl_speeds: tuple[Speed, ...] = ()
+    """Speeds of that; empty: 1.02, 1.1 and 1.3 of the critical speed."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -69,6 +96,7 @@ def run(scenario, settings, tools) -> dict:
     failed = [row["failed"] for row in found if "failed" in row]
     rows = [row for part in found for row in part.get("rows", [])]
     answer = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
+    answer["units"] = {"rows/value": unit}
     answer |= _judged(base, rows, settings, scenario, tools)
     answer["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
     if not any(row["status"] == Status.OK for row in rows):
@@ -143,47 +171,60 @@ def whirl(scene, point: dict) -> dict:
 
 def tables(answer) -> list:
     """Points of the diagram, and the whirls let go."""
-    value = (f"{answer['key']}, {UNITS.get(answer['key'], 'SI')}", "value")
+    unit, factor = _shown(answer)
+    value = (f"{answer['key']}, {unit}", "value", factor)
     share = (("contact, % of time", "contact_share", 100), ("% of closing force", "contact_force", 100))
     points = (("going", "direction"), value, ("motion", "class"), *share, ("exponent per period", "exponent"),
               ("+-", "uncertainty"), ("evaluations per turn", "evaluations"))  # fmt: skip
-    whirls = (("speed, rad/s", "speed"), ("whirl", "fate"), ("turns", "turns"), ("first touch, turns", "first_contact"),
-              ("whirl ratio", "whirl_ratio"), *share)  # fmt: skip
+    whirls = (("speed, rpm", "speed", RPM), ("whirl", "fate"), ("turns", "turns"),
+              ("first touch, turns", "first_contact"), ("whirl ratio", "whirl_ratio"), *share)  # fmt: skip
     return [(answer["rows"], points), ((answer["whirl"] or {}).get("rows"), whirls)]
 
 
 def sentences(answer) -> list[str]:
     """The verdict: motion along the path, what can be foretold, what becomes of whirl."""
-    unit = UNITS.get(answer["key"], "SI")
-    ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w]) for w in ("up", "down")}
+    unit, factor = _shown(answer)
+    ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w], factor) for w in ("up", "down")}
     paths = "; ".join(f"going {way}: {path}" for way, path in ways.items() if path)
     lines = [f"{answer['key']} ({unit}) {paths}." if paths else "No point of the diagram was reached."]
     if answer["judge"]:
-        lines.append(_foretold(answer, unit))
+        lines.append(_foretold(answer, quantity(answer["judge"]["value"], _unit(answer))))
     if answer["whirl"]:
         critical, rows = answer["whirl"]["critical_speed"], answer["whirl"]["rows"]
-        fates = ", ".join(f"{row['fate']} at {row['speed']:.5g} rad/s" for row in rows if "failed" not in row)
-        where = f"critical speed {critical:.5g} rad/s" if critical else "no critical speed"
-        lines.append(f"Small whirls of the unforced seal ({where}): {fates or 'none'}.")
+        fates = ", ".join(f"{row['fate']} at {speed(row['speed'])}" for row in rows if "failed" not in row)
+        where = f"critical speed {speed(critical)}" if critical else "no critical speed"
+        lines.append(f"Small whirls of the unforced seal, {where}: {fates or 'none'}.")
     return lines
 
 
-def _classes(rows) -> str:
+def _unit(answer) -> str:
+    """SI unit of the key."""
+    return answer.get("units", {}).get("rows/value", "SI")
+
+
+def _shown(answer) -> tuple[str, float]:
+    """The unit in which values of the key are shown, and its factor."""
+    return shown_in(_unit(answer), [row["value"] for row in answer["rows"]])
+
+
+def _classes(rows, factor) -> str:
     """Classes along a path: "no contact to 0.2, period 1 to 0.3, ..."."""
     last = [k + 1 == len(rows) or rows[k + 1]["class"] != row["class"] for k, row in enumerate(rows)]
-    return ", ".join(f"{row['class']} to {row['value']:.4g}" for row, ends in zip(rows, last, strict=True) if ends)
+    return ", ".join(
+        f"{row['class']} to {factor * row['value']:.4g}" for row, ends in zip(rows, last, strict=True) if ends
+    )
 
 
-def _foretold(answer, unit) -> str:
+def _foretold(answer, where) -> str:
     """Exponent by two methods, the averages that agree, and the horizon of a chaotic motion."""
     judged, separation = answer["judge"], answer["separation"]
     if "failed" in judged:
-        return f"Two methods could not be compared at {judged['value']:.4g} {unit}."
+        return f"Two methods could not be compared at {where}."
     entries = answer["methods"]["invariants"]
     values, bounds = entries["exponent"]["values"], entries["exponent"]["uncertainties"]
     told = " and ".join(f"{v:.3f} +- {u:.3f}" for v, u in zip(values, bounds, strict=True))
     wrong = [name for name, entry in entries.items() if not entry["agree"]]
-    line = (f"At {judged['value']:.4g} {unit} the exponent is {told} a period by Adams and DOP853, "
+    line = (f"At {where} the exponent is {told} a period by Adams and DOP853, "
             f"{len(entries) - len(wrong)} of {len(entries)} averages agree")  # fmt: skip
     line += f" (not {', '.join(wrong)})" if wrong else ""
     if min(v - u for v, u in zip(values, bounds, strict=True)) > 0:

@@ -1,8 +1,7 @@
 """What a run-up says, in sentences."""
 
-import math
-
 from ...status import Status
+from .._words import RPM, quantity, speed
 
 WAYS = ("up", "down")
 # Up to this share of the tilt that touches, a seal is near its aligned film; of the power that may be folded.
@@ -22,8 +21,8 @@ def sentences(answer) -> list[str]:
     return [*lines, *dict.fromkeys(warnings)]
 
 
-def _speed(w) -> str:
-    return f"{w:.5g} rad/s ({w * 30 / math.pi:.5g} rpm)"
+def rate_words(rate) -> str:
+    return f"{rate:.4g} rad/s^2 ({rate * RPM:.4g} rpm/s)"
 
 
 def _passing(answer, rows) -> str:
@@ -31,20 +30,20 @@ def _passing(answer, rows) -> str:
     threshold, touch, foretold = answer["threshold"], answer["touch_rate"], answer["rate_foretold"]
     if answer["crossing"] is None:
         films = [(row["h_min"], row["rate"]) for row in rows if row["h_min"] is not None]
-        near = f"; thinnest film {1e6 * min(films)[0]:.4g} um, at {min(films)[1]:.4g} rad/s^2" if films else ""
+        near = f"; thinnest film {1e6 * min(films)[0]:.4g} um, at {rate_words(min(films)[1])}" if films else ""
         if threshold is not None:
-            return f"The stability threshold {_speed(threshold)} is not on the way{near}."
+            return f"The stability threshold {speed(threshold)} is not on the way{near}."
         if not answer["tilting"]:
             return f"Nothing tilts the rings here, and no whirl is followed{near}."
         if answer["linear_verdict"] != "stable":
             return f"No stability threshold: the seal is {answer['linear_verdict']} at every speed{near}."
         return f"No stability threshold: whirl dies out at every speed, however slowly it is passed{near}."
-    linear = f"linear theory: {foretold:.4g} rad/s^2" if foretold else "linear theory: no such rate"
+    linear = f"linear theory: {rate_words(foretold)}" if foretold else "linear theory: no such rate"
     if touch is None or touch["value"] is None:
         why = "not looked for" if touch is None else touch["said"]
-        return f"How fast the threshold {_speed(threshold)} must be passed to stay below touch: {why}; {linear}."
-    return (f"To stay below touch the threshold {_speed(threshold)} must be passed faster than {touch['value']:.4g} "
-            f"rad/s^2; {linear}.")  # fmt: skip
+        return f"How fast the threshold {speed(threshold)} must be passed to stay below touch: {why}; {linear}."
+    return (f"To stay below touch the threshold {speed(threshold)} must be passed faster than "
+            f"{rate_words(touch['value'])}; {linear}.")  # fmt: skip
 
 
 def _passed(answer) -> str:
@@ -55,8 +54,8 @@ def _passed(answer) -> str:
         peak = f"nothing drives {order}"
     elif linear is not None:
         height = f"{1e6 * linear[1]:.4g} {'urad' if answer['tilting'] else 'um'}"
-        peak = f"linear steady theory has the peak of {order} at {_speed(linear[0])}, {height}"
-    return f"Shaft speed from {_speed(answer['begin'])} to {_speed(answer['end'])} and back{chosen}; {peak}."
+        peak = f"linear steady theory has the peak of {order} at {speed(linear[0])}, {height}"
+    return f"Shaft speed from {speed(answer['begin'])} to {speed(answer['end'])} and back{chosen}; {peak}."
 
 
 def _growth(answer, rows) -> list[str]:
@@ -75,12 +74,13 @@ def _growth(answer, rows) -> list[str]:
 
 def load_sentences(answer) -> list[str]:
     """Verdict of ramps and steps of anything but the speed."""
-    slow, key, unit, slowest = answer["quasi_static"], answer["key"], answer["unit"], answer["slowest"]
+    slow, key, slowest = answer["quasi_static"], answer["key"], answer["slowest"]
+    begin, end = (quantity(answer[name], answer["unit"]) for name in ("begin", "end"))
     films = [(row["h_min"], row["rate"]) for row in answer["rows"] if row.get("h_min") is not None]
     least, rate = min(films, key=lambda film: film[0], default=(None, None))
     how = "in a step" if rate is None else f"at {rate:.4g} {answer['rate_unit']}"
     film = "no film" if least is None else f"thinnest film {1e6 * least:.4g} um, {how}"
-    lines = [f"{key} from {answer['begin']:.5g} to {answer['end']:.5g} {unit} and back: {film}."]
+    lines = [f"{key} from {begin} to {end} and back: {film}."]
     ends = ["no gap balances the loads" if slow["h_min"][k] is None else
             f"{1e6 * slow['h_min'][k]:.4g} um, {1e6 * slow['relative_misalignment'][k]:.4g} urad, "
             f"{slow['leakage'][k] * 3.6e9:.5g} ml/h" for k in (0, -1)]  # fmt: skip

@@ -18,6 +18,7 @@ from ...scenario.settings import si_unit
 from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
+from .._words import RPM
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
 from .sentences import WAYS, load_sentences, sentences
@@ -27,33 +28,53 @@ from .speed_ramp import passage, short_pass
 CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
 # Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.
 RAMPS = (100.0, 10.0, 1.0)
-ALONG = {"linear": ("speed",), "curve": ("rate",), "whirl": ("speed",)}
-units = {
-    "linear/speed": "rad/s", "linear/amplitude": "rad", "linear/phase": "rad", "curve/rate": "rad/s^2",
-    "curve/relative_misalignment": "rad", "curve/h_min": "m", "whirl/speed": "rad/s", "whirl/frequency": "rad/s",
-    "whirl/growth_rate": "1/s", "waterfall/up/speed": "rad/s", "waterfall/up/amplitude": "rad",
-    "waterfall/down/speed": "rad/s", "waterfall/down/amplitude": "rad",
-}  # fmt: skip
+LISTS = ("time", "value", "film", "tilt", "flow")
+ALONG = {
+    "linear": ("speed",), "curve": ("rate",), "whirl": ("speed",), "quasi_static": ("value",), "rows": ("rate",),
+    "rows/growth/curve": ("instant",), "waterfall/up": ("speed", "orders"), "waterfall/down": ("speed", "orders"),
+} | {f"rows/{name}": ("rows/instant",) for name in LISTS}  # fmt: skip
+# What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
+units = dict.fromkeys(("speed", "frequency", "h_min_speed", "relative_misalignment_speed", "speed_in_window",
+                       "resonances"), "rad/s")  # fmt: skip
+units |= dict.fromkeys(("h_min_time", "time", "until", "time_above", "stages"), "s") | {"growth_rate": "1/s"}
+units |= dict.fromkeys(("h_min", "film"), "m") | dict.fromkeys(("leakage", "leakage_least", "flow"), "m^3/s")
+units |= dict.fromkeys(("phase", "relative_misalignment", "tilt", "growth/from"), "rad")
+units |= dict.fromkeys(("turns", "window", "resolution", "folding", "orders", "driven", "departure", "rows/up/rows",
+                        "rows/down/rows", "rows/time/rows", "foretold", "measured", "integral", "with_factor", "error",
+                        "error_with_factor", "whole"), "1")  # fmt: skip
+units |= {f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment", "leakage")}
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("runup_past_threshold", 35)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """`key` goes from `begin` to `end` (with units; SI without) and back at each of `rates` ("1000, 5000" or
-    "from:to:count[:log]", per second; for anything but the speed also "step"), `hold` there.  Defaults for the speed:
-    half the first resonance to 1.05 of the threshold, or 1.5 of the last resonance.  `disturbance`: relative tilt of
-    the whirl met at the threshold (default a thousandth of clearance/outer radius); `touch`: look for the rate that
-    just touches.  `order` followed (default 1), `window` in turns, `samples_per_turn`."""
+    """The ramps."""
 
     key: str = SPEED
+    """What goes from `begin` to `end` and back."""
     begin: float | str | None = None
+    """With its unit, or SI; without it half the first resonance, of another key than the speed its first value."""
     end: float | str | None = None
+    """With its unit, or SI; without it 1.05 of the threshold or 1.5 of the last resonance, of another key than
+    the speed the farthest of its table."""
     rates: float | str | None = None
+    """Rates per second, "1000, 5000" or "from:to:count[:log]"; for anything but the speed also "step"."""
     hold: Annotated[Time, Field(ge=0)] | None = None
+    """How long the end is held."""
     disturbance: Annotated[Angle, Field(ge=0)] | None = None
+    """Relative tilt of the whirl that is met at the threshold; without it a thousandth of clearance over outer
+    radius."""
     touch: bool = True
+    """Look for the rate that just touches."""
     order: float | None = None
+    """Order that is followed; without it 1 where something turns with the shaft."""
     window: Annotated[int, Field(ge=2)] | None = None
+    """Turns of the window in which it is tracked."""
     samples_per_turn: Annotated[int, Field(ge=8)] | None = None
+    """Samples of a turn."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -85,6 +106,8 @@ def speed_ramps(scenario, settings, tools) -> dict:
         "whirl": _whirl(mode, plan, begin, end), "forced_tilt": plan["forced"],
         "warnings": plan["warnings"], "rate_foretold": plan["rate_foretold"],
     }  # fmt: skip
+    size = "rad" if answer["tilting"] else "m"
+    answer["units"] = {"amplitude": size, "peak": ["rad/s", size], "rate": "rad/s^2", "bracket": "rad/s^2"}
     shown = next((r for r in rows if r.get("status") == Status.OK), next((r for r in rows if "waterfall" in r), None))
     answer["waterfall"] = {"rate": shown["rate"], "window": shown["window"], **shown["waterfall"]} if shown else None
     answer["rows"] = [{k: v for k, v in row.items() if k != "waterfall"} for row in rows]
@@ -176,7 +199,8 @@ def load_ramps(scenario, settings, tools) -> dict:
     for row in rows:
         row["overshoot"] = overshoot(row, slow) if "failed" not in row else None
     answer = {"key": key, "begin": begin, "end": end, "unit": unit, "rate_unit": rate_unit(unit), "decay": decay,
-              "slowest": slowest, "quasi_static": slow, "rows": rows}  # fmt: skip
+              "slowest": slowest, "quasi_static": slow, "rows": rows,
+              "units": {"value": unit, "rate": rate_unit(unit)}}  # fmt: skip
     if not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": load_sentences(answer)}
@@ -191,10 +215,10 @@ def tables(answer) -> list:
     ends = (("thinnest film, um", "h_min", 1e6), ("largest misalignment, urad", "relative_misalignment", 1e6),
             ("touch", "touched"), ("ended", "status"))  # fmt: skip
     if answer["key"] == SPEED:
-        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rad/s", "peak.up"),
-                   ("down", "peak.down"), ("peak read to", "read"), ("from linear, %", "departure", 100),
+        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rpm", "peak.up", RPM),
+                   ("down, rpm", "peak.down", RPM), ("read to, rpm", "read", RPM), ("from linear, %", "departure", 100),
                    ("ln of growth", "growth.measured"), ("linear", "growth.with_factor"))  # fmt: skip
-        where = (("closest at, rad/s", "h_min_speed"), ("going", "h_min_way"))
+        where = (("closest at, rpm", "h_min_speed", RPM), ("going", "h_min_way"))
         return [([_plain(row) for row in answer["rows"]], (*columns, *where, *ends))]
     columns = ((f"rate, {answer['rate_unit']}", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
                ("misalignment, %", "overshoot.relative_misalignment", 100),

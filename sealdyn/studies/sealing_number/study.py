@@ -16,7 +16,12 @@ from ...numerics.piecewise_linear import initially
 from ...status import Status
 from . import released as free
 
-units = {"line/force_ratio": "1", "line/sealing_number": "1", "map/guide": "1"}
+ALONG = {"line": ("force_ratio",), "foreseen": ("force_ratio",), "map": ("guide",),
+         "map/closed_form": ("force_ratio",), "balance": ("force_ratio",), "published": ("force_ratio",),
+         "released": ("force_ratio",)}  # fmt: skip
+# Of what is left a film is a length; of what the released ring has, three: mean, least and largest of its last turns.
+units = {"mean_film": "m", "least_film": "m", "ratio/mean_film": "1", "ratio/least_film": "1", "direction": "rad",
+         "tilt_stiffness": "N*m/rad", "*": "1"}  # fmt: skip
 
 # Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.
 RADIANS, ABOVE = 300.0, 1.02
@@ -25,17 +30,26 @@ Positive, Start = Annotated[float, Field(gt=0)], Literal["closed form", "open"]
 OWN, NEEDED = "own", "as the closed form needs"
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("ludwig_allen", 53)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`force_ratios` F_s/F_d; the released ring runs over `turns` from each of `starts` (on the closed form's film;
-    open: square to its shaft, at rest), with each of `inertia` times its mass and inertias; the `last` turns count."""
+    """Force ratios, and the released rings."""
 
     force_ratios: Annotated[tuple[Positive, ...], Field(min_length=1)] | Positive = RATIOS
+    """F_s/F_d."""
     starts: tuple[Start, ...] | Start = ("closed form", "open")
+    """Where a released ring starts: on the closed form's film, or open: square to its shaft, at rest."""
     inertia: tuple[Positive, ...] | Positive = (1.0,)
+    """Multiples of the ring's mass and inertias."""
     turns: Positive = 80.0
+    """Turns that a released ring runs."""
     last: Positive = 4.0
+    """Turns of these that count."""
     accuracy: Positive = 1e-3
+    """Accuracy of these runs."""
 
 
 def run(scenario, settings, tools) -> dict:

@@ -22,25 +22,33 @@ from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.method_selection import choose_method
 from ...simulation.stability import critical_speed
+from .._words import speed
 from .grid import INERTIA_RATIO, Grid
 
 REFUSES = ("secondary-seal",)
-units = {"growth_rate": "1/s", "tilt_growth_rate": "1/s"}
+ALONG = dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x"))
+units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain"), "1/s") | {"turns": "1"}
 # A run in time lasts until a small disturbance (1 % of the clearance) has grown by this much (e-folds), or decayed.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 8)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`x` and `y`: "key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over
-    polar, transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; `confirm`: how many points beside the
-    threshold are confirmed in the time domain."""
+    """The map."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     x: str | None = None
+    """"key=from:to:count" with any scenario key (SI or with units) or `inertia_ratio` (transverse over polar,
+    transverse kept), ":log" at its end for even ratios, or "key=a,b,c"; without it the shaft speed."""
     y: str | None = None
+    """As `x`; without it the inertia ratio where a ring spins, else the damping of the support."""
     confirm: int = 4
+    """How many points beside the threshold are confirmed in the time domain."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -65,6 +73,7 @@ def run(scenario, settings, tools) -> dict:
         "margins": margins(scene),
         "unconditional": unconditional(scene),
         "confirmed": _confirmed(scenario, axes, tilt, settings.confirm, tools),
+        "units": {f"confirmed/{name}": a["unit"] for name, a in zip("xy", axes, strict=True)},
     }
     return answer | {"verdict": _verdict(answer, scenario, axes, total)}
 
@@ -282,7 +291,7 @@ def _verdict(answer, scenario, axes, total) -> list[str]:
     said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g}{known} 1/s."]
     if margin["critical_speed"]:
         times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
-        said.append(f"Critical speed {margin['critical_speed']:.5g} rad/s{times}.")
+        said.append(f"Critical speed {speed(margin['critical_speed'])}{times}.")
     else:
         said.append("No critical speed.")
     if limit["limit"]:

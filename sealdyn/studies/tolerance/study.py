@@ -20,28 +20,41 @@ from .verdict import sentences, tables
 __all__ = ["Settings", "run", "tables"]
 
 WITH_WAVES = True
+ALONG = dict.fromkeys(("samples", "samples/keys", "samples/outputs"), ("samples/run",)) | dict.fromkeys(
+    ("convergence", "convergence/quantiles", "convergence/total"), ("convergence/runs",)
+)
+# Of keys and outputs the answer knows the units; what is left are indices, shares and counts.
+units = {"*": "1"}
 OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
 # What every run is asked besides, to know whether the faces touched and whether the seal is stable.
 FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("tolerance", 150)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`scatter`, one entry a key: "KEY = normal(MEAN, SIGMA)", "uniform(LOW, HIGH)", "truncated(MEAN, SIGMA, LOW,
-    HIGH)"; without MEAN the scenario's own value; "normal(MEAN +- W)" or "normal(+- W)" with a tolerance W of 3 SIGMA
-    ("truncated" also cuts there, of "uniform" it is half the width), W in % of the mean too.  `correlations`:
-    "KEY, KEY = NUMBER", of a Gaussian copula.  The study takes `samples` x (keys + 2) runs, or `samples` runs with
-    `indices` = false or with correlations (Sobol indices then are not defined); `samples` is a power of two; equal
-    `seed`, equal numbers.  `outputs` as of a sweep; which tolerance to tighten is asked of the first.  Contact: a film
-    that collapses, is closed at the start or gets down to `margin` x clearance, or asperities that touch."""
+    """What scatters, how many seals, and what is asked of them."""
 
     scatter: list[str] | str = ()
+    """One entry a key: "KEY = normal(MEAN, SIGMA)", "uniform(LOW, HIGH)", "truncated(MEAN, SIGMA, LOW, HIGH)";
+    without MEAN the scenario's own value; "normal(MEAN +- W)" or "normal(+- W)" with a tolerance W of 3 SIGMA
+    ("truncated" also cuts there, of "uniform" it is half the width), W in % of the mean too."""
     correlations: list[str] | str = ()
+    """"KEY, KEY = NUMBER", of a Gaussian copula."""
     samples: int = 256
+    """A power of two: the study takes so many x (keys + 2) runs, or so many without indices."""
     seed: int = 1
+    """Equal seed, equal numbers."""
     outputs: list[str] | str = OUTPUTS
+    """As of a sweep; which tolerance to tighten is asked of the first."""
     indices: bool = True
+    """Sobol indices; with correlations they are not defined."""
     margin: float = 1e-3
+    """Contact is a film that gets down to so much of the clearance, collapses or is closed at the start, or asperities
+    that touch."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -71,6 +84,8 @@ def run(scenario, settings, tools) -> dict:
                     for s in scatters},
         "outputs": outputs,
         "output_units": {name: unit_of(name) for name in outputs},
+        "units": {f"samples/keys/{s.key}": s.unit or "1" for s in scatters}
+        | {f"samples/outputs/{name}": unit_of(name) or "1" for name in outputs},
         "nominal": {name: nominal[name] for name in outputs},
         "runs": {"asked": len(rows), "scrambles": SCRAMBLES, "ends": ends(rows), **counts(rows[: len(whole.values)])},
         "sobol": indices(found, keys, settings.seed) if with_indices else
@@ -78,6 +93,8 @@ def run(scenario, settings, tools) -> dict:
     }  # fmt: skip
     answer |= distribution(whole, found, contact, answer["sobol"], factor is None)
     answer["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
+    of_first = ("standard_deviation", *(f"quantiles/{level}" for level in answer["quantiles"][outputs[0]]))
+    answer["units"] |= {f"convergence/{name}": unit_of(outputs[0]) or "1" for name in of_first}
     if not any(moment["count"] for moment in answer["moments"].values()):
         answer["status"] = Status.FAILED
     return {**answer, "verdict": sentences(answer, rows)}

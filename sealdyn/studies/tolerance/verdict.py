@@ -1,6 +1,7 @@
 """The answer in words: the verdict's sentences and the tables below it."""
 
 from ...status import Status
+from .._words import shown_in
 
 
 def sentences(answer, rows) -> list[str]:
@@ -32,7 +33,9 @@ def _tighten_sentence(answer, name) -> str:
     if spread["5"] is None:
         return f"{name} has no value in any run."
     count, runs = answer["moments"][name]["count"], answer["runs"]["distribution"]
-    begin = f"{name} is {spread['5']:.4g} to {spread['95']:.4g} {unit}".strip() + " in nine seals of ten"
+    shown, factor = shown_in(unit, spread.values())
+    begin = f"{name} is {factor * spread['5']:.4g} to {factor * spread['95']:.4g} {shown}".strip()
+    begin += " in nine seals of ten"
     begin += f" of the {count} of {runs} that have one" if count < runs else ""
     first, *others = answer["tighten"][name]
     if first["total"] is None:
@@ -51,6 +54,16 @@ def _tighten_sentence(answer, name) -> str:
     return f"{words}{more}."
 
 
+def _spread(answer, name) -> dict:
+    """The distribution of an output, in the unit in which it is shown."""
+    levels, moments = answer["quantiles"][name], answer["moments"][name]
+    unit, factor = shown_in(answer["output_units"][name], levels.values())
+    numbers = {"nominal": answer["nominal"][name], "mean": moments["mean"]}
+    numbers |= {"standard_deviation": moments["standard_deviation"]} | {f"q{p}": v for p, v in levels.items()}
+    shown = {key: None if value is None else factor * value for key, value in numbers.items()}
+    return {"output": name, **shown, "count": moments["count"], "unit": unit}
+
+
 def counted_ends(answer) -> str:
     return ", ".join(f"{count} {word}" for word, count in answer["runs"]["ends"].items())
 
@@ -58,9 +71,7 @@ def counted_ends(answer) -> str:
 def tables(answer) -> list:
     """The distribution of every output; the keys, as the first output has them; total indices of all outputs."""
     outputs, first = answer["outputs"], answer["outputs"][0]
-    spreads = [{"output": name, "nominal": answer["nominal"][name], "unit": answer["output_units"][name],
-                **answer["moments"][name], **{f"q{p}": v for p, v in answer["quantiles"][name].items()}}
-               for name in outputs]  # fmt: skip
+    spreads = [_spread(answer, name) for name in outputs]
     columns = (("output", "output"), ("nominal", "nominal"), ("mean", "mean"), ("st. dev.", "standard_deviation"),
                *((f"{p} %", f"q{p}") for p in answer["quantiles"][first]), ("unit", "unit"),
                ("values", "count"))  # fmt: skip

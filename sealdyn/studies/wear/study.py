@@ -28,29 +28,37 @@ HISTORY = {
     "mean_clearance": "m", "coning": "rad", "wear_rate": "m/s", "stator_volume": "m^3", "rotor_volume": "m^3",
     "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
 }  # fmt: skip
-ALONG = {"history": ("time",), "profile": ("radius",)}
+ALONG = {"history": ("time",), "profile": ("history/time", "radius"), "pv": ("history/time", "radius")}
 units = {f"history/{name}": unit for name, unit in HISTORY.items()} | {
     "radius": "m", "profile/stator": "m", "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s",
     "coefficients": "1/Pa",
 }  # fmt: skip
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("run_in", 15)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """Wear for `duration` of operation on `nodes` radii, the depth known to `accuracy` roughnesses; one step changes
-    the shape of the profile by `step` roughnesses at most.  A short run averages over `turns` forcing periods, again
-    until two such averages agree, `patience` times at most.  `even`: rates that differ by less over the face are those
-    of a profile that has run in; `run_in`: then "stop", "extrapolate" to the duration at a constant rate, or "go on".
-    """
+    """Wear over hours, and how finely it is followed."""
 
     duration: Annotated[Time, Field(gt=0)] = 100 * 3600.0
+    """Of operation."""
     nodes: Annotated[int, Field(ge=2, le=MOST)] = 17
+    """Radii of the profile."""
     accuracy: Annotated[float, Field(gt=0, le=1)] = 1e-2
+    """Error of the depth, in roughnesses."""
     step: Annotated[float, Field(gt=0)] = 1.0
+    """Largest change of the profile's shape in one step, in roughnesses."""
     turns: Annotated[int, Field(ge=1, le=10_000)] = 1
+    """Forcing periods over which a short run averages, again until two such averages agree."""
     patience: Annotated[int, Field(ge=2, le=10_000)] = 40
+    """Averages of a short run at most."""
     even: Annotated[float, Field(gt=0)] = 1e-2
+    """Rates that differ by less over the face are those of a profile that has run in."""
     run_in: Literal["stop", "extrapolate", "go on"] = "stop"
+    """What then: stop, extrapolate to the duration at a constant rate, or go on."""
 
 
 def run(scenario, settings, tools) -> dict:

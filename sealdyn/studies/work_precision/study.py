@@ -34,7 +34,12 @@ NAMES = {
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
     "trbdf2": "TR-BDF2",
 }  # fmt: skip
-units = {f"methods/{name}/wall": "s" for name in NAMES}
+ALONG = {f"methods/{name}": ("tolerance",) for name in NAMES} | {
+    f"methods/{name}/{what}": (f"methods/{name}/tolerance",)
+    for name in NAMES for what in ("error", *(f"observables/{where}" for where in WHERE))
+}  # fmt: skip
+# Errors are shares of a scale.
+units = {"wall": "s", "processor": "s", "*": "1"}
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
 WITH_WAVES = True
@@ -51,24 +56,36 @@ BRIEF = 0.3
 BUSY = 1.1
 
 
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("fmr_reference", 74)
+
+
 @dataclass(frozen=True)
 class Settings:
-    """`tolerances` so many, evenly from `loosest` to `tightest`; `repeats` of a run, of which the fastest counts;
-    `longest` seconds of a run, `slowest` times the fastest run of that error: beyond, a cross; `samples` intervals at
-    which errors are taken; `methods` to judge (empty: all); `judging` seconds the reference may take; `where` the
-    verdict looks: "end", "over_time" or "steady"; `models`: also compare the film models."""
+    """Methods and tolerances, and how they are judged."""
 
     tolerances: int = 10
+    """Number of tolerances, evenly from `loosest` to `tightest`."""
     loosest: Annotated[float, Field(gt=0, le=1)] = 1e-2
+    """Loosest tolerance."""
     tightest: Annotated[float, Field(gt=0, le=1)] = 1e-11
+    """Tightest tolerance."""
     repeats: int = 3
+    """Repeats of a run, of which the fastest counts."""
     longest: float = 60.0
+    """Seconds that a run may take."""
     slowest: float = 100.0
+    """Times the fastest run of that error: beyond, a cross."""
     samples: int = 400
+    """Intervals at which errors are taken."""
     methods: tuple[str, ...] = ()
+    """Methods to judge; empty: all."""
     judging: float = 120.0
+    """Seconds that the reference may take."""
     where: Literal["end", "over_time", "steady"] = "over_time"
+    """Where the verdict looks."""
     models: bool = True
+    """Also compare the film models."""
 
 
 def run(scenario, settings, tools) -> dict:

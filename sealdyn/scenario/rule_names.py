@@ -1,0 +1,24 @@
+"""Names of the design rules that a scenario may acknowledge: those of the files in analysis/rules, none of which is
+read for that."""
+
+import difflib
+import pkgutil
+from pathlib import Path
+
+FOLDER = Path(__file__).parents[1] / "analysis" / "rules"
+
+
+def rule_names() -> list[str]:
+    """Names of the rules there are."""
+    return sorted(m.name for m in pkgutil.iter_modules([str(FOLDER)]) if m.name[0] != "_")
+
+
+def unknown_rules(acknowledged) -> list[tuple[str, str, str]]:
+    """What is wrong with the names of rules that are acknowledged: (key, found, expected)."""
+    known = rule_names() if acknowledged else []
+    return [
+        (f"acknowledge.{name}", "an unknown design rule",
+         f"one of {', '.join(known)}; nearest '{difflib.get_close_matches(name, known, 1, 0.0)[0]}'")
+        for name in acknowledged
+        if name not in known
+    ]  # fmt: skip

@@ -1,0 +1,77 @@
+"""What a study may be told, and how long it takes: for help, for the JSON schema and for the page of keys."""
+
+import dataclasses
+import json
+from dataclasses import dataclass
+
+from ..scenario.reader import ScenarioFile
+from ..scenario.schema import json_schema, table_schema
+from ._runner import study_module, study_names
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of a study: its key, what it holds with the SI unit, its default as one types it ("" if there is none),
+    and what it means."""
+
+    key: str
+    holds: str
+    default: str
+    meaning: str
+
+
+def about(name: str) -> str:
+    """What study `name` (hyphens or underscores) is, in a line."""
+    return " ".join((study_module(name.replace("-", "_")).__doc__ or "").split("\n\n")[0].split())
+
+
+def settings_of(name: str) -> list[Setting]:
+    """The settings of study `name`."""
+    kind = study_module(name.replace("-", "_")).Settings
+    table = table_schema(kind)
+    rows = []
+    for field in dataclasses.fields(kind):
+        holds = table["properties"][field.name]
+        default = "" if field.default in (None, (), "") else typed(field.default)
+        rows.append(Setting(field.name, words_of(holds), default, holds["description"].splitlines()[0]))
+    return rows
+
+
+def time_of(name: str) -> str:
+    """How long study `name` takes, in words."""
+    words, seconds = study_module(name.replace("-", "_")).TIMED
+    return f"{seconds} s of processor time on one core with `{words}` and no other settings"
+
+
+def words_of(holds: dict) -> str:
+    """What a value of a JSON schema is, in words: "time, s", "integer", "list of number or string"."""
+    if "quantity" in holds:
+        return f"{holds['quantity']}, {holds['unit']}"
+    if "enum" in holds:
+        return ", ".join(json.dumps(word) for word in holds["enum"])
+    if "anyOf" in holds:
+        return " or ".join(dict.fromkeys(map(words_of, holds["anyOf"])))
+    if holds.get("type") == "array":
+        return f"list of {words_of(holds.get('items', {}))}"
+    return {"boolean": "true or false"}.get(holds.get("type"), holds.get("type", "value"))
+
+
+def typed(value) -> str:
+    """A value as one types it."""
+    return f"{value:g}" if isinstance(value, float) else json.dumps(value)
+
+
+def schema_with_studies(file: type = ScenarioFile) -> dict:
+    """The JSON schema of scenario files (`file`: those of face seals, or reader.RadialFile) with the settings of every
+    study."""
+    schema = json_schema(file)
+    tables = {name.replace("-", "_"): _table(name) for name in study_names()}
+    study = schema["properties"]["study"]
+    told = {"type": "object", "properties": tables, "additionalProperties": False}
+    return {**schema, "properties": {**schema["properties"], "study": {"description": study["description"], **told}}}
+
+
+def _table(name: str) -> dict:
+    """The schema of the settings of a study, with what it is and how long it takes."""
+    table = table_schema(study_module(name.replace("-", "_")).Settings)
+    return {**table, "description": f"{about(name)}  {time_of(name)}.", "additionalProperties": False}

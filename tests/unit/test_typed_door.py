@@ -1,0 +1,46 @@
+"""The public names as a type checker sees them."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import typed_door
+
+import sealdyn
+
+SCRIPT = Path(typed_door.__file__)
+# What a checker must refuse, a line each.
+WRONG = """import sealdyn
+sealdyn.simulat("pump.toml")
+sealdyn.run(3)
+sealdyn.run("pump.toml", out=3)
+sealdyn.study("equilibrium", "pump.toml").data.h_mni + 1 + sealdyn.__version__.year
+sealdyn.examples() + 1
+sealdyn.example("fms_reference").with__({})
+sealdyn.run("pump.toml").plot.orbits()
+"""
+
+
+def test_every_public_name_is_in_the_script():
+    assert set(re.findall(r"sealdyn\.(\w+)", SCRIPT.read_text())) == {*sealdyn.__all__, "__version__"}
+
+
+def test_the_script_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    typed_door.main(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"kept.h5", "e.h5"}
+
+
+@pytest.mark.slow
+def test_a_type_checker_agrees_and_finds_what_is_wrong(tmp_path):
+    pytest.importorskip("mypy", reason='mypy is not installed: pip install -e ".[test]"')
+    (tmp_path / "wrong.py").write_text(WRONG)
+    words = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache", SCRIPT, tmp_path / "wrong.py"]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=SCRIPT.parent)
+    errors = re.findall(r"^(.*?)(\w+\.py):(\d+): error: ", done.stdout, re.MULTILINE)
+    assert {int(line) for _, name, line in errors if name == "wrong.py"} == set(range(2, WRONG.count("\n") + 1)), (
+        done.stdout
+    )
+    assert all(name == "wrong.py" for _, name, _ in errors), done.stdout

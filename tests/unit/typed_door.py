@@ -1,0 +1,74 @@
+"""Every public name of the package with its type: checked by mypy, and run (test_typed_door.py)."""
+
+from pathlib import Path
+from typing import Any, assert_type
+
+import xarray
+from matplotlib.figure import Figure
+
+import sealdyn
+
+
+def scenarios() -> sealdyn.Scenario:
+    """Read, made and changed."""
+    assert_type(sealdyn.examples(), dict[str, str])
+    scenario = sealdyn.example("fms_reference").with_({"run.turns": 2}, run__samples_per_turn=8)
+    assert_type(scenario, sealdyn.Scenario)
+    tables = scenario.to_dict()
+    assert_type(tables, dict[str, Any])
+    assert_type(sealdyn.Scenario.from_dict(tables, "again"), sealdyn.Scenario)
+    assert_type(scenario.to_toml(), str)
+    assert_type(scenario.unused(), list[str])
+    try:
+        sealdyn.read_scenario(Path("nothing.toml"), ["run.turns=2"])
+    except sealdyn.ScenarioError as error:
+        assert_type(error.key, str)
+        assert_type(error.expected, str)
+    return scenario
+
+
+def runs(scenario: sealdyn.Scenario, folder: Path) -> None:
+    """In memory, in an archive, and as numbers alone."""
+    result = sealdyn.run(scenario, {"rotor.runout": "20 urad"})
+    assert_type(result, sealdyn.Result)
+    assert_type(result.status, str)
+    assert_type(result.summary, dict[str, Any])
+    assert_type(result.archive, Path | None)
+    assert_type(result.data, xarray.Dataset)
+    assert_type(result.plot.orbit(turns=2.0), Figure)
+    kept = sealdyn.simulate(scenario, folder / "kept.h5", resume=False)
+    assert_type(kept, sealdyn.Result)
+    with sealdyn.open_archive(folder / "kept.h5") as data:
+        assert_type(data, xarray.Dataset)
+    assert_type(sealdyn.read_scenario(folder / "kept.h5"), sealdyn.Scenario)
+    try:
+        sealdyn.open_archive("nothing.h5")
+    except sealdyn.ArchiveError as missing:
+        assert_type(str(missing), str)
+    try:
+        numbers = sealdyn.evaluate(scenario, {"film.clearance": "9 um"}, ["h_min.value"])
+        assert_type(numbers, dict[str, Any])
+    except sealdyn.RunEnded as ended:
+        assert_type(ended.status, str)
+    # Of pandas a checker knows no types.
+    table = sealdyn.sweep(scenario, {"film.coning": [1e-3, "2 mrad"]}, "h_min.value", workers=1)
+    assert len(table) == 2
+    assert_type(sealdyn.simulate_many(scenario, [{"rotor.runout": 1e-5}], ["h_min.value"], workers=1), xarray.Dataset)
+
+
+def studies(scenario: sealdyn.Scenario, folder: Path) -> None:
+    """With an archive and without."""
+    answer = sealdyn.study("equilibrium", scenario, workers=1, points=5)
+    assert_type(answer, sealdyn.Answer)
+    assert_type(answer.verdict, list[str])
+    assert_type(answer.data, xarray.Dataset)
+    assert_type(answer.plot(), Figure)
+    assert_type(sealdyn.run_study("equilibrium", scenario, folder / "e.h5", workers=1), dict[str, Any])
+
+
+def main(folder: Path) -> None:
+    """Everything once, archives in a folder."""
+    assert_type(sealdyn.__version__, str)
+    scenario = scenarios()
+    runs(scenario, folder)
+    studies(scenario, folder)
