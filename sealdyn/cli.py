@@ -394,6 +394,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .analysis.design_rules import findings
     from .archive import ArchiveError
     from .report.text import resolved_lines
+    from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.beside_reynolds import beside_reynolds
     from .simulation.simulate import prepare_run
@@ -402,6 +403,8 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
 
     scenario = _read(file, set)
     size = size_of(scenario)
+    if isinstance(scenario.scene, RadialScene):
+        return _check_radial(file, scenario, as_json)
     try:
         run, method, why, *_ = prepare_run(scenario)
         rules = findings(scenario, run.model)
@@ -426,6 +429,45 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
             print(line)
         if size.bytes > WORTH_SAYING:
             print(f"  size          {size}")
+
+
+def _check_radial(file, scenario, as_json):
+    """The same of a radial seal."""
+    from .analysis.radial_rules import findings
+    from .radial_seals.closed_form import said
+    from .report.text import resolved_lines
+    from .scene.scene import SceneError
+    from .simulation.radial import prepare_radial
+
+    try:
+        run, method, why, *_ = prepare_radial(scenario)
+    except SceneError as error:
+        raise Stop(Status.INVALID, f"{file}: {error}") from None
+    followers = run.model.followers
+    found = {
+        "status": Status.OK,
+        "message": "the scene is possible",
+        "scene": scenario.resolved(),
+        "model": {"followers": followers.count, "solver": method, "reasons": [f"solver: {why}"]},
+        "closed_form": said(followers, scenario.scene.shaft),
+        "design_rules": findings(scenario.scene),
+        "equilibria": [],
+    }
+    if as_json:
+        print(json.dumps(found))
+    else:
+        for line in resolved_lines(found):
+            print(line)
+
+
+def _of_a_face_seal(file):
+    """Ends the verb for an archive of a radial seal."""
+    from .archive import is_study, read_info
+    from .report.radial import is_radial
+
+    if not is_study(file) and is_radial(read_info(file)):
+        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal (show and plot "
+                                   "take both)")  # fmt: skip
 
 
 @app.command()
@@ -454,21 +496,22 @@ def new(
 
 
 @app.command()
-def schema():
+def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
+    from .scenario.reader import RadialFile, ScenarioFile
     from .studies._settings import schema_with_studies
 
-    print(json.dumps(schema_with_studies(), indent=2))
+    print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))
 
 
 @app.command("list")
 def list_scenarios(as_json: AsJson = False):
     """Name the scenarios that come with the program, and what each asks."""
-    from .scenario.shipped import examples, shipped_folder
+    from .scenario.shipped import examples, shipped_folder, shipped_paths
 
-    folder, found = shipped_folder(), examples()
+    folder, found, paths = shipped_folder(), examples(), shipped_paths()
     if as_json:
-        rows = [{"name": n, "question": q, "file": str(folder / f"{n}.toml")} for n, q in found.items()]
+        rows = [{"name": n, "question": q, "file": str(paths[n])} for n, q in found.items()]
         print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
         return
     print(f"scenarios in {folder}:")
@@ -593,6 +636,8 @@ def plot(
             if asked.replace("_", "-") not in study_names():
                 raise Stop(Status.INVALID, f'{file}: study "{asked}"; expected one of {", ".join(study_names())}')
             name = f"study_{asked}"
+        elif kind not in (None, "overview"):
+            _of_a_face_seal(file)
         chart = importlib.import_module(f"sealdyn.report.charts.{name}")
         try:
             chart.draw(file, out)
@@ -616,6 +661,7 @@ def animate(
     with _Progress() as bar, _reads(file):
         if is_study(file):
             raise Stop(Status.INVALID, f"{file}: the archive of a study; expected that of a run")
+        _of_a_face_seal(file)
         try:
             animate(file, out, turns, per_turn, progress=bar)
         except ImportError:
@@ -695,6 +741,7 @@ def _must_be_archive(file):
     from .archive import is_study, read_info, read_study
 
     (read_study if is_study(file) else read_info)(file)
+    _of_a_face_seal(file)
 
 
 @app.command()

@@ -5,6 +5,7 @@ import re
 
 from ..status import Status
 from ..toml_line import toml_line
+from .radial import radial_rows
 
 MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 
@@ -12,7 +13,8 @@ MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     message = "" if summary["status"] == Status.OK else summary["message"]
-    return _table(scenario.name, summary["status"], message, run_rows(summary))
+    rows = radial_rows(summary) if "follower" in summary else run_rows(summary)
+    return _table(scenario.name, summary["status"], message, rows)
 
 
 def question_of(comment: str) -> str:
@@ -239,6 +241,10 @@ def resolved_lines(found: dict) -> list[str]:
         given = " and ".join(found["gauge"])
         out.append(f"# pressures are absolute: {given}, given as gauge, with the 1.01325 bar of the air")
     model = found["model"]
+    if "closed_form" in found:
+        out.append(f"# {model['followers']} followers; solver {model['solver']}")
+        out += [f"# {line}" for line in (*model["reasons"], *found["closed_form"])]
+        return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")
     out += [f"# {reason}" for reason in model["reasons"]]
     for root in found["equilibria"]:
@@ -343,7 +349,9 @@ def archive_lines(path, info: dict) -> list[str]:
     if info["status"] == Status.RUNNING and restart:
         rows.append(("state kept", f"leg {restart.get('leg')}, leg time {restart.get('tau')} s"))
     summary = info.get("summary") or {}
-    if summary:
+    if "follower" in summary:
+        rows.append(("contact", f"{_n(summary['settled']['contact_share'], 100)} % of the time on the shaft (settled)"))
+    elif summary:
         low = summary["h_min"]
         rows.append(("h_min", f"{_n(low['value'], MICRO)} um at t = {_n(low['time'])} s"))
         rows.append(("stability", _stability(summary["stability"])))

@@ -21,6 +21,7 @@ from ..scene.application import Application, application_errors
 from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import scene_errors, unused
 from ..scene.motion import Motion
+from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..toml_line import toml_text
@@ -97,6 +98,20 @@ class ScenarioFile(Scene):
 
 
 @dataclass(frozen=True)
+class RadialFile(RadialScene):
+    """A scenario file of a radial seal."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
+    """Version of these keys; without it the present one."""
+    run: Run = field(default_factory=Run)
+    """How long, how exact, by which method."""
+    study: dict[str, dict[str, Any]] = field(default_factory=dict)
+    """Settings of studies, one table [study.NAME] each."""
+
+
+@dataclass(frozen=True)
 class Scenario:
     """A scene with its run, and the file it came from.
 
@@ -109,7 +124,7 @@ class Scenario:
     seal is for (`application`, None without that table).
     """
 
-    scene: Scene
+    scene: Scene | RadialScene
     run: Run
     study: dict = field(default_factory=dict, compare=False)
     text: str = field(default="", compare=False)
@@ -168,7 +183,7 @@ class Scenario:
 
     def unused(self) -> list[str]:
         """Known keys, dotted, that the user gave and that this scene does not use."""
-        return unused(self.scene, self.given)
+        return [] if isinstance(self.scene, RadialScene) else unused(self.scene, self.given)
 
 
 def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
@@ -239,18 +254,21 @@ def read_tables(
     told, without those on which no run hangs; `folder` and `held` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
-    wrong = [*_odd_numbers(raw, name)]
-    raw, halved = with_radii(raw, ScenarioFile, name, wrong)
-    given = given_keys(raw) if given is None else (radius_key(ScenarioFile, key) for key in given)
+    kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
+    wrong = [*_odd_numbers(raw, name, kind=kind)]
+    raw, halved = with_radii(raw, kind, name, wrong)
+    given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
     raw = with_columns(raw, name, folder, held or {}, wrong)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
     try:
-        file = _reader().validate_python(raw)
+        file = _reader(kind).validate_python(raw)
     except ValidationError as error:
-        wrong += explained(name, ScenarioFile, raw, error.errors(include_url=False))
+        wrong += explained(name, kind, raw, error.errors(include_url=False))
+    if kind is RadialFile:
+        return {**_radial(file if not wrong else None, wrong, name), "given": given}
     if not wrong:
         # Powers of the numbers are taken from here on.
         refuse_extremes(file, name)
@@ -269,6 +287,29 @@ def read_tables(
     scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
     parts = {"run": file.run, "application": file.application, "study": file.study}
     return {"scene": scene, **parts, "given": given, "reading": reading}
+
+
+def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:
+    """What a Scenario of a radial seal holds; raises what is `wrong` with it."""
+    if wrong:
+        raise together(wrong)
+    refuse_extremes(file, name)
+    wrong = [ScenarioError(name, key, found, expected) for key, found, expected in radial_errors(file)]
+    if file.run.start not in ("auto", "steady"):
+        wrong.append(
+            ScenarioError(name, "run.start", quoted(file.run.start), '"auto": a radial seal begins on the shaft')
+        )
+    if file.run.solver in ("ida", "expm", "trbdf2"):
+        found = quoted(file.run.solver)
+        wrong.append(
+            ScenarioError(name, "run.solver", found, 'of a radial seal "auto", "dop853", "radau", "adams" or "bdf"')
+        )
+    if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
+        wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
+    if wrong:
+        raise together(wrong)
+    scene = RadialScene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(RadialScene)})
+    return {"scene": scene, "run": file.run, "study": file.study}
 
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
@@ -314,8 +355,8 @@ def _check_film_name(name: str) -> None:
 
 
 @cache
-def _reader() -> TypeAdapter:
-    return TypeAdapter(ScenarioFile)
+def _reader(kind: type) -> TypeAdapter:
+    return TypeAdapter(kind)
 
 
 def _neighbours(path: Path) -> list[str]:
@@ -339,7 +380,9 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> Iterator[ScenarioError]:
+def _odd_numbers(
+    tree: Any, name: str, key: str = "", depth: int = 0, kind: type = ScenarioFile
+) -> Iterator[ScenarioError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
     if depth > 20:
         raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
@@ -347,12 +390,12 @@ def _odd_numbers(tree: Any, name: str, key: str = "", depth: int = 0) -> Iterato
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path not in ("study", "application.acknowledge"):
-            yield from _odd_numbers(value, name, path, depth + 1)
+            yield from _odd_numbers(value, name, path, depth + 1, kind)
     if isinstance(tree, float) and not math.isfinite(tree):
         yield ScenarioError(name, key, str(tree), "a finite number")
     if isinstance(tree, bool) and key:
         table, _, last = without_indices(key).rpartition(".")
-        if tables(ScenarioFile).get(table, {}).get(last) is not bool:
+        if tables(kind).get(table, {}).get(last) is not bool:
             yield ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
 
 
@@ -376,13 +419,13 @@ def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGE
         raise ScenarioError(name, key, f"{found} (SI)", f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size")
 
 
-def given_keys(tree: dict, key: str = "") -> list[str]:
+def given_keys(tree: dict, key: str = "", kind: type = ScenarioFile) -> list[str]:
     """Dotted keys of a scenario's tables (`tree`), down to what is no table; `key` is the path to the tree."""
     found = []
     for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
         path = f"{key}.{step}" if key else str(step)
-        is_table = without_indices(path) in tables(ScenarioFile) and isinstance(value, (dict, list))
-        found += given_keys(value, path) if is_table and path != "study" else [path]
+        is_table = without_indices(path) in tables(kind) and isinstance(value, (dict, list))
+        found += given_keys(value, path, kind) if is_table and path != "study" else [path]
     return found
 
 

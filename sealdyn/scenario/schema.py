@@ -13,15 +13,16 @@ from .errors import diameters, table_in
 from .reader import ScenarioFile, film_choices
 
 
-def json_schema() -> dict:
-    """JSON schema (draft 2020-12) of a scenario file, for editors.
+def json_schema(file: type = ScenarioFile) -> dict:
+    """JSON schema (draft 2020-12) of a scenario file, for editors; `file` reader.RadialFile for those of radial seals.
 
     The first line of a key's description is its meaning (the docstring below it in its class), the next what is
     expected; `quantity` and `unit` name what it holds."""
-    schema = _without_null(TypeAdapter(ScenarioFile).json_schema())
-    schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
-    for kind in _kinds(ScenarioFile):
-        table = schema if kind is ScenarioFile else schema["$defs"][kind.__name__]
+    schema = _without_null(TypeAdapter(file).json_schema())
+    if "Film" in schema["$defs"]:
+        schema["$defs"]["Film"]["properties"]["model"]["enum"] = film_choices()
+    for kind in _kinds(file):
+        table = schema if kind is file else schema["$defs"][kind.__name__]
         keys = table["properties"]
         for key, meaning in _meanings(kind).items():
             keys[key]["description"] = "\n".join([meaning, *filter(None, [keys[key].get("description")])])

@@ -101,9 +101,10 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     values = {key: without_arrays(value) for key, value in values.items()}
     more = [_written(key, value, scenario.name) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
+    rings = [ring for ring in RING_NAMES if ring in tables]
     tables |= {"run": opened(scenario.run), "study": scenario.study}
     tables |= {"application": opened(scenario.application)} if scenario.application is not None else {}
-    for ring in RING_NAMES:
+    for ring in rings:
         if body := tables[ring].pop("body", None):
             # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
             own = dict(zip(INERTIAL, body.inertia(), strict=True))

@@ -21,7 +21,12 @@ def shipped_folder() -> Path:
 
 def examples() -> dict[str, str]:
     """Name of each scenario that comes with the program, and the question at its head."""
-    return {path.stem: _question(path.read_text("utf-8")) for path in sorted(shipped_folder().glob("*.toml"))}
+    return {name: _question(path.read_text("utf-8")) for name, path in shipped_paths().items()}
+
+
+def shipped_paths() -> dict[str, Path]:
+    """Name and file of each; those of radial seals have a folder of their own."""
+    return {path.stem: path for path in sorted(shipped_folder().rglob("*.toml"), key=lambda path: path.stem)}
 
 
 def example(name: str) -> Scenario:
@@ -29,13 +34,12 @@ def example(name: str) -> Scenario:
     from .errors import ScenarioError
     from .reader import read_scenario
 
-    path = shipped_folder() / f"{name}.toml"
-    names = [path.stem for path in sorted(shipped_folder().glob("*.toml"))]
+    names = shipped_paths()
     if name not in names:
         near = difflib.get_close_matches(name, names, 1)
         hint = f"; nearest '{near[0]}'" if near else ""
         raise ScenarioError(name, "", "no such scenario", f"a name of `sealdyn list`{hint}")
-    return read_scenario(path)
+    return read_scenario(names[name])
 
 
 def _question(text: str) -> str:

@@ -22,6 +22,7 @@ from ..dynamics.intervals import largest_value
 from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
 from ..dynamics.signals import PARTS
 from ..scenario.reader import Scenario
+from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..solvers.contract import Cause, Counts, Enough, Status, attainable
@@ -74,6 +75,10 @@ def simulate(
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
     refuse_large(scenario, allow_large)
     with only_writer(out) as out:
+        if isinstance(scenario.scene, RadialScene):
+            from .radial import simulate_radial
+
+            return simulate_radial(scenario, out, progress, stop, resume)
         return _simulate(scenario, out, progress, stop, resume)
 
 

@@ -45,7 +45,9 @@ class Size:
 
 def size_of(scenario) -> Size:
     """What a run of a scenario takes; instant, whatever its numbers."""
-    shaft, stator = (largest_value(ring.speed) for ring in (scenario.scene.shaft, scenario.scene.stator))
+    shaft = largest_value(scenario.scene.shaft.speed)
+    # A radial seal has no ring that turns beside the shaft.
+    stator = largest_value(scenario.scene.stator.speed) if hasattr(scenario.scene, "stator") else 0.0
     settings = scenario.run
     turns = settings.turns
     if turns is None:

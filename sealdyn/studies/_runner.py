@@ -19,6 +19,7 @@ from ..numerics.results import Results
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
 from ..scene import variants
+from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..status import Status
@@ -105,13 +106,11 @@ def run_study(
     """
     name = name.replace("-", "_")
     module = study_module(name)
-    if waves_of(scenario.scene) and not getattr(module, "WITH_WAVES", False):
-        key = "rotor.waviness" if scenario.scene.rotor.waviness else "stator.waviness"
-        raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
-    if scenario.scene.film.pads and not getattr(module, "WITH_WAVES", False):
-        raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
-    studied, left_out = without(scenario, leave_out)
-    _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
+    _refuse_seal(name, module, scenario.scene)
+    # What can be left out, a face seal has.
+    studied, left_out = (scenario, []) if _is_radial(scenario.scene) else without(scenario, leave_out)
+    if not _is_radial(scenario.scene):
+        _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = archive_of(name, scenario, out)
     plain = json.loads(json.dumps(asdict(settings), default=str))
@@ -148,6 +147,27 @@ def run_study(
         write_study(out, scenario.text, scenario.resolved(), meta, answer, *names)
         journal.done()
     return {**answer, "archive": str(out)}
+
+
+def _is_radial(scene) -> bool:
+    return isinstance(scene, RadialScene)
+
+
+def _refuse_seal(name: str, module, scene):
+    """Raises SceneError for a seal of a kind that the study `name` does not know."""
+    if _is_radial(scene) != getattr(module, "RADIAL", False):
+        study = name.replace("_", "-")
+        if _is_radial(scene):
+            key, found = "lip" if scene.lip else "circumferential", "a radial seal"
+            raise SceneError(key, found, f"a face seal for {study}; of radial ones there is followability")
+        raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
+    if _is_radial(scene) or getattr(module, "WITH_WAVES", False):
+        return
+    if waves_of(scene):
+        key = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
+        raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
+    if scene.film.pads:
+        raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
 
 
 def _refuse(name: str, scene, refused):

@@ -4,6 +4,7 @@ import dataclasses
 import json
 from dataclasses import dataclass
 
+from ..scenario.reader import ScenarioFile
 from ..scenario.schema import json_schema, table_schema
 from . import study_names
 from ._runner import study_module
@@ -61,9 +62,10 @@ def typed(value) -> str:
     return f"{value:g}" if isinstance(value, float) else json.dumps(value)
 
 
-def schema_with_studies() -> dict:
-    """The JSON schema of scenario files with the settings of every study."""
-    schema = json_schema()
+def schema_with_studies(file: type = ScenarioFile) -> dict:
+    """The JSON schema of scenario files (`file`: those of face seals, or reader.RadialFile) with the settings of every
+    study."""
+    schema = json_schema(file)
     tables = {name.replace("-", "_"): _table(name) for name in study_names()}
     study = schema["properties"]["study"]
     told = {"type": "object", "properties": tables, "additionalProperties": False}

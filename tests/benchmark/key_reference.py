@@ -11,6 +11,7 @@ import re
 from pathlib import Path
 
 from sealdyn import read_scenario
+from sealdyn.scenario.reader import RadialFile
 from sealdyn.scenario.schema import json_schema
 from sealdyn.studies import study_names
 from sealdyn.studies._settings import about, settings_of, time_of
@@ -49,19 +50,31 @@ JSON schema (`sealdyn schema`), which editors read too.
 
 def page() -> str:
     """The whole page, markdown."""
-    parts = [HEAD, "## Shipped scenarios\n", *map(shipped, sorted(SCENARIOS.glob("*.toml"))), "## Keys\n"]
-    schema = json_schema()
-    parts += filter(None, (key_table(schema["$defs"][kind], paths) for kind, paths in tables(schema, schema).items()))
+    parts = [HEAD, "## Shipped scenarios\n", *map(shipped, sorted(SCENARIOS.glob("*.toml")))]
+    parts += [*map(shipped, sorted(SCENARIOS.glob("radial/*.toml"))), "## Keys\n", *keys(json_schema())]
+    parts += [
+        "## Keys of radial seals\n",
+        "A table `[lip]` or `[circumferential]` makes a scenario one of a radial seal.\n",
+    ]
+    radial = json_schema(RadialFile)
+    # `[run]` is that of face seals.
+    parts += keys({**radial, "properties": {k: v for k, v in radial["properties"].items() if k != "run"}})
     parts += ["## Settings of studies\n", "Keys of `[study.NAME]`, or flags `--key value` of `sealdyn study`.\n"]
     parts += map(settings, study_names())
     return "\n".join(parts)
+
+
+def keys(schema: dict) -> list[str]:
+    """A table of keys for each table of a scenario."""
+    found = tables(schema, schema).items()
+    return [text for kind, paths in found if (text := key_table(schema["$defs"][kind], paths))]
 
 
 def shipped(path: Path) -> str:
     """Question, expected answer and source of a scenario, from its head."""
     text = re.sub(r"\s+", " ", read_scenario(path).question)
     question, *rest = re.split(r"\s*\b(Expected|Found|Source): ", text)
-    lines = [f"**[{path.stem}]({path.name})**  {question}"]
+    lines = [f"**[{path.stem}]({path.relative_to(SCENARIOS)})**  {question}"]
     lines += [f"*{word}:* {said}" for word, said in zip(rest[::2], rest[1::2], strict=True)]
     return "  \n".join(lines) + "\n"
 

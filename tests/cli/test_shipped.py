@@ -15,7 +15,8 @@ import sealdyn as package
 from sealdyn import ScenarioError, example, examples, read_scenario
 
 ROOT = SCENARIOS.parent
-NAMES = sorted(path.stem for path in SCENARIOS.glob("*.toml"))
+PATHS = {path.stem: path for path in sorted(SCENARIOS.rglob("*.toml"), key=lambda path: path.stem)}
+NAMES = [*PATHS]
 
 
 def test_every_scenario_is_listed_with_its_question(tmp_path):
@@ -26,12 +27,12 @@ def test_every_scenario_is_listed_with_its_question(tmp_path):
     assert all(line.endswith("?") for line in lines[1:])
     found = sealdyn("list", "--json", cwd=tmp_path).found["scenarios"]
     assert {row["name"]: row["question"] for row in found} == examples()
-    assert [row["file"] for row in found] == [str(SCENARIOS / f"{name}.toml") for name in NAMES]
+    assert [row["file"] for row in found] == [*map(str, PATHS.values())]
 
 
 def test_a_scenario_is_read_by_its_name():
     for name in NAMES:
-        assert example(name) == read_scenario(SCENARIOS / f"{name}.toml")
+        assert example(name) == read_scenario(PATHS[name])
         assert example(name).question.split()[:3] == examples()[name].split()[:3]
     for wrong in ("fms_referense", "../scenarios/fms_reference", ""):
         with pytest.raises(ScenarioError) as refused:

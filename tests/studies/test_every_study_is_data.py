@@ -28,6 +28,7 @@ SMALL = {
     "elastic-ring": ("lebeck_elastic", {"film.reynolds.cells_r": 6, "film.reynolds.cells_theta": 108}, {}),
     "equilibrium": ("run_in", {}, {"points": 21}),
     "failures": ("fms_reference", {}, {"items": 3}),
+    "followability": ("circumferential_reference", {}, {"runs": 1, "speed": "9000,12000 rpm"}),
     "load-support": ("lebeck_n3", {}, {"vary": "contact.roughness=0.1:0.4um:3"}),
     "neutral-stability": ("fms_reference", {}, {"turns": 5, "accuracies": "1e-2", "long": 0}),
     "pressure": ("fms_reference", {}, {"at": "tilt=0.1mrad", "beside": "9 um"}),

@@ -16,6 +16,7 @@ ORDER = (
     ("faces",),
     ("films",),
     ("dynamics", "scenario"),
+    ("radial_seals",),
     ("simulation",),
     ("analysis",),
     ("studies",),
@@ -23,7 +24,7 @@ ORDER = (
     ("__init__",),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(ORDER) for room in rooms}
-MOST_ROOMS = 20
+MOST_ROOMS = 21
 # Libraries, and the only folders or files that import them.
 ONLY_IN = {
     "sksundae": ("solvers", "studies/failures/cases"),

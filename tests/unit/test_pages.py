@@ -5,6 +5,7 @@ import re
 import pytest
 from benchmark import gallery, key_reference
 
+from sealdyn.scenario.reader import RadialFile
 from sealdyn.scenario.schema import json_schema
 
 
@@ -21,8 +22,8 @@ def test_gallery_shows_every_picture_and_fills_every_table():
 
 
 def test_every_key_has_a_meaning():
-    schema = json_schema()
-    for table in (schema, *schema["$defs"].values()):
+    schema, radial = json_schema(), json_schema(RadialFile)
+    for table in (schema, radial, *schema["$defs"].values(), *radial["$defs"].values()):
         for key, holds in table["properties"].items():
             meaning = holds.get("description", "").splitlines()[:1]
             assert meaning and not re.match("an? .* in ", meaning[0]), key

@@ -4,8 +4,9 @@ import numpy as np
 from matplotlib import rc_context
 
 from ...status import Status
+from ..radial import is_radial
 from ..text import speed_unit
-from . import orbit, spectrum
+from . import followers, orbit, spectrum
 from .page import PAPER, absent, free_side, header, level, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run, fitting
@@ -46,6 +47,8 @@ GAS_LEAKAGE = (("leakage.mean_ml_per_h", 1 / 6e4, "{} l/min (0 °C, 1.01325 bar)
 def draw(archive_path, out_path, turns: float = 4.0):
     """Everything on one sheet; the enlarged panels show the last `turns` turns."""
     run = Run(archive_path)
+    if is_radial(run.info):
+        return followers.draw(archive_path, out_path, turns)
     first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
     figure = sheet(13.5, 9.0 if tilts else 6.6)
     ax = _placed(figure, header(figure, run) - 0.225 / figure.get_figheight(), tilts, first > 0, moves)

@@ -1,0 +1,89 @@
+"""The elements of a radial seal as followers: for each a mass, springs to its neighbours, damping, preload and dry
+friction; the equations know nothing else of the seal."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..dynamics.intervals import largest_value
+from ..scene.radial import Lip, RadialScene
+
+
+@dataclass(frozen=True)
+class Followers:
+    """`angles` (n,) (rad) around the shaft; of each follower `mass` (kg), `row` (n,) of the circulant stiffness matrix
+    (N/m), `damping` (N s/m), `preload` (N, towards the shaft), dry `friction` (N) of its flange and `arc` (m), its
+    length along the circumference."""
+
+    angles: np.ndarray
+    mass: float
+    row: np.ndarray
+    damping: float
+    preload: float
+    friction: float
+    arc: float
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.angles)
+
+    @cached_property
+    def modal_stiffness(self) -> np.ndarray:
+        """Stiffness (N/m) of a follower where all move as cos(m theta), m = 0 .. n // 2."""
+        return np.fft.rfft(self.row).real
+
+    def least_load(self, order: int, speed: float) -> float:
+        """Amplitude (N) per metre of a wave of this order, by which the load on the shaft swings while all follow:
+        abs(k_m - m (order w)^2 + i d order w)."""
+        w = order * speed
+        return abs(self.modal_stiffness[order % self.count] - self.mass * w * w + 1j * self.damping * w)
+
+
+def followers_of(scene: RadialScene) -> Followers:
+    """The followers of a lip or of segments."""
+    return _of_lip(scene) if scene.lip else _of_segments(scene)
+
+
+def lip_line(lip: Lip, radius: float) -> tuple[float, float]:
+    """Preload (N/m) and stiffness of the beam (N/m^2) of a lip, per length of circumference.
+
+    **Source** Hayden & Keller (1974), eqs. 2.9 to 2.11, divided by the circumference.
+    **Valid** a slender lip, small deflections.
+    """
+    if lip.preload is not None:
+        return lip.preload + lip.garter_tension / radius, lip.stiffness
+    stiffness = 3.0 * lip.modulus * (lip.thickness**3 / 12.0) / lip.length**3
+    hoop = lip.hoop_stress * lip.hoop_area if lip.hoop_stress is not None else 0.0
+    return (hoop + lip.garter_tension) / radius + stiffness * lip.interference, stiffness
+
+
+def _of_lip(scene: RadialScene) -> Followers:
+    """A ring in tension on a bed of beams: k_m = k + H (m^2 - 1) / r^2, and the spring's own rate where all widen."""
+    lip, radius, n = scene.lip, scene.shaft.radius, scene.lip.sectors
+    preload, stiffness = lip_line(lip, radius)
+    hoop = lip.hoop_stress * lip.hoop_area if lip.hoop_stress is not None else 0.0
+    tension, arc = hoop + lip.garter_tension, 2.0 * math.pi * radius / n
+    orders = np.minimum(np.arange(n), n - np.arange(n))
+    per_length = stiffness + tension * (orders**2 - 1.0) / radius**2
+    per_length[0] += 2.0 * math.pi * lip.garter_rate / radius
+    speed = largest_value(scene.shaft.speed)
+    damping = lip.loss_factor * stiffness / speed if speed else 0.0
+    return Followers(
+        2.0 * math.pi * np.arange(n) / n, lip.mass / n, np.fft.ifft(per_length).real * arc, damping * arc,
+        preload * arc, 0.0, arc,
+    )  # fmt: skip
+
+
+def _of_segments(scene: RadialScene) -> Followers:
+    """Segments of arc 2 pi / n: the spring around them presses each with 2 T sin(pi / n); where all move out by u it is
+    longer by 2 n sin(pi / n) u."""
+    seal, n = scene.circumferential, scene.circumferential.segments
+    share = 2.0 * math.sin(math.pi / n)
+    row = np.full(n, seal.garter_rate * share * share)
+    return Followers(
+        2.0 * math.pi * np.arange(n) / n, seal.mass / n, row, 0.0, seal.garter_tension * share,
+        seal.flange_friction * seal.axial_force / n, 2.0 * math.pi * scene.shaft.radius / n,
+    )  # fmt: skip

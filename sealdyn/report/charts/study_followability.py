@@ -1,0 +1,36 @@
+"""Followability: the largest eccentricity that is followed over the speed, runs upon it, and the guide's table."""
+
+import math
+
+import numpy as np
+
+from ...archive import read_study
+from .page import legend, look, save, study_page
+from .palette import CYCLE, GREY, MARK
+
+RPM = 30.0 / math.pi
+
+
+@look()
+def draw(archive_path, out_path):
+    """One panel, logarithmic upward: below a curve the element rides all the way round."""
+    study = read_study(archive_path)
+    answer = study["answer"]
+    figure, ax = study_page(study, 10.0, 6.0, [["map"]], below=" ".join(answer["verdict"]))
+    ax = ax["map"]
+    for k, line in enumerate(answer["curves"]):
+        colour = CYCLE[k % len(CYCLE)]
+        limit = np.array([np.nan if e is None else e for e in line["eccentricity"]], float)
+        ax.plot(RPM * np.array(line["speed"]), 1e3 * limit, color=colour, label=line["name"])
+        points = [row for row in answer["runs"] if row["curve"] == k and row.get("eccentricity")]
+        ax.plot([RPM * row["speed"] for row in points], [1e3 * row["eccentricity"] for row in points], "o",
+                color=colour, mfc="none", ms=7, label="limit found by runs" if k == 0 and points else "_")  # fmt: skip
+    guide = answer["guide"]
+    speeds = RPM * np.array(guide["surface_speed"]) / answer["radius"]
+    ax.plot(speeds, 1e3 * np.array(guide["eccentricity"]), "s--", color=GREY, ms=5, label=f"guide, {guide['words']}")
+    if answer["eccentricity"] > 0:
+        ax.plot(RPM * answer["speed"], 1e3 * answer["eccentricity"], "*", color=MARK, ms=11, label="this scenario")
+    ax.set(xlabel="shaft speed, rpm", ylabel="largest eccentricity followed, mm", yscale="log",
+           title="Contact is lost above")  # fmt: skip
+    legend(ax, "best")
+    return save(figure, out_path)

@@ -1,0 +1,191 @@
+"""Followability: up to which runout a lip or a segment follows its shaft, over the speed and one key more; in closed
+form, confirmed by runs, beside what the design guide allows by experience."""
+
+import dataclasses
+import math
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from ..analysis import radial_rules
+from ..dynamics.intervals import largest_value
+from ..radial_seals.closed_form import largest_eccentricity
+from ..radial_seals.followers import followers_of
+from ..radial_seals.run_state import RadialRun
+from ..radial_seals.segments import RadialModel
+from ..scenario.errors import ScenarioError
+from ..scenario.settings import axis, values_in_si, with_values
+from ..scene.scene import SceneError
+from ..solvers.contract import Status
+from ..solvers.integrate import solve
+from ..solvers.recorder import Recorder
+
+RADIAL = True
+ALONG = {"curves": "speed"}
+# Turns of a run; its accuracy; and by how much eccentricities straddle the limit.
+TURNS, ACCURACY = 3.0, 1e-6
+# Largest eccentricity that counts, of the radius.
+MOST = 0.2
+RPM = 30.0 / math.pi
+
+
+# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
+TIMED = ("radial/circumferential_reference", 9)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Speeds, curves, and how many runs confirm them."""
+
+    speed: str = ""
+    """Shaft speeds, "from:to:count" with a unit: a tenth to four times the scenario's."""
+    vary: str = ""
+    """One key more and its values, "key=a,b,c", a curve each: preload, loss factor, offset, friction."""
+    runs: int = 3
+    """At so many speeds of each curve the limit is found by runs, to 1e-4."""
+
+
+units = {"speed": "rad/s", "eccentricity": "m", "radius": "m", "surface_speed": "m/s", "curve": "1", "apart": "1",
+         "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m"}  # fmt: skip
+
+
+def run(scenario, settings, tools) -> dict:
+    """The curves, the runs that confirm them, and the guide's table."""
+    own = largest_value(scenario.scene.shaft.speed)
+    if not own:
+        raise SceneError("shaft.speed", "a shaft at rest", "a speed: nothing follows a shaft that stands")
+    where = "study.followability"
+    speeds = (np.linspace(0.1, 4.0, 79) * own if not settings.speed
+              else np.array(values_in_si(scenario, settings.speed, "rad/s", f"{where}.speed")))  # fmt: skip
+    if not 0 <= settings.runs <= 50:
+        raise ScenarioError(scenario.name, f"{where}.runs", str(settings.runs), "0 to 50")
+    along = axis(settings.vary, scenario.name, f"{where}.vary") if settings.vary else None
+    values = [{along["key"]: given} for given in along["given"]] if along else [{}]
+    scenes = [_aligned(with_values(scenario, value).scene) for value in values]
+    names = [f"{along['key']} = {given}" for given in along["given"]] if along else [scenario.name]
+    curves = [curve(scene, speeds) for scene in scenes]
+    points = [
+        {"curve": k, "speed": float(speed)}
+        for k in range(len(scenes))
+        for speed in np.interp(np.linspace(0.1, 0.9, settings.runs), np.linspace(0, 1, len(speeds)), np.sort(speeds))
+    ]
+    found = tools.map(partial(confirmed, [dataclasses.asdict(scene) for scene in scenes]), points, "runs")
+    runs = [{**point, **row} for point, row in zip(points, found, strict=True)]
+    answer = {
+        "names": names,
+        "speed": own,
+        "eccentricity": scenario.scene.shaft.eccentricity,
+        "radius": scenario.scene.shaft.radius,
+        "curves": [{"name": name, "speed": speeds.tolist(), "eccentricity": line} for name, line in
+                   zip(names, curves, strict=True)],
+        "runs": runs,
+        "guide": guide(scenario.scene),
+    }  # fmt: skip
+    return answer | {"verdict": _verdict(scenario, answer)}
+
+
+def _aligned(scene):
+    """The scene at a constant speed, without lobes: a single wave."""
+    return dataclasses.replace(scene, shaft=dataclasses.replace(scene.shaft, lobes=[]))
+
+
+def curve(scene, speeds) -> list:
+    """Largest eccentricity (m) at each speed (rad/s); None beyond a fifth of the radius."""
+    found = []
+    for speed in speeds:
+        at = _at(scene, float(speed))
+        limit = largest_eccentricity(followers_of(at), at.shaft, float(speed))
+        found.append(limit if limit <= MOST * scene.shaft.radius else None)
+    return found
+
+
+def _at(scene, speed, eccentricity=None):
+    """The scene at a constant speed, the lip's damping as at its own: the loss factor is that of each speed."""
+    shaft = dataclasses.replace(scene.shaft, speed=speed)
+    if eccentricity is not None:
+        shaft = dataclasses.replace(shaft, eccentricity=eccentricity)
+    return dataclasses.replace(scene, shaft=shaft)
+
+
+def confirmed(scenes, point) -> dict:
+    """The largest eccentricity (m) that runs from the following orbit keep to at one speed, by halving between ones
+    that do and do not, to 1e-4; `apart` from the closed form (relative).  `scenes` as dicts."""
+    from pydantic import TypeAdapter
+
+    from ..scene.radial import RadialScene
+
+    scene = TypeAdapter(RadialScene).validate_python(
+        {name: part for name, part in scenes[point["curve"]].items() if part is not None}
+    )
+    speed = point["speed"]
+    at = _at(scene, speed)
+    limit = largest_eccentricity(followers_of(at), at.shaft, speed)
+    if not 0.0 < limit <= MOST * scene.shaft.radius:
+        return {"eccentricity": None, "closed_form": limit if math.isfinite(limit) else None, "apart": None}
+    low, high = 0.9 * limit, 1.1 * limit
+    for wanted, rides in ((low, True), (high, False)):
+        if follows(_at(scene, speed, wanted)) != rides:
+            found = f"at {RPM * speed:.5g} rpm the runs do not lose contact within 10 % of the closed form"
+            return {"eccentricity": None, "closed_form": limit, "apart": None, "failed": found}
+    while high - low > 5e-5 * limit:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if follows(_at(scene, speed, middle)) else (low, middle)
+    found = 0.5 * (low + high)
+    return {"eccentricity": found, "closed_form": limit, "apart": found / limit - 1.0}
+
+
+def follows(scene) -> bool:
+    """Whether a run from the following orbit never leaves the shaft.  Raises SceneError where it fails."""
+    model = RadialModel(scene, ACCURACY)
+    state = RadialRun(model, TURNS * 2.0 * math.pi / abs(scene.shaft.speed))
+    outcome = solve(state, "dop853", ACCURACY, Recorder())
+    if outcome.status == Status.FAILED:
+        raise SceneError("shaft.speed", outcome.message, "a run that ends")
+    return state.stick_slip.counts["lift"] == 0 and bool((state.stick_slip.modes == 2.0).all())
+
+
+def guide(scene) -> dict:
+    """Rows of the guide's table: `speed` (m/s) over `eccentricity` (m), and what they are; with the fit of 1/e = a + b
+    v^2 and what stiffness over preload it would mean."""
+    if scene.lip:
+        amounts, speeds, words = radial_rules.LIP_ECCENTRICITY, radial_rules.LIP_SPEED, "table 3.2, offset + runout"
+    else:
+        amounts, speeds, words = 0.5 * radial_rules.SEGMENT_RUNOUT, radial_rules.SEGMENT_SPEED, "table 3.4, half of TIR"
+    slope, start = np.polyfit(speeds**2, 1.0 / amounts, 1)
+    return {
+        "eccentricity": amounts.tolist(), "surface_speed": speeds.tolist(), "words": words,
+        "stiffness_over_preload": float(-start), "mass_over_preload": float(slope * scene.shaft.radius**2),
+    }  # fmt: skip
+
+
+def tables(answer) -> list:
+    """The runs beside the closed form."""
+    rows = [{**row, "name": answer["names"][row["curve"]]} for row in answer["runs"]]
+    columns = (("curve", "name"), ("speed, rpm", "speed", RPM), ("by runs, mm", "eccentricity", 1e3),
+               ("closed form, mm", "closed_form", 1e3), ("apart", "apart"))  # fmt: skip
+    return [(rows, columns)]
+
+
+def _verdict(scenario, answer) -> list[str]:
+    own, speed = _aligned(scenario.scene), answer["speed"]
+    at, limit = f"At {RPM * speed:.5g} rpm", largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
+    if limit == 0.0:
+        said = [f"{at} nothing is followed: friction and offset take all of the preload."]
+    elif math.isfinite(limit):
+        said = [
+            f"{at} the shaft is followed up to an eccentricity of {1e3 * limit:.4g} mm; this one has "
+            f"{1e3 * answer['eccentricity']:.4g} mm."
+        ]
+    else:
+        said = [f"{at} any eccentricity is followed."]
+    apart = [abs(row["apart"]) for row in answer["runs"] if row.get("apart") is not None]
+    if apart:
+        said.append(f"Runs from the following orbit lose contact within {max(apart):.1e} of the closed form.")
+    known, impossible = answer["guide"], ", which is negative: inertia is not what limits these seals"
+    said.append(
+        f"The guide's {known['words']}, is experience: a mass on a spring that fits it would have "
+        f"{1e-3 * known['stiffness_over_preload']:.3g} per mm of stiffness over preload"
+        f"{impossible if known['stiffness_over_preload'] < 0 else ''}."
+    )
+    return said

@@ -1,0 +1,140 @@
+"""Radial seals from the command line: run, check, show, plot, go on, the study, and what takes face seals only."""
+
+import numpy as np
+import pytest
+from command import SCENARIOS, sealdyn
+from PIL import Image
+
+from sealdyn import ScenarioError, open_archive
+from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.simulation.simulate import simulate
+
+LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
+SHORT = ("--set", "run.turns=2")
+LOST = ("--set", "shaft.eccentricity=0.3 mm")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("radial")
+    done = sealdyn("run", SEGMENTS, *SHORT, *LOST, "--out", "x.h5", "--json", cwd=folder)
+    assert done.code == 0
+    return folder, done.found
+
+
+@pytest.mark.parametrize("path", [LIP, SEGMENTS], ids=["lip", "segments"])
+def test_the_shipped_seals_ride_all_the_way_round(path, tmp_path):
+    done = sealdyn("run", path, *SHORT, cwd=tmp_path)
+    assert done.code == 0 and "100 % of the time on the shaft" in done.out and "WARNING" not in done.out
+    assert (tmp_path / "outputs" / f"{path.stem}.png").exists()
+    checked = sealdyn("check", path, cwd=tmp_path)
+    assert checked.code == 0 and "N/m are needed to ride all the way round" in checked.out
+    assert "fail" not in checked.out.split("design rules")[1].splitlines()[0]
+
+
+def test_what_is_expected_of_them():
+    """The numbers at the head of the files."""
+    lip, segments = (simulate_summary(path) for path in (LIP, SEGMENTS))
+    assert lip["closed_form"]["needed_preload"] / lip["follower"]["arc"] == pytest.approx(3.86, abs=0.01)
+    assert lip["closed_form"]["largest_eccentricity"] == pytest.approx(5.28e-3, abs=1e-5)
+    assert segments["follower"]["friction"] == pytest.approx(0.275)
+    assert segments["closed_form"]["largest_eccentricity"] == pytest.approx(0.12e-3, abs=2e-6)
+
+
+def simulate_summary(path):
+    from sealdyn.dynamics.intervals import largest_value
+    from sealdyn.radial_seals.closed_form import largest_eccentricity, needed_preload
+    from sealdyn.radial_seals.followers import followers_of
+
+    scene = read_scenario(path).scene
+    found, speed = followers_of(scene), largest_value(scene.shaft.speed)
+    return {
+        "follower": {"arc": found.arc, "friction": found.friction},
+        "closed_form": {"needed_preload": needed_preload(found, scene.shaft, speed),
+                        "largest_eccentricity": largest_eccentricity(found, scene.shaft, speed)},
+    }  # fmt: skip
+
+
+def test_a_seal_that_loses_contact_says_so(folder):
+    place, found = folder
+    assert found["contact"]["lift"] >= 2 * 6 - 1 and found["whole"]["largest_gap"] > 1e-5
+    assert found["settled"]["contact_share"] < 1.0 and any("contact is lost" in w for w in found["warnings"])
+    assert found["certificate"]["met"] and found["energy_residual"] < 1e-6
+    data = open_archive(place / "x.h5").load()
+    assert data.gap.dims == ("field_time", "theta") and data.gap.attrs["units"] == "m"
+    # Where a follower is off the shaft nothing presses.
+    assert float((data.gap * data.follower_load).max()) == 0.0
+    assert float(data.largest_gap.max()) <= found["whole"]["largest_gap"] * (1 + 1e-9)
+
+
+def test_show_plot_and_what_is_of_face_seals(folder):
+    place, _ = folder
+    shown = sealdyn("show", "x.h5", cwd=place)
+    assert shown.code == 0 and "largest_gap" in shown.out and "event         lift" in shown.out
+    assert sealdyn("show", "x.h5", "--csv", cwd=place).out.splitlines()[0].startswith("time [s],")
+    assert sealdyn("plot", "x.h5", "--out", "y.png", cwd=place).code == 0
+    assert Image.open(place / "y.png").size[0] > 1000
+    for words in (
+        ("plot", "x.h5", "--kind", "orbit"),
+        ("animate", "x.h5"),
+        ("report", "x.h5"),
+        ("compare", "x.h5", "x.h5"),
+    ):
+        refused = sealdyn(*words, cwd=place)
+        assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
+    for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
+        refused = sealdyn("study", study, path, cwd=place)
+        assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
+
+
+def test_a_run_goes_on_where_it_was_broken_off(tmp_path):
+    scenario = read_scenario(SEGMENTS, ["run.turns=3", "shaft.eccentricity='0.3 mm'"])
+    whole = simulate(scenario, tmp_path / "whole.h5")
+    looks = iter(range(10_000))
+    part = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(looks) > 12)
+    assert part.status == "interrupted"
+    rest = simulate(scenario, tmp_path / "part.h5", resume=True)
+    assert rest.status == "ok"
+    one, other = (open_archive(path).load() for path in (whole.archive, rest.archive))
+    for name in ("largest_gap", "load", "time"):
+        np.testing.assert_allclose(one[name], other[name], atol=1e-6 * float(abs(one[name]).max()))
+    assert whole.summary["contact"]["lift"] == rest.summary["contact"]["lift"]
+    assert whole.summary["settled"]["contact_share"] == pytest.approx(
+        rest.summary["settled"]["contact_share"], abs=1e-6
+    )
+
+
+def test_a_run_up_passes_the_limit(tmp_path):
+    """From 6000 to 12000 rpm in 12 turns: contact is first lost where the closed form says, a turn or so later."""
+    table = "{ time = ['0 s', '0.08 s'], value = ['6000 rpm', '12000 rpm'] }"
+    found = simulate(read_scenario(SEGMENTS, [f"shaft.speed={table}", "run.turns=11"]), tmp_path / "x.h5").summary
+    limit = np.sqrt((0.7 - 0.275) / (0.004 * 1e-4))
+    at = found["contact"]["first_lift"]
+    speed = np.pi / 30 * (6000 + 6000 * at / 0.08)
+    assert limit * 0.99 < speed < limit * 1.1
+
+
+WRONG = {
+    "[lip]\nmass='3 g'": "[shaft]",
+    "[shaft]\nradius='25 mm'\nspeed='3000 rpm'\n[lip]\nmass='3 g'\npreload='8 N'": "[lip] preload: found",
+    "[shaft]\nradius=1\nspeed=3\n[lip]\nmass=1\nmodulus=1e7": "thickness, length, interference are missing",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[lip]\nmass=0\npreload=8\nstiffness=9": "a mass > 0",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[lip]\nmass=1\npreload=8\nstiffness=9\nsectors=2": "4 to 720",
+    "[shaft]\nradius='25 mm'\nspeed=0\n[lip]\nmass=1\npreload=8\nstiffness=9": "a shaft at rest",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\n[lip]\nmass=1": "one of the two",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\nsegmnts=3": "nearest 'segments'",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\n[film]\nviscosity=1": "an unknown",
+}
+
+
+@pytest.mark.parametrize("text", WRONG, ids=range(len(WRONG)))
+def test_what_is_wrong_is_one_line(text):
+    with pytest.raises(ScenarioError) as refused:
+        parse_scenario(text, "x")
+    assert WRONG[text] in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_values_are_set_as_of_face_seals():
+    scenario = read_scenario(LIP).with_(lip__preload="60 N/m", shaft__eccentricity=2e-4)
+    assert scenario.scene.lip.preload == 60.0 and scenario.scene.shaft.eccentricity == 2e-4
+    assert parse_scenario(scenario.to_toml(), "again").scene == scenario.scene
