@@ -169,6 +169,8 @@ class Scenario:
     def motions(self) -> dict[str, dict[str, Any]]:
         """Motions by samples, of "shaft" and "housing": their columns (SI), and the name of their file if they came
         from one."""
+        if isinstance(self.scene, RadialScene):
+            return {}
         tables = {"shaft": self.scene.shaft, "housing": self.scene.housing}
         given = {name: _plain(dataclasses.asdict(table.motion)) for name, table in tables.items() if table.motion}
         return {name: {k: v for k, v in motion.items() if v is not None} for name, motion in given.items()}

@@ -14,6 +14,7 @@ from ..dynamics.signals import signals
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
+from ..scenario.errors import ScenarioError
 from ..scenario.settings import with_values
 from ..simulation.method_selection import choose_method
 from ..simulation.stability import critical_speed
@@ -52,6 +53,10 @@ class Settings:
 
 def run(scenario, settings, tools) -> dict:
     """Orbit, multipliers, verdict on the nonlinear orbit; against harmonic balance; cost near the threshold."""
+    for key, least in (("turns", 1), ("samples", 2), ("longest", 1)):
+        if getattr(settings, key) < least:
+            found, expected = str(getattr(settings, key)), f"{least} or more"
+            raise ScenarioError(scenario.name, f"study.steady_state.{key}", found, expected)
     try:
         shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
     except NoOrbit as reason:

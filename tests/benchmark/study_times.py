@@ -15,6 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from sealdyn.scenario.shipped import shipped_paths
 from sealdyn.studies import study_names
 from sealdyn.studies._runner import study_module
 
@@ -26,7 +27,7 @@ def cost(study: str, scenario: str, *flags: str) -> tuple[float, str]:
     """Processor time (s) of a study, and how it ended."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "sealdyn.cli", "study", study, f"scenarios/{scenario}.toml", *flags,
+        command = [sys.executable, "-m", "sealdyn.cli", "study", study, str(shipped_paths()[scenario]), *flags,
                    "--workers", "1", "--no-plot", "--json", "--out", str(Path(folder) / "study.h5")]  # fmt: skip
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)

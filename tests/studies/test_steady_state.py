@@ -121,3 +121,11 @@ def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
     figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
     assert any(len(line.get_xdata()) == 6 for ax in figure.axes for line in ax.lines)
     assert text_trouble(figure)[1] == []
+
+
+@pytest.mark.parametrize("key, value", [("samples", 0), ("turns", 0), ("longest", -1)])
+def test_counts_of_nothing_are_refused(key, value):
+    """Without a sample the linear film had no columns: a KeyError came through."""
+    with pytest.raises(sealdyn.ScenarioError) as refused:
+        sealdyn.study("steady-state", SCENARIOS / "fms_reference.toml", **{key: value})
+    assert refused.value.key == f"study.steady_state.{key}"
