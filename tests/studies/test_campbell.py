@@ -146,10 +146,8 @@ def test_the_verdict_says_of_what_a_frequency_is():
     for number, mode in enumerate(found["modes"], 1):
         (line,) = [line for line in found["verdict"] if line.startswith(f"Mode {number} (")]
         if any(mode["frequency"]):
-            ends = (
-                f"{mode['frequency'][0]:.5g} rad/s at a shaft speed of 100 rad/s, {mode['frequency'][-1]:.5g} at 2000"
-            )
-            assert ends in line
+            low, high = mode["frequency"][0], mode["frequency"][-1]
+            assert f"{low:.5g} " in line and f"{high:.5g} rad/s" in line and "at a shaft speed of 100 rad/s" in line
 
 
 def test_decrements_beyond_the_figure_are_told(tmp_path):

@@ -91,7 +91,7 @@ def test_a_scenario_without_a_question_has_a_figure_too(tmp_path):
     study = read_study(found["archive"])
     assert (study["question"], study["name"]) == ("", "[bare]")
     figure = drawn(study_equilibrium, found["archive"], tmp_path / "bare.png")
-    above, below = panel(figure, "Opening and closing"), panel(figure, "Axial film stiffness")
+    above, below = panel(figure, "Opening and closing"), panel(figure, "Axial stiffness of")
     kept = np.array([found["curve"][name] for name in ("clearance", "opening_force", "stiffness")])
     assert curve(above, "opening force of the aligned film") == pytest.approx(kept[:2] * [[1e6], [1.0]], rel=1e-12)
     assert points(below)[1][: len(kept[0])] == pytest.approx(1e-6 * kept[2], rel=1e-12)

@@ -102,7 +102,9 @@ def test_asperities_that_touch_without_forcing_leave_no_margin():
     told = " ".join(words for _, words in printed(scenario, summary))
     assert f"{100 * contact['share_of_closing']:.4g} % of the absolute closing force" in told
     assert f"{100 * contact['share_of_load']:.4g} % of what" in told and "asperities included" in told
-    assert {"film and asperities"} == {"film and asperities", "film stiffness"} & set(dict(overview._numbers(summary)))
+    assert {"film and asperities"} == {"film and asperities", "film stiffness"} & set(
+        dict(overview._numbers(summary, ("rad/s", 1.0)))
+    )
 
 
 def test_faces_without_a_wear_coefficient_have_no_rate_of_wear():
@@ -140,5 +142,5 @@ def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
         assert ("not choked" in told) != chokes and f"{mach:.4g}" in told
         # The figure has the leakage of a gas as the text has it.
         litres = 1e3 * 60 * summary["leakage"]["mean"]
-        assert dict(overview._numbers(summary))["mean leakage"].startswith(f"{litres:.4g} l/min (0 °C")
+        assert dict(overview._numbers(summary, ("rad/s", 1.0)))["mean leakage"].startswith(f"{litres:.4g} l/min (0 °C")
     assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["film"]["exit_mach"] is None

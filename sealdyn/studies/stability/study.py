@@ -28,7 +28,7 @@ from .grid import INERTIA_RATIO, Grid
 
 REFUSES = ("secondary-seal",)
 ALONG = dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x"))
-units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain"), "1/s") | {"turns": "1"}
+units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain", "uncertainty"), "1/s") | {"turns": "1"}
 # A run in time lasts until a small disturbance has grown by this much (e-folds), or decayed; turns as `pace` counts.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 # Accuracy of those runs, and the share of the eigenvalues' growth rate by which theirs may differ beside their doubt.
