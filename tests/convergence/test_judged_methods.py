@@ -111,7 +111,8 @@ def test_the_judge_sees_a_kink_wherever_it_lies(nodes):
         def rhs(t, y, yp, kink=kink):
             yp[:] = math.cos(t) + 0.3 * max(t - kink, 0.0)
 
-        smooth = SimpleNamespace(n_mechanical=1, size=1, scales=np.ones(1), shortest_period=6.0, rows=[0], length=1.0, imposed_pace=0.0,
+        smooth = SimpleNamespace(n_mechanical=1, size=1, scales=np.ones(1), shortest_period=6.0, rows=[0], length=1.0,
+                                 imposed_pace=0.0,
                                  has_residual_form=False, longest_step=lambda: math.inf, rhs=rhs)  # fmt: skip
         for _, ys, _ in collocation(smooth, 0.0, np.zeros(1), nodes, 1e-9, Counts()):
             y = ys[-1]
