@@ -75,8 +75,10 @@ def test_a_wheel_holds_the_scenarios(tmp_path):
     with zipfile.ZipFile(wheel) as file:
         held = {Path(name) for name in file.namelist() if ".dist-info" not in name}
     sources = {path.relative_to(source) for path in (source / "sealdyn").rglob("*.py")}
-    shipped = {Path("sealdyn/scenarios") / path.name for path in SCENARIOS.iterdir()}
-    others = {path.relative_to(source) for path in (source / "sealdyn").rglob("*") if path.suffix in (".toml", ".html")}
+    scenarios = {path.relative_to(source) for path in (source / "scenarios").rglob("*") if path.is_file()}
+    shipped = {"sealdyn" / path for path in scenarios}
+    data = {".toml", ".html", ".json"}
+    others = {path.relative_to(source) for path in (source / "sealdyn").rglob("*") if path.suffix in data}
     assert held == sources | shipped | others | {Path("sealdyn/py.typed")}
 
     subprocess.run([*pip, "install", "--no-deps", "--target", installed, wheel], check=True)
