@@ -450,7 +450,7 @@ def _check_radial(file, scenario, as_json):
         "scene": scenario.resolved(),
         "model": {"followers": followers.count, "solver": method, "reasons": [f"solver: {why}"]},
         "closed_form": said(followers, scenario.scene.shaft),
-        "design_rules": findings(scenario.scene),
+        "design_rules": findings(scenario),
         "equilibria": [],
     }
     if as_json:
@@ -466,8 +466,8 @@ def _of_a_face_seal(file):
     from .report.radial import is_radial
 
     if not is_study(file) and is_radial(read_info(file)):
-        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal (show and plot "
-                                   "take both)")  # fmt: skip
+        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal: its motion "
+                                   "is in the overview (plot)")  # fmt: skip
 
 
 @app.command()
@@ -721,27 +721,31 @@ def compare(
 
 def _rules_of(file, info) -> list[dict]:
     """What the design rules say of the scene of a run, the broken ones first."""
-    from .analysis.design_rules import findings
+    from .analysis import design_rules, radial_rules
     from .archive import ArchiveError
+    from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.simulate import prepare_run
 
     scenario = _read(file, None)
     try:
-        run, *_ = prepare_run(scenario)
+        found = (
+            radial_rules.findings(scenario)
+            if isinstance(scenario.scene, RadialScene)
+            else design_rules.findings(scenario, prepare_run(scenario)[0].model)
+        )
     except (SceneError, ArchiveError) as error:
         # It began from an archive, say, that is gone.
         print(f"warning: {file}: the page has no design rules ({error})", file=sys.stderr)
         return []
     order = ("fail", "note", "acknowledged", "pass", "not applicable")
-    return sorted(findings(scenario, run.model), key=lambda row: order.index(row["verdict"]))
+    return sorted(found, key=lambda row: order.index(row["verdict"]))
 
 
 def _must_be_archive(file):
     from .archive import is_study, read_info, read_study
 
     (read_study if is_study(file) else read_info)(file)
-    _of_a_face_seal(file)
 
 
 @app.command()

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..dynamics.intervals import largest_value
 from ..radial_seals.followers import followers_of
-from .design_rules import GUIDE
+from .design_rules import GUIDE, acknowledged
 from .rules._finding import Verdict, within
 
 FOOT_PER_MINUTE, PSI = 0.3048 / 60.0, 6894.757
@@ -22,16 +22,18 @@ SEGMENT_RUNOUT = np.array([0.0254e-3, 0.127e-3, 0.254e-3, 0.381e-3, 0.508e-3])
 SEGMENT_SPEED = np.array([4550.0, 3660.0, 2440.0, 1830.0, 1220.0]) / 60.0
 
 
-def findings(scene) -> list[dict]:
-    """What every rule says of a RadialScene: dicts as design_rules.findings."""
+def findings(scenario) -> list[dict]:
+    """What every rule says of the scenario of a radial seal: dicts as design_rules.findings."""
+    scene, reasons = scenario.scene, scenario.application.acknowledge if scenario.application else {}
     rules = LIP if scene.lip else CIRCUMFERENTIAL
-    return [_row(name, source, command, rule(scene)) for name, (source, command, rule) in rules.items()]
+    return [_row(name, *about, scene, reasons.get(name)) for name, about in rules.items()]
 
 
-def _row(name, source, command, found) -> dict:
+def _row(name, source, command, rule, scene, reason) -> dict:
+    found = acknowledged(rule(scene), reason)
     return {
         "rule": name, "verdict": str(found.verdict), "value": found.value, "unit": found.unit, "least": found.least,
-        "most": found.most, "guide": GUIDE, "source": source, "said": found.said, "command": command, "reason": None,
+        "most": found.most, "guide": GUIDE, "source": source, "said": found.said, "command": command, "reason": reason,
         **found.numbers,
     }  # fmt: skip
 

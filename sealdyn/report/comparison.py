@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
+from .radial import is_radial
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -28,7 +29,17 @@ FIRST = (
     ("contact_margin", "margin to contact", 1.0),
     ("contact.touches", "contacts", 1.0),
     ("contact.wear_rate", "wear rate, um/h", 3.6e9),
+    ("settled.contact_share", "on the shaft, %", 100.0),
+    ("whole.largest_gap", "largest gap, um", 1e6),
+    ("settled.load", "load on the shaft, N", 1.0),
+    ("settled.friction_torque", "friction torque, N m", 1.0),
+    ("settled.leakage_estimate", "leakage estimate, ml/h", 3.6e9),
+    ("closed_form.needed_preload", "preload needed of one, N", 1.0),
+    ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
+    ("contact.lift", "lost contacts", 1.0),
 )
+# Series of which the largest difference is told: of face seals, of radial seals.
+SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
 
 
 def comparison(one, other) -> dict:
@@ -36,6 +47,9 @@ def comparison(one, other) -> dict:
     differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have.
     **Raises** ArchiveError for what is no archive of a run."""
     infos = [_read(path) for path in (one, other)]
+    if is_radial(infos[0]) != is_radial(infos[1]):
+        kinds = ["a radial seal" if is_radial(info) else "a face seal" for info in infos]
+        raise ArchiveError(f"{other}: the archive of {kinds[1]}; expected that of {kinds[0]}, as {one}")
     scenes, summaries = ([dict(_leaves(info[key])) for info in infos] for key in ("resolved", "summary"))
     return {
         "names": [str(one), str(other)],
@@ -110,12 +124,12 @@ def _word(value) -> str:
 
 
 def _series(one, other, infos) -> Iterator[dict]:
-    """The largest differences of the thinnest film and the tilts at common instants."""
+    """The largest differences of SERIES at common instants."""
     times = [column(path, "time") for path in (one, other)]
     _, rows, others = np.intersect1d(*times, assume_unique=False, return_indices=True)
     if len(rows) < 2:
         return
-    for name in ("h_min", "relative_misalignment"):
+    for name in SERIES:
         if all(name in info["series"] for info in infos):
             apart = np.abs(column(one, name)[rows] - column(other, name)[others])
             yield {"name": name, "unit": infos[0]["series"][name].units, "most": float(np.nanmax(apart))}

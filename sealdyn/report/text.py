@@ -13,8 +13,12 @@ MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     message = "" if summary["status"] == Status.OK else summary["message"]
-    rows = radial_rows(summary) if "follower" in summary else run_rows(summary)
-    return _table(scenario.name, summary["status"], message, rows)
+    return _table(scenario.name, summary["status"], message, rows_of(summary))
+
+
+def rows_of(summary: dict):
+    """(name, words) of every line of a run, of a face or a radial seal; a line that goes on has no name."""
+    return radial_rows(summary) if "follower" in summary else run_rows(summary)
 
 
 def question_of(comment: str) -> str:

@@ -17,7 +17,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.application import Application, application_errors
+from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import scene_errors, unused
 from ..scene.motion import Motion
@@ -30,6 +30,7 @@ from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
 from .motion_files import with_columns
 from .overrides import override_key, without_arrays
+from .rule_names import RADIAL as RADIAL_RULES
 from .rule_names import unknown_rules
 from .unquoted import unquoted_quantity
 from .version import SCHEMA, refuse_newer
@@ -107,6 +108,8 @@ class RadialFile(RadialScene):
     """Version of these keys; without it the present one."""
     run: Run = field(default_factory=Run)
     """How long, how exact, by which method."""
+    application: RadialApplication | None = None
+    """Which rules it breaks on purpose."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Settings of studies, one table [study.NAME] each."""
 
@@ -135,7 +138,7 @@ class Scenario:
     given: frozenset[str] = frozenset()
     reading: Any = None
     bare: frozenset[str] = field(default=frozenset(), compare=False)
-    application: Application | None = field(default=None, compare=False)
+    application: Application | RadialApplication | None = field(default=None, compare=False)
     gauge: frozenset[str] = field(default=frozenset(), compare=False)
 
     def resolved(self) -> dict:
@@ -308,10 +311,14 @@ def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> d
         )
     if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
         wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
+    if file.application is not None:
+        known = RADIAL_RULES["lip" if file.lip else "circumferential"]
+        unknown = unknown_rules(file.application.acknowledge, known)
+        wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
     if wrong:
         raise together(wrong)
     scene = RadialScene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(RadialScene)})
-    return {"scene": scene, "run": file.run, "study": file.study}
+    return {"scene": scene, "run": file.run, "application": file.application, "study": file.study}
 
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:

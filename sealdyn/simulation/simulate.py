@@ -194,6 +194,10 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
 
 def in_memory(scenario, speeds: bool = False) -> dict:
     """The same, as its `parts` (summary.py)."""
+    if isinstance(scenario.scene, RadialScene):
+        from .radial import radial_in_memory
+
+        return radial_in_memory(scenario)
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
     outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_found(trial))

@@ -155,11 +155,12 @@ def _is_radial(scene) -> bool:
 
 def _refuse_seal(name: str, module, scene):
     """Raises SceneError for a seal of a kind that the study `name` does not know."""
-    if _is_radial(scene) != getattr(module, "RADIAL", False):
+    known = getattr(module, "ANY_SEAL", False) or _is_radial(scene) == getattr(module, "RADIAL", False)
+    if not known:
         study = name.replace("_", "-")
         if _is_radial(scene):
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
-            raise SceneError(key, found, f"a face seal for {study}; of radial ones there is followability")
+            raise SceneError(key, found, f"a face seal for {study}; of radial ones there are followability and sweep")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
     if _is_radial(scene) or getattr(module, "WITH_WAVES", False):
         return

@@ -11,11 +11,13 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
-from ..simulation.outputs import COMMON, unit_of
+from ..simulation.outputs import common, unit_of
 from ..status import Status
 from ._words import shown_in
 
 WITH_WAVES = True
+# Of radial seals as of face seals.
+ANY_SEAL = True
 # Seconds of a run at least, bytes of its row.
 LEAST, ROW = 2e-3, 500
 
@@ -31,8 +33,9 @@ class Settings:
     vary: list[str] | str = ()
     """"key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes that of
     its neighbours, none means SI; several make a grid."""
-    outputs: list[str] | str = COMMON
-    """Dotted keys of the run's summary."""
+    outputs: list[str] | str = ()
+    """Dotted keys of the run's summary; without them least film, misalignment, leakage, friction, margin to contact and
+    stability (of radial seals contact, gap, load, torque, leakage, margin)."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -40,7 +43,7 @@ def run(scenario, settings, tools) -> dict:
     vary = [settings.vary] if isinstance(settings.vary, str) else list(settings.vary)
     if not vary:
         raise ScenarioError(scenario.name, "study.sweep.vary", "nothing to vary", '--vary "rotor.runout=0:1 mrad:21"')
-    outputs = settings.outputs
+    outputs = settings.outputs or common(scenario.scene)
     outputs = [w.strip() for w in outputs.split(",")] if isinstance(outputs, str) else list(outputs)
     axes = [axis(words, scenario.name, "study.sweep.vary") for words in vary]
     keys = [a["key"] for a in axes]

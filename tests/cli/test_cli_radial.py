@@ -5,8 +5,10 @@ import pytest
 from command import SCENARIOS, sealdyn
 from PIL import Image
 
+import sealdyn as package
 from sealdyn import ScenarioError, open_archive
 from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.scenario.rule_names import RADIAL
 from sealdyn.simulation.simulate import simulate
 
 LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
@@ -77,14 +79,73 @@ def test_show_plot_and_what_is_of_face_seals(folder):
     for words in (
         ("plot", "x.h5", "--kind", "orbit"),
         ("animate", "x.h5"),
-        ("report", "x.h5"),
-        ("compare", "x.h5", "x.h5"),
     ):
         refused = sealdyn(*words, cwd=place)
         assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
     for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
         refused = sealdyn("study", study, path, cwd=place)
         assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
+
+
+def test_two_runs_beside_each_other_and_on_a_page(folder, tmp_path):
+    place, found = folder
+    calm = sealdyn("run", SEGMENTS, *SHORT, "--out", tmp_path / "calm.h5", cwd=tmp_path)
+    assert calm.code == 0
+    compared = sealdyn("compare", tmp_path / "calm.h5", place / "x.h5", cwd=tmp_path)
+    assert compared.code == 0 and "shaft.eccentricity: 0.0001 -> 0.0003" in compared.out
+    assert f"largest gap, um             0 -> {1e6 * found['whole']['largest_gap']:.4g}" in compared.out
+    assert "largest_gap differs by up to" in compared.out
+    written = sealdyn("report", tmp_path / "calm.h5", place / "x.h5", "--out", tmp_path / "r.html", cwd=tmp_path)
+    assert written.code == 0 and not written.err
+    page = (tmp_path / "r.html").read_text()
+    assert page.count("data:image/png;base64") == 2 and page.count("<td>table 3.4</td>") == 2
+    assert "0.2 mm TIR" in page and "0.6 mm TIR" in page and "left the shaft" in page
+
+
+def test_a_face_seal_is_not_compared_with_a_radial_one(folder, tmp_path):
+    place, _ = folder
+    words = ("run", SCENARIOS / "axial_only.toml", "--set", "run.turns=1", "--out", tmp_path / "face.h5")
+    assert sealdyn(*words, cwd=tmp_path).code == 0
+    refused = sealdyn("compare", tmp_path / "face.h5", place / "x.h5", cwd=tmp_path)
+    assert refused.code == 2 and refused.err.count("\n") == 1
+    assert "x.h5: the archive of a radial seal; expected that of a face seal" in refused.err
+
+
+def test_a_sweep_and_numbers_of_runs(folder, tmp_path):
+    _, found = folder
+    words = ("--vary", "shaft.eccentricity=0.1,0.3 mm", *SHORT, "--json")
+    swept = sealdyn("study", "sweep", SEGMENTS, *words, cwd=tmp_path)
+    calm, lost = swept.found["rows"]
+    assert swept.code == 0 and calm["settled.contact_share"] == 1.0 and calm["whole.largest_gap"] == 0.0
+    assert lost["whole.largest_gap"] == pytest.approx(found["whole"]["largest_gap"], rel=1e-5)
+    assert swept.found["output_units"]["settled.friction_torque"] == "N m"
+    asked = {"run.turns": 2, "shaft.eccentricity": "0.3 mm"}
+    numbers = package.evaluate(SEGMENTS, asked, ["whole.largest_gap", "closed_form.margin"])
+    assert numbers["whole.largest_gap"] == pytest.approx(found["whole"]["largest_gap"], rel=1e-5)
+    assert numbers["closed_form.margin"] == pytest.approx(found["closed_form"]["margin"])
+    table = package.sweep(SEGMENTS, {"shaft.eccentricity": ["0.1 mm", "0.3 mm"], "run.turns": [2]}, workers=1)
+    assert list(table["whole.largest_gap"]) == [0.0, numbers["whole.largest_gap"]]
+    assert table.attrs["units"]["whole.largest_gap"] == "m"
+    many = package.simulate_many(read_scenario(SEGMENTS), [asked, {"run.turns": 2, "shaft.speed": 0}], workers=1)
+    assert [*many.status.values] == ["ok", "not possible"]
+    with pytest.raises(ValueError, match=r"nearest whole\.largest_gap"):
+        package.evaluate(SEGMENTS, asked, "largest_gap")
+
+
+def test_a_broken_rule_is_acknowledged_by_its_name(tmp_path):
+    reason = ("--set", "application.acknowledge.segment_runout='kept at the bearing, 2024 survey'")
+    found = sealdyn("check", SEGMENTS, *reason, "--json", cwd=tmp_path).found["design_rules"]
+    (row,) = (row for row in found if row["rule"] == "segment_runout")
+    assert row["verdict"] == "acknowledged" and row["reason"] == "kept at the bearing, 2024 survey"
+    for name in ("segmnt_runout", "lip_speed"):
+        refused = sealdyn("check", SEGMENTS, "--set", f"application.acknowledge.{name}='why'", cwd=tmp_path)
+        assert (
+            refused.code == 2 and f"acknowledge.{name}" in refused.err.replace("] ", ".") and "nearest" in refused.err
+        )
+    scene = sealdyn("check", LIP, "--json", cwd=tmp_path).found["design_rules"]
+    assert {row["rule"] for row in scene} == set(RADIAL["lip"]) and {row["rule"] for row in found} == set(
+        RADIAL["circumferential"]
+    )
 
 
 def test_a_run_goes_on_where_it_was_broken_off(tmp_path):
