@@ -164,7 +164,12 @@ def _read(path: Path, overrides):
 
     try:
         with _reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
-            return read_scenario(path, overrides or ())
+            scenario = read_scenario(path, overrides or ())
+        if scenario.study:
+            from .studies._settings import refuse_unknown_studies
+
+            refuse_unknown_studies(scenario)
+        return scenario
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
 
@@ -402,6 +407,8 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
+    if scenario.study:
+        _refuse_settings(scenario)
     size = size_of(scenario)
     if isinstance(scenario.scene, RadialScene):
         return _check_radial(file, scenario, as_json)
@@ -429,6 +436,17 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
             print(line)
         if size.bytes > WORTH_SAYING:
             print(f"  size          {size}")
+
+
+def _refuse_settings(scenario):
+    """Ends the verb for settings of a study that it does not take."""
+    from .scenario.errors import ScenarioError
+    from .studies._settings import refuse_settings
+
+    try:
+        refuse_settings(scenario)
+    except ScenarioError as error:
+        raise Stop(Status.INVALID, str(error), errors=(error,)) from None
 
 
 def _check_radial(file, scenario, as_json):

@@ -34,8 +34,7 @@ class Settings:
     """"key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes that of
     its neighbours, none means SI; several make a grid."""
     outputs: list[str] | str = ()
-    """Dotted keys of the run's summary; without them least film, misalignment, leakage, friction, margin to contact and
-    stability (of radial seals contact, gap, load, torque, leakage, margin)."""
+    """Dotted keys of the run's summary (`run --json` shows all); without them the usual ones of the kind of seal."""
 
 
 def run(scenario, settings, tools) -> dict:

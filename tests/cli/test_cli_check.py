@@ -40,3 +40,20 @@ def test_a_stiffness_that_counts_asperities_says_so(tmp_path):
     smooth = sealdyn("check", SCENARIOS / "axial_only.toml", cwd=tmp_path).out
     assert "stiffness of film and asperities" in rough and "film stiffness" not in rough
     assert "film stiffness" in smooth and "asperities" not in smooth
+
+
+def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
+    scene = (SCENARIOS / "axial_only.toml").read_text()
+    (tmp_path / "a.toml").write_text(scene + "\n[study.contact-onest]\nvalues = ['1 urad']\n")
+    for words in (("check", "a.toml"), ("run", "a.toml", "--set", "run.turns=1"), ("study", "sweep", "a.toml")):
+        refused = sealdyn(*words, cwd=tmp_path)
+        assert refused.code == 2 and refused.err.count("\n") == 1, refused
+        assert "[study] contact-onest: found an unknown study" in refused.err
+        assert "nearest 'contact-onset'" in refused.err
+    (tmp_path / "b.toml").write_text(scene + "\n[study.contact-onset]\nvalue = ['1 urad']\n")
+    refused = sealdyn("check", "b.toml", cwd=tmp_path)
+    assert refused.code == 2 and "value: found an unknown key" in refused.err and "nearest values" in refused.err
+    # A hyphen is as good as an underscore.
+    (tmp_path / "c.toml").write_text(scene + "\n[study.work-precision]\nmethods = ['adsms']\n")
+    refused = sealdyn("study", "work-precision", "c.toml", cwd=tmp_path)
+    assert refused.code == 2 and "methods: found 'adsms'" in refused.err and refused.err.count("\n") == 1
