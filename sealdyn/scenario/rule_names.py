@@ -10,7 +10,7 @@ FOLDER = Path(__file__).parents[1] / "analysis" / "rules"
 
 # Those of radial seals (analysis/radial_rules.py).
 RADIAL = {
-    "lip": ("lip_load", "lip_pressure", "lip_speed"),
+    "lip": ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed"),
     "circumferential": (
         "axial_load",
         "garter_load",

@@ -120,8 +120,10 @@ class Application:
 
 @dataclass(frozen=True)
 class RadialApplication:
-    """The same table of a radial seal, whose guide asks for nothing that its scene does not have."""
+    """The same table of a radial seal."""
 
+    hydrodynamic_lip: bool = False
+    """A lip with ribs or helices that pump back what leaks: other tables of the guide are for it."""
     acknowledge: Annotated[dict[str, str], Reasons("table of reasons", "words", "")] = field(default_factory=dict)
     """Rules that the seal breaks on purpose: the rule's name and the reason."""
 

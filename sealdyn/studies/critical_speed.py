@@ -7,6 +7,7 @@ Beyond: the family of circular whirls that leaves the threshold (analysis/whirl)
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -59,7 +60,7 @@ class Settings:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    method: str = "adams"
+    method: Literal["adams", "bdf", "dop853", "radau"] = "adams"
     """Integrator."""
     accuracy: float = 1e-7
     """Accuracy to begin with, tightened until it cannot decide a verdict."""

@@ -57,3 +57,5 @@ def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
     (tmp_path / "c.toml").write_text(scene + "\n[study.work-precision]\nmethods = ['adsms']\n")
     refused = sealdyn("study", "work-precision", "c.toml", cwd=tmp_path)
     assert refused.code == 2 and "methods: found 'adsms'" in refused.err and refused.err.count("\n") == 1
+    refused = sealdyn("study", "critical-speed", SCENARIOS / "fms_reference.toml", "--method", "adsms", cwd=tmp_path)
+    assert refused.code == 2 and "method: found 'adsms'" in refused.err and refused.err.count("\n") == 1
