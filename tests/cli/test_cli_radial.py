@@ -154,14 +154,14 @@ def test_hydrodynamic_lips_have_tables_of_their_own(tmp_path):
     """Each rule passes and fails: load, pressure over speed, eccentricity."""
     ribbed = "application.hydrodynamic_lip=true"
     usual = lip_rules(tmp_path)
-    found = lip_rules(tmp_path, ribbed, "lip.preload='40 N/m'", "shaft.eccentricity='0.1 mm'")
+    found = lip_rules(tmp_path, ribbed, "lip.preload='40 N/m'", "shaft.eccentricity='0.02 mm'")
     assert set(found) == set(RADIAL["lip"]) == set(usual)
     load = found["lip_load"]
     assert load["verdict"] == "pass" and (load["least"], load["most"]) == (52.5, 70)
     assert lip_rules(tmp_path, "lip.preload='40 N/m'")["lip_load"]["verdict"] == "note"
     assert found["lip_speed"]["verdict"] == "not applicable" and usual["lip_speed"]["source"] == "table 3.2"
     assert found["lip_eccentricity"]["verdict"] == "pass" and usual["lip_eccentricity"]["verdict"] == "not applicable"
-    assert lip_rules(tmp_path, ribbed, "shaft.eccentricity='0.128 mm'")["lip_eccentricity"]["verdict"] == "fail"
+    assert lip_rules(tmp_path, ribbed, "shaft.eccentricity='0.028 mm'")["lip_eccentricity"]["verdict"] == "fail"
     # Between two rows: 1 and 3 psi allow 1830 and 1220 m/min, and 3000 and 2000 ft/min of conventional lips.
     speed = "shaft.speed='9600 rpm'"
     for pressure, ends in (("0.1 bar", "pass"), ("0.25 bar", "fail"), ("0.4 bar", "fail")):
