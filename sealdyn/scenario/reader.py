@@ -125,6 +125,10 @@ class Scenario:
     written as gauge.
     Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
     seal is for (`application`, None without that table).
+
+    >>> scenario = sealdyn.read_scenario("fms.toml").with_(rotor__runout="20 urad")
+    >>> scenario.scene.rotor.runout, scenario == sealdyn.Scenario.from_dict(scenario.to_dict())
+    (2e-05, True)
     """
 
     scene: Scene | RadialScene
@@ -193,7 +197,11 @@ class Scenario:
 
 def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
     """Scenario of a TOML file, or of the archive (.h5) of a run or study with its overrides; `overrides` are strings
-    "rotor.runout=0.2 mrad".  Raises `ScenarioError`, ArchiveError."""
+    "rotor.runout=0.2 mrad".  Raises `ScenarioError`, ArchiveError.
+
+    >>> sealdyn.read_scenario("fms.toml", ["film.clearance=8 um"]).scene.film.clearance
+    8e-06
+    """
     path = Path(path)
     if path.suffix == ".h5":
         return _of_archive(path, overrides)

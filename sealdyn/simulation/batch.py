@@ -58,6 +58,11 @@ def simulate_many(
     message.
     **Valid** runs with the same unknowns.
     Raises ScenarioError if no run can be read, SceneError if the first that can be read cannot be run.
+
+    >>> scenario = sealdyn.read_scenario("fms.toml")
+    >>> data = sealdyn.simulate_many(scenario, [{"rotor.runout": 1e-5}, {"rotor.runout": 2e-5}], workers=1)
+    >>> 1e6 * data["h_min.value"].values.round(8)
+    array([9.68, 9.36])
     """
     sets = [dict(values) for values in sets]
     first = first_ready(scenario, sets)
@@ -85,6 +90,10 @@ def sweep(
     numbers are NaN, the status is "not possible" and the message its reason.  `workers`, `progress` as in
     `simulate_many`.
     Raises ScenarioError if no run can be read, a key has no values, or there is no such output.
+
+    >>> table = sealdyn.sweep("fms.toml", {"rotor.runout": ["10 urad", 2e-5]}, "h_min.value", workers=1)
+    >>> table["h_min.value"].round(8).to_dict()
+    {'10 urad': 9.68e-06, 2e-05: 9.36e-06}
     """
     import pandas
 
@@ -202,5 +211,5 @@ def _alone(scenario, point) -> dict:
 
 
 def _row(parts, point) -> dict:
-    row = {"status": parts["status"], **{key: output(parts, key) for key in point["outputs"]}}
+    row = {"status": "", **{key: output(parts, key) for key in point["outputs"]}} | {"status": str(parts["status"])}
     return row if row["status"] == Status.OK else {**row, "message": parts["message"]}

@@ -71,6 +71,10 @@ def simulate(
     interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
     `allow_large`: also a run of a day or of an archive of gigabytes (simulation/size.py).
     Raises SceneError or ArchiveError for a scene or file that cannot be, or that another run is writing.
+
+    >>> result = sealdyn.simulate(sealdyn.read_scenario("fms.toml"), "fms.h5")
+    >>> result.summary["end"]["time"] == result.summary["end"]["asked"]
+    True
     """
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
     refuse_large(scenario, allow_large)

@@ -103,6 +103,11 @@ def run_study(
     "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
     and for those of other machines.  `leave_out`: "contact" for the film alone, or "secondary-seal".
     Raises ScenarioError, SceneError, ClusterError (numerics.cluster), ArchiveError where another writes the archive.
+
+    >>> scenario = sealdyn.read_scenario("fms.toml")
+    >>> answer = sealdyn.run_study("equilibrium", scenario, "balance.h5", flags={"points": 11}, workers=1)
+    >>> answer["archive"], answer["roots"][0]["stable"]
+    ('balance.h5', True)
     """
     name = name.replace("-", "_")
     module = study_module(name)
