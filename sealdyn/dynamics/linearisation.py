@@ -12,6 +12,7 @@ from .interface import rest_state
 from .intervals import constant_and_slope
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .neutral_speeds import Whirl
+from .swept_motion import sweeps_of
 from .whirl_speeds import all_at_once, one_by_one
 
 
@@ -113,7 +114,11 @@ def _whirl(linear) -> Whirl | None:
 
 def harmonics(segment) -> list[Harmonic]:
     """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed).  Raises SceneError
-    where samples move a carrier."""
+    where samples or a sweep move a carrier."""
+    if len(segment.sweeps):
+        key, _ = sweeps_of(segment.model.scene)[0]
+        expected = "tones, a sweep that begins later, or a run in time from rest"
+        raise SceneError(key, "a sweep from the start, which has no harmonics", expected)
     for ring in segment.sampled:
         key = "housing.motion" if ring == STATOR else "shaft.motion"
         raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time from rest")

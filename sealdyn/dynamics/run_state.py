@@ -16,6 +16,7 @@ from .model import Model
 from .sampled_motion import motions
 from .segments import Segment
 from .stick_slip import StickSlip
+from .swept_motion import fastest_sweep, sweeps_of_segment
 
 
 class FilmClosed(SceneError):
@@ -35,7 +36,7 @@ class RunState:
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         remark = getattr(model.interface.film, "REMARK", None)
-        self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks()]
+        self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks(duration)]
         self.cautions = []
         self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
@@ -91,6 +92,7 @@ class RunState:
             if len(rows):
                 speed, slope = constant_and_slope(scene.shaft.speed, interval)
                 fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
+            fastest = max(fastest, fastest_sweep(sweeps_of_segment(scene, interval), interval.length))
         return max([fastest, *(sampled.rate for sampled in motions(scene).values())])
 
     # --- the start ----------------------------------------------------------------------------------

@@ -327,7 +327,7 @@ def _first(quantity, segment):
 def _linear_steady(segment, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
-    if segment.sampled:
+    if not segment.harmonic:
         return None
     if period is None and len(rows):
         frequencies = [w for w in rows[:, 7] if w]
@@ -338,9 +338,10 @@ def _linear_steady(segment, linear, period):
 
 def _contact_margin(segment, linear, tilt):
     """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
-    there are any: 0 where they touch without forcing.  Unknown of wavy faces."""
+    there are any: 0 where they touch without forcing.  Unknown of wavy faces, and of a sweep, which is over in the last
+    segment."""
     model = segment.model
-    if waves_of(model.scene):
+    if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan
     face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)

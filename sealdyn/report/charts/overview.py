@@ -6,7 +6,7 @@ from matplotlib import rc_context
 from ...status import Status
 from ..radial import is_radial
 from ..text import speed_unit
-from . import followers, orbit, spectrum
+from . import followers, housing_sweep, orbit, spectrum
 from .page import PAPER, absent, free_side, header, level, look, save, sheet
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run, fitting
@@ -119,6 +119,8 @@ def film_panel(ax, run: Run, first: int) -> None:
         lines = [line for line in lines if line[0] < FAR * max(top, clearance)]
         top = 1.2 * max(top, *(line[0] for line in lines))
         room = NAME_HEIGHT * top
+        # A line for each sweep has its place above the curve.
+        top *= 1.0 + housing_sweep.HEIGHT * housing_sweep.sweep_lines(ax, run)
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
         for at, name, style in lines:
             others = [np.full_like(x, other) for other, *_ in lines if other != at]

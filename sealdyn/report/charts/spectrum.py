@@ -14,6 +14,8 @@ HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 # Power in the top tenth of the band, of all that moves, above which a spectrum may be folded.  Measured: below 3e-7 in
 # well sampled runs; 9e-4 with the housing's 5.4 kHz at order 33.75 of 160 Hz, 64 samples a turn.
 FOLDED = 1e-4
+# Tables of the housing whose frequencies are those of a band.
+BANDS = ("axial_random", "angular_random", "axial_sweep", "angular_sweep")
 
 
 @look()
@@ -110,7 +112,7 @@ def folded(run: Run, first: int, highest: float) -> str:
     """A warning when the housing shakes faster than the samples can follow: such tones show at wrong orders."""
     slowest = np.abs(run.values("shaft_speed", first)).min()
     tones = [tone.get("frequency") for kind in ("axial", "angular") for tone in run.housing(kind)]
-    bands = [band for kind in ("axial_random", "angular_random") for band in run.housing(kind)]
+    bands = [band for kind in BANDS for band in run.housing(kind)]
     tones += [max(band["frequency"]) for band in bands]
     fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
     return f"\n{max(fast):.4g} Hz, above order {highest:.3g}, folds back: raise samples_per_turn" if fast else ""
