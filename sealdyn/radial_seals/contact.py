@@ -14,6 +14,8 @@ LOOKS = 8
 OF_ERROR, OF_LOAD = 0.01, 1e-11
 # From a place to the next to rounding.
 HALVINGS = 48
+# Share of a step by which a contact is moved to where it is.
+NEWTON = 0.01
 # Share of a segment's length in which nothing is integrated.
 CRUMB = 1e-12
 EVENTS = {"lift": "leaves the shaft", "land": "lands on the shaft", "stick": "is held by its flange",
@@ -42,8 +44,9 @@ class Contacts:
         here = segment.surface(tau)
         _, _, loads = self._state(np.array([tau]), y)
         for j in range(len(self.modes)):
-            if self.modes[j] == RIDING and loads[0, j] < 0.0:
+            if self.modes[j] == RIDING and loads[0, j] < -self.weak:
                 self._let_go(j, y, here[j])
+                self.counts["lift"], self.first_lift = self.counts["lift"] + 1, segment.time + tau
         return self.held()
 
     def begin(self, segment, tau, y):
@@ -72,21 +75,32 @@ class Contacts:
             found = self._in_step(block, step)
             # What happens at the end belongs to what comes next.
             if found and self.segment.length - found[0] > CRUMB * self.segment.length:
-                time, j = found
-                low = block.t[step]
-                y = advance(low, block.ys[step], time)
-                return Transition(step, float(time), y, j)
+                time, j, touches = found
+                y = advance(block.t[step], block.ys[step], time)
+                if touches:
+                    time, y = self._at_contact(block, step, time, y, j, advance)
+                return Transition(step, float(time), y, (j, touches))
         return None
 
+    def _at_contact(self, block, step, time, y, j, advance):
+        """Time and unknowns where follower j meets the shaft, which between the steps was found at `time` (s), with the
+        unknowns `y` there: a step of Newton's.  Where one grazes the other the time hangs on the last digits."""
+        here, low = self.segment.surface(time)[j], block.t[step]
+        gap, closing = y[j] - here[0], here[1] - y[self.segment.n + j]
+        if closing <= 0.0 or abs(gap) > NEWTON * (block.t[step + 1] - low) * closing or time + gap / closing <= low:
+            return time, y
+        time += gap / closing
+        return time, advance(low, block.ys[step], time)
+
     def make(self, transition: Transition) -> Change:
-        """Let follower `transition.what` do what its guards ask."""
-        j, tau, y = transition.what, transition.time, transition.y.copy()
+        """Let the follower of `transition.what` (which, whether at the shaft) do what its guards ask."""
+        (j, touches), tau, y = transition.what, transition.time, transition.y.copy()
         here, n = self.segment.surface(tau)[j], len(self.modes)
         mode, v = self.modes[j], y[n + j]
         lost = 0.0
         if mode == RIDING:
             kind = self._let_go(j, y, here)
-        elif y[j] - here[0] <= self.near:
+        elif touches:
             kind, lost = "land", 0.5 * self.model.followers.mass * (v - here[1]) ** 2
             y[j], y[n + j] = here[0], here[1]
             self.modes[j], self.signs[j] = RIDING, 0.0
@@ -149,24 +163,25 @@ class Contacts:
         return np.where(modes == RIDING, np.inf, gaps), second
 
     def _in_step(self, block, step):
-        """Time and follower of the first change within a step, or None."""
+        """Time and follower of the first change within a step, and whether it meets the shaft; or None."""
         taus = np.linspace(block.t[step], block.t[step + 1], LOOKS + 1)
         block = _only(block, step)
         allowed = np.full(len(self.modes), self.near), np.where(self.modes == FREE, self.slow, self.weak)
         first = None
         for which, values in enumerate(self.guards(block, taus)):
             least = -allowed[which]
-            for j in np.flatnonzero((values[1:] < least).any(axis=0) | _dips(values)):
+            dips = _dips(values)
+            for j in np.flatnonzero((values[1:] < least).any(axis=0) | dips.any(axis=0)):
 
                 def guard(tau, which=which, j=j):
                     return self.guards(block, np.array([tau]))[which][0, j]
 
-                found = _first_below(guard, taus, values[:, j], least[j])
+                found = _first_below(guard, taus, values[:, j], dips[:, j], least[j])
                 if found is not None:
                     # No interval without a length.
                     found = max(found, taus[0] + CRUMB * self.segment.length)
                 if found is not None and (first is None or found < first[0]):
-                    first = (found, int(j))
+                    first = (found, int(j), which == 0)
         return first
 
 
@@ -180,21 +195,20 @@ def _only(block, step):
 
 
 def _dips(values):
-    """Which columns (m, n) have a least value between two places that may lie below zero: twice as deep as the parabola
-    through three places says."""
+    """Where three places (m - 2, n) of the columns (m, n) have a least value between them that may lie below zero:
+    twice as deep as the parabola through them says.  Between the outer two of a step's places it counts too."""
     with np.errstate(invalid="ignore", divide="ignore"):
-        low = (values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])
-        bend = values[:-2] - 2.0 * values[1:-1] + values[2:]
-        depth = (values[2:] - values[:-2]) ** 2 / (8.0 * bend)
-        return (low & (values[1:-1] < 2.0 * depth)).any(axis=0)
+        slope, bend = 0.5 * (values[2:] - values[:-2]), values[:-2] - 2.0 * values[1:-1] + values[2:]
+        return (np.abs(slope) <= 1.1 * bend) & (values[1:-1] < slope**2 / bend)
 
 
-def _first_below(guard, taus, values, least) -> float | None:
-    """When `guard(tau)`, of which `values` (m,) at `taus` (m,) are known, first falls below `least`; None if never."""
+def _first_below(guard, taus, values, dips, least) -> float | None:
+    """When `guard(tau)`, of which `values` (m,) at `taus` (m,) and the `dips` (m - 2,) are known, first falls below
+    `least`; None if never."""
     for k in range(1, len(taus)):
         if values[k] < least:
             return _bisected(guard, taus[k - 1], taus[k], least)
-        if k + 1 < len(taus) and values[k] <= min(values[k - 1], values[k + 1]):
+        if k + 1 < len(taus) and dips[k - 1]:
             deepest = minimize_scalar(guard, bounds=(taus[k - 1], taus[k + 1]), method="bounded",
                                       options={"xatol": 1e-9 * (taus[-1] - taus[0])})  # fmt: skip
             if deepest.fun < least:

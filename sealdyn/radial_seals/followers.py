@@ -32,8 +32,8 @@ class Followers:
 
     @cached_property
     def modal_stiffness(self) -> np.ndarray:
-        """Stiffness (N/m) of a follower where all move as cos(m theta), m = 0 .. n // 2."""
-        return np.fft.rfft(self.row).real
+        """Stiffness (N/m) of a follower where all move as cos(m theta), m = 0 .. n - 1."""
+        return np.fft.fft(self.row).real
 
     def least_load(self, order: int, speed: float) -> float:
         """Amplitude (N) per metre of a wave of this order, by which the load on the shaft swings while all follow:
@@ -61,13 +61,14 @@ def lip_line(lip: Lip, radius: float) -> tuple[float, float]:
 
 
 def _of_lip(scene: RadialScene) -> Followers:
-    """A ring in tension on a bed of beams: k_m = k + H (m^2 - 1) / r^2, and the spring's own rate where all widen."""
+    """A ring in tension on a bed of beams: k_m = k + H (m^2 - 1) / r^2; where all widen the tension presses each sector
+    as before, but the spring's own rate counts."""
     lip, radius, n = scene.lip, scene.shaft.radius, scene.lip.sectors
     preload, stiffness = lip_line(lip, radius)
     hoop = lip.hoop_stress * lip.hoop_area if lip.hoop_stress is not None else 0.0
     tension, arc = hoop + lip.garter_tension, 2.0 * math.pi * radius / n
     orders = np.minimum(np.arange(n), n - np.arange(n))
-    per_length = stiffness + tension * (orders**2 - 1.0) / radius**2
+    per_length = stiffness + tension * np.maximum(orders**2 - 1.0, 0.0) / radius**2
     per_length[0] += 2.0 * math.pi * lip.garter_rate / radius
     speed = largest_value(scene.shaft.speed)
     damping = lip.loss_factor * stiffness / speed if speed else 0.0

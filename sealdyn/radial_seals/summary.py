@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from ..dynamics.intervals import largest_value
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from . import closed_form
@@ -15,7 +14,7 @@ AT_ONCE = 1e-9
 def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
     """The numbers of `run --json`, SI; `settled` are those of the second half of the run."""
     scene, followers, contacts = run.model.scene, run.model.followers, run.stick_slip
-    speed = largest_value(scene.shaft.speed)
+    speed = closed_form.fastest(scene.shaft)
     needed = closed_form.needed_preload(followers, scene.shaft, speed)
     kind = "lip" if scene.lip else "circumferential"
     first = contacts.first_lift
@@ -37,7 +36,7 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
                     "followers_held_at_end": int((contacts.modes == 1.0).sum()),
                     "followers_riding_at_end": int((contacts.modes == 2.0).sum())},
         "closed_form": {
-            "speed": speed,
+            "speed": abs(speed),
             "needed_preload": needed,
             "margin": followers.preload / needed if needed else None,
             "largest_eccentricity": closed_form.largest_eccentricity(followers, scene.shaft, speed),

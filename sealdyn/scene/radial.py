@@ -4,14 +4,14 @@ Its equations are in radial_seals/; a scenario file holds either this or a face 
 """
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Annotated
 
+from ..numerics.piecewise_linear import PiecewiseLinear
 from ..units import (
     Angle,
-    Force,
     LineForce,
     Mass,
-    Pressure,
     Quantity,
     Radius,
     Speed,
@@ -29,6 +29,8 @@ LineStiffness = Annotated[float, Quantity("stiffness per length", "N/m^2", '"50 
 Area = Annotated[float, Quantity("area", "m^2", '"6 mm^2"', (), 0)]
 Positive = Annotated[float, Quantity("length", "m", '"2 mm"', (), 0, True)]
 Number = Annotated[float, Quantity("number", "1", "0.3", (), 0)]
+Tension = Annotated[float, Quantity("force", "N", '"2 N"', (), 0)]
+PressureDifference = Annotated[float, Quantity("pressure", "Pa", '"0.1 bar"', (), 0)]
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,7 @@ class Lip:
     """Of the lip from its root to the contact line."""
     interference: Amplitude | None = None
     """Radial, of the free lip on the shaft."""
-    garter_tension: Annotated[float, Quantity("force", "N", '"2 N"', (), 0)] = 0.0
+    garter_tension: Tension = 0.0
     """Of the garter spring around the lip; it also stiffens ovality and higher waves."""
     garter_rate: Stiffness = 0.0
     """Of the garter spring along its length: it counts where the whole lip widens."""
@@ -117,7 +119,7 @@ class Lip:
     """Of the contact line along the shaft: for the leakage estimate."""
     viscosity: Viscosity | None = None
     """Of the sealed liquid: for the leakage estimate."""
-    pressure_difference: Annotated[float, Quantity("pressure", "Pa", '"0.1 bar"', (), 0)] = 0.0
+    pressure_difference: PressureDifference = 0.0
     """Across the lip: for the leakage estimate; it does not press here."""
 
 
@@ -135,7 +137,7 @@ class Circumferential:
     """Of all segments together."""
     segments: int = 6
     """Around the shaft."""
-    garter_tension: Force = 0.0
+    garter_tension: Tension = 0.0
     """Of the spring around them."""
     garter_rate: Stiffness = 0.0
     """Of the garter spring along its length: it counts where all segments move out."""
@@ -149,7 +151,7 @@ class Circumferential:
     """Of the bore along the shaft: for the leakage estimate."""
     viscosity: Viscosity | None = None
     """Of the sealed fluid: for the leakage estimate."""
-    pressure_difference: Pressure = 0.0
+    pressure_difference: PressureDifference = 0.0
     """Across the seal: for the leakage estimate; it does not press here."""
 
 
@@ -181,6 +183,12 @@ def radial_errors(scene: RadialScene) -> list[tuple[str, str, str]]:
     shaft, seal = scene.shaft, scene.seal
     if shaft.radius <= 0.0:
         bad.append(("shaft.radius", f"{shaft.radius:g} m", "a length > 0"))
+    if isinstance(shaft.speed, PiecewiseLinear):
+        bad += [
+            ("shaft.speed", f"two speeds at {time:g} s", "a ramp: no seal follows a step of the speed")
+            for (time, before), (then, after) in pairwise(zip(shaft.speed.time, shaft.speed.value, strict=True))
+            if time == then and before != after
+        ][:1]
     for n, wave in enumerate(shaft.lobes):
         if not 1 <= wave.order <= 24:
             bad.append((f"shaft.lobes.{n}.order", str(wave.order), "1 to 24"))

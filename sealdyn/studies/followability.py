@@ -58,6 +58,8 @@ def run(scenario, settings, tools) -> dict:
     where = "study.followability"
     speeds = (np.linspace(0.1, 4.0, 79) * own if not settings.speed
               else np.array(values_in_si(scenario, settings.speed, "rad/s", f"{where}.speed")))  # fmt: skip
+    if not speeds.all():
+        raise ScenarioError(scenario.name, f"{where}.speed", "a speed of 0", "speeds other than 0")
     if not 0 <= settings.runs <= 50:
         raise ScenarioError(scenario.name, f"{where}.runs", str(settings.runs), "0 to 50")
     along = axis(settings.vary, scenario.name, f"{where}.vary") if settings.vary else None

@@ -205,6 +205,9 @@ WRONG = {
     "[shaft]\nradius='25 mm'\nspeed=0\n[lip]\nmass=1\npreload=8\nstiffness=9": "a shaft at rest",
     "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\n[lip]\nmass=1": "one of the two",
     "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\nsegmnts=3": "nearest 'segments'",
+    "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\ngarter_tension='-1 N'": "a force >= 0",
+    "[shaft]\nradius=1\nspeed=3\n[circumferential]\nmass=1\npressure_difference='1 barg'": "unknown unit 'barg'",
+    "[shaft]\nradius=1\nspeed={time=[0,1,1],value=[3,3,4]}\n[circumferential]\nmass=1": "two speeds at 1 s",
     "[shaft]\nradius='25 mm'\nspeed=3\n[circumferential]\nmass=1\n[film]\nviscosity=1": "an unknown",
 }
 

@@ -2,23 +2,29 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from sealdyn.analysis import radial_rules
-from sealdyn.radial_seals.closed_form import held_between, largest_eccentricity, needed_preload
+from sealdyn.radial_seals.closed_form import fastest, hangs_up, held_between, largest_eccentricity, needed_preload
+from sealdyn.radial_seals.contact import _dips, _first_below
 from sealdyn.radial_seals.followers import followers_of, lip_line
 from sealdyn.radial_seals.run_state import RadialRun
-from sealdyn.radial_seals.segments import RadialModel
+from sealdyn.radial_seals.segments import RadialModel, RadialSegment
+from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
+from sealdyn.simulation.simulate import simulate
+from sealdyn.solvers.contract import Status
 from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 
 R, E, W = 0.025, 1e-4, 300.0
 ACCURACY = 1e-7
+SEGMENTS = Path(__file__).parents[2] / "scenarios" / "radial" / "circumferential_reference.toml"
 
 
 def lip(preload=10.0, speed=W, e=E, eta=0.0, offset=0.0, sectors=12, stiffness=5e4, mass=0.03, **more):
@@ -99,6 +105,64 @@ def test_ovality_is_a_wave_of_its_own():
         scene = lip(needed * share - tension / R, w, e=0.0, sectors=16, garter_tension=tension)
         scene = replace(scene, shaft=replace(scene.shaft, lobes=[Lobes(2, a)]))
         assert (lifts(scene) > 0) == lost
+
+
+@pytest.mark.parametrize("order, rate", [(4, 0.0), (5, 300.0), (6, 300.0), (7, 300.0)])
+def test_lobes_finer_than_the_segments_are_what_the_segments_see(order, rate):
+    """Six segments feel order 6 as a move of all at once, which stretches the garter spring: 6 rate (2 sin 30 deg)^2;
+    the others not at all."""
+    a, m = 1e-5, 0.01
+    needed = a * abs((6 * rate if order == 6 else 0.0) - m * (order * W) ** 2)
+    for share, lost in ((1 + 5e-5, False), (1 - 5e-5, True)):
+        scene = segments(needed * share, e=0.0)
+        scene = RadialScene(replace(scene.shaft, lobes=[Lobes(order, a)]),
+                            circumferential=replace(scene.circumferential, garter_rate=rate))  # fmt: skip
+        followers = followers_of(scene)
+        assert needed_preload(followers, scene.shaft, W) == pytest.approx(needed, rel=1e-9)
+        assert (lifts(scene, 1.2) > 0) == lost
+
+
+@pytest.mark.parametrize("speed", [500.0, -500.0])
+def test_lobes_swing_a_damped_load_otherwise_the_other_way_round(speed):
+    """Of several waves the phases count, and damping shifts them with the direction of rotation."""
+    shaft = RadialShaft(R, speed, eccentricity=E, lobes=[Lobes(2, 8e-5, 3.3), Lobes(3, 5e-5, -0.7)])
+    scene = RadialScene(shaft, lip=Lip(0.03, 24, 1.0, 5e4, loss_factor=0.6))
+    assert fastest(shaft) == speed
+    needed = needed_preload(followers_of(scene), shaft, fastest(shaft)) * 24 / (2 * math.pi * R)
+    for share, lost in ((1 + 1e-3, False), (1 - 1e-3, True)):
+        at = replace(scene, lip=replace(scene.lip, preload=needed * share))
+        assert (lifts(at, 1.05) > 0) == lost
+
+
+def test_what_leaves_at_the_very_start_has_left():
+    """Where the housing is off by more than the preload reaches, sectors hang free from the first instant on."""
+    k, offset, preload = 5e4, 2e-4, 6.0
+    found = ran(lip(preload, e=0.0, eta=1.0, offset=offset), 2.0)[0].stick_slip
+    free = int((k * offset * np.cos(2 * np.pi * np.arange(12) / 12) + preload < 0).sum())
+    assert free == 3 and found.counts["lift"] == free and found.first_lift == 0.0
+    assert (found.modes == 0.0).sum() == free
+
+
+def test_a_least_value_between_the_first_two_places_of_a_step_is_looked_for():
+    """Also between the last two; none where it lies outside the step, or well above zero."""
+    x = np.linspace(0.0, 1.0, 9)[:, None]
+    at = np.array([0.05, 0.5, 0.96, 0.05, -0.2, 1.2])
+    values = (x - at) ** 2 - 1e-6 + np.array([0.0, 0.0, 0.0, 0.1, 0.0, 0.0])
+    assert _dips(values).any(axis=0).tolist() == [True, True, True, False, False, False]
+    first = _first_below(lambda t: (t - 0.05) ** 2 - 1e-6, x[:, 0], values[:, 0], _dips(values)[:, 0], 0.0)
+    assert first == pytest.approx(0.049, abs=1e-9)
+
+
+def test_a_landing_that_grazes_is_as_exact_as_any():
+    """A soft undamped sector touches the shaft almost at the shaft's own speed, and flies on: the instant hangs on the
+    last digits of the gap."""
+    shaft = RadialShaft(0.0646, -1149.1357, 1.276952e-05, offset=3.752544e-4, offset_direction=0.92554289)
+    scene = RadialScene(shaft, lip=Lip(3.9142857e-05, 6, 1.377367, 4580.2346))
+    turns, every = 1.5, 1.5 * 2 * math.pi / 1149.1357 / 200
+    found = [ran(scene, turns, accuracy=accuracy, every=every) for accuracy in (1e-6, 1e-10)]
+    assert found[0][0].stick_slip.counts["land"] >= 2
+    one, other = (sink.arrays()[1] for _, _, sink in found)
+    np.testing.assert_allclose(one, other, atol=2e-8 * found[0][0].model.length)
 
 
 # --- beside an integration that shares no code --------------------------------------------------------
@@ -198,6 +262,34 @@ def test_methods_agree_on_a_lip_whose_sectors_pull_at_each_other():
         np.testing.assert_allclose(other, found[0], atol=3e-5 * E)
 
 
+@pytest.mark.parametrize("sizes", ["energies", "motion"])
+def test_the_audit_and_the_certificate_bite(sizes, tmp_path, monkeypatch):
+    """Energies that are off by a thousandth fail the audit, steps too long for what is between them the certificate."""
+    energies = RadialSegment.energies
+    if sizes == "energies":
+        monkeypatch.setattr(RadialSegment, "energies", lambda *at: 1.001 * energies(*at))
+    else:
+        monkeypatch.setattr("sealdyn.radial_seals.segments.BETWEEN", 100.0)
+    scenario = read_scenario(SEGMENTS, ["run.turns=1", "shaft.eccentricity='0.3 mm'"])
+    found = simulate(scenario, tmp_path / "x.h5")
+    assert found.status == "inaccurate"
+    assert ("energy audit" in found.message) == (sizes == "energies")
+    assert found.summary["certificate"]["met"] == (sizes == "energies")
+
+
+def test_a_sharper_run_that_fails_is_no_certificate(tmp_path, monkeypatch):
+    runs = []
+
+    def second_gives_up(*args, **more):
+        outcome = solve(*args, **more)
+        runs.append(outcome)
+        return outcome if len(runs) == 1 else replace(outcome, status=Status.FAILED, message="gave up")
+
+    monkeypatch.setattr("sealdyn.simulation.radial.solve", second_gives_up)
+    found = simulate(read_scenario(SEGMENTS, ["run.turns=1"]), tmp_path / "x.h5")
+    assert found.status == "inaccurate" and "a sharper run failed (gave up)" in found.message
+
+
 # --- statics ------------------------------------------------------------------------------------------
 
 
@@ -226,6 +318,22 @@ def test_garter_around_segments_is_the_gradient_of_its_energy():
     matrix = np.array([np.roll(found.row, j) for j in range(6)])
     assert found.preload == pytest.approx(2.0)
     np.testing.assert_allclose(matrix @ u, 500.0 * u.sum(), rtol=1e-12)
+
+
+def test_a_lip_that_widens_is_pressed_by_its_tension_as_before():
+    """All sectors out by u: the ring of tension H gains 2 pi H u of energy, which is linear; only the spring's own rate
+    counts, (2 pi)^2 rate on all."""
+    scene = lip(garter_tension=3.0, garter_rate=200.0)
+    found = followers_of(scene)
+    assert 12 * found.modal_stiffness[0] == pytest.approx(5e4 * 2 * math.pi * R + 200.0 * (2 * math.pi) ** 2)
+    # Moved as a whole it feels no tension either.
+    assert found.modal_stiffness[1] == pytest.approx(5e4 * found.arc)
+    assert found.modal_stiffness[3] == pytest.approx((5e4 + 8 * 3.0 / R**2) * found.arc)
+
+
+def test_a_lip_has_no_flange_that_could_hold_it():
+    assert not hangs_up(followers_of(lip(preload=0.0))) and hangs_up(followers_of(segments(0.01, 0.01)))
+    assert not hangs_up(followers_of(segments(0.011, 0.01)))
 
 
 # --- experience ---------------------------------------------------------------------------------------

@@ -31,6 +31,7 @@ def test_a_curve_for_each_value_of_a_key():
 
 
 @pytest.mark.parametrize("flags, words", [({"speed": "1:2:x rpm"}, "speed"), ({"vary": "lip.nothing=1,2"}, "nothing"),
+                                          ({"speed": "0,3000 rpm"}, "a speed of 0"),
                                           ({"runs": -1}, "0 to 50")])  # fmt: skip
 def test_settings_that_cannot_be(flags, words):
     with pytest.raises(sealdyn.ScenarioError, match=words):
