@@ -40,3 +40,14 @@ def test_a_stiffness_that_counts_asperities_says_so(tmp_path):
     smooth = sealdyn("check", SCENARIOS / "axial_only.toml", cwd=tmp_path).out
     assert "stiffness of film and asperities" in rough and "film stiffness" not in rough
     assert "film stiffness" in smooth and "asperities" not in smooth
+
+
+def test_check_warns_before_a_run_does(tmp_path):
+    """Slips of units, inertia left out and edges that boil need no run to be seen."""
+    slips = ["--set", "film.outer_pressure=8", "--set", 'film.vapour_pressure="2 bar"']
+    answer = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, cwd=tmp_path)
+    assert answer.code == 0
+    assert "# WARNING film.outer_pressure without a unit is read as 8 Pa, which is 8e-05 bar" in answer.out
+    assert "below the vapour pressure of 200 kPa: it boils there" in answer.out
+    told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
+    assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
