@@ -402,6 +402,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.beside_reynolds import beside_reynolds
+    from .simulation.plausibility import before_the_run
     from .simulation.simulate import prepare_run
     from .simulation.size import size_of
     from .simulation.summary import model_chosen
@@ -425,6 +426,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
+        "warnings": [caution.sentence for caution in (*run.cautions, *before_the_run(scenario, run.model))],
         "design_rules": rules,
         "beside_reynolds": beside_reynolds(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},

@@ -249,7 +249,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
-    bare = frozenset(f"{table}.{key}" for table in raw for key, value in _table(raw, table).items() if _is_bare(value))
+    bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name, folder=path and path.parent, held=held)
     name = name.removesuffix(".toml")
@@ -510,6 +510,15 @@ def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
         run.setdefault("turns", 60)
     if "samples" not in run:
         run.setdefault("samples_per_turn", 64)
+
+
+def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
+    """Dotted keys of numbers without a unit."""
+    for key, value in tables.items():
+        if of and _is_bare(value):
+            yield f"{of}{key}"
+        if isinstance(value, dict):
+            yield from _bare_keys(value, f"{of}{key}.")
 
 
 def _is_bare(value: Any) -> bool:

@@ -29,6 +29,7 @@ from ..solvers.contract import Cause, Counts, Enough, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import Outcome, solve
 from .attempts import Try, judged, next_try
+from .bare_numbers import slips
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
@@ -210,6 +211,16 @@ def in_memory(scenario, speeds: bool = False) -> dict:
 
 
 def prepare_run(scenario):
+    """The same as `_prepare_run`; where the scene cannot be, its refusal names the numbers that may want a unit."""
+    try:
+        return _prepare_run(scenario)
+    except SceneError as error:
+        if not (meant := slips(scenario)):
+            raise
+        raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
+
+
+def _prepare_run(scenario):
     """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
     number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""

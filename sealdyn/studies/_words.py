@@ -31,7 +31,15 @@ def quantity(value: float, unit: str, digits: int = 5) -> str:
 
 def speed(w: float, digits: int = 5) -> str:
     """A shaft speed (rad/s) in words."""
-    return f"{w:.{digits}g} rad/s ({w * RPM:.{digits}g} rpm)"
+    turns = f"{w * RPM:.{digits}g}"
+    # A fast shaft: 108010 rpm, and not 1.0801e+05.
+    turns = f"{float(turns):.0f}" if "e+0" in turns else turns
+    return f"{w:.{digits}g} rad/s ({turns} rpm)"
+
+
+def no_film_beyond(held) -> str:
+    """Up to which speed a film holds the closing force, of `speeds_held` (rad/s), None where that is every speed."""
+    return f" up to {speed(held[1])}, beyond which no film holds the closing force" if held else ""
 
 
 def frequencies(low: float, high: float, digits: int = 5) -> str:

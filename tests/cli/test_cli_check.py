@@ -59,3 +59,14 @@ def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
     assert refused.code == 2 and "methods: found 'adsms'" in refused.err and refused.err.count("\n") == 1
     refused = sealdyn("study", "critical-speed", SCENARIOS / "fms_reference.toml", "--method", "adsms", cwd=tmp_path)
     assert refused.code == 2 and "method: found 'adsms'" in refused.err and refused.err.count("\n") == 1
+
+
+def test_check_warns_before_a_run_does(tmp_path):
+    """Slips of units, inertia left out and edges that boil need no run to be seen."""
+    slips = ["--set", "film.outer_pressure=8", "--set", 'film.vapour_pressure="2 bar"']
+    answer = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, cwd=tmp_path)
+    assert answer.code == 0
+    assert "# WARNING film.outer_pressure without a unit is read as 8 Pa, which is 8e-05 bar" in answer.out
+    assert "below the vapour pressure of 200 kPa: it boils there" in answer.out
+    told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
+    assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
