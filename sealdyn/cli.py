@@ -402,6 +402,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.beside_reynolds import beside_reynolds
+    from .simulation.plausibility import unit_cautions
     from .simulation.simulate import prepare_run
     from .simulation.size import size_of
     from .simulation.summary import model_chosen
@@ -427,6 +428,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
         "design_rules": rules,
         "beside_reynolds": beside_reynolds(run),
+        "warnings": [caution.sentence for caution in (*run.cautions, *unit_cautions(scenario, run.model))],
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }
     if as_json:

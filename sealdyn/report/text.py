@@ -272,6 +272,7 @@ def resolved_lines(found: dict) -> list[str]:
     out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
+    out += [f"# WARNING {warning}" for warning in found["warnings"]]
     return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
 
 

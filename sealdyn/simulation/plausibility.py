@@ -66,7 +66,7 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
     """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `heat`: its rise (K) if all friction heats
     it, and that friction over the face (W/m^2), thinnest film `h_min` (m), rate of `wear` (m/s)."""
     scene, model = scenario.scene, run.model
-    found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(*heat), *_worn(scenario, wear)]
+    found = [*unit_cautions(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(*heat), *_worn(scenario, wear)]
     found += _flash(run, outcome)
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
@@ -85,19 +85,24 @@ def _floored(run):
         yield Caution(Concern.FLOOR, beside["said"])
 
 
-def _units(scenario, model):
-    """Bare numbers where a unit is usual, faces a millimetre apart."""
+def slips(scenario):
+    """Sentences on bare numbers where a unit is usual."""
     for ring, speed in (("shaft", scenario.scene.shaft.speed), ("stator", scenario.scene.stator.speed)):
         if f"{ring}.speed" in scenario.bare:
             fastest = max(points(speed), key=abs)
             read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
-            yield Caution(Concern.UNITS, f"{ring}.speed without a unit is read as {read}")
+            yield f"{ring}.speed without a unit is read as {read}"
     for key, usual in USUAL.items():
         value = _held(scenario.scene, key) if key in scenario.bare else None
         if value is not None and not usual.least <= value <= usual.most:
             shown = (value - usual.zero) * usual.factor
-            read = f"{value:.6g} {usual.unit}, which is {shown:.6g} {usual.shown}"
-            yield Caution(Concern.UNITS, f"{key} without a unit is read as {read}")
+            yield f"{key} without a unit is read as {value:.6g} {usual.unit}, which is {shown:.6g} {usual.shown}"
+
+
+def unit_cautions(scenario, model):
+    """Cautions of these, and of faces a millimetre apart, as a model of the scenario has them before any run."""
+    for sentence in slips(scenario):
+        yield Caution(Concern.UNITS, sentence)
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
         sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"

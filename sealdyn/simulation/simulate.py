@@ -32,6 +32,7 @@ from .attempts import Try, judged, next_try
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
+from .plausibility import slips
 from .result import Result
 from .second_run import Comparison
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
@@ -223,7 +224,11 @@ def prepare_run(scenario):
             chosen.append(choose_start(run, settings.start))
         _start(run, scenario, chosen[0])
 
-    run, by_model = select_film(scenario.scene, settings, begin)
+    try:
+        run, by_model = select_film(scenario.scene, settings, begin)
+    except SceneError as error:
+        # Numbers without their unit are why, often.
+        raise SceneError(error.key, error.found, "; ".join([error.expected, *slips(scenario)])) from None
     interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
     run.check_loads()
     method, why = settings.solver, "asked for"
