@@ -9,11 +9,12 @@ UNITS = {
     "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
     "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
     "friction.power": "W", "friction.max_power": "W", "stability.critical_speed": "rad/s", "film.clearance": "m",
-    "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m", "film.tilt_stiffness": "N m/rad",
-    "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad", "closing.force": "N",
-    "contact.first_lift": "s", "contact.energy_lost": "J", "follower.mass": "kg", "follower.stiffness": "N/m",
-    "follower.damping": "N s/m", "follower.preload": "N", "follower.friction": "N", "follower.arc": "m",
-    "closed_form.speed": "rad/s", "closed_form.needed_preload": "N", "closed_form.largest_eccentricity": "m",
+    "film.leakage": "m^3/s", "film.friction_power": "W", "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m",
+    "film.tilt_stiffness": "N m/rad", "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad",
+    "closing.force": "N", "contact.first_lift": "s", "contact.energy_lost": "J", "follower.mass": "kg",
+    "follower.stiffness": "N/m", "follower.damping": "N s/m", "follower.preload": "N", "follower.friction": "N",
+    "follower.arc": "m", "closed_form.speed": "rad/s", "closed_form.needed_preload": "N",
+    "closed_form.largest_eccentricity": "m",
 }  # fmt: skip
 # Of the whole run of a radial seal, and of its second half.
 UNITS |= {

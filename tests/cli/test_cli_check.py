@@ -2,6 +2,8 @@
 
 from command import SCENARIOS, sealdyn
 
+DAM = SCENARIOS / "gas_dam_reference.toml"
+
 
 def test_check_says_what_the_floor_of_a_pressure_costs(tmp_path):
     answer = sealdyn("check", SCENARIOS / "ludwig_allen.toml", cwd=tmp_path)
@@ -70,3 +72,17 @@ def test_check_warns_before_a_run_does(tmp_path):
     assert "below the vapour pressure of 200 kPa: it boils there" in answer.out
     told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
     assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
+
+
+def test_check_warns_of_units_and_a_refusal_names_them(tmp_path):
+    """What `run` says of numbers without a unit, before any run; and why there is no balance."""
+    done = sealdyn("check", DAM, "--set", "stator.mass=150", cwd=tmp_path)
+    assert "# WARNING stator.mass without a unit is read as 150 kg, which is 150000 g" in done.out
+    told = sealdyn("check", DAM, "--set", "stator.mass=150", "--json", cwd=tmp_path).found["warnings"]
+    assert any("stator.mass" in sentence for sentence in told)
+    assert sealdyn("check", DAM, "--json", cwd=tmp_path).found["warnings"] == []
+    held = "closing = { balance_ratio = 0.8, spring_force = '20 N' }\n"
+    (tmp_path / "bar.toml").write_text(held + DAM.read_text().replace('clearance = "0.25 mil"', ""))
+    for verb in ("check", "run"):
+        done = sealdyn(verb, "bar.toml", "--set", "film.inner_pressure=16", cwd=tmp_path)
+        assert done.code == 2 and "film.inner_pressure without a unit is read as 16 Pa" in done.err
