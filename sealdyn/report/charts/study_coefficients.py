@@ -7,6 +7,7 @@ from ...archive import read_study
 from ..text import speed_unit
 from .page import logarithmic, look, number, right_axis, save, shortened, stacked, study_page
 from .palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from .record import fitting
 
 DASHED = (0, (5, 2))
 TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{xy}$", 1, 2, VERMILLION, "-"),
@@ -50,6 +51,8 @@ def draw(archive_path, out_path):
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
             logarithmic(below, "x")
+        else:
+            below.locator_params(axis="x", nbins=6)
     ax["K speed"].set_ylabel(f"tilt stiffness, {unit}")
     # Beside the title: no curve is below it.
     ax["K speed"].legend(loc="lower right", bbox_to_anchor=(1.01, 0.985), ncols=4, columnspacing=0.6, handlelength=1.1,
@@ -130,12 +133,17 @@ def _damping(ax, sweep, x, name, last):
     else:
         # A film without damping has an axis, too.
         low, high = shown.min(initial=0.0), shown.max(initial=0.0)
-        ax.set_ylim(1.15 * low, 1.15 * high if high > 0 or low < 0 else 1.0)
+        ax.set_ylim(1.3 * low, 1.3 * high if high > 0 or low < 0 else 1.0)
+        if not np.any(shown):
+            ax.set_yticks([0.0], ["none"])
     other = right_axis(ax, "axial stiffness, N/µm" if last else "", GREY)
     axial = 1e-6 * _entries(sweep, "stiffness", 0, 0)
     other.plot(x, axial, color=GREY, lw=1.7)
     low, high = np.nanmin(np.append(axial, 0)), np.nanmax(np.append(axial, 0))
-    other.set_ylim(1.15 * low, 1.15 * high if high > 0 else 0.1)
+    # Higher up than the damping, so that neither hides the other where both are constant.
+    other.set_ylim(1.05 * low, 1.05 * high if high > 0 else 0.1)
+    if not np.nan_to_num(axial).any():
+        other.set_yticks([0.0], ["none"])
 
 
 def _matrix(ax, found, at, title, speed):
@@ -145,9 +153,12 @@ def _matrix(ax, found, at, title, speed):
     ax.text(0, 1.0, shortened(title, 72), weight="bold", va="top", fontsize=9.5)
     if found["stiffness"] is None:
         return
-    tilt = 1e6 * np.hypot(at["tilt_x"], at["tilt_y"])
-    words = f"clearance {1e6 * at['clearance']:.4g} µm, opening {1e6 * at['axial_opening']:.3g} µm, "
-    words += f"tilt {tilt:.4g} µrad, {speed}, thinnest film {1e6 * at['h_min']:.4g} µm"
+    tilt, opening = 1e6 * np.hypot(at["tilt_x"], at["tilt_y"]), 1e6 * at["axial_opening"]
+    # What is left of the balance's rounding is no opening.
+    opening = opening if abs(opening) > 1e-9 * 1e6 * at["clearance"] else 0.0
+    (angle, finest), (unit, finer) = fitting("µrad", tilt), fitting("µm", abs(opening))
+    words = f"clearance {1e6 * at['clearance']:.4g} µm, opening {finer * opening:.3g} {unit}, "
+    words += f"tilt {finest * tilt:.4g} {angle}, {speed}, thinnest film {1e6 * at['h_min']:.4g} µm"
     ax.text(0, 0.87, words, va="top", fontsize=8, color=GREY)
     for left, name, letter, unit in ((0.01, "stiffness", "K", "N, m, rad"), (0.52, "damping", "D", "N, m, s, rad")):
         ax.text(left, 0.72, f"{letter}  ({unit})", va="top", fontsize=8.5)

@@ -231,9 +231,12 @@ def _curve(ax, answer, speeds, per):
 
 
 def _load_ramps(study, answer, title, story):
-    mosaic = [[f"{name} over rate" for name in LOADS], [f"{name} in time" for name in LOADS]]
+    # An aligned seal has no tilt to show.
+    moves = any(row.get("relative_misalignment") for _, row in _runs(answer)) or not _runs(answer)
+    loads = {name: load for name, load in LOADS.items() if moves or name != "relative_misalignment"}
+    mosaic = [[f"{name} over rate" for name in loads], [f"{name} in time" for name in loads]]
     figure, ax = study_page(study, 12.5, 8.6, mosaic, title, story, height_ratios=(6, 5))
-    for name, load in LOADS.items():
+    for name, load in loads.items():
         _over_rate(ax[f"{name} over rate"], answer, name, *load)
         _in_time(ax[f"{name} in time"], answer, *load)
     legend(ax["h_min in time"], "best", fontsize=7.5)
