@@ -145,6 +145,43 @@ def test_amplitudes_of_a_housing_are_named_where_no_curve_runs(tmp_path):
         assert not any(box.contains(*point) for point in points), text.get_text()
 
 
+def pressure(tmp_path, waves):
+    r, theta = np.linspace(0.045, 0.05, 9), np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    p = 1e5 * (1 + (r[:, None] - 0.045) / 0.005) * (1 + waves * (1 + np.sin(3 * theta)) ** 3)
+    profiles = {"at": {"thinnest": 1.0, "thickest": 2.0, "mid_radius": 0.0475}, "circle_mean": p.mean(1).tolist(),
+                "thinnest": p[:, 0].tolist(), "thickest": p[:, 9].tolist(), "width_mean": p.mean(0).tolist(),
+                "mid_radius": p[4].tolist()}  # fmt: skip
+    answer = {"film": "reynolds", "pressure": {"r": r.tolist(), "theta": theta.tolist(), "p": p.tolist()},
+              "edges": {"inner": [0.045], "outer": [0.05]}, "profiles": profiles, "clearance": 1e-6,
+              "h_min": {"theta": 1.0, "radius": 0.045}, "centre_of_pressure": 0.4,
+              "high_pressure": "outer"}  # fmt: skip
+    return study(tmp_path, "pressure", answer)
+
+
+def test_no_legend_hides_a_pressure(tmp_path):
+    figure = pressure(tmp_path, 0.5)
+    figure.draw_without_rendering()
+    for title in ("Over the radius", "Around the circle"):
+        ax = panel(figure, title)
+        box = ax.get_legend().get_window_extent()
+        for line in (line for line in ax.lines if len(line.get_xdata()) > 2):
+            points = ax.transData.transform(np.column_stack(line.get_data()))
+            assert not any(box.contains(*point) for point in points), line.get_label()
+    assert text_trouble(figure) == ([], [])
+
+
+def test_aligned_faces_have_nothing_to_show_around_the_circle(tmp_path):
+    assert "Around the circle" not in titles(pressure(tmp_path, 0.0))
+
+
+def test_cavities_end_where_none_is_left(tmp_path):
+    axis = {"key": "contact.roughness", "unit": "um", "values": [0.1, 0.2, 0.3]}
+    rows = [{"load_support": 1.0, "clearance": 1e-6, "cavitated_fraction": torn} for torn in (0.3, 0.1, 0.0)]
+    figure = study(tmp_path, "load_support", {"keys": ["contact.roughness"], "axes": [axis], "rows": rows})
+    (area,) = figure.axes[0].collections
+    assert area.get_paths()[0].vertices[:, 0].max() == pytest.approx(0.3)
+
+
 # --- coefficients, transmissibility ------------------------------------------------------------------------
 
 
