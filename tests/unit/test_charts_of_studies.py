@@ -145,10 +145,10 @@ def test_amplitudes_of_a_housing_are_named_where_no_curve_runs(tmp_path):
         assert not any(box.contains(*point) for point in points), text.get_text()
 
 
-def pressure(tmp_path, waves):
+def pressure(tmp_path, waves, thickest=2.0):
     r, theta = np.linspace(0.045, 0.05, 9), np.linspace(0, 2 * np.pi, 48, endpoint=False)
     p = 1e5 * (1 + (r[:, None] - 0.045) / 0.005) * (1 + waves * (1 + np.sin(3 * theta)) ** 3)
-    profiles = {"at": {"thinnest": 1.0, "thickest": 2.0, "mid_radius": 0.0475}, "circle_mean": p.mean(1).tolist(),
+    profiles = {"at": {"thinnest": 1.0, "thickest": thickest, "mid_radius": 0.0475}, "circle_mean": p.mean(1).tolist(),
                 "thinnest": p[:, 0].tolist(), "thickest": p[:, 9].tolist(), "width_mean": p.mean(0).tolist(),
                 "mid_radius": p[4].tolist()}  # fmt: skip
     answer = {"film": "reynolds", "pressure": {"r": r.tolist(), "theta": theta.tolist(), "p": p.tolist()},
@@ -170,6 +170,11 @@ def test_no_legend_hides_a_pressure(tmp_path):
     assert text_trouble(figure) == ([], [])
 
 
+def test_pads_have_no_one_thinnest_place(tmp_path):
+    named = panel(pressure(tmp_path, 0.5), "Over the radius"), panel(pressure(tmp_path, 0.5, 1.0), "Over the radius")
+    assert [sum("where the film" in line.get_label() for line in ax.lines) for ax in named] == [2, 0]
+
+
 def test_aligned_faces_have_nothing_to_show_around_the_circle(tmp_path):
     assert "Around the circle" not in titles(pressure(tmp_path, 0.0))
 
@@ -185,14 +190,14 @@ def test_cavities_end_where_none_is_left(tmp_path):
 # --- coefficients, transmissibility ------------------------------------------------------------------------
 
 
-def coefficients(tmp_path, damping):
+def coefficients(tmp_path, damping, **more):
     at = {"tilt_x": 2e-12, "tilt_y": 0.0, "clearance": 1e-5, "axial_opening": 2e-20, "speed": 100.0, "h_min": 1e-5}
     k, d = np.diag([1e7, 5e3, 5e3]).tolist(), np.diag([damping * 100, damping, damping]).tolist()
     answer = {"stiffness": k, "damping": d, "at": at,
               "tilted": {"stiffness": k, "damping": d, "at": at, "said": "mean tilt"}}  # fmt: skip
     answer |= {f"against_{x}": {x: [1e-6, 2e-6, 3e-6], "stiffness": 3 * [k], "damping": 3 * [d]}
                for x in ("speed", "clearance", "tilt")}  # fmt: skip
-    return study(tmp_path, "coefficients", answer)
+    return study(tmp_path, "coefficients", answer | more)
 
 
 def test_constant_stiffness_and_damping_do_not_hide_each_other(tmp_path):
@@ -205,6 +210,21 @@ def test_constant_stiffness_and_damping_do_not_hide_each_other(tmp_path):
     assert len(heights) == 2 and abs(heights[0] - heights[1]) > 0.1
     words = " ".join(text.get_text() for ax in figure.axes for text in ax.texts)
     assert "opening 0 µm" in words and "tilt 2 prad" in words
+
+
+def test_the_names_of_stiffnesses_lie_on_no_title(tmp_path):
+    matrix = np.diag([1e8, 1e6, 1e6])
+    matrix[0, 1] = 1e-7
+    sweep = {"frequency": [0.0, 2e4, 5e4], "stiffness": 3 * [matrix.tolist()], "damping": 3 * [matrix.tolist()]}
+    figure = coefficients(tmp_path, 3.6, stiffness=matrix.tolist(), against_frequency=sweep)
+    assert text_trouble(figure) == ([], [])
+    figure.draw_without_rendering()
+    box = panel(figure, "Over speed").get_legend().get_window_extent()
+    heads = [*(ax._left_title for ax in figure.axes), *figure.texts]
+    assert not any(box.overlaps(words.get_window_extent()) for words in heads if words.get_text())
+    assert any(ax.get_xlabel() == "frequency of the motion, Hz" for ax in figure.axes)
+    # A coupling of rounding is none.
+    assert not any("e−7" in text.get_text() for ax in figure.axes for text in ax.texts)
 
 
 def test_a_film_without_damping_says_so(tmp_path):

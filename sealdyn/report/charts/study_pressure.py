@@ -33,32 +33,34 @@ def draw(archive_path, out_path):
             absent(ax[name], words, f"The {answer.get('film', '')} film shows no pressure over the face.")
         return save(figure, out_path)
     r, theta = 1e3 * np.array(answer["pressure"]["r"]), np.array(answer["pressure"]["theta"])
-    image = _face(ax["face"], answer, r, theta, field, uneven)
+    # Pads in a face that is otherwise even leave it no one thinnest place.
+    placed = uneven and len({answer["profiles"]["at"][name] for name in ("thinnest", "thickest")}) > 1
+    image = _face(ax["face"], answer, r, theta, field, placed)
     figure.colorbar(image, ax=ax["face"], location="bottom", shrink=0.8, pad=0.04, label="film pressure, bar absolute")
-    _over_radius(ax["radius"], answer, r, uneven)
+    _over_radius(ax["radius"], answer, r, placed)
     if uneven:
-        _around(ax["circle"], answer, theta)
+        _around(ax["circle"], answer, theta, placed)
     return save(figure, out_path)
 
 
-def _face(ax, answer, r, theta, p, uneven):
+def _face(ax, answer, r, theta, p, placed):
     # The circle closes.
     theta, p = np.append(theta, theta[0] + 2 * np.pi), np.hstack([p, p[:, :1]])
     scale = Normalize(p.min(), max(p.max(), p.min() + 1e-3 * abs(p).max(), p.min() + 1e-9))
     image = ax.pcolormesh(theta, r, p, shading="gouraud", cmap=colormaps[PRESSURE].resampled(STEPS), norm=scale)
     edges = [1e3 * answer["edges"][side][0] for side in ("inner", "outer")]
-    words = ["Film pressure", annulus(ax, *edges), *(["circle: thinnest film"] if uneven else [])]
+    words = ["Film pressure", annulus(ax, *edges), *(["circle: thinnest film"] if placed else [])]
     # A title above would lie on the page's heading.
     in_the_middle(ax, "\n".join(words))
-    if uneven:
+    if placed:
         low = answer["h_min"]
         ax.plot(low["theta"], 1e3 * low["radius"], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     return image
 
 
-def _over_radius(ax, answer, r, uneven):
+def _over_radius(ax, answer, r, placed):
     profiles, beside = answer["profiles"], answer.get("beside") or []
-    if uneven and not beside:
+    if placed and not beside:
         for name, colour, dashes in (("thinnest", CONTACT, "-"), ("thickest", GREEN, "--")):
             label = f"where the film is {name}, {np.degrees(profiles['at'][name]):.4g}°"
             ax.plot(r, BAR * np.array(profiles[name]), color=colour, ls=dashes, lw=1.6, label=label)
@@ -77,7 +79,7 @@ def _over_radius(ax, answer, r, uneven):
     _legend(ax, 0.42, 2)
 
 
-def _around(ax, answer, theta):
+def _around(ax, answer, theta, placed):
     profiles = answer["profiles"]
     degrees = np.append(np.degrees(theta), np.degrees(theta[0]) + 360)
 
@@ -87,7 +89,8 @@ def _around(ax, answer, theta):
     ax.plot(degrees, closed("width_mean"), color=FILM, lw=2.0, label="mean of the face's width")
     label = f"at r = {1e3 * profiles['at']['mid_radius']:.4g} mm"
     ax.plot(degrees, closed("mid_radius"), color=BLACK, lw=1.4, ls="--", label=label)
-    ax.axvline(np.degrees(answer["h_min"]["theta"]), color=CONTACT, ls=":", lw=1.2, label="thinnest film")
+    if placed:
+        ax.axvline(np.degrees(answer["h_min"]["theta"]), color=CONTACT, ls=":", lw=1.2, label="thinnest film")
     ax.set(xlim=(degrees[0], degrees[-1]), xticks=range(0, 361, 60), xlabel="angle from the x axis, degrees",
            ylabel="film pressure, bar", title="Around the circle")  # fmt: skip
     _legend(ax, 0.2, 3)
