@@ -20,6 +20,7 @@ from ..analysis.whirl import (
     contact_tilt_aligned,
     free_model,
     growth_rate,
+    linear_growth,
     tipping_disturbance,
 )
 from ..dynamics.linearisation import moves_with_speed
@@ -31,7 +32,7 @@ from ..scene.variants import with_values
 from ..simulation.method_selection import choose_method
 from ..simulation.stability import critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
-from ._words import no_film_beyond
+from ._words import no_film_beyond, plain
 from ._words import speed as speed_words
 
 REFUSES = ("secondary-seal",)
@@ -152,8 +153,11 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
         undecided = {} if len(signs) == 1 else {"status": Status.FAILED}
         return {"time_domain": found, "growth": columns(rows, speeds), **undecided}
     if eigenvalue > fastest:
-        reason = f"not run, {eigenvalue * scene.film.outer_radius:.4g} m/s at the outer radius are of no seal"
-        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns([], [])}
+        edge = plain(eigenvalue * scene.film.outer_radius, 4)
+        reason = f"not run, {edge} m/s at the outer radius are of no seal"
+        speeds = [share * eigenvalue for share in SHARES]
+        rows = [{"eigenvalue": linear_growth(free_model(scene, w))} for w in speeds]
+        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
     speeds = [share * eigenvalue for share in SHARES]
     rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
@@ -223,20 +227,25 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     if not settings.beyond:
         return None
     if model.unknowns.linear:
-        return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
+        return {
+            "verdict": "Beyond linear: of a linear film nothing bounds the whirl and nothing tips it.",
+            "tipping": [],
+        }
     if threshold is not None and threshold > FASTEST / scene.film.outer_radius:
         return {"verdict": "Beyond linear: not followed at such a speed.", "tipping": []}
     if threshold is None:
-        return {"verdict": "No threshold, so no whirl branches off.", "tipping": []}
+        return {"verdict": "Beyond linear: no threshold, so no whirl branches off.", "tipping": []}
     if scene.contact:
         verdict = "Beyond linear: asperities bound the whirl (study rub); without contact the film's own whirls."
         return {"verdict": verdict, "tipping": []}
     if model.unknowns.film_unknowns:
-        return {"verdict": "a film with unknowns of its own: its whirls beyond linear are not followed", "tipping": []}
+        verdict = "Beyond linear: whirls of a film with unknowns of its own are not followed."
+        return {"verdict": verdict, "tipping": []}
     at_threshold = free_model(scene, threshold)
     family = branch(at_threshold, threshold)
     if not family:
-        return {"verdict": "no family of circular whirls was found at the threshold", "tipping": []}
+        verdict = "Beyond linear: no family of circular whirls was found at the threshold."
+        return {"verdict": verdict, "tipping": []}
     unit = contact_tilt_aligned(at_threshold)
     found = {"kind": kind_of(family, threshold), "branch": family_columns(family), "contact_tilt": unit}
     ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
@@ -302,7 +311,7 @@ def sentences(answer) -> list[str]:
             roads += f"; in time: {time['reason']}"
         else:
             roads += f", in time {time['value']:.6g} +- {time['uncertainty']:.1g}"
-        said.append(f"Critical speed {eigen:.5g} rad/s ({eigen * 30 / np.pi:.0f} rpm): {roads}.")
+        said.append(f"Critical speed {speed_words(eigen)}: {roads}.")
     if time.get("numerical_damping") is not None:
         closest = min(abs(v) for v in answer["growth"]["time_domain"] if v is not None)
         said.append(

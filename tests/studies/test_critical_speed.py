@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from in_process import InProcess
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms
 
@@ -200,3 +201,19 @@ def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
     assert answer["time_domain"]["value"] is None and answer["growth"]["speed"] == []
     assert answer["nonlinear"]["tipping"] == [] and "branch" not in answer["nonlinear"]
     assert max(study("fmr_reference", tmp_path)["growth"]["speed"]) == pytest.approx(fastest)
+
+
+def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
+    # A fortieth of the inertia.
+    overrides = ["stator.transverse_inertia=2e-5", "stator.polar_inertia=4e-5"]
+    text = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+    scenario = parse_scenario(text, "fast", overrides)
+    answer = critical_speed.run(scenario, critical_speed.Settings(), InProcess())
+    growth, threshold = answer["growth"], answer["eigenvalue"]
+    assert threshold * 0.04 > 1000 and answer["time_domain"]["value"] is None
+    assert growth["time_domain"] == len(growth["speed"]) * [None]
+    # It grows above the threshold alone.
+    assert all(
+        (rate > 0) == (speed > threshold) for speed, rate in zip(*map(growth.get, ("speed", "eigenvalue")), strict=True)
+    )
+    assert "e+0" not in answer["verdict"][0]

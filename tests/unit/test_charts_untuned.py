@@ -1,15 +1,12 @@
 """Charts of seals that nobody tuned: tiny tilts, aligned faces, no threshold, nothing that touches."""
 
 import re
-import warnings
-from importlib import import_module
 
 import numpy as np
 import pytest
-from drawn import drawn, panel, text_trouble
+from drawn import drawn, panel, study, text_trouble
 from made_up_run import SUMMARY, drop, whirling, write
 
-from sealdyn.archive import write_study
 from sealdyn.report.charts import film, orbit, overview, spectrum
 from sealdyn.report.charts.page import free_side
 from sealdyn.report.charts.record import fitting
@@ -50,15 +47,6 @@ def empty(figure):
 
 def said(figure):
     return [text.get_text() for text in figure.texts]
-
-
-def study(tmp_path, name, answer, scenario="", **meta):
-    """The figure of a study's answer, as it is saved."""
-    meta = {"study": name, "name": "seal", "question": "Does it ride?", "overrides": [], "version": "1", **meta}
-    path = write_study(tmp_path / "s.h5", scenario, {}, meta, {"verdict": ["It rides."], **answer}, {})
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        return drawn(import_module(f"sealdyn.report.charts.study_{name}"), path, tmp_path / "s.png")
 
 
 # --- runs --------------------------------------------------------------------------------------------------

@@ -76,6 +76,11 @@ def fitted(t, tilt) -> tuple[float, float]:
     return whole, max(abs(first - whole), abs(second - whole))
 
 
+def linear_growth(model) -> float:
+    """Growth rate (1/s) of the least damped tilt mode, by eigenvalues."""
+    return float(max(mode.value.real for mode in model.linear_scene().modes() if mode.kind == "tilt"))
+
+
 def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
     """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until its uncertainty is a tenth of
     it or the method can do no better.
@@ -85,10 +90,10 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
     is three times that; `eigenvalue` (1/s) the linear rate, for comparison only; `accuracy` reached.
     """
     model = free_model(scene, speed)
-    values = [m.value.real for m in model.linear_scene().modes() if m.kind == "tilt"]
+    linear = linear_growth(model)
     start = SMALL * contact_tilt_aligned(model)
     # Some forty samples of a disturbance that dies within a turn.
-    interval = 0.2 / max(abs(max(values)), 1e-300)
+    interval = 0.2 / max(abs(linear), 1e-300)
 
     def rate_at(accuracy):
         _, t, tilt, run = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
@@ -114,7 +119,7 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
         "uncertainty": uncertainty,
         "numerical_damping": own,
         "decided": bool(abs(finer) > 3 * uncertainty),
-        "eigenvalue": float(max(values)),
+        "eigenvalue": linear,
         "accuracy": accuracy * TIGHTER,
     }
 

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
 from ...status import Status
@@ -121,6 +121,8 @@ def save(figure, path) -> Path | Figure:
     returns its path; without a path nothing is written, and the figure itself is returned."""
     for ax in figure.axes:
         flatten(ax)
+        for axis in (ax.xaxis, ax.yaxis):
+            numbered(axis)
     if path is None:
         return figure
     path = Path(path)
@@ -196,10 +198,11 @@ def free_side(x, curves, at: float, room: float) -> dict:
     return {"side": "right", "below": False}
 
 
-def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", **line) -> None:
-    """A vertical line with its name beside it at a `height` (share of the panel)."""
+def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", bbox=None,
+            **line) -> None:  # fmt: skip
+    """A vertical line with its name beside it at a `height` (share of the panel), on a `bbox` before colours."""
     ax.axvline(at, color=colour, **{"lw": 1.0, **line})
-    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha)
+    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha, bbox=bbox)
 
 
 def legend(ax, loc: str, **look) -> None:
@@ -247,6 +250,22 @@ def decades(axis) -> None:
     raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
     axis.set_major_formatter(lambda value, _: "10" + str(round(np.log10(value))).translate(raised))
     axis.set_minor_formatter(NullFormatter())
+
+
+def numbered(axis) -> None:
+    """A logarithmic axis on which fewer than three numbers would be seen gets plain ones closer together."""
+    low, high = sorted(axis.get_view_interval())
+    if axis.get_scale() != "log" or isinstance(axis.get_major_locator(), FixedLocator) or not 0 < low < high:
+        return
+    # A factor of two and less has no room for a logarithmic choice.
+    closer = [LogLocator(subs=(1, 2, 5)), LogLocator(subs=(1, 1.5, 2, 3, 5, 7)), MaxNLocator(5, steps=(1, 2, 5, 10))]
+    for locator in (None, *closer):
+        if locator is not None:
+            axis.set_major_locator(locator)
+            axis.set_major_formatter(lambda value, _: number(value))
+            axis.set_minor_formatter(NullFormatter())
+        if sum(low <= at <= high for at in axis.get_majorticklocs()) >= 3:
+            return
 
 
 def number(value: float, form: str = "g") -> str:

@@ -33,8 +33,8 @@ def draw(archive_path, out_path):
                 ax[name].set_xticks(x, along["values"])
         else:
             absent(ax[name], label, answer["verdict"][-1] if answer["verdict"] else "no value at any point")
-    torn = [100.0 * (row.get("cavitated_fraction") or np.nan) for row in answer["rows"]]
-    if np.isfinite(torn).any():
+    torn = 100.0 * np.array([row.get("cavitated_fraction") for row in answer["rows"]], dtype=float)
+    if np.nanmax(torn, initial=0.0) > 0.0:
         ax["load"].fill_between(x, 0.0, torn, color=SKY, alpha=0.35, lw=0, label="of the face cavitates")
         ax["load"].legend(loc="lower left")
     return save(figure, out_path)
