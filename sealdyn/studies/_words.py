@@ -29,12 +29,14 @@ def quantity(value: float, unit: str, digits: int = 5) -> str:
     return f"{value * factor:.{digits}g}{f' {name}' if name not in ('', '1') else ''}"
 
 
+def plain(value: float, digits: int = 5) -> str:
+    """A number of so many digits, without a power of ten below ten millions."""
+    return f"{float(f'{value:.{digits}g}'):.{max(digits, 7)}g}"
+
+
 def speed(w: float, digits: int = 5) -> str:
     """A shaft speed (rad/s) in words."""
-    turns = f"{w * RPM:.{digits}g}"
-    # A fast shaft: 108010 rpm, and not 1.0801e+05.
-    turns = f"{float(turns):.0f}" if "e+0" in turns else turns
-    return f"{w:.{digits}g} rad/s ({turns} rpm)"
+    return f"{plain(w, digits)} rad/s ({plain(w * RPM, digits)} rpm)"
 
 
 def no_film_beyond(held) -> str:

@@ -74,8 +74,9 @@ def _roads(ax, answer, quantity: str):
             # The scenario's own speed may lie elsewhere.
             if row["seal"] != seal or not inside[0] <= row["speed"] <= inside[1]:
                 continue
-            ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt=MARK[seal], ms=4.5, lw=1.0,
-                        mfc="white", mec=colour, ecolor=colour, capsize=3, clip_on=False)  # fmt: skip
+            ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt="none", lw=1.0,
+                        ecolor=colour, capsize=3)  # fmt: skip
+            ax.plot(factor * row["speed"], row[quantity], MARK[seal], ms=4.5, mfc="white", mec=colour, clip_on=False)
     ax.set(xlim=(speed[0], speed[-1]))
     ax.locator_params(axis="x", nbins=5)
     return np.concatenate([answer[s][quantity] for s in COLOUR])
@@ -95,7 +96,8 @@ def _amplitudes(ax, answer, quantity: str):
             ax.yaxis.set_major_locator(LogLocator())
     else:
         ax.set_ylim(0, (1 + room) * highest)
-    ax.set_title(TITLES[quantity])
+    turns = quantity == "static" and answer.get("stator_speed")
+    ax.set_title("Static: turns with the stator" if turns else TITLES[quantity])
     _best(ax, answer, quantity)
 
 
