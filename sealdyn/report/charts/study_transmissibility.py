@@ -96,7 +96,8 @@ def _amplitudes(ax, answer, quantity: str):
             ax.yaxis.set_major_locator(LogLocator())
     else:
         ax.set_ylim(0, (1 + room) * highest)
-    ax.set_title(TITLES[quantity])
+    turns = quantity == "static" and answer.get("stator_speed")
+    ax.set_title("Static: turns with the stator" if turns else TITLES[quantity])
     _best(ax, answer, quantity)
 
 
