@@ -18,7 +18,7 @@ FIRST = (
     ("h_min.steady", "h_min settled, um", 1e6),
     ("relative_misalignment.max", "misalignment max, urad", 1e6),
     ("relative_misalignment.steady_max", "misalignment settled, urad", 1e6),
-    ("leakage.mean_ml_per_h", "leakage, ml/h", 1.0),
+    ("leakage.mean", "leakage, ml/h", 3.6e9),
     ("friction.power", "friction, W", 1.0),
     ("film.clearance", "clearance, um", 1e6),
     ("film.axial_stiffness", "axial stiffness, N/m", 1.0),
@@ -38,6 +38,8 @@ FIRST = (
     ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
     ("contact.lift", "lost contacts", 1.0),
 )
+# Leakage (m^3/s) from which it is told in l/min, as that of gases.
+MUCH, IN_LITRES = 1e-5, ("leakage, l/min", 6e4)
 # Series of which the largest difference is told: of face seals, of radial seals.
 SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
 
@@ -71,6 +73,8 @@ def comparison_lines(found: dict) -> list[str]:
     rows = {row["key"]: row for row in found["summary"]}
     shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
     for heading, factor, row in shown:
+        if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
+            heading, factor = IN_LITRES
         words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
         change = "" if row["change"] is None else f"  ({100 * row['change']:+.3g} %)"
         out.append(f"  {heading:<28}{words}{change}")

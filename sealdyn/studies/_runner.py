@@ -170,8 +170,11 @@ def _refuse_seal(name: str, module, scene):
     if _is_radial(scene) or getattr(module, "WITH_WAVES", False):
         return
     if waves_of(scene):
+        beside = getattr(module, "OF_WAVES", "")
         key = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
-        raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
+        raise SceneError(
+            key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around{beside}"
+        )
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
 

@@ -10,7 +10,9 @@ from .page import absent, look, number, save, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
 
 # SI unit of an output -> what it is shown in, and the factor.
-SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/min", 6e7)}
+SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/h", 3.6e9)}
+# Leakage (m^3/s) from which it is shown in l/min, as that of gases; as in the tables of the studies.
+MUCH = 1e-5
 WORDS = (GREEN, CONTACT, ORANGE, BLUE, PURPLE, SKY, YELLOW, GREY)
 MOST = 8
 # Letters from which on a title is small.
@@ -58,8 +60,16 @@ def column(answer, output):
         words = list(dict.fromkeys(value for value in raw if value is not None))
         return np.array([np.nan if value is None else words.index(value) for value in raw]), "", words
     unit = answer["output_units"].get(output, "")
-    unit, factor = SHOWN.get(unit, (unit, 1.0))
-    return factor * np.array(raw, dtype=float), unit, None
+    values = np.array(raw, dtype=float)
+    unit, factor = shown(unit, values)
+    return factor * values, unit, None
+
+
+def shown(unit: str, values) -> tuple[str, float]:
+    """What `values` in this SI unit are shown in, and how many of it make one."""
+    if unit == "m^3/s" and np.nanmax(np.abs(values), initial=0.0) >= MUCH:
+        return "l/min", 6e4
+    return SHOWN.get(unit, (unit, 1.0))
 
 
 def positions(axis: dict) -> np.ndarray:
