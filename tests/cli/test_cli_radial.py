@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from command import SCENARIOS, sealdyn
+from drawn import drawn, text_trouble
 from PIL import Image
 
 import sealdyn as package
 from sealdyn import ScenarioError, open_archive
+from sealdyn.report.charts import followers
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scenario.rule_names import RADIAL
 from sealdyn.simulation.simulate import simulate
@@ -223,3 +225,28 @@ def test_values_are_set_as_of_face_seals():
     scenario = read_scenario(LIP).with_(lip__preload="60 N/m", shaft__eccentricity=2e-4)
     assert scenario.scene.lip.preload == 60.0 and scenario.scene.shaft.eccentricity == 2e-4
     assert parse_scenario(scenario.to_toml(), "again").scene == scenario.scene
+
+
+def test_figures_of_radial_seals(folder, tmp_path):
+    """Where nothing leaves the shaft there is no gap to be drawn; the preload is in view; nothing lies on another."""
+    place, _ = folder
+    assert sealdyn("run", SEGMENTS, *SHORT, "--no-plot", "--out", "rides.h5", cwd=tmp_path).code == 0
+    for archive, gaps in ((tmp_path / "rides.h5", 0), (place / "x.h5", 2)):
+        figure = drawn(followers, archive, tmp_path / "chart.png")
+        assert text_trouble(figure) == ([], [])
+        titles = [ax.get_title("left") for ax in figure.axes]
+        assert sum("gap" in title.lower() for title in titles) == gaps
+        load = figure.axes[titles.index("Least load of those that ride")]
+        (preload,) = [line for line in load.lines if line.get_label() == "preload"]
+        low, high = load.get_ylim()
+        assert low < preload.get_ydata()[0] < 0.9 * high
+
+
+def test_a_load_that_hardly_differs_is_one_colour(tmp_path):
+    words = ["--set", "shaft.eccentricity=1 nm", "--set", "shaft.offset=0 mm", "--set", "lip.sectors=6", *SHORT]
+    assert sealdyn("run", LIP, *words, "--no-plot", "--out", "even.h5", cwd=tmp_path).code == 0
+    figure = drawn(followers, tmp_path / "even.h5", tmp_path / "chart.png")
+    (image,) = [ax.collections[0] for ax in figure.axes if ax.get_title("left") == "Load around the shaft"]
+    assert len(image.colorbar.ax.get_yticks()) == 1
+    shades = {tuple(shade) for shade in image.to_rgba(image.get_array().ravel()).round(1).tolist()}
+    assert len(shades) == 1

@@ -185,9 +185,9 @@ def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", be
                 bbox=PAPER)  # fmt: skip
 
 
-def free_side(x, curves, at: float, room: float) -> dict:
-    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`; `room` is the height
-    that the name takes, in data."""
+def free_side(x, curves, at: float, room: float) -> dict | None:
+    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`, None where it hides
+    one everywhere; `room` is the height that the name takes, in data."""
     start, end = x[0], x[-1]
     for below in (False, True):
         for side in ("right", "left"):
@@ -195,7 +195,7 @@ def free_side(x, curves, at: float, room: float) -> dict:
             away = [(at - y if below else y - at)[part] for y in curves]
             if not any(((0.15 * room < far) & (far < room)).any() for far in away):
                 return {"side": side, "below": below}
-    return {"side": "right", "below": False}
+    return None
 
 
 def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", bbox=None,
@@ -271,3 +271,12 @@ def numbered(axis) -> None:
 def number(value: float, form: str = "g") -> str:
     """A number with the minus of print."""
     return f"{value:{form}}".replace("-", "−")
+
+
+def written(value: float, digits: int) -> str:
+    """`digits` significant figures; large numbers in full, with thousands marked from 10 000 on."""
+    if not 1e2 <= abs(value) < 1e9:
+        return number(value, f".{digits}g")
+    rounded = float(f"{value:.{digits}g}")
+    whole = f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 1e4 else f"{rounded:.{max(digits, 4)}g}"
+    return whole.replace("-", "−")
