@@ -33,6 +33,7 @@ from sealdyn.scene.sweep import AngularSweep, AxialSweep, end, frequency_at, lar
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run
+from sealdyn.simulation.steady_tilt import steady_tilt
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
 UP = AxialSweep((20.0, 400.0), displacement=3e-7, start=0.01, duration=0.4)
@@ -220,6 +221,16 @@ def test_steady_starts_and_ends_are_beside_a_sweep():
     with pytest.raises(SceneError) as error:
         prepare_run(scenario_of(SHORT, **{"run.start": "steady"}))
     assert error.value.key == "housing.axial_sweep.0"
+
+
+def test_no_scene_takes_a_sweep_that_comes_later_for_none():
+    """What studies ask of a scene, whatever the time."""
+    scene = shaken(replace(UP, start=0.2))
+    with pytest.raises(SceneError) as error:
+        Model(scene).segment().harmonics()
+    assert error.value.key == "housing.axial_sweep.0"
+    assert started(scene, 1.0).period() is None and started(scene, 1.0).period(-1) is not None
+    assert steady_tilt(Model(scene))[0] == 0.0 != steady_tilt(Model(fmr()))[0]
 
 
 def test_coarse_samples_are_told():
