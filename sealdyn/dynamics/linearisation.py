@@ -115,13 +115,12 @@ def _whirl(linear) -> Whirl | None:
 def harmonics(segment) -> list[Harmonic]:
     """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed).  Raises SceneError
     where samples or a sweep move a carrier."""
-    if len(segment.sweeps):
-        key, _ = sweeps_of(segment.model.scene)[0]
-        expected = "tones, a sweep that begins later, or a run in time from rest"
-        raise SceneError(key, "a sweep from the start, which has no harmonics", expected)
     for ring in segment.sampled:
         key = "housing.motion" if ring == STATOR else "shaft.motion"
         raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time from rest")
+    if not segment.harmonic:
+        key, _ = sweeps_of(segment.model.scene)[0]
+        raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time from rest")
     found = []
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)

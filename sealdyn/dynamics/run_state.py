@@ -7,6 +7,7 @@ import numpy as np
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
 from ..scene.scene import SceneError
+from ..scene.sweep import end
 from .cautions import Caution, Concern
 from .contact_events import ContactEvents
 from .extrema import ExtremaTracker
@@ -16,7 +17,7 @@ from .model import Model
 from .sampled_motion import motions
 from .segments import Segment
 from .stick_slip import StickSlip
-from .swept_motion import fastest_sweep, sweeps_of_segment
+from .swept_motion import fastest_sweep, sweeps_of, sweeps_of_segment
 
 
 class FilmClosed(SceneError):
@@ -70,7 +71,11 @@ class RunState:
         return longest / self.model.shortest_period
 
     def period(self, index: int = 0) -> float | None:
-        """Common period (s) of the forcing in a segment (Segment.period); where nothing moves a quarter of the run."""
+        """Common period (s) of the forcing from a segment on (Segment.period), None if a sweep is still to come; where
+        nothing moves a quarter of the run."""
+        begin = self.intervals[index].time
+        if any(end(sweep) > begin for _, sweep in sweeps_of(self.model.scene)):
+            return None
         period = self.segment(index).period()
         return self.duration / 4 if period == 0.0 else period
 

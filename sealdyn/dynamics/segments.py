@@ -19,7 +19,7 @@ from .intervals import Interval, constant_and_slope, modulo_turn
 from .sampled_motion import motions
 from .steady_extremes import common_period
 from .step_bounds import BEND, REACH, largest_swing
-from .swept_motion import fastest_sweep, largest_sweep, sweeps_of_segment
+from .swept_motion import fastest_sweep, largest_sweep, sweeps_of, sweeps_of_segment
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -299,8 +299,10 @@ class Segment:
 
     @property
     def harmonic(self) -> bool:
-        """Whether what is imposed is harmonics alone, so that it may have a period and a steady response."""
-        return not (self.sampled or len(self.sweeps))
+        """Whether what is imposed is harmonics alone, so that it may have a period and a steady response; in the
+        segment that stands for the scene at any time, none of its sweeps may come later."""
+        later = self.interval is self.model.start and sweeps_of(self.model.scene)
+        return not (self.sampled or len(self.sweeps) or later)
 
     def period(self) -> float | None:
         """Common period (s) of the forcing; one shaft turn if nothing moves but the shaft, 0.0 if nothing moves at all

@@ -10,7 +10,7 @@ def steady_tilt(model) -> tuple[complex, float, str]:
     if model.scene.shaft.motion or model.scene.housing.motion:
         return 0.0, 0.0, "a motion by samples has no linear steady state: aligned"
     segment = model.segment()
-    if len(segment.sweeps):
+    if not segment.harmonic:
         return 0.0, 0.0, "a sweep has no linear steady state: aligned"
     linear = model.linear_scene()
     parts: dict[float, complex] = {}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scenes import fmr, run, started
 
+from sealdyn.archive import column, partial_path
 from sealdyn.dynamics.cautions import Concern
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import (
@@ -32,7 +33,8 @@ from sealdyn.scene.scene import SceneError
 from sealdyn.scene.sweep import AngularSweep, AxialSweep, end, frequency_at, largest_amplitude, ramps, span
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.run import evaluate
-from sealdyn.simulation.simulate import prepare_run
+from sealdyn.simulation.simulate import prepare_run, simulate
+from sealdyn.simulation.steady_tilt import steady_tilt
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
 UP = AxialSweep((20.0, 400.0), displacement=3e-7, start=0.01, duration=0.4)
@@ -220,6 +222,32 @@ def test_steady_starts_and_ends_are_beside_a_sweep():
     with pytest.raises(SceneError) as error:
         prepare_run(scenario_of(SHORT, **{"run.start": "steady"}))
     assert error.value.key == "housing.axial_sweep.0"
+
+
+def test_no_scene_takes_a_sweep_that_comes_later_for_none():
+    """What studies ask of a scene, whatever the time."""
+    scene = shaken(replace(UP, start=0.2))
+    with pytest.raises(SceneError) as error:
+        Model(scene).segment().harmonics()
+    assert error.value.key == "housing.axial_sweep.0"
+    assert started(scene, 1.0).period() is None and started(scene, 1.0).period(-1) is not None
+    assert steady_tilt(Model(scene))[0] == 0.0 != steady_tilt(Model(fmr()))[0]
+
+
+def test_a_run_goes_on_within_a_sweep_as_if_it_had_never_stopped(tmp_path):
+    scenario, asked = scenario_of(SHORT.replace("60 ms", "0.5 s"), **{"run.duration": 0.5, "run.samples": 4000}), []
+
+    def stop():
+        asked.append(None)
+        return len(asked) > 6
+
+    broken, whole = tmp_path / "broken.h5", tmp_path / "whole.h5"
+    assert simulate(scenario, broken, stop=stop).status == "interrupted"
+    reached = column(partial_path(broken), "time")[-1]
+    assert 0.0 < reached < 0.45
+    assert simulate(scenario, whole).status == simulate(scenario, broken, resume=True).status == "ok"
+    one, other = (column(path, "rotor_z") for path in (broken, whole))
+    assert len(one) == len(other) and np.abs(one - other).max() < 1e-6 * 1e-5
 
 
 def test_coarse_samples_are_told():
