@@ -327,14 +327,25 @@ def test_scattered_outputs_are_read_in_fitting_units(tmp_path):
 # --- rub, wear, sealing number, run-up, steady state -------------------------------------------------------
 
 
-def rub(tmp_path, key, unit, values):
+def rub(tmp_path, key, unit, values, **more):
     rows = [{"value": v, "status": "ok", "direction": "up", "class": "period 1",
              "contact_share": float(v == values[-1]), "h_min": [1e-7, 1e-7], "exponent": -1.0,
              "uncertainty": 0.1, "section": [[1e-4, 2e-4]],
              "orders": [0.0, 1.0, 2.0], "amplitude": [0.0, 1e-4, 1e-6]} for v in values]  # fmt: skip
     answer = {"key": key, "touch": 1e-6, "rows": rows, "judge": None, "methods": None, "separation": None,
               "whirl": None, "units": {"rows/value": unit}}  # fmt: skip
-    return study(tmp_path, "rub", answer)
+    return study(tmp_path, "rub", answer | more)
+
+
+@pytest.mark.parametrize("periods", [40, 200])
+def test_the_size_of_an_attractor_is_named_beside_the_runs(tmp_path, periods):
+    apart = np.minimum(1e-12 * np.exp(np.arange(periods)), 30.0) * (1 + 0.9 * np.sin(np.arange(periods)))
+    separation = {"apart": apart.tolist(), "spread": 8.0, "lost": 30}
+    ax = panel(rub(tmp_path, "rotor.runout", "rad", [1e-3], separation=separation), "Two correct runs part")
+    ax.figure.draw_without_rendering()
+    (name,) = [text.get_window_extent() for text in ax.texts if "attractor" in text.get_text()]
+    points = ax.transData.transform(np.column_stack(ax.lines[0].get_data()))
+    assert not any(name.contains(*point) for point in points)
 
 
 def test_one_point_that_rubs_has_its_section_above_its_spectrum(tmp_path):

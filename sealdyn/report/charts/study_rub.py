@@ -109,7 +109,10 @@ def _separation(ax, answer):
     ax.semilogy(np.arange(len(apart)), apart, color=BLUE)
     size = answer["separation"]["spread"]
     if size > 1e-3:
-        level(ax, size, "size of the attractor", side="left")
+        ax.axhline(size, color=GREY, lw=0.9, ls="--")
+        # Curves rise to the line and stay there: its name lies above them.
+        ax.text(0.98, 0.97, "dashed: size of the attractor", transform=ax.transAxes, color=GREY, fontsize=8, ha="right",
+                va="top")  # fmt: skip
     lost = answer["separation"]["lost"]
     if lost is not None:
         ax.axvspan(lost, len(apart), color=VERMILLION, alpha=0.08, lw=0)
