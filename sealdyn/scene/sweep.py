@@ -130,6 +130,15 @@ def octaves(sweep: Sweep) -> float:
     return math.log2(sweep.frequency[1] / sweep.frequency[0])
 
 
+def cycles_an_octave(sweep: Sweep) -> float:
+    """Cycles while the frequency doubles, or halves, at the slow end of a sweep."""
+    slow, fast = sorted(sweep.frequency)
+    if sweep.spacing == "linear":
+        # From slow to twice that, at the mean of both.
+        return 1.5 * slow * slow * span(sweep) / (fast - slow)
+    return slow * span(sweep) / (math.log(2.0) * abs(octaves(sweep)))
+
+
 def ramps(sweep: Sweep) -> tuple[float, float]:
     """How long (s) the amplitude rises and falls."""
     if sweep.ramp is not None:
@@ -191,6 +200,9 @@ def remark(sweep: Sweep, duration: float) -> str:
     said = (
         f"housing swept {how}: {first:g} to {last:g} Hz at {pace}, {kept}, from {sweep.start:.4g} to {end(sweep):.4g} s"
     )
+    slow = min(sweep.frequency)
+    if cycles_an_octave(sweep) < 1.0:
+        said += f"; too fast for a sine at {slow:g} Hz: {cycles_an_octave(sweep):.2g} cycles an octave there"
     if end(sweep) > duration * (1 + 1e-9):
         said += f"; the run ends at {frequency_at(sweep, duration):.4g} Hz"
     return said

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scenes import fmr, run, started
 
-from sealdyn.archive import column, partial_path
+from sealdyn.archive import column
 from sealdyn.dynamics.cautions import Concern
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import (
@@ -30,7 +30,16 @@ from sealdyn.dynamics.swept_motion import largest_sweep
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.excitation import AxialVibration, Housing
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.sweep import AngularSweep, AxialSweep, end, frequency_at, largest_amplitude, ramps, span
+from sealdyn.scene.sweep import (
+    AngularSweep,
+    AxialSweep,
+    cycles_an_octave,
+    end,
+    frequency_at,
+    largest_amplitude,
+    ramps,
+    span,
+)
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run, simulate
@@ -191,6 +200,17 @@ def test_rates_are_octaves_a_minute():
     assert span(down) == pytest.approx(0.4) and frequency_at(down, 0.41) == pytest.approx(30.0)
 
 
+def test_cycles_of_the_slowest_octave():
+    for name in ("displacement kept", "downwards", "linear", "linear downwards"):
+        sweep = SWEEPS[name]
+        times = np.linspace(sweep.start, end(sweep), 200_001)
+        frequencies = np.array([frequency_at(sweep, t) for t in times])
+        cycles = np.sum(frequencies[frequencies <= 40.0]) * (times[1] - times[0])
+        assert cycles_an_octave(sweep) == pytest.approx(cycles, rel=1e-3)
+    fast = Housing(axial_sweep=[replace(UP, octaves_per_minute=3000.0, duration=None)])
+    assert len(fast.remarks(1.0)[0]) > len(Housing(axial_sweep=[UP]).remarks(1.0)[0])
+
+
 # --- runs ---------------------------------------------------------------------------------------------
 
 
@@ -234,17 +254,19 @@ def test_no_scene_takes_a_sweep_that_comes_later_for_none():
     assert steady_tilt(Model(scene))[0] == 0.0 != steady_tilt(Model(fmr()))[0]
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_within_a_sweep_as_if_it_had_never_stopped(tmp_path):
-    scenario, asked = scenario_of(SHORT.replace("60 ms", "0.5 s"), **{"run.duration": 0.5, "run.samples": 4000}), []
+    scenario, asked = scenario_of(SHORT.replace("60 ms", "0.2 s"), **{"run.duration": 0.2, "run.samples": 1600}), []
 
     def stop():
         asked.append(None)
-        return len(asked) > 6
+        return len(asked) > 2
 
     broken, whole = tmp_path / "broken.h5", tmp_path / "whole.h5"
-    assert simulate(scenario, broken, stop=stop).status == "interrupted"
-    reached = column(partial_path(broken), "time")[-1]
-    assert 0.0 < reached < 0.45
+    first = simulate(scenario, broken, stop=stop)
+    assert first.status == "interrupted"
+    reached = column(first.archive, "time")[-1]
+    assert 0.0 < reached < 0.19
     assert simulate(scenario, whole).status == simulate(scenario, broken, resume=True).status == "ok"
     one, other = (column(path, "rotor_z") for path in (broken, whole))
     assert len(one) == len(other) and np.abs(one - other).max() < 1e-6 * 1e-5
