@@ -164,7 +164,12 @@ def _read(path: Path, overrides):
 
     try:
         with _reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
-            return read_scenario(path, overrides or ())
+            scenario = read_scenario(path, overrides or ())
+        if scenario.study:
+            from .studies._settings import refuse_unknown_studies
+
+            refuse_unknown_studies(scenario)
+        return scenario
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
 
@@ -397,11 +402,14 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.beside_reynolds import beside_reynolds
+    from .simulation.plausibility import before_the_run
     from .simulation.simulate import prepare_run
     from .simulation.size import size_of
     from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
+    if scenario.study:
+        _refuse_settings(scenario)
     size = size_of(scenario)
     if isinstance(scenario.scene, RadialScene):
         return _check_radial(file, scenario, as_json)
@@ -418,6 +426,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model_chosen(scenario, run, method, why),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
+        "warnings": [caution.sentence for caution in (*run.cautions, *before_the_run(scenario, run.model))],
         "design_rules": rules,
         "beside_reynolds": beside_reynolds(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
@@ -429,6 +438,17 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
             print(line)
         if size.bytes > WORTH_SAYING:
             print(f"  size          {size}")
+
+
+def _refuse_settings(scenario):
+    """Ends the verb for settings of a study that it does not take."""
+    from .scenario.errors import ScenarioError
+    from .studies._settings import refuse_settings
+
+    try:
+        refuse_settings(scenario)
+    except ScenarioError as error:
+        raise Stop(Status.INVALID, str(error), errors=(error,)) from None
 
 
 def _check_radial(file, scenario, as_json):
@@ -450,7 +470,7 @@ def _check_radial(file, scenario, as_json):
         "scene": scenario.resolved(),
         "model": {"followers": followers.count, "solver": method, "reasons": [f"solver: {why}"]},
         "closed_form": said(followers, scenario.scene.shaft),
-        "design_rules": findings(scenario.scene),
+        "design_rules": findings(scenario),
         "equilibria": [],
     }
     if as_json:
@@ -466,8 +486,8 @@ def _of_a_face_seal(file):
     from .report.radial import is_radial
 
     if not is_study(file) and is_radial(read_info(file)):
-        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal (show and plot "
-                                   "take both)")  # fmt: skip
+        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal: its motion "
+                                   "is in the overview (plot)")  # fmt: skip
 
 
 @app.command()
@@ -721,27 +741,31 @@ def compare(
 
 def _rules_of(file, info) -> list[dict]:
     """What the design rules say of the scene of a run, the broken ones first."""
-    from .analysis.design_rules import findings
+    from .analysis import design_rules, radial_rules
     from .archive import ArchiveError
+    from .scene.radial import RadialScene
     from .scene.scene import SceneError
     from .simulation.simulate import prepare_run
 
     scenario = _read(file, None)
     try:
-        run, *_ = prepare_run(scenario)
+        found = (
+            radial_rules.findings(scenario)
+            if isinstance(scenario.scene, RadialScene)
+            else design_rules.findings(scenario, prepare_run(scenario)[0].model)
+        )
     except (SceneError, ArchiveError) as error:
         # It began from an archive, say, that is gone.
         print(f"warning: {file}: the page has no design rules ({error})", file=sys.stderr)
         return []
     order = ("fail", "note", "acknowledged", "pass", "not applicable")
-    return sorted(findings(scenario, run.model), key=lambda row: order.index(row["verdict"]))
+    return sorted(found, key=lambda row: order.index(row["verdict"]))
 
 
 def _must_be_archive(file):
     from .archive import is_study, read_info, read_study
 
     (read_study if is_study(file) else read_info)(file)
-    _of_a_face_seal(file)
 
 
 @app.command()

@@ -1,8 +1,12 @@
 """Charts as the tests read them: the figure a chart saves, its lines as data, and whether its words can be read."""
 
+import warnings
+from importlib import import_module
 from unittest import mock
 
 import numpy as np
+
+from sealdyn.archive import write_study
 
 
 def drawn(chart, archive, out, written=True):
@@ -23,6 +27,15 @@ def drawn(chart, archive, out, written=True):
         assert list(out.parent.glob("*.new")) == []
     (figure,) = seen
     return figure
+
+
+def study(tmp_path, name, answer, scenario="", **meta):
+    """The figure of a study's answer, as it is saved."""
+    meta = {"study": name, "name": "seal", "question": "Does it ride?", "overrides": [], "version": "1", **meta}
+    path = write_study(tmp_path / "s.h5", scenario, {}, meta, {"verdict": ["It rides."], **answer}, {})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return drawn(import_module(f"sealdyn.report.charts.study_{name}"), path, tmp_path / "s.png")
 
 
 def panel(figure, title):

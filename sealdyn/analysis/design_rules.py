@@ -25,12 +25,9 @@ def findings(scenario, model) -> list[dict]:
 
 
 def _row(name: str, seal) -> dict:
-    from .rules._finding import Verdict
-
     rule = importlib.import_module(f"{rules.__name__}.{name}")
-    found, reason = rule.finding(seal), seal.application.acknowledge.get(name)
-    if reason is not None and found.verdict in (Verdict.FAIL, Verdict.NOTE):
-        found = replace(found, verdict=Verdict.ACKNOWLEDGED)
+    reason = seal.application.acknowledge.get(name)
+    found = acknowledged(rule.finding(seal), reason)
     return {
         "rule": name,
         "verdict": str(found.verdict),
@@ -45,3 +42,11 @@ def _row(name: str, seal) -> dict:
         "reason": reason,
         **found.numbers,
     }
+
+
+def acknowledged(found, reason: str | None):
+    """A rule's finding, acknowledged where the rule is broken and a `reason` is given."""
+    from .rules._finding import Verdict
+
+    broken = found.verdict in (Verdict.FAIL, Verdict.NOTE)
+    return replace(found, verdict=Verdict.ACKNOWLEDGED) if reason is not None and broken else found

@@ -1,13 +1,15 @@
 """A radial seal held against the design guide's tables for lip and circumferential seals: experience, not mechanics."""
 
 import math
+from functools import partial
 
 import numpy as np
 
 from ..dynamics.intervals import largest_value
 from ..radial_seals.followers import followers_of
-from .design_rules import GUIDE
-from .rules._finding import Verdict, within
+from ..scene.application import RadialApplication
+from .design_rules import GUIDE, acknowledged
+from .rules._finding import Verdict, other_seals, within
 
 FOOT_PER_MINUTE, PSI = 0.3048 / 60.0, 6894.757
 # Table 3.2: total eccentricity (m) of lip seals without pressure, and the speed (m/s) that it allows.
@@ -16,22 +18,29 @@ LIP_SPEED = np.array([1000.0, 2000.0, 3000.0, 4000.0]) * FOOT_PER_MINUTE
 # Table 3.1: pressure (Pa) of lip seals, and the speed (m/s) that it allows.
 LIP_PRESSURE = np.array([1.0, 3.0, 5.0]) * PSI
 LIP_PRESSURE_SPEED = np.array([3000.0, 2000.0, 1500.0]) * FOOT_PER_MINUTE
+# Table 3.3: the same of hydrodynamic lips, and the eccentricity (m) below which they work.
+RIBBED_PRESSURE, RIBBED_SPEED = np.array([6.89e3, 20.6e3, 34.4e3]), np.array([1830.0, 1220.0, 610.0]) / 60.0
+RIBBED_ECCENTRICITY = 0.127e-3
+# Load (N/m) of conventional and of hydrodynamic lips.
+LIP_LOAD, RIBBED_LOAD = (87.5, 123.0), (52.5, 70.0)
 # Table 3.4: runout (m, total indicator reading) of circumferential seals without pressure, and the speed (m/s) that it
 # allows, in the only order that falls: the rows of the scan are shuffled; 1830 m/min is 6000 ft/min.
 SEGMENT_RUNOUT = np.array([0.0254e-3, 0.127e-3, 0.254e-3, 0.381e-3, 0.508e-3])
 SEGMENT_SPEED = np.array([4550.0, 3660.0, 2440.0, 1830.0, 1220.0]) / 60.0
 
 
-def findings(scene) -> list[dict]:
-    """What every rule says of a RadialScene: dicts as design_rules.findings."""
-    rules = LIP if scene.lip else CIRCUMFERENTIAL
-    return [_row(name, source, command, rule(scene)) for name, (source, command, rule) in rules.items()]
+def findings(scenario) -> list[dict]:
+    """What every rule says of the scenario of a radial seal: dicts as design_rules.findings."""
+    scene, application = scenario.scene, scenario.application or RadialApplication()
+    rules = CIRCUMFERENTIAL if scene.circumferential else RIBBED_LIP if application.hydrodynamic_lip else LIP
+    return [_row(name, *about, scene, application.acknowledge.get(name)) for name, about in rules.items()]
 
 
-def _row(name, source, command, found) -> dict:
+def _row(name, source, command, rule, scene, reason) -> dict:
+    found = acknowledged(rule(scene), reason)
     return {
         "rule": name, "verdict": str(found.verdict), "value": found.value, "unit": found.unit, "least": found.least,
-        "most": found.most, "guide": GUIDE, "source": source, "said": found.said, "command": command, "reason": None,
+        "most": found.most, "guide": GUIDE, "source": source, "said": found.said, "command": command, "reason": reason,
         **found.numbers,
     }  # fmt: skip
 
@@ -54,20 +63,30 @@ def _lip_speed(scene):
     return within(said, speed, "m/s", most=allowed)
 
 
-def _lip_load(scene):
+def _lip_eccentricity(scene):
+    total = scene.shaft.eccentricity + scene.shaft.offset
+    said = f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * RIBBED_ECCENTRICITY:.3g} mm"
+    return within(said, total, "m", most=RIBBED_ECCENTRICITY)
+
+
+def _of_other_lips(said, scene):
+    return other_seals(said)
+
+
+def _lip_load(limits, scene):
     followers = followers_of(scene)
     load = followers.preload / followers.arc
-    said = f"the lip presses with {load:.4g} N/m, usual are 87.5 to 123 (hydrodynamic lips 52.5 to 70)"
-    return within(said, load, "N/m", least=87.5, most=123.0, beyond=Verdict.NOTE)
+    said = f"the lip presses with {load:.4g} N/m, usual are {limits[0]:g} to {limits[1]:g}"
+    return within(said, load, "N/m", *limits, beyond=Verdict.NOTE)
 
 
-def _lip_pressure(scene):
+def _lip_pressure(pressures, speeds, scene):
     pressure, speed = scene.lip.pressure_difference, surface_speed(scene)
-    allowed = float(np.interp(pressure, LIP_PRESSURE, LIP_PRESSURE_SPEED))
+    allowed = float(np.interp(pressure, pressures, speeds))
     said = f"{60 * speed:.4g} m/min at {1e-5 * pressure:.3g} bar; experience allows {60 * allowed:.4g} m/min"
-    if pressure > LIP_PRESSURE[-1]:
+    if pressure > pressures[-1]:
         return within(f"{1e-5 * pressure:.3g} bar; the table ends at 5 psi, 0.345 bar", pressure, "Pa",
-                      most=float(LIP_PRESSURE[-1]))  # fmt: skip
+                      most=float(pressures[-1]))  # fmt: skip
     return within(said, speed, "m/s", most=allowed)
 
 
@@ -114,9 +133,16 @@ def _hang_up(scene):
 FOLLOW = "sealdyn study followability FILE"
 # Rule: where it stands in the guide, the command that tests it, and the rule.
 LIP = {
-    "lip_load": ("lip load of conventional and hydrodynamic lips", FOLLOW, _lip_load),
-    "lip_pressure": ("table 3.1", "", _lip_pressure),
+    "lip_eccentricity": ("table 3.3", FOLLOW, partial(_of_other_lips, "table 3.3 is of hydrodynamic lips")),
+    "lip_load": ("lip load of conventional lips", FOLLOW, partial(_lip_load, LIP_LOAD)),
+    "lip_pressure": ("table 3.1", "", partial(_lip_pressure, LIP_PRESSURE, LIP_PRESSURE_SPEED)),
     "lip_speed": ("table 3.2", FOLLOW, _lip_speed),
+}
+RIBBED_LIP = {
+    "lip_eccentricity": ("table 3.3", FOLLOW, _lip_eccentricity),
+    "lip_load": ("lip load of hydrodynamic lips", FOLLOW, partial(_lip_load, RIBBED_LOAD)),
+    "lip_pressure": ("table 3.3", "", partial(_lip_pressure, RIBBED_PRESSURE, RIBBED_SPEED)),
+    "lip_speed": ("table 3.2", FOLLOW, partial(_of_other_lips, "table 3.2 is of conventional lips")),
 }
 CIRCUMFERENTIAL = {
     "axial_load": ("axial load about 70 N/m", FOLLOW, _axial_load),

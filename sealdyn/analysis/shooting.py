@@ -191,15 +191,16 @@ class Shooter:
             raise NoOrbit("a multiplier is one: the orbit is not isolated (no damping, or a bifurcation)")
         return np.linalg.solve(matrix, defect)
 
-    def extremes(self, start: np.ndarray, per_period: int | None = None) -> dict:
+    def extremes(self, start: np.ndarray, per_period: int | None = None, accuracy: float | None = None) -> dict:
         """Located extremes over one period from `start` (n,): `h_min` {value (m), time (s), theta (rad), radius (m),
         of_clearance}, `relative_misalignment` {max, min} (rad), `collapsed`; with `per_period` also that many samples:
-        `times` (m,) (s), `displacements` and `rates` (m, n)."""
+        `times` (m,) (s), `displacements` and `rates` (m, n).  `accuracy` of this period is by default the
+        shooter's."""
         run = RunState(self.model, self.period)
         run.y0[: self.size] = start
         recorder = Recorder(self.period / per_period if per_period else None)
         method = "ida" if run.model.unknowns.has_residual_form else choose_method(run)[0]
-        outcome = solve(run, method, self.accuracy, recorder)
+        outcome = solve(run, method, self.accuracy if accuracy is None else accuracy, recorder)
         record = run.extrema.records[0]
         found = {
             "h_min": {

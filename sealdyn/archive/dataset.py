@@ -22,6 +22,10 @@ def open_archive(path: str | os.PathLike) -> xarray.Dataset:
     scenario text, status, message, and `resolved` and `summary` as JSON.
     Of a study what `sealdyn.study(...).data` is: its numbers along the keys that it went through, or along what its
     study names; `attrs` hold the scenario text too.  Raises ArchiveError.
+
+    >>> with sealdyn.open_archive(sealdyn.run("fms.toml", out="fms.h5").archive) as data:
+    ...     print(data.h_min.dims, data.h_min.units, data.attrs["status"])
+    ('time',) m ok
     """
     if not is_study(path):
         return open_run(path)

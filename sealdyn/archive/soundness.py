@@ -30,7 +30,14 @@ _sound, _writing = set(), set()
 
 
 class ArchiveError(Exception):
-    """A file that cannot be read as an archive, or cannot be continued; one line."""
+    """A file that cannot be read as an archive, or cannot be continued; one line.
+
+    >>> try:
+    ...     sealdyn.open_archive("nothing.h5")
+    ... except sealdyn.ArchiveError as error:
+    ...     print(error)
+    nothing.h5: no such file
+    """
 
 
 def is_sound(path) -> None:

@@ -15,6 +15,8 @@ from ..faces.geometry import CONTACT_FORCE, CONTACT_TORQUE, FLOW_INNER, FORCE, T
 MOST_DOUBLINGS = 4
 # Share of a change that counts as the error of the finer grid.
 CHANGED = 0.5
+# Coefficient of friction that is rounding: a standing shaft has none, and its logarithm would never settle.
+NOTHING = 1e-9
 # What is searched so often need not be searched again; the scenes of a study.
 REMEMBERED = 64
 
@@ -60,9 +62,10 @@ def _balance(scene) -> np.ndarray:
     interface = Interface(scene, 1e-8)
     s, _ = rest_state(scene, interface.clearance)
     flow_at_rest(interface, s)
+    load = max(abs(s[FORCE] + s[CONTACT_FORCE]), 1e-300)
     return np.array([
-        s[FORCE] / max(abs(s[FORCE] + s[CONTACT_FORCE]), 1e-300),
+        s[FORCE] / load,
         np.log(max(abs(s[FLOW_INNER]), 1e-300)),
-        np.log(max(abs(s[TORQUE] + s[CONTACT_TORQUE]), 1e-300)),
+        np.log(max(abs(s[TORQUE] + s[CONTACT_TORQUE]), NOTHING * load * scene.film.outer_radius)),
         np.log(interface.clearance),
     ])  # fmt: skip

@@ -216,7 +216,14 @@ def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(extent(film)[0], 1e-6)
     tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
-    expected = f"a closing force between {min(tight, wide):.4g} and {max(tight, wide):.4g} N on a converging film"
+    rounding = 1e-9 * abs(wide)
+    if tight - wide > rounding:
+        expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"
+    else:
+        side, narrows = ("outer", "above") if outer >= inner else ("inner", "below")
+        this = "this one widens" if wide - tight > rounding else "this one carries the same at every clearance"
+        where = f"the pressure is higher at the {side} radius"
+        expected = f"a film that narrows along its flow, as film.coning {narrows} 0 makes it ({where}); {this}"
     found = f"no equilibrium clearance (closing force {closing:.6g} N)"
     if roots:
         found = f"only unstable equilibria (at {', '.join(f'{r.clearance * 1e6:.3g} um' for r in roots)})"

@@ -3,7 +3,7 @@
 Block layout: for each varying quantity its value and slope over the interval, the coning's with what follows the
 shaft speed squared, then both rings' angles at its start,
 then the oscillators, one row each: `ring, kind, amplitude, amplitude slope, cos and sin of the direction, a0, a1, a2`
-with the phase `a0 + a1 tau + a2 tau^2`, then what moves by samples.
+with the phase `a0 + a1 tau + a2 tau^2`, then what moves by samples, then what is swept.
 """
 
 import math
@@ -15,14 +15,16 @@ from ..numerics.kernel import inner_kernel, outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 from .sampled_motion import motion_at, motions, piece_at
+from .swept_motion import COS, SIN, SWEEP_ROW, TILTS, sweep_at
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both
 # rings at the segment's start.
 CONING_AT, CONING_PER_SPEED_SQUARED = 14, 16
 ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT = 17, 18, 19
-# Where the sampled motion of stator's and rotor's carrier stands (sampled_motion.py), 0 if there is none.
-MOTION_AT, OSCILLATORS = 20, 22
+# Where the sweeps of the housing stand (swept_motion.py), and the sampled motion of stator's and rotor's carrier
+# (sampled_motion.py), 0 if there is none.
+SWEEPS_AT, MOTION_AT, OSCILLATORS = 20, 21, 23
 ROW = 9
 
 # Kinds: axial motion of the carrier; tilt of the carrier turning with the phase; tilt of the carrier about
@@ -78,14 +80,16 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
     return np.array(rows, dtype=np.float64).reshape(-1, ROW)
 
 
-def imposed_block(head, rows, scene, interval: Interval) -> np.ndarray:
-    """The block over an interval: `head` the slots before MOTION_AT, the harmonics `rows`, and the scene's sampled
-    motion."""
+def imposed_block(head, rows, sweeps, scene, interval: Interval) -> np.ndarray:
+    """The block over an interval: `head` the slots before SWEEPS_AT, the harmonics `rows`, the scene's sampled motion,
+    and the rows of its `sweeps`."""
     places, blocks, at = [0.0, 0.0], [], OSCILLATORS + rows.size
     for ring, sampled in motions(scene).items():
         blocks.append(sampled.block(interval.time, interval.length))
         places[ring], at = at, at + len(blocks[-1])
-    return np.concatenate([head, places, rows.ravel(), *blocks])
+    if len(sweeps):
+        blocks.append([len(sweeps), *sweeps.ravel()])
+    return np.concatenate([head, [at if len(sweeps) else 0.0, *places], rows.ravel(), *blocks])
 
 
 @inner_kernel()
@@ -111,6 +115,16 @@ def imposed_state(tau, p, c):
                 c[base + Z + part] += x
                 c[base + Z_RATE + part] += x_rate
                 c[base + Z_ACCELERATION + part] += x_acceleration
+    at = int(p[SWEEPS_AT])
+    for k in range(int(p[at]) if at > 0 else 0):
+        row = at + 1 + SWEEP_ROW * k
+        x, x_rate, x_acceleration = sweep_at(tau, p, row)
+        first = TILT_X if p[row + TILTS] != 0.0 else Z
+        for part in range(2 if first == TILT_X else 1):
+            share = 1.0 if first == Z else p[row + (COS if part == 0 else SIN)]
+            c[first + part] += share * x
+            c[first + Z_RATE + part] += share * x_rate
+            c[first + Z_ACCELERATION + part] += share * x_acceleration
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k
         base = PER_RING * int(p[row])

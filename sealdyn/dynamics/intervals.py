@@ -119,10 +119,10 @@ class Intervals(Sequence):
         return [self._made(k) for k in places]
 
 
-def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> Intervals:
+def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities, times=()) -> Intervals:
     """Intervals from 0 to `duration` (s) of shaft and stator speeds (rad/s).  `quantities` are all imposed numbers and
-    functions of time, speeds included."""
-    breaks = {0.0, duration}
+    functions of time, speeds included; `times` (s) others at which one ends."""
+    breaks = {0.0, duration, *(t for t in times if 0.0 < t < duration)}
     for quantity in quantities:
         if isinstance(quantity, PiecewiseLinear):
             breaks |= {t for t in quantity.time if 0.0 < t < duration}
@@ -136,10 +136,11 @@ def split_at_breaks(duration: float, rotor_speed, stator_speed, quantities) -> I
     return Intervals(wholes, pieces, (rotor_speed, stator_speed))
 
 
-def first_interval(quantities) -> Interval:
-    """From time zero to the first break of any function of time among `quantities`, or 1 s: where a scene starts,
-    whatever the run."""
+def first_interval(quantities, times=()) -> Interval:
+    """From time zero to the first break of any function of time among `quantities`, the first of `times` (s), or 1 s:
+    where a scene starts, whatever the run."""
     breaks = [t for q in quantities if isinstance(q, PiecewiseLinear) for t in q.time if t > 0.0]
+    breaks += [t for t in times if t > 0.0]
     return Interval(Fraction(0), Fraction(min(breaks, default=1.0)), Fraction(0), Fraction(0))
 
 

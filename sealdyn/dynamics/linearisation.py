@@ -12,6 +12,7 @@ from .interface import rest_state
 from .intervals import constant_and_slope
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
 from .neutral_speeds import Whirl
+from .swept_motion import sweeps_of
 from .whirl_speeds import all_at_once, one_by_one
 
 
@@ -113,10 +114,13 @@ def _whirl(linear) -> Whirl | None:
 
 def harmonics(segment) -> list[Harmonic]:
     """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed).  Raises SceneError
-    where samples move a carrier."""
+    where samples or a sweep move a carrier."""
     for ring in segment.sampled:
         key = "housing.motion" if ring == STATOR else "shaft.motion"
         raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time from rest")
+    if not segment.harmonic:
+        key, _ = sweeps_of(segment.model.scene)[0]
+        raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time from rest")
     found = []
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)

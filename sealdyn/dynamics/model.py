@@ -17,6 +17,7 @@ from .intervals import Interval, Intervals, constant_and_slope, first_interval, 
 from .sampled_motion import check_covers
 from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
+from .swept_motion import check_begins, sweep_breaks
 from .unknowns import Unknowns
 
 
@@ -48,7 +49,7 @@ class Model:
         self.face = self.f[:FACE_SIZE].copy()
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
         self.observed = observed or self.interface.observed
-        self.start = first_interval(self._imposed())
+        self.start = first_interval(self._imposed(), sweep_breaks(scene))
         self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
         if made is not None:
             was, left = (1e6 * seal.stator.waviness[0].amplitude for seal in (made, scene))
@@ -89,9 +90,11 @@ class Model:
 
     def intervals(self, duration: float) -> Intervals:
         """The intervals of a run of `duration` (s), on each of which everything imposed is linear.  Raises SceneError
-        for one beyond the samples of a motion."""
+        for one beyond the samples of a motion, or before a sweep begins."""
         check_covers(self.scene, duration)
-        return split_at_breaks(duration, self.scene.shaft.speed, self.scene.stator.speed, self._imposed())
+        check_begins(self.scene, duration)
+        speeds, times = (self.scene.shaft.speed, self.scene.stator.speed), sweep_breaks(self.scene)
+        return split_at_breaks(duration, *speeds, self._imposed(), times)
 
     def time_of(self, turns: float) -> float:
         """Time (s) in which the shaft turns so often.  Raises SceneError if it never does."""

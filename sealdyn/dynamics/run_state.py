@@ -7,6 +7,7 @@ import numpy as np
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
 from ..scene.scene import SceneError
+from ..scene.sweep import end
 from .cautions import Caution, Concern
 from .contact_events import ContactEvents
 from .extrema import ExtremaTracker
@@ -16,6 +17,7 @@ from .model import Model
 from .sampled_motion import motions
 from .segments import Segment
 from .stick_slip import StickSlip
+from .swept_motion import fastest_sweep, sweeps_of, sweeps_of_segment
 
 
 class FilmClosed(SceneError):
@@ -35,7 +37,7 @@ class RunState:
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
         remark = getattr(model.interface.film, "REMARK", None)
-        self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks()]
+        self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks(duration)]
         self.cautions = []
         self.last, self.start = (0, 0.0, self.y0), None
         self._segment = None
@@ -69,7 +71,11 @@ class RunState:
         return longest / self.model.shortest_period
 
     def period(self, index: int = 0) -> float | None:
-        """Common period (s) of the forcing in a segment (Segment.period); where nothing moves a quarter of the run."""
+        """Common period (s) of the forcing from a segment on (Segment.period), None if a sweep is still to come; where
+        nothing moves a quarter of the run."""
+        begin = self.intervals[index].time
+        if any(end(sweep) > begin for _, sweep in sweeps_of(self.model.scene)):
+            return None
         period = self.segment(index).period()
         return self.duration / 4 if period == 0.0 else period
 
@@ -91,6 +97,7 @@ class RunState:
             if len(rows):
                 speed, slope = constant_and_slope(scene.shaft.speed, interval)
                 fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
+            fastest = max(fastest, fastest_sweep(sweeps_of_segment(scene, interval), interval.length))
         return max([fastest, *(sampled.rate for sampled in motions(scene).values())])
 
     # --- the start ----------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ import numpy as np
 from ..faces import contact
 from ..faces.geometry import GAP_STATE_SIZE, REFUSED, WAVES
 from ..faces.waviness import highest_orders
+from ..scene.rings import STATOR
 from ..solvers.contract import SolverFailure
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
@@ -18,6 +19,7 @@ from .intervals import Interval, constant_and_slope, modulo_turn
 from .sampled_motion import motions
 from .steady_extremes import common_period
 from .step_bounds import BEND, REACH, largest_swing
+from .swept_motion import fastest_sweep, largest_sweep, sweeps_of, sweeps_of_segment
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -36,8 +38,9 @@ class Segment:
     """What a solver integrates: right-hand side and residual over constant parameters, in the segment's own clock tau.
 
     `n` displacements come first in the unknowns `y` (size,), then the rates of those with mass (`n_mechanical` in
-    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `sampled`
-    {ring: what moves its carrier by samples}, `imposed_pace` (rad/s) the fastest of them, `pace` that of the scan;
+    all), then the film's (slice `film`), then the works.  `p` parameters, `rows` (m, ROW) imposed harmonics, `sweeps`
+    (k, SWEEP_ROW) of the housing, `sampled` {ring: what moves its carrier by samples}, `imposed_pace` (rad/s) the
+    fastest of them, `pace` that of the scan;
     `index` among the segments of a run, `last` of them; `stuck` {ring: True, False, or the velocity of its onset (3,)
     in m/s and rad/s}.
     """
@@ -52,9 +55,11 @@ class Segment:
         self.algebraic, self.film = model.algebraic, unknowns.film
         self.reference_rate, self.shortest_period = model.reference_rate, model.shortest_period
         self.may_change = bool(unknowns.coulomb_rings)
+        self.sweeps = sweeps_of_segment(model.scene, interval)
         self.p, self.rows = self._parameters()
         self.sampled = motions(model.scene)
         paces = [max(abs(r[7]), abs(r[7] + 2 * r[8] * self.length)) for r in self.rows]
+        paces.append(fastest_sweep(self.sweeps, self.length))
         self.imposed_pace = max([*paces, *(motion.pace for motion in self.sampled.values())], default=0.0)
         self.pace = self._pace()
         self.w, self.s = np.zeros(equations.SCRATCH), np.zeros(GAP_STATE_SIZE)
@@ -71,7 +76,7 @@ class Segment:
         angles = [modulo_turn(interval.rotor_angle), modulo_turn(interval.stator_angle)]
         coned = [film.coning_per_speed_squared]
         head = np.array([x for pair in pairs for x in pair] + [*coned, *angles, len(rows)])
-        p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, scene, interval)])
+        p = np.concatenate([self.model.unknowns.ring_block, imposed_block(head, rows, self.sweeps, scene, interval)])
         for k, held in self.stuck.items():
             at = equations.RING * k
             p[at + equations.STUCK] = held is True
@@ -96,6 +101,10 @@ class Segment:
         swing = largest_swing(self.model.face, self.rows, floats, spins, (*coning_at(0.0, leg), bend), self.length)
         for ring in (ring for ring in self.sampled if not floats[ring]):
             reach, fourth = self.sampled[ring].reach(self.time, self.length)
+            swing[REACH : REACH + 2] += reach
+            swing[BEND : BEND + 2] += fourth
+        if len(self.sweeps) and not floats[STATOR]:
+            reach, fourth = largest_sweep(self.sweeps, self.length)
             swing[REACH : REACH + 2] += reach
             swing[BEND : BEND + 2] += fourth
         return swing
@@ -288,10 +297,17 @@ class Segment:
 
     # --- forcing ------------------------------------------------------------------------------------
 
+    @property
+    def harmonic(self) -> bool:
+        """Whether what is imposed is harmonics alone, so that it may have a period and a steady response; in the
+        segment that stands for the scene at any time, none of its sweeps may come later."""
+        later = self.interval is self.model.start and sweeps_of(self.model.scene)
+        return not (self.sampled or len(self.sweeps) or later)
+
     def period(self) -> float | None:
         """Common period (s) of the forcing; one shaft turn if nothing moves but the shaft, 0.0 if nothing moves at all
         (any time is a period); None if the frequencies are incommensurate or change."""
-        if self.sampled or np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
+        if not self.harmonic or np.any(self.rows[:, 3]) or np.any(self.rows[:, 8]):
             return None
         speed, slope = constant_and_slope(self.model.scene.shaft.speed, self.interval)
         if slope:

@@ -19,8 +19,9 @@ from ..faces.geometry import CLEARANCE, INNER_RADIUS, OUTER_RADIUS, smallest_gap
 from ..faces.waviness import wave_rows
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
-from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, TURNING
+from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, SWEEPS_AT, TURNING
 from .sampled_motion import motion_at, piece_at
+from .swept_motion import COS, SIN, SWEEP_ROW, TILTS, sweep_at
 
 # The three measures that are made small: the film thickness, minus the squared tilt, the squared tilt (smooth through
 # zero).
@@ -103,6 +104,20 @@ def imposed_gap(tau, p, at):
                 x, x_rate, _ = motion_at(tau, p, place, piece, part)
                 at[part] += sign * x
                 at[3 + part] += sign * x_rate
+    place = int(p[LEG_AT + SWEEPS_AT])
+    if place > 0 and p[FLOATS] == 0.0:
+        place += LEG_AT
+        for k in range(int(p[place])):
+            row = place + 1 + SWEEP_ROW * k
+            x, x_rate, _ = sweep_at(tau, p, row)
+            if p[row + TILTS] == 0.0:
+                at[0] += x
+                at[3] += x_rate
+            else:
+                at[1] += p[row + COS] * x
+                at[2] += p[row + SIN] * x
+                at[4] += p[row + COS] * x_rate
+                at[5] += p[row + SIN] * x_rate
     for k in range(int(p[LEG_AT + OSCILLATOR_COUNT])):
         row = LEG_AT + OSCILLATORS + ROW * k
         ring, kind = int(p[row]), int(p[row + 1])

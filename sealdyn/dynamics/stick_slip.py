@@ -279,7 +279,7 @@ class StickSlip:
         if tilt_rate >= 0:
             radius = segment.p[ring + SEAL_RADIUS]
             y[tilt_rate : tilt_rate + 2] -= velocity[1:] / radius
-            if not self._spin(k, tau) and not (segment.p[LEG_AT + OSCILLATOR_COUNT] or segment.sampled):
+            if not self._spin(k, tau) and not (segment.p[LEG_AT + OSCILLATOR_COUNT] or not segment.harmonic):
                 y[tilt_rate : tilt_rate + 2] = 0.0
         return y
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.coning import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.sweep import AxialSweep, largest_amplitude
 from ..scene.symmetry import tilt_is_given, tilt_is_imposed
 from ..scene.waviness import waves_of
 from . import equations
@@ -56,8 +57,8 @@ class Unknowns:
         tilts = (scene.rotor.misalignment, scene.stator.misalignment)
         self.loaded = loaded
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
-        # Samples have no frequency: nothing that needs one, a steady response or a period, is there.
-        self.constant = self.constant and not (scene.shaft.motion or scene.housing.motion)
+        # Samples have no frequency and sweeps have many: nothing that needs one, a steady response, a period, is there.
+        self.constant = self.constant and not (scene.shaft.motion or scene.housing.motion or scene.housing.sweeps)
         self._choose(tilt_is_given(scene) or tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
@@ -171,6 +172,7 @@ class Unknowns:
         slowest = float(np.max(np.abs(values), initial=0.0)) or 1.0
         natural = float(np.max(np.abs(values.imag), initial=0.0)) or slowest
         forced = [2 * math.pi * v.frequency for v in scene.housing.tones]
+        forced += [2 * math.pi * max(sweep.frequency) for sweep in scene.housing.sweeps]
         forced += [sampled.rate for sampled in motions(scene).values()]
         rate = largest_value(scene.shaft.speed) or max(forced, default=natural)
         scales = np.full(self.size, self._energy(model, length, tilt))
@@ -194,6 +196,8 @@ class Unknowns:
         for motion in filter(None, (scene.housing.motion, scene.shaft.motion)):
             for column, scale in zip(motion.columns(), (length, tilt, tilt), strict=True):
                 amplitude = max(amplitude, max(map(abs, column)) / scale)
+        for sweep in scene.housing.sweeps:
+            amplitude = max(amplitude, largest_amplitude(sweep) / (length if isinstance(sweep, AxialSweep) else tilt))
         for start in (scene.initial.stator, scene.initial.rotor):
             for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
                 amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
@@ -208,7 +212,8 @@ def _axial_motion_is_imposed(scene) -> bool:
     """Whether anything but its own start ever moves a ring axially."""
     runouts = any(runout.amplitude for runout in scene.rotor.axial_runout)
     sampled = any(any(m.axial or ()) for m in (scene.housing.motion, scene.shaft.motion) if m)
-    return runouts or sampled or any(_moves(shaken) for shaken in scene.housing.axial_tones)
+    shaken = any(_moves(shaken) for shaken in (*scene.housing.axial_tones, *scene.housing.axial_sweep))
+    return runouts or sampled or shaken
 
 
 def _moves(shaken) -> bool:

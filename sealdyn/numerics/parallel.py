@@ -241,6 +241,7 @@ def row_of(function, point: dict) -> tuple[dict, bool]:
 
 def _failed(error: Exception) -> tuple[dict, bool]:
     lasting = not isinstance(error, OSError | MemoryError | ImportError)
-    # A ValueError is a sentence about the point; of anything else its kind tells more.
-    said = str(error) if isinstance(error, ValueError) and str(error) else f"{type(error).__name__}: {error}"
+    # The package's own errors and a ValueError are sentences about the point; of anything else its kind tells more.
+    own = type(error).__module__.startswith(f"{__package__.partition('.')[0]}.")
+    said = str(error) if str(error) and (own or isinstance(error, ValueError)) else f"{type(error).__name__}: {error}"
     return {"failed": said}, lasting

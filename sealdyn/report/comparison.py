@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
+from .radial import is_radial
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -17,7 +18,7 @@ FIRST = (
     ("h_min.steady", "h_min settled, um", 1e6),
     ("relative_misalignment.max", "misalignment max, urad", 1e6),
     ("relative_misalignment.steady_max", "misalignment settled, urad", 1e6),
-    ("leakage.mean_ml_per_h", "leakage, ml/h", 1.0),
+    ("leakage.mean", "leakage, ml/h", 3.6e9),
     ("friction.power", "friction, W", 1.0),
     ("film.clearance", "clearance, um", 1e6),
     ("film.axial_stiffness", "axial stiffness, N/m", 1.0),
@@ -28,7 +29,19 @@ FIRST = (
     ("contact_margin", "margin to contact", 1.0),
     ("contact.touches", "contacts", 1.0),
     ("contact.wear_rate", "wear rate, um/h", 3.6e9),
+    ("settled.contact_share", "on the shaft, %", 100.0),
+    ("whole.largest_gap", "largest gap, um", 1e6),
+    ("settled.load", "load on the shaft, N", 1.0),
+    ("settled.friction_torque", "friction torque, N m", 1.0),
+    ("settled.leakage_estimate", "leakage estimate, ml/h", 3.6e9),
+    ("closed_form.needed_preload", "preload needed of one, N", 1.0),
+    ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
+    ("contact.lift", "lost contacts", 1.0),
 )
+# Leakage (m^3/s) from which it is told in l/min, as that of gases.
+MUCH, IN_LITRES = 1e-5, ("leakage, l/min", 6e4)
+# Series of which the largest difference is told: of face seals, of radial seals.
+SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
 
 
 def comparison(one, other) -> dict:
@@ -36,6 +49,9 @@ def comparison(one, other) -> dict:
     differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have.
     **Raises** ArchiveError for what is no archive of a run."""
     infos = [_read(path) for path in (one, other)]
+    if is_radial(infos[0]) != is_radial(infos[1]):
+        kinds = ["a radial seal" if is_radial(info) else "a face seal" for info in infos]
+        raise ArchiveError(f"{other}: the archive of {kinds[1]}; expected that of {kinds[0]}, as {one}")
     scenes, summaries = ([dict(_leaves(info[key])) for info in infos] for key in ("resolved", "summary"))
     return {
         "names": [str(one), str(other)],
@@ -57,6 +73,8 @@ def comparison_lines(found: dict) -> list[str]:
     rows = {row["key"]: row for row in found["summary"]}
     shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
     for heading, factor, row in shown:
+        if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
+            heading, factor = IN_LITRES
         words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
         change = "" if row["change"] is None else f"  ({100 * row['change']:+.3g} %)"
         out.append(f"  {heading:<28}{words}{change}")
@@ -110,12 +128,12 @@ def _word(value) -> str:
 
 
 def _series(one, other, infos) -> Iterator[dict]:
-    """The largest differences of the thinnest film and the tilts at common instants."""
+    """The largest differences of SERIES at common instants."""
     times = [column(path, "time") for path in (one, other)]
     _, rows, others = np.intersect1d(*times, assume_unique=False, return_indices=True)
     if len(rows) < 2:
         return
-    for name in ("h_min", "relative_misalignment"):
+    for name in SERIES:
         if all(name in info["series"] for info in infos):
             apart = np.abs(column(one, name)[rows] - column(other, name)[others])
             yield {"name": name, "unit": infos[0]["series"][name].units, "most": float(np.nanmax(apart))}

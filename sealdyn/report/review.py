@@ -10,7 +10,8 @@ from pathlib import Path
 
 from ..archive import is_study, read_info, read_study
 from ..toml_line import toml_line
-from .text import question_of, run_rows, study_lines
+from .radial import is_radial
+from .text import question_of, rows_of, study_lines
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -20,6 +21,7 @@ FIGURES = {
     "film": "Film thickness",
     "orbit": "Orbits",
 }
+RADIAL_FIGURES = {"overview": "Overview of the run"}
 
 
 def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None) -> Path:
@@ -70,7 +72,8 @@ def _title(parts: list[dict], seals: list[list[str]]) -> str:
 def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
-    rows = list(run_rows(summary)) if summary else []
+    rows = list(rows_of(summary)) if summary else []
+    figures = RADIAL_FIGURES if is_radial(info) else FIGURES
     return {
         "kind": "run",
         "name": info["name"],
@@ -79,7 +82,7 @@ def _run(path: Path, rules, validation) -> dict:
         "message": info.get("message", ""),
         "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
         "warnings": [words for name, words in rows if name == "WARNING"],
-        "figures": [(words, _drawn(path, chart)) for chart, words in FIGURES.items()],
+        "figures": [(words, chart, _drawn(path, chart)) for chart, words in figures.items()],
         "rules": rules(path, info) if rules else [],
         "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
         "validation": validation(film) if validation and film else [],
@@ -103,7 +106,7 @@ def _study(path: Path, tables) -> dict:
         "message": answer.get("message", ""),
         "rows": [],
         "warnings": [],
-        "figures": [(f"Study {study['study']}", _drawn(path, f"study_{study['study']}"))],
+        "figures": [(f"Study {study['study']}", "study", _drawn(path, f"study_{study['study']}"))],
         "rules": [],
         "film": "",
         "validation": [],

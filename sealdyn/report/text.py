@@ -13,8 +13,12 @@ MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     message = "" if summary["status"] == Status.OK else summary["message"]
-    rows = radial_rows(summary) if "follower" in summary else run_rows(summary)
-    return _table(scenario.name, summary["status"], message, rows)
+    return _table(scenario.name, summary["status"], message, rows_of(summary))
+
+
+def rows_of(summary: dict):
+    """(name, words) of every line of a run, of a face or a radial seal; a line that goes on has no name."""
+    return radial_rows(summary) if "follower" in summary else run_rows(summary)
 
 
 def question_of(comment: str) -> str:
@@ -53,15 +57,18 @@ def run_rows(summary):
     yield from _settled_rows(summary)
     yield from _whole_run_rows(summary)
     yield from _margin_rows(summary)
-    volume = f"{_n(leak['mean_ml_per_h'])} ml/h"
-    if leak["conditions"]:
-        volume = f"{_n(leak['mean_ml_per_h'], 1 / 6e4)} l/min at 0 degC and 1.01325 bar"
-    yield "leakage", f"{_n(leak['mean'])} m^3/s = {volume} = {_n(leak['mean_kg_per_h'])} kg/h (mean)"
+    factor, unit = (6e4, "l/min") if leak["conditions"] else (3.6e9, "ml/h")
+    volume = f"{_n(leak['mean'], factor)} {unit}" + (" at 0 degC and 1.01325 bar" if leak["conditions"] else "")
+    yield "leakage", f"{_n(leak['mean'])} m^3/s = {volume} = {_n(leak['mean_kg_per_h'])} kg/h (mean of the run)"
+    if _another(film.get("leakage"), leak["mean"]):
+        yield "", f"aligned, at the end of the run: {_n(film['leakage'], factor)} {unit}"
     # Archives of earlier versions do not hold it.
     if film.get("exit_mach") is not None:
         how = "choked" if film["exit_mach"] >= 1.0 else "not choked"
         yield "", f"aligned, the gas leaves the faces at a Mach number of {_n(film['exit_mach'])}: {how}"
     yield "friction", _friction(friction, closing.get("face_area"))
+    if _another(film.get("friction_power"), friction["power"]):
+        yield "", f"aligned, at the end of the run: {_n(film['friction_power'])} W"
     rough = ", asperities included" if summary["contact"] else ""
     yield "film", (f"clearance {_n(film['clearance'], MICRO)} um, tilt stiffness {_n(film['tilt_stiffness'])} N m/rad, "
                    f"tilt damping {_n(film['tilt_damping'])} N m s/rad, axial stiffness "
@@ -86,6 +93,16 @@ def run_rows(summary):
         yield "accuracy", summary["certificate"]["said"]
     yield from (("WARNING", warning) for warning in summary["warnings"])
     yield "files", ", ".join(filter(None, (summary["archive"], summary.get("figure"))))
+
+
+# Share by which a mean and its end differ where a run came from elsewhere.
+ELSEWHERE = 0.02
+
+
+def _another(end, mean) -> bool:
+    """Whether the aligned seal at the end has another number than the run's mean; archives of earlier versions hold
+    none."""
+    return end is not None and mean is not None and abs(end - mean) > ELSEWHERE * max(abs(end), abs(mean))
 
 
 # Rise (K) beyond which a leakage cannot carry the heat, whatever the liquid: it would boil, or be no lubricant.
@@ -255,6 +272,7 @@ def resolved_lines(found: dict) -> list[str]:
     out += [f"# {found['beside_reynolds']['said']}"] if found.get("beside_reynolds") else []
     if model["unused"]:
         out.append(f"# not used: {', '.join(model['unused'])}")
+    out += [f"# WARNING {warning}" for warning in found.get("warnings", [])]
     return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
 
 

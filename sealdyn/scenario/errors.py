@@ -46,7 +46,14 @@ MOST = 50
 
 class ScenarioError(Exception):
     """A scenario that cannot be run; its text is one line.  `key` is dotted, table first.  `others`: what else is wrong
-    with the same scenario, ScenarioErrors."""
+    with the same scenario, ScenarioErrors.
+
+    >>> try:
+    ...     sealdyn.run("fms.toml", {"film.clearence": 1e-5})
+    ... except sealdyn.ScenarioError as error:
+    ...     print(error.key, "--", error)
+    film.clearence -- fms.toml: [film] clearence: found an unknown key; expected a key of [film]; nearest 'clearance'
+    """
 
     others: "tuple[ScenarioError, ...]" = ()
 

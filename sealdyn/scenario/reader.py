@@ -17,7 +17,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.application import Application, application_errors
+from ..scene.application import Application, RadialApplication, application_errors
 from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import scene_errors, unused
 from ..scene.motion import Motion
@@ -30,6 +30,7 @@ from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
 from .motion_files import with_columns
 from .overrides import override_key, without_arrays
+from .rule_names import RADIAL as RADIAL_RULES
 from .rule_names import unknown_rules
 from .unquoted import unquoted_quantity
 from .version import SCHEMA, refuse_newer
@@ -107,6 +108,8 @@ class RadialFile(RadialScene):
     """Version of these keys; without it the present one."""
     run: Run = field(default_factory=Run)
     """How long, how exact, by which method."""
+    application: RadialApplication | None = None
+    """Which rules it breaks on purpose."""
     study: dict[str, dict[str, Any]] = field(default_factory=dict)
     """Settings of studies, one table [study.NAME] each."""
 
@@ -122,6 +125,10 @@ class Scenario:
     written as gauge.
     Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
     seal is for (`application`, None without that table).
+
+    >>> scenario = sealdyn.read_scenario("fms.toml").with_(rotor__runout="20 urad")
+    >>> scenario.scene.rotor.runout, scenario == sealdyn.Scenario.from_dict(scenario.to_dict())
+    (2e-05, True)
     """
 
     scene: Scene | RadialScene
@@ -135,7 +142,7 @@ class Scenario:
     given: frozenset[str] = frozenset()
     reading: Any = None
     bare: frozenset[str] = field(default=frozenset(), compare=False)
-    application: Application | None = field(default=None, compare=False)
+    application: Application | RadialApplication | None = field(default=None, compare=False)
     gauge: frozenset[str] = field(default=frozenset(), compare=False)
 
     def resolved(self) -> dict:
@@ -190,7 +197,11 @@ class Scenario:
 
 def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Scenario:
     """Scenario of a TOML file, or of the archive (.h5) of a run or study with its overrides; `overrides` are strings
-    "rotor.runout=0.2 mrad".  Raises `ScenarioError`, ArchiveError."""
+    "rotor.runout=0.2 mrad".  Raises `ScenarioError`, ArchiveError.
+
+    >>> sealdyn.read_scenario("fms.toml", ["film.clearance=8 um"]).scene.film.clearance
+    8e-06
+    """
     path = Path(path)
     if path.suffix == ".h5":
         return _of_archive(path, overrides)
@@ -238,7 +249,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
-    bare = frozenset(f"{table}.{key}" for table in raw for key, value in _table(raw, table).items() if _is_bare(value))
+    bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name, folder=path and path.parent, held=held)
     name = name.removesuffix(".toml")
@@ -308,10 +319,14 @@ def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> d
         )
     if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
         wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
+    if file.application is not None:
+        known = RADIAL_RULES["lip" if file.lip else "circumferential"]
+        unknown = unknown_rules(file.application.acknowledge, known)
+        wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
     if wrong:
         raise together(wrong)
     scene = RadialScene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(RadialScene)})
-    return {"scene": scene, "run": file.run, "study": file.study}
+    return {"scene": scene, "run": file.run, "application": file.application, "study": file.study}
 
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
@@ -495,6 +510,15 @@ def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
         run.setdefault("turns", 60)
     if "samples" not in run:
         run.setdefault("samples_per_turn", 64)
+
+
+def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
+    """Dotted keys of numbers without a unit."""
+    for key, value in tables.items():
+        if of and _is_bare(value):
+            yield f"{of}{key}"
+        if isinstance(value, dict):
+            yield from _bare_keys(value, f"{of}{key}.")
 
 
 def _is_bare(value: Any) -> bool:

@@ -39,7 +39,8 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     A flag "a, b, c" of a setting that is a list is read as a list.  Raises ScenarioError for unknown keys or values,
     like any other table."""
     known = [f.name for f in dataclasses.fields(kind)]
-    raw = {key.replace("-", "_"): value for key, value in scenario.study.get(name, {}).items()}
+    tables = [table for study, table in scenario.study.items() if study.replace("-", "_") == name]
+    raw = {key.replace("-", "_"): value for table in tables for key, value in table.items()}
     raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
     for key in raw:
         if key not in known:

@@ -20,7 +20,11 @@ def shipped_folder() -> Path:
 
 
 def examples() -> dict[str, str]:
-    """Name of each scenario that comes with the program, and the question at its head."""
+    """Name of each scenario that comes with the program, and the question at its head.
+
+    >>> sealdyn.examples()["rub"]
+    'What happens when the runout grows past contact onset?'
+    """
     return {name: _question(path.read_text("utf-8")) for name, path in shipped_paths().items()}
 
 
@@ -30,7 +34,11 @@ def shipped_paths() -> dict[str, Path]:
 
 
 def example(name: str) -> Scenario:
-    """A scenario that comes with the program, by its name.  Raises ScenarioError, which names the nearest."""
+    """A scenario that comes with the program, by its name.  Raises ScenarioError, which names the nearest.
+
+    >>> sealdyn.example("fms_reference").scene.shaft.speed
+    1000.0
+    """
     from .errors import ScenarioError
     from .reader import read_scenario
 

@@ -118,6 +118,16 @@ class Application:
     """Design rules that the seal breaks on purpose: the rule's name and the reason."""
 
 
+@dataclass(frozen=True)
+class RadialApplication:
+    """The same table of a radial seal."""
+
+    hydrodynamic_lip: bool = False
+    """A lip with ribs or helices that pump back what leaks: other tables of the guide are for it."""
+    acknowledge: Annotated[dict[str, str], Reasons("table of reasons", "words", "")] = field(default_factory=dict)
+    """Rules that the seal breaks on purpose: the rule's name and the reason."""
+
+
 def application_errors(application) -> list[tuple[str, str, str]]:
     """What is wrong with an `Application`: (key, found, expected)."""
     bad = []

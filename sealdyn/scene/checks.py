@@ -15,6 +15,7 @@ from .pads import pads_errors
 from .random_vibration import random_errors
 from .reynolds import reynolds_errors
 from .scene import SceneError
+from .sweep import sweep_errors
 from .waviness import waves_of, waviness_errors
 
 # Of keys that may not step, if not rad.
@@ -261,6 +262,10 @@ def _vibrations(housing) -> None:
     for kind in ("axial_random", "angular_random"):
         for n, vibration in enumerate(getattr(housing, kind)):
             for key, *words in random_errors(vibration):
+                raise SceneError(f"housing.{kind}.{n}.{key}", *words)
+    for kind in ("axial_sweep", "angular_sweep"):
+        for n, sweep in enumerate(getattr(housing, kind)):
+            for key, *words in sweep_errors(sweep):
                 raise SceneError(f"housing.{kind}.{n}.{key}", *words)
 
 

@@ -19,13 +19,15 @@ class Contact:
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     roughness: Length
-    """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5."""
+    """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5 (finish of each face about 0.1
+    um, NASA CR-120997)."""
     law: Literal["christensen", "greenwood-williamson"] = "christensen"
     """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
     compressive_strength: Stress | None = None
     """Of the softer face, for "christensen"."""
     friction_coefficient: float | None = None
-    """Friction over contact load; 0.1 without it and without `shear_strength`."""
+    """Friction over contact load; 0.1 without it and without `shear_strength` (carbon graphite that runs dry: 0.1 to
+    0.25, NASA CR-120997)."""
     shear_strength: Stress | None = None
     """Friction over touching area, in place of `friction_coefficient`."""
     stator_wear_coefficient: WearCoefficient = 0.0

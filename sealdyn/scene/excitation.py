@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length, Speed, Varying
 from .motion import Motion
 from .random_vibration import AngularRandom, AxialRandom, mean_square, tones_of
+from .sweep import AngularSweep, AxialSweep, Sweep, remark
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,8 @@ class AngularVibration:
 
 @dataclass(frozen=True)
 class Housing:
-    """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration, and `[housing.motion]`."""
+    """The `[[housing.axial]]` and `[[housing.angular]]` tables, those of random vibration and of sweeps, and
+    `[housing.motion]`."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
@@ -85,6 +87,10 @@ class Housing:
     """Random vibrations along the shaft axis."""
     angular_random: list[AngularRandom] = field(default_factory=list)
     """Random vibrations of tilt."""
+    axial_sweep: list[AxialSweep] = field(default_factory=list)
+    """Sine sweeps along the shaft axis."""
+    angular_sweep: list[AngularSweep] = field(default_factory=list)
+    """Sine sweeps of tilt."""
     motion: Motion | None = None
     """Motion of the housing by samples."""
 
@@ -110,12 +116,19 @@ class Housing:
         """All tones."""
         return [*self.axial_tones, *self.angular_tones]
 
-    def remarks(self) -> list[str]:
-        """A sentence for each random vibration: how strong it is, over which band, of how many tones."""
+    @property
+    def sweeps(self) -> list[Sweep]:
+        """All sweeps."""
+        return [*self.axial_sweep, *self.angular_sweep]
+
+    def remarks(self, duration: float) -> list[str]:
+        """A sentence for each random vibration: how strong it is, over which band, of how many tones; and for each
+        sweep, of which a run of `duration` (s) may have a part."""
         kinds = [("axially", "m/s^2", random) for random in self.axial_random]
         kinds += [("angularly", "rad/s^2", random) for random in self.angular_random]
-        return [
+        shaken = [
             f"housing shaken {how} at random: {mean_square(random) ** 0.5:.4g} {unit} rms from {random.frequency[0]:g} "
             f"to {random.frequency[-1]:g} Hz, {random.tones} tones, seed {random.seed}"
             for how, unit, random in kinds
         ]
+        return shaken + [remark(sweep, duration) for sweep in self.sweeps]

@@ -9,6 +9,9 @@ from ..units import Angle, Length, Listed, Time
 COLUMNS = ("axial", "tilt_x", "tilt_y")
 # A spline of fifth degree has as many coefficients.
 FEWEST = 6
+# Least share of the median distance of samples: a solver steps as if the motion were everywhere as fast as the nearest
+# two of them can show, and a spline through two values at almost one time overshoots.
+NEAREST = 1e-3
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,12 @@ def motion_errors(motion: Motion) -> list[tuple[str, str, str]]:
     for n, (before, after) in enumerate(pairwise(times)):
         if not after > before:
             return [("time", f"{after:g} s after {before:g} s, sample {n + 2}", "times that increase")]
+    apart = [after - before for before, after in pairwise(times)]
+    usual, least = sorted(apart)[len(apart) // 2], min(apart)
+    if least < NEAREST * usual:
+        n = apart.index(least) + 1
+        found = f"{least:g} s between samples {n} and {n + 1}, {usual:g} s between most"
+        return [("time", found, "no two of them as near as that: leave one out, or give the motion evenly")]
     for name in COLUMNS:
         # A slip of units, or no number at all.
         if not all(map(math.isfinite, getattr(motion, name) or ())):

@@ -11,7 +11,8 @@ def tilt_is_imposed(scene) -> bool:
     rotor, stator = scene.rotor, scene.stator
     tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
     tilts += [whirl.angle for whirl in scene.shaft.whirl]
-    shaken = any(vibration.displacement or vibration.acceleration for vibration in scene.housing.angular_tones)
+    vibrations = (*scene.housing.angular_tones, *scene.housing.angular_sweep)
+    shaken = any(vibration.displacement or vibration.acceleration for vibration in vibrations)
     sampled = (m for m in (scene.housing.motion, scene.shaft.motion) if m)
     shaken = shaken or any(any(m.tilt_x or ()) or any(m.tilt_y or ()) for m in sampled)
     return shaken or any(any(points(tilt)) for tilt in tilts)

@@ -18,7 +18,8 @@ from .scene import Closing, Initial, RingStart, Scene, SceneError
 # A key that is given takes its alternatives in the same table away.
 ALTERNATIVES = {
     "turns": ("duration",),
-    "duration": ("turns",),
+    "duration": ("turns", "octaves_per_minute"),
+    "octaves_per_minute": ("duration",),
     "samples": ("samples_per_turn",),
     "samples_per_turn": ("samples",),
     "displacement": ("acceleration",),

@@ -16,7 +16,7 @@ HELPED = 0.5
 # An error of the size of the motion itself that sharper tolerances do not touch: chaos, and no method helps.
 WHOLE = 0.1
 # Steps of a run beyond which it is not done again, and beyond which not by a method that is not compiled.
-LONG, SLOW = 1_000_000, 1_000
+LONG, SLOW, COMPILED = 1_000_000, 1_000, ("adams", "bdf", "ida")
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,15 @@ class Try:
 def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> Try | None:
     """What to try after `one`, whose certificate is `found`; None where it is exact enough, did not end well, or
     nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Try, tolerance, certificate) of
-    those before."""
+    those before.  Where a sharper one gives up, what those before have is not lost."""
+    if outcome.status == Status.FAILED and tries and not one.last:
+        return _instead(run, solver, one, outcome, tries)
     if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
         return None
     if one.method == "expm" or one.last or outcome.counts.steps > LONG:
         return None
-    stuck = bool(tries) and found["solver"] > HELPED * tries[-1][2]["solver"]
+    measured = _measured(tries)
+    stuck = bool(measured) and found["solver"] > HELPED * measured[-1][2]["solver"]
     # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
     share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
     sharp = max(outcome.tolerance * share, LEAST_SHARPER * TIGHTEST)
@@ -59,10 +62,26 @@ def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> T
     )
     if len(tries) + 1 < MOST and free:
         return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
-    best = min(tries, key=lambda before: before[2]["solver"], default=None)
+    best = min(measured, key=lambda before: before[2]["solver"], default=None)
     if best and best[2]["solver"] < HELPED * found["solver"]:
         return Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
     return None
+
+
+def _measured(tries: list) -> list:
+    """Those of `tries` that did not give up."""
+    return [before for before in tries if before[2]["solver"] is not None]
+
+
+def _instead(run, solver: str, one: Try, outcome, tries: list) -> Try | None:
+    """What to try where a sharper try `one` gave up: the other method, else the best of those before."""
+    other, tried = OTHER[one.method], {before[0].method for before in tries}
+    why = f"{one.why}; at tolerance {outcome.tolerance:.1e} {one.method} gave up"
+    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (one.method, *tried)
+    if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
+        return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
+    best = min(_measured(tries), key=lambda before: before[2]["solver"], default=None)
+    return best and Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
 
 
 def judged(found: dict, outcome, tries: list):

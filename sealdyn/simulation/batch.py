@@ -1,8 +1,9 @@
 """Many runs of one scenario with other values: one compiled loop, Python only before and after it.
 
-What CVODE integrates, without friction that sticks, goes through the loop (dynamics/batch_loop.py); all others, and
-runs that do not end well, go one by one.  The loop has no trial and follows no errors: its runs have the cautious
-tolerance of solvers/contract.py, and their numbers are those of single runs within the asked accuracy.
+What CVODE integrates, without friction that sticks, goes through the loop (dynamics/batch_loop.py); all others, radial
+seals among them, and runs that do not end well, go one by one.  The loop has no trial and follows no errors: its runs
+have the cautious tolerance of solvers/contract.py, and their numbers are those of single runs within the asked
+accuracy.
 """
 
 from __future__ import annotations
@@ -20,10 +21,12 @@ from ..scenario.errors import ScenarioError
 from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario
 from ..scenario.settings import scenario_of, with_values
+from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from .looped_run import LoopedRun, NotSampled, integrate
-from .outputs import COMMON, missing, output, unit_of, with_speeds
+from .outputs import common, missing, output, unit_of, with_speeds
+from .radial import prepare_radial
 from .simulate import in_memory, prepare_run
 from .summary import state_names
 
@@ -31,7 +34,9 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+# What is asked of a face seal, and of a radial one, unless told.
 OUTPUTS = ("h_min.value", "relative_misalignment.max")
+RADIAL_OUTPUTS = ("whole.largest_gap", "settled.contact_share")
 # Length (s) of a run that only shows what a summary has.
 MOMENT = 1e-6
 
@@ -39,7 +44,7 @@ MOMENT = 1e-6
 def simulate_many(
     scenario: Scenario,
     sets: Iterable[Mapping[str, Any]],
-    outputs: Iterable[str] = OUTPUTS,
+    outputs: Iterable[str] | None = None,
     *,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -48,13 +53,21 @@ def simulate_many(
 
     `sets`: of each run {dotted key: value}, values as for `with_values` (scenario/settings.py); `outputs`: dotted keys
     of the run's summary, of which those made of samples ("leakage.mean") cost most, none the least; `workers`
-    processes (None: all cores); `progress(done, all)`.  Variables are the outputs, the end state (end.state.*, SI),
-    `status` and `message`; a run that cannot be has the status "not possible" and its reason as message.
+    processes (None: all cores); `progress(done, all)`.  Variables are the outputs, of a face seal the end state
+    (end.state.*, SI), `status` and `message`; a run that cannot be has the status "not possible" and its reason as
+    message.
     **Valid** runs with the same unknowns.
     Raises ScenarioError if no run can be read, SceneError if the first that can be read cannot be run.
+
+    >>> scenario = sealdyn.read_scenario("fms.toml")
+    >>> data = sealdyn.simulate_many(scenario, [{"rotor.runout": 1e-5}, {"rotor.runout": 2e-5}], workers=1)
+    >>> 1e6 * data["h_min.value"].values.round(8)
+    array([9.68, 9.36])
     """
     sets = [dict(values) for values in sets]
-    names = state_names(first_ready(scenario, sets).model.unknowns)
+    first = first_ready(scenario, sets)
+    names = [] if _is_radial(scenario) else state_names(first.model.unknowns)
+    outputs = _asked(scenario, outputs)
     outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in names)])]
     rows = rows_of(scenario, sets, outputs, workers, progress)
     units = {name: unit_of(name) for name in outputs}
@@ -65,7 +78,7 @@ def simulate_many(
 def sweep(
     source: Scenario | str | os.PathLike,
     grid: Mapping[str, Iterable[Any]],
-    outputs: Iterable[str] | str = OUTPUTS,
+    outputs: Iterable[str] | str | None = None,
     *,
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -77,10 +90,15 @@ def sweep(
     numbers are NaN, the status is "not possible" and the message its reason.  `workers`, `progress` as in
     `simulate_many`.
     Raises ScenarioError if no run can be read, a key has no values, or there is no such output.
+
+    >>> table = sealdyn.sweep("fms.toml", {"rotor.runout": ["10 urad", 2e-5]}, "h_min.value", workers=1)
+    >>> table["h_min.value"].round(8).to_dict()
+    {'10 urad': 9.68e-06, 2e-05: 9.36e-06}
     """
     import pandas
 
-    scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
+    scenario = scenario_of(source)
+    outputs = _asked(scenario, outputs)
     axes = {key: list(without_arrays(values)) for key, values in grid.items()}
     if not axes or not all(axes.values()):
         empty = next((key for key in axes if not axes[key]), "")
@@ -98,6 +116,17 @@ def sweep(
     table = pandas.DataFrame(columns_of(rows, outputs), index=index)
     table.attrs["units"] = {output: unit_of(output) for output in outputs if unit_of(output)}
     return table
+
+
+def _is_radial(scenario) -> bool:
+    return isinstance(scenario.scene, RadialScene)
+
+
+def _asked(scenario, outputs) -> list[str]:
+    """Outputs as a list; the usual ones of the kind of seal where none are told."""
+    if outputs is None:
+        return [*(RADIAL_OUTPUTS if _is_radial(scenario) else OUTPUTS)]
+    return [outputs] if isinstance(outputs, str) else list(outputs)
 
 
 def rows_of(scenario, sets: list[dict], outputs: list[str], workers, progress) -> list[dict]:
@@ -122,14 +151,14 @@ def first_ready(scenario, sets):
         except ScenarioError as error:
             first = error if k == 0 else first
         else:
-            return prepare_run(found)[0]
+            return (prepare_radial if _is_radial(found) else prepare_run)(found)[0]
     raise first
 
 
 def refuse_outputs(scenario, sets: list[dict], outputs, where: str) -> None:
     """Raises ScenarioError, which names `where`, for outputs that no summary of these runs has: found before any is
     run, by a moment of the first that can be one."""
-    if set(outputs) <= {"status", "message", *COMMON}:
+    if set(outputs) <= {"status", "message", *common(scenario.scene)}:
         return
     for values in sets:
         try:
@@ -151,7 +180,10 @@ def _at_once(scenario, points) -> list:
     rows, alike = [None] * len(points), {}
     for k, point in enumerate(points):
         try:
-            run = LoopedRun(with_values(scenario, point["set"]), point["outputs"])
+            one = with_values(scenario, point["set"])
+            if _is_radial(one):
+                continue
+            run = LoopedRun(one, point["outputs"])
         except Exception as error:
             rows[k] = error
             continue
@@ -179,5 +211,5 @@ def _alone(scenario, point) -> dict:
 
 
 def _row(parts, point) -> dict:
-    row = {"status": parts["status"], **{key: output(parts, key) for key in point["outputs"]}}
+    row = {"status": "", **{key: output(parts, key) for key in point["outputs"]}} | {"status": str(parts["status"])}
     return row if row["status"] == Status.OK else {**row, "message": parts["message"]}

@@ -95,5 +95,6 @@ def reference_rate(run) -> float:
             w = shaft + faster * tau
             found += [abs(w), abs(w - stator - turning * tau)]
     found += [2 * math.pi * tone.frequency for tone in scene.housing.tones]
+    found += [2 * math.pi * max(sweep.frequency) for sweep in scene.housing.sweeps]
     found += [sampled.rate for sampled in motions(scene).values()]
     return max(found) or run.model.reference_rate

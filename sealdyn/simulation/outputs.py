@@ -2,18 +2,32 @@
 
 import difflib
 
+from ..scene.radial import RadialScene
 from .summary import SPEEDS, plain
 
 UNITS = {
     "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
     "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
     "friction.power": "W", "friction.max_power": "W", "stability.critical_speed": "rad/s", "film.clearance": "m",
-    "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m", "film.tilt_stiffness": "N m/rad",
-    "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad", "closing.force": "N",
+    "film.leakage": "m^3/s", "film.friction_power": "W", "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m",
+    "film.tilt_stiffness": "N m/rad", "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad",
+    "closing.force": "N", "contact.first_lift": "s", "contact.energy_lost": "J", "follower.mass": "kg",
+    "follower.stiffness": "N/m", "follower.damping": "N s/m", "follower.preload": "N", "follower.friction": "N",
+    "follower.arc": "m", "closed_form.speed": "rad/s", "closed_form.needed_preload": "N",
+    "closed_form.largest_eccentricity": "m",
+}  # fmt: skip
+# Of the whole run of a radial seal, and of its second half.
+UNITS |= {
+    f"{part}.{name}": unit
+    for part in ("whole", "settled")
+    for name, unit in {
+        "largest_gap": "m", "largest_gap_time": "s", "largest_gap_angle": "rad", "least_load": "N",
+        "least_load_time": "s", "largest_load": "N", "load": "N", "friction_torque": "N m",
+        "leakage_estimate": "m^3/s",
+    }.items()
 }  # fmt: skip
 
-
-# What every summary has.
+# What every summary of a face seal has.
 COMMON = (
     "h_min.value",
     "h_min.of_clearance",
@@ -24,6 +38,20 @@ COMMON = (
     "contact_margin",
     "stability.verdict",
 )
+# What every summary of a radial seal has.
+RADIAL = (
+    "settled.contact_share",
+    "whole.largest_gap",
+    "whole.least_load",
+    "settled.friction_torque",
+    "settled.leakage_estimate",
+    "closed_form.margin",
+)
+
+
+def common(scene) -> tuple[str, ...]:
+    """What every summary of a seal of this kind has."""
+    return RADIAL if isinstance(scene, RadialScene) else COMMON
 
 
 def output(parts: dict, key: str):

@@ -2,7 +2,6 @@
 
 import math
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from ..dynamics.signals import fields, fields_of, samples
 from ..numerics.piecewise_linear import initially, points
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
+from .bare_numbers import slips
 from .beside_reynolds import TORN, beside_reynolds
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
@@ -29,39 +29,6 @@ FAST = 0.3
 HEAVY, OFF = 0.05, 0.01
 
 
-class Usual(NamedTuple):
-    """What a number without a unit is of seals, from `least` to `most` in its SI `unit`; else it may be one in the unit
-    `shown`, of which SI values less `zero` are `factor` times as many."""
-
-    least: float
-    most: float
-    unit: str
-    shown: str
-    factor: float
-    zero: float = 0.0
-
-
-WEARS = Usual(0.0, 1e-11, "1/Pa", "mm^3/(N m)", 1e9)
-SMALL_ANGLE = Usual(-0.02, 0.02, "rad", "mrad", 1e3)
-ABSOLUTE = Usual(1e3, 1e9, "Pa", "bar", 1e-5)
-OF_A_FACE = Usual(0.0, 1.0, "m", "mm", 1e3)
-OF_A_RING = Usual(0.0, 100.0, "kg", "g", 1e3)
-USUAL = {
-    "film.viscosity": Usual(1e-6, 0.1, "Pa s", "cP", 1e3),
-    "film.temperature": Usual(273.0, 330.0, "K", "degC", 1.0, 273.15),
-    "film.outer_pressure": ABSOLUTE, "film.inner_pressure": ABSOLUTE,
-    "film.outer_radius": OF_A_FACE, "film.inner_radius": OF_A_FACE,
-    "film.coning": SMALL_ANGLE, "rotor.runout": SMALL_ANGLE,
-    "rotor.misalignment": SMALL_ANGLE, "stator.misalignment": SMALL_ANGLE,
-    "film.density": Usual(100.0, 1e5, "kg/m^3", "g/cm^3", 1e-3),
-    "film.specific_heat": Usual(100.0, 1e5, "J/(kg K)", "kJ/(kg K)", 1e-3),
-    "rotor.mass": OF_A_RING, "stator.mass": OF_A_RING,
-    "contact.roughness": Usual(0.0, 1e-5, "m", "um", 1e6),
-    "contact.compressive_strength": Usual(1e6, 1e12, "Pa", "MPa", 1e-6),
-    "contact.stator_wear_coefficient": WEARS, "contact.rotor_wear_coefficient": WEARS,
-}  # fmt: skip
-
-
 def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Caution]:
     """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `heat`: its rise (K) if all friction heats
     it, and that friction over the face (W/m^2), thinnest film `h_min` (m), rate of `wear` (m/s)."""
@@ -70,9 +37,23 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
     found += _flash(run, outcome)
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
-    elif not isinstance(scene.film.coefficients, Coefficients) or model.interface.name != "linear":
+    elif _is_liquid(model):
         found += [*_turbulence(model, leakage), *_inertia(scene), *_floored(run)]
     return found
+
+
+def before_the_run(scenario, model) -> list[Caution]:
+    """The cautions that need no run: bare numbers, the film's inertia, turbulence of the sliding, edges that boil."""
+    found, scene = [*_units(scenario, model), *_arm(model.scene)], model.scene
+    if _is_liquid(model):
+        found += [*_turbulence(model, math.nan), *_inertia(scene)]
+    return [*found, *_boils(scene.film, _least_edge(scene.film))]
+
+
+def _is_liquid(model) -> bool:
+    """Whether the film is a liquid, and not coefficients of one's own."""
+    film = model.scene.film
+    return film.gas is None and not (isinstance(film.coefficients, Coefficients) and model.interface.name == "linear")
 
 
 def _floored(run):
@@ -87,28 +68,11 @@ def _floored(run):
 
 def _units(scenario, model):
     """Bare numbers where a unit is usual, faces a millimetre apart."""
-    for ring, speed in (("shaft", scenario.scene.shaft.speed), ("stator", scenario.scene.stator.speed)):
-        if f"{ring}.speed" in scenario.bare:
-            fastest = max(points(speed), key=abs)
-            read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
-            yield Caution(Concern.UNITS, f"{ring}.speed without a unit is read as {read}")
-    for key, usual in USUAL.items():
-        value = _held(scenario.scene, key) if key in scenario.bare else None
-        if value is not None and not usual.least <= value <= usual.most:
-            shown = (value - usual.zero) * usual.factor
-            read = f"{value:.6g} {usual.unit}, which is {shown:.6g} {usual.shown}"
-            yield Caution(Concern.UNITS, f"{key} without a unit is read as {read}")
+    yield from (Caution(Concern.UNITS, said) for said in slips(scenario))
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
         sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
         yield Caution(Concern.UNITS, sentence)
-
-
-def _held(scene, key: str) -> float | None:
-    """The value at a dotted key, of a table its first one; None where there is none."""
-    for name in key.split("."):
-        scene = getattr(scene, name, None)
-    return None if scene is None else initially(scene)
 
 
 def _worn(scenario, rate):
@@ -238,13 +202,23 @@ def _flash(run, outcome):
     film = run.model.scene.film
     if film.vapour_pressure is None:
         return
-    least = min(*points(film.outer_pressure), *points(film.inner_pressure))
+    least = _least_edge(film)
     if fields_of(run.model):
         least = min(least, _least_pressure(run.segment(outcome.segment), outcome.tau, outcome.y))
-    if least < film.vapour_pressure:
+    yield from _boils(film, least)
+
+
+def _boils(film, least):
+    """A pressure (Pa) below the vapour pressure."""
+    if film.vapour_pressure is not None and least < film.vapour_pressure:
         vapour = f"below the vapour pressure of {film.vapour_pressure / 1e3:.4g} kPa"
         sentence = f"the film falls to {least / 1e3:.4g} kPa, {vapour}: it boils there, which no film here knows"
         yield Caution(Concern.FLASHING, sentence)
+
+
+def _least_edge(film) -> float:
+    """Least pressure (Pa) at an edge at any time."""
+    return min(*points(film.outer_pressure), *points(film.inner_pressure))
 
 
 def _least_pressure(segment, tau, y) -> float:

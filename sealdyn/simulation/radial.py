@@ -106,6 +106,14 @@ def simulate_radial(scenario, out, progress=None, stop=None, resume=False) -> Re
     return Result(str(summary["status"]), summary["message"], plain(summary), path)
 
 
+def radial_in_memory(scenario) -> dict:
+    """A run without an archive: its summary, without a certificate."""
+    run, method, why, *_ = prepare_radial(scenario)
+    sink, tolerance = Nothing(run, None, None), tolerance_for(method, run.model.accuracy, run.memory)
+    outcome = solve(run, method, run.model.accuracy, sink, audit=EnergyAudit(), tolerance=tolerance)
+    return summary_of(scenario, run, outcome, method, why)
+
+
 class RadialSink(ArchiveSink):
     """Takes the series of a radial seal into the archive, and at a few instants what is around the shaft."""
 

@@ -20,7 +20,13 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Result:
     """What a run leaves: `status` (a value of Status), a sentence, the summary as a dict (as `run --json` prints it,
-    SI), and the path of the archive, or None and its `content` where it was kept in memory only."""
+    SI), and the path of the archive, or None and its `content` where it was kept in memory only.
+
+    >>> result = sealdyn.run("fms.toml")
+    >>> result.status, float(result.data.h_min[0])
+    ('ok', 9.2e-06)
+    >>> result.plot.orbit().savefig("orbit.pdf")
+    """
 
     status: str
     message: str

@@ -19,7 +19,14 @@ from .simulate import simulate
 
 
 class RunEnded(Exception):
-    """A run that did not end well, of which numbers were asked; `status` and `message` as in a Result."""
+    """A run that did not end well, of which numbers were asked; `status` and `message` as in a Result.
+
+    >>> try:  # beyond the threshold of its stability
+    ...     sealdyn.evaluate("fms.toml", {"shaft.speed": 9000, "run.turns": 60, "rotor.runout": 1e-4}, "h_min.value")
+    ... except sealdyn.RunEnded as ended:
+    ...     print(ended.status)
+    collapsed
+    """
 
     def __init__(self, name: str, status: str, message: str):
         super().__init__(name, status, message)
@@ -44,6 +51,10 @@ def run(
     `allow_large` as in `simulate`.  The result has `status`, `message`, `summary`, `data` (xarray) and `plot`; a run
     that fails is a result with its status.
     Raises ScenarioError for what cannot be run, ArchiveError for an archive that cannot be read or written.
+
+    >>> result = sealdyn.run("fms.toml", {"rotor.runout": "20 urad"}, out="kept.h5")
+    >>> result.archive.name, round(1e6 * result.summary["h_min"]["value"], 2)
+    ('kept.h5', 9.36)
     """
     scenario = scenario_of(source, overrides)
     how = {"progress": progress, "stop": stop, "allow_large": allow_large}
@@ -66,6 +77,9 @@ def evaluate(
     (the steady extremes of one that does not settle) is NaN.
     Raises ScenarioError for what cannot be run, ValueError for an output that there is not, and RunEnded if the run
     did not end well, unless its "status" is among the outputs.
+
+    >>> sealdyn.evaluate("fms.toml", {"film.clearance": "9 um"}, ["h_min.value", "status"])
+    {'h_min.value': 8.2...e-06, 'status': 'ok'}
     """
     scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
     (row,) = run_many(scenario, [{"set": dict(values), "outputs": outputs}])

@@ -29,6 +29,7 @@ from ..solvers.contract import Cause, Counts, Enough, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import Outcome, solve
 from .attempts import Try, judged, next_try
+from .bare_numbers import slips
 from .certificate import TrialRun, certify, choose_tolerance
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
@@ -71,6 +72,10 @@ def simulate(
     interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
     `allow_large`: also a run of a day or of an archive of gigabytes (simulation/size.py).
     Raises SceneError or ArchiveError for a scene or file that cannot be, or that another run is writing.
+
+    >>> result = sealdyn.simulate(sealdyn.read_scenario("fms.toml"), "fms.h5")
+    >>> result.summary["end"]["time"] == result.summary["end"]["asked"]
+    True
     """
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
     refuse_large(scenario, allow_large)
@@ -194,6 +199,10 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
 
 def in_memory(scenario, speeds: bool = False) -> dict:
     """The same, as its `parts` (summary.py)."""
+    if isinstance(scenario.scene, RadialScene):
+        from .radial import radial_in_memory
+
+        return radial_in_memory(scenario)
     run, method, why, interval, count, _ = prepare_run(scenario)
     sink, (trial, errors) = TallySink(run, interval, count), choose_tolerance(run, method)
     outcome = solve(run, method, run.model.accuracy, sink, errors=errors, **_found(trial))
@@ -202,6 +211,16 @@ def in_memory(scenario, speeds: bool = False) -> dict:
 
 
 def prepare_run(scenario):
+    """The same as `_prepare_run`; where the scene cannot be, its refusal names the numbers that may want a unit."""
+    try:
+        return _prepare_run(scenario)
+    except SceneError as error:
+        if not (meant := slips(scenario)):
+            raise
+        raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
+
+
+def _prepare_run(scenario):
     """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
     number of intervals, and a linear film's estimated error (or None).
     Raises SceneError or ArchiveError."""

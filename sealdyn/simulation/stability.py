@@ -32,7 +32,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
     elif speeds:
         every = thresholds(model, interval)
         searched = {
-            "speeds_held": _held(model, interval),
+            "speeds_held": speeds_held(model, interval),
             "critical_speed": min(every, default=None),
             "thresholds": every,
             "resonance_speeds": resonance_speeds(model, interval),
@@ -60,7 +60,7 @@ def whirl_ratio(found, speed: float) -> float | None:
     return (-1.0 if tilt.direction == "backward" else 1.0) * tilt.value.imag / speed
 
 
-def _held(model, interval) -> list[float] | None:
+def speeds_held(model, interval=None) -> list[float] | None:
     """The `held_speeds` (rad/s) of what `thresholds` looks through, None where that is all."""
     low, high = _range(model, interval)
     whole = low / AROUND, high * AROUND

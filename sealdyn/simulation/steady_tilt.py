@@ -9,9 +9,12 @@ def steady_tilt(model) -> tuple[complex, float, str]:
         return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
     if model.scene.shaft.motion or model.scene.housing.motion:
         return 0.0, 0.0, "a motion by samples has no linear steady state: aligned"
+    segment = model.segment()
+    if not segment.harmonic:
+        return 0.0, 0.0, "a sweep has no linear steady state: aligned"
     linear = model.linear_scene()
     parts: dict[float, complex] = {}
-    for harmonic in model.segment().harmonics():
+    for harmonic in segment.harmonics():
         g = linear.relative(harmonic, linear.response(harmonic))
         # Re(g e^{iwt}) is a forward and a backward circle.
         w = harmonic.frequency

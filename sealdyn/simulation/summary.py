@@ -9,13 +9,14 @@ from .. import closed_form
 from ..dynamics import modes
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
-from ..dynamics.interface import rest_state
+from ..dynamics.interface import flow_at_rest, rest_state
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.steady_extremes import steady_extremes
-from ..faces.geometry import TOUCH
+from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
@@ -284,14 +285,17 @@ def _temperature_rise(model, tally):
 
 def _film(segment, linear, tally):
     model, k, d = segment.model, linear.film_k, linear.film_d
+    aligned = cache(lambda: _aligned(segment))
     return {
         "clearance": model.clearance + model.axial_shift(segment.interval),
+        "leakage": lambda: aligned()[0],
+        "friction_power": lambda: aligned()[1],
         "axial_stiffness": k[0, 0],
         "axial_damping": d[0, 0],
         "tilt_stiffness": k[1, 1],
         "tilt_damping": d[1, 1],
         "cross_stiffness": k[1, 2],
-        "exit_mach": lambda: _exit_mach(model),
+        "exit_mach": lambda: _exit_mach(segment),
         "max_cavitated_fraction": lambda: tally.largest["cavitated_fraction"] if tally.largest else math.nan,
         "equilibria": [
             {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
@@ -299,12 +303,30 @@ def _film(segment, linear, tally):
     }
 
 
-def _exit_mach(model):
-    """Mach number at which a gas leaves the aligned faces; None of a film that does not know."""
-    film, f = model.observed
-    if not hasattr(film, "exit_mach"):
-        return None
-    return film.exit_mach(f, rest_state(model.scene, model.clearance, model.start)[0])[1]
+def _at_rest(segment):
+    """Gap state of the aligned faces where they rest under the conditions at the end of the run."""
+    model = segment.model
+    shift = model.axial_shift(segment.interval)
+    return rest_state(model.scene, model.clearance, segment.interval, shift=shift)[0]
+
+
+def _aligned(segment):
+    """Leakage (m^3/s, from high to low pressure; as volume of a gas at normal conditions) and friction (W) of these;
+    NaN where there is no flow."""
+    model, s = segment.model, _at_rest(segment)
+    try:
+        flow_at_rest(model.interface, s)
+    except SceneError:
+        return math.nan, math.nan
+    from_high_to_low = -1.0 if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else 1.0
+    torque = s[TORQUE] + (0.0 if model.contact is None else s[CONTACT_TORQUE])
+    return from_high_to_low * s[FLOW_INNER], torque * s[SPIN_DIFFERENCE]
+
+
+def _exit_mach(segment):
+    """Mach number at which a gas leaves these; None of a film that does not know."""
+    film, f = segment.model.observed
+    return film.exit_mach(f, _at_rest(segment))[1] if hasattr(film, "exit_mach") else None
 
 
 def _closing(segment):
@@ -327,7 +349,7 @@ def _first(quantity, segment):
 def _linear_steady(segment, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
-    if segment.sampled:
+    if not segment.harmonic:
         return None
     if period is None and len(rows):
         frequencies = [w for w in rows[:, 7] if w]
@@ -338,9 +360,10 @@ def _linear_steady(segment, linear, period):
 
 def _contact_margin(segment, linear, tilt):
     """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
-    there are any: 0 where they touch without forcing.  Unknown of wavy faces."""
+    there are any: 0 where they touch without forcing.  Unknown of wavy faces, and of a sweep, which is over in the last
+    segment."""
     model = segment.model
-    if waves_of(model.scene):
+    if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan
     face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)

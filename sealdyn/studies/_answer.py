@@ -31,7 +31,15 @@ if TYPE_CHECKING:
 class Answer:
     """What a study leaves: its name, `status` (a value of Status), a sentence, the `verdict` in sentences, the `answer`
     as a dict (as `study --json` prints it, SI), and the path of the archive, or None and its `content` where it was
-    kept in memory only."""
+    kept in memory only.
+
+    >>> answer = sealdyn.study("equilibrium", "fms.toml", points=11)
+    >>> answer.verdict[0]
+    'Film and closing force balance at 1 clearance(s) from 1 to 100 um; stable: 10 um.'
+    >>> answer.data.coords["curve.clearance"].attrs["units"]
+    'm'
+    >>> answer.plot().savefig("equilibrium.svg")
+    """
 
     study: str
     status: str
@@ -74,6 +82,10 @@ def study(
     `name` with hyphens or underscores; `settings` those of `[study.NAME]`; `without` "contact" or "secondary-seal";
     the others as in `run_study`.
     Raises ScenarioError for what cannot be studied, ClusterError, ArchiveError.
+
+    >>> answer = sealdyn.study("sweep", "fms.toml", vary="rotor.runout=10,20 urad", outputs="h_min.value")
+    >>> 1e6 * answer.data["h_min.value"].values.round(8)
+    array([9.68, 9.36])
     """
     scenario, name = scenario_of(source), name.replace("_", "-")
     names = study_names()

@@ -103,6 +103,11 @@ def run_study(
     "tcp://host:port" or a `dask.distributed.Client`.  `results`: a folder that keeps finished points for other studies,
     and for those of other machines.  `leave_out`: "contact" for the film alone, or "secondary-seal".
     Raises ScenarioError, SceneError, ClusterError (numerics.cluster), ArchiveError where another writes the archive.
+
+    >>> scenario = sealdyn.read_scenario("fms.toml")
+    >>> answer = sealdyn.run_study("equilibrium", scenario, "balance.h5", flags={"points": 11}, workers=1)
+    >>> answer["archive"], answer["roots"][0]["stable"]
+    ('balance.h5', True)
     """
     name = name.replace("-", "_")
     module = study_module(name)
@@ -155,17 +160,21 @@ def _is_radial(scene) -> bool:
 
 def _refuse_seal(name: str, module, scene):
     """Raises SceneError for a seal of a kind that the study `name` does not know."""
-    if _is_radial(scene) != getattr(module, "RADIAL", False):
+    known = getattr(module, "ANY_SEAL", False) or _is_radial(scene) == getattr(module, "RADIAL", False)
+    if not known:
         study = name.replace("_", "-")
         if _is_radial(scene):
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
-            raise SceneError(key, found, f"a face seal for {study}; of radial ones there is followability")
+            raise SceneError(key, found, f"a face seal for {study}; of radial ones there are followability and sweep")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
     if _is_radial(scene) or getattr(module, "WITH_WAVES", False):
         return
     if waves_of(scene):
+        beside = getattr(module, "OF_WAVES", "")
         key = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
-        raise SceneError(key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around")
+        raise SceneError(
+            key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around{beside}"
+        )
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
 

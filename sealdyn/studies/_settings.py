@@ -1,11 +1,14 @@
 """What a study may be told, and how long it takes: for help, for the JSON schema and for the page of keys."""
 
 import dataclasses
+import difflib
 import json
 from dataclasses import dataclass
 
+from ..scenario.errors import ScenarioError
 from ..scenario.reader import ScenarioFile
 from ..scenario.schema import json_schema, table_schema
+from ..scenario.settings import study_settings
 from . import study_names
 from ._runner import study_module
 
@@ -36,6 +39,23 @@ def settings_of(name: str) -> list[Setting]:
         default = "" if field.default in (None, (), "") else typed(field.default)
         rows.append(Setting(field.name, words_of(holds), default, holds["description"].splitlines()[0]))
     return rows
+
+
+def refuse_unknown_studies(scenario) -> None:
+    """Raises ScenarioError for a table [study.NAME] of a study that there is not."""
+    names = study_names()
+    for name in scenario.study:
+        if name.replace("_", "-") not in names:
+            near = difflib.get_close_matches(name.replace("_", "-"), names, 1)
+            expected = f"one of {', '.join(names)}" + (f"; nearest '{near[0]}'" if near else "")
+            raise ScenarioError(scenario.name, f"study.{name}", "an unknown study", expected)
+
+
+def refuse_settings(scenario) -> None:
+    """Raises ScenarioError for a table [study.NAME] that its study does not take."""
+    for name in scenario.study:
+        study = name.replace("-", "_")
+        study_settings(scenario, study, study_module(study).Settings, {})
 
 
 def time_of(name: str) -> str:

@@ -29,9 +29,19 @@ def quantity(value: float, unit: str, digits: int = 5) -> str:
     return f"{value * factor:.{digits}g}{f' {name}' if name not in ('', '1') else ''}"
 
 
+def plain(value: float, digits: int = 5) -> str:
+    """A number of so many digits, without a power of ten below ten millions."""
+    return f"{float(f'{value:.{digits}g}'):.{max(digits, 7)}g}"
+
+
 def speed(w: float, digits: int = 5) -> str:
     """A shaft speed (rad/s) in words."""
-    return f"{w:.{digits}g} rad/s ({w * RPM:.{digits}g} rpm)"
+    return f"{plain(w, digits)} rad/s ({plain(w * RPM, digits)} rpm)"
+
+
+def no_film_beyond(held) -> str:
+    """Up to which speed a film holds the closing force, of `speeds_held` (rad/s), None where that is every speed."""
+    return f" up to {speed(held[1])}, beyond which no film holds the closing force" if held else ""
 
 
 def frequencies(low: float, high: float, digits: int = 5) -> str:

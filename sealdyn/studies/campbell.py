@@ -23,6 +23,8 @@ units |= dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio")
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9
+# Of their size: eigenvalues that differ by less are equal.
+SAME = 1e-9
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -143,20 +145,41 @@ def _match(here, there) -> tuple[np.ndarray, float]:
 def described(values, shapes, speeds) -> list[dict]:
     """Modes as the answer has them, from all eigenvalues (each twice, with its conjugate).
 
-    Of a tilt pair the member that turns as x + i y is kept: its frequency is signed, positive forward.
+    Of a tilt pair the member that turns as x + i y is kept: its frequency is signed, positive forward.  Two that are
+    equal at every speed turn neither way, as any mix of them is a mode: one is kept.
     """
-    found = []
-    for row, shape in zip(values, shapes, strict=True):
+    found, twins = [], _twins(values)
+    for k, (row, shape) in enumerate(zip(values, shapes, strict=True)):
         axial, x, y = shape[:, 0::3], shape[:, 1::3], shape[:, 2::3]
         total = np.linalg.norm(shape, axis=1)
         kind = "axial" if np.median(np.linalg.norm(axial, axis=1) / total) > 0.5 else "tilt"
         turns = np.linalg.norm(x + 1j * y, axis=1) - np.linalg.norm(x - 1j * y, axis=1)
         keep = np.median(turns / total) > 0 if kind == "tilt" else not np.median(row.imag) < -NOT_OSCILLATING
+        if kind == "tilt" and k in twins:
+            keep = twins[k]
         if keep:
             found.append((kind, row))
-    # Slowest first; modes are numbered in this order.
-    found.sort(key=lambda pair: (pair[0] == "axial", np.median(np.abs(pair[1].imag))))
+    # Slowest first, of equal ones the forward one; modes are numbered in this order.
+    found.sort(key=lambda pair: (pair[0] == "axial", *_place(np.median(pair[1].imag))))
     return [_mode(kind, row) for kind, row in found]
+
+
+def _place(frequency: float) -> tuple[float, float]:
+    """Size to nine digits and opposite of a signed frequency: what modes are sorted by."""
+    return float(f"{abs(frequency):.9g}"), -frequency
+
+
+def _twins(values) -> dict[int, bool]:
+    """Rows of `values` (modes, speeds) that equal another one at every speed, and whether each is the first of two."""
+    first, found = [], {}
+    for k, row in enumerate(values):
+        other = next((j for j in first if np.allclose(values[j], row, rtol=SAME, atol=0.0)), None)
+        if other is None:
+            first.append(k)
+        else:
+            found |= {other: True, k: False}
+            first.remove(other)
+    return found
 
 
 def sharpened(values, modes) -> np.ndarray:

@@ -7,6 +7,7 @@ Beyond: the family of circular whirls that leaves the threshold (analysis/whirl)
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -19,6 +20,7 @@ from ..analysis.whirl import (
     contact_tilt_aligned,
     free_model,
     growth_rate,
+    linear_growth,
     tipping_disturbance,
 )
 from ..dynamics.linearisation import moves_with_speed
@@ -28,8 +30,9 @@ from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.method_selection import choose_method
-from ..simulation.stability import critical_speed, held_speeds, natural_frequency
+from ..simulation.stability import critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
+from ._words import no_film_beyond, plain
 from ._words import speed as speed_words
 
 REFUSES = ("secondary-seal",)
@@ -59,7 +62,7 @@ class Settings:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    method: str = "adams"
+    method: Literal["adams", "bdf", "dop853", "radau"] = "adams"
     """Integrator."""
     accuracy: float = 1e-7
     """Accuracy to begin with, tightened until it cannot decide a verdict."""
@@ -85,6 +88,7 @@ def run(scenario, settings, tools) -> dict:
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
+    answer["speeds_held"] = speeds_held(model)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     return {**answer, "verdict": sentences(answer)}
@@ -142,15 +146,18 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
             said = f"a disturbance {'grows' if True in signs else 'dies out'} at every speed tried"
         elif not signs:
             said = _unmeasured(rows) or "neither growth nor decay beyond the method's own"
-        if pace > fastest / 10.0:
+        if max(tried) <= high and pace > fastest / 10.0:
             said += f", up to {FASTEST:g} m/s at the outer radius"
         found = {"value": None, "uncertainty": None, "reason": said}
         # That there is none is not confirmed: growth here and decay there, or neither.
         undecided = {} if len(signs) == 1 else {"status": Status.FAILED}
         return {"time_domain": found, "growth": columns(rows, speeds), **undecided}
     if eigenvalue > fastest:
-        reason = f"not run, {eigenvalue * scene.film.outer_radius:.4g} m/s at the outer radius are of no seal"
-        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns([], [])}
+        edge = plain(eigenvalue * scene.film.outer_radius, 4)
+        reason = f"not run, {edge} m/s at the outer radius are of no seal"
+        speeds = [share * eigenvalue for share in SHARES]
+        rows = [{"eigenvalue": linear_growth(free_model(scene, w))} for w in speeds]
+        return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
     speeds = [share * eigenvalue for share in SHARES]
     rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
     around = between(rows, speeds)
@@ -207,7 +214,7 @@ def columns(rows, speeds) -> dict:
 
 def tipping(scene, point: dict) -> dict:
     """The disturbance that tips the seal at one speed, and the whirl it passes on the way."""
-    return tipping_disturbance(scene, point["speed"])
+    return tipping_disturbance(scene, point["speed"], point["parting"])
 
 
 def fate(scene, point: dict) -> dict:
@@ -220,20 +227,25 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     if not settings.beyond:
         return None
     if model.unknowns.linear:
-        return {"verdict": "linear film: nothing bounds the whirl and nothing tips it", "tipping": []}
+        return {
+            "verdict": "Beyond linear: of a linear film nothing bounds the whirl and nothing tips it.",
+            "tipping": [],
+        }
     if threshold is not None and threshold > FASTEST / scene.film.outer_radius:
         return {"verdict": "Beyond linear: not followed at such a speed.", "tipping": []}
     if threshold is None:
-        return {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+        return {"verdict": "Beyond linear: no threshold, so no whirl branches off.", "tipping": []}
     if scene.contact:
         verdict = "Beyond linear: asperities bound the whirl (study rub); without contact the film's own whirls."
         return {"verdict": verdict, "tipping": []}
     if model.unknowns.film_unknowns:
-        return {"verdict": "a film with unknowns of its own: its whirls beyond linear are not followed", "tipping": []}
+        verdict = "Beyond linear: whirls of a film with unknowns of its own are not followed."
+        return {"verdict": verdict, "tipping": []}
     at_threshold = free_model(scene, threshold)
     family = branch(at_threshold, threshold)
     if not family:
-        return {"verdict": "no family of circular whirls was found at the threshold", "tipping": []}
+        verdict = "Beyond linear: no family of circular whirls was found at the threshold."
+        return {"verdict": verdict, "tipping": []}
     unit = contact_tilt_aligned(at_threshold)
     found = {"kind": kind_of(family, threshold), "branch": family_columns(family), "contact_tilt": unit}
     ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
@@ -241,7 +253,9 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
     low, high = min(w.speed for w in family), max(w.speed for w in family)
     inner = ((np.arange(settings.speeds) + 0.5) / settings.speeds).tolist()
     below = [threshold - (threshold - low) * x for x in inner] if low < 0.9995 * threshold else []
-    rows = tools.map(partial(tipping, scene), [{"speed": w} for w in below], "tipping")
+    near = [min(family, key=lambda whirl: abs(whirl.speed - w)) for w in below]
+    points = [{"speed": w, "parting": whirl.growth} for w, whirl in zip(below, near, strict=True)]
+    rows = tools.map(partial(tipping, scene), points, "tipping")
     found["tipping"] = [compared({"speed": w, **row}, family, False) for w, row in zip(below, rows, strict=True)]
     above = [threshold + (high - threshold) * x for x in inner] if high > 1.0005 * threshold else []
     outside = [min(low - 0.005 * threshold, 0.998 * threshold), max(high + 0.005 * threshold, 1.002 * threshold)]
@@ -287,8 +301,8 @@ def sentences(answer) -> list[str]:
     """The verdict."""
     said, eigen, time = [], answer["eigenvalue"], answer["time_domain"]
     if eigen is None:
-        said.append(f"No critical speed: {answer['formula_reason'] or 'eigenvalues cross at no speed'}; in time "
-                    f"{time['reason']}.")  # fmt: skip
+        why = answer["formula_reason"] or "eigenvalues cross at no speed"
+        said.append(f"No critical speed{no_film_beyond(answer['speeds_held'])}: {why}; in time {time['reason']}.")
     else:
         formula = answer["formula"]
         roads = f"eigenvalues {eigen:.6g}"
@@ -297,7 +311,7 @@ def sentences(answer) -> list[str]:
             roads += f"; in time: {time['reason']}"
         else:
             roads += f", in time {time['value']:.6g} +- {time['uncertainty']:.1g}"
-        said.append(f"Critical speed {eigen:.5g} rad/s ({eigen * 30 / np.pi:.0f} rpm): {roads}.")
+        said.append(f"Critical speed {speed_words(eigen)}: {roads}.")
     if time.get("numerical_damping") is not None:
         closest = min(abs(v) for v in answer["growth"]["time_domain"] if v is not None)
         said.append(
@@ -329,11 +343,22 @@ def nonlinear_sentences(found, threshold) -> list[str]:
             said.append(f"At {row['speed'] / threshold:.4f} of the threshold a whirl of "
                         f"{row['disturbance'] * 1e6:.0f} urad ({row['disturbance'] / unit:.3g} of the contact tilt) "
                         "tips it.")  # fmt: skip
+    slow = sorted((row["speed"], row["branch"]) for row in found["tipping"] if row.get("turns") and row["branch"])
+    if slow:
+        shares, sizes = [at / threshold for at, _ in slow], [1e6 * size for _, size in slow]
+        said.append(f"At {_span(shares, '.4f')} of the threshold a whirl of {_span(sizes, '.0f')} urad tips it, by the "
+                    "family alone: runs that begin beside it part too slowly to be told apart in time.")  # fmt: skip
     said += [fates(found["directions"], start) for start in ("small", "large")]
     apart = [abs(row["difference"]) for row in (*found["tipping"], *found["directions"]) if row["difference"]]
     if apart:
         said.append(f"Whirls by continuation and in time agree within {max(apart):.1e} ({len(apart)} compared).")
     return said
+
+
+def _span(values, form) -> str:
+    """First to last of some numbers."""
+    first, last = (format(value, form) for value in (values[0], values[-1]))
+    return first if first == last else f"{first} to {last}"
 
 
 def fates(rows, start) -> str:

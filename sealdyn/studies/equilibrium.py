@@ -25,6 +25,7 @@ from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..units import Length
+from ._words import shown_in
 
 WITH_WAVES = True
 # Relative error of the film's integrals.
@@ -229,10 +230,12 @@ def _range(film, surfaces, roots, settings) -> tuple[float, float]:
 
 def tables(answer) -> list:
     """Every clearance of balance."""
+    flow, factor = shown_in("m^3/s", [root["leakage"] for root in answer["roots"]])
     columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/um", "stiffness", 1e-6), ("stable", "stable"),
                ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
-               ("load support, % above low pressure", "load_support", 100), ("friction", "friction_coefficient"),
-               ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
+               ("load support, % above low pressure", "load_support", 100),
+               ("friction coefficient", "friction_coefficient"),
+               (f"leakage, {flow}", "leakage", factor), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
     return [(answer["roots"], columns)]
 
 

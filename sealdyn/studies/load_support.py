@@ -8,6 +8,7 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, with_values
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
+from ._words import shown_in
 from .equilibrium import ABOVE, find, kept_waves, root_row
 
 WITH_WAVES = True
@@ -17,7 +18,8 @@ OUTPUTS = {"clearance": "m", "load_support": "1", "friction_coefficient": "1", "
 units = OUTPUTS | {"stiffness": "N/m", "mass_flow": "kg/s", "held": "m", "rows": "1"}
 units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
 SAID = (("load_support", f"Load support (share {ABOVE})", 100.0, " %"),
-        ("friction_coefficient", "Friction coefficient", 1.0, ""), ("leakage", "Leakage", 3.6e9, " ml/h"))  # fmt: skip
+        ("friction_coefficient", "Friction coefficient (of that load)", 1.0, ""),
+        ("leakage", "Leakage", None, ""))  # fmt: skip
 # A film this much of whose face cavitates has a cavity, and what changes by less over the key stays.
 TORN, STEADY = 1e-9, 0.1
 
@@ -70,10 +72,11 @@ def tables(answer) -> list:
     """A line for every balance."""
     (along,), unit = answer["axes"], answer["axes"][0]["unit"]
     rows = [{"value": row[along["key"]], **root} for row in answer["rows"] for root in row.get("roots", ())]
+    flow, factor = shown_in("m^3/s", [row["leakage"] for row in rows])
     columns = ((along["key"] + (f", {unit}" if unit else ""), "value"), ("clearance, um", "clearance", 1e6),
                ("stable", "stable"), ("load support, % above low pressure", "load_support", 100),
-               ("by contact, N", "contact_force"), ("friction", "friction_coefficient"),
-               ("leakage, ml/h", "leakage", 3.6e9), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
+               ("by contact, N", "contact_force"), ("friction coefficient", "friction_coefficient"),
+               (f"leakage, {flow}", "leakage", factor), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
     return [(rows, columns)]
 
 
@@ -98,9 +101,13 @@ def _verdict(answer) -> list[str]:
 def _course(answer, output, words, factor, unit) -> str:
     """From which to which value an output goes, where it turns, and whether it hardly changes."""
     (along,) = answer["axes"]
-    known = [(row[along["key"]], factor * row[output]) for row in answer["rows"] if row.get(output) is not None]
-    if not known:
+    rows = [row for row in answer["rows"] if row.get(output) is not None]
+    if not rows:
         return ""
+    if factor is None:
+        unit, factor = shown_in(OUTPUTS[output], [row[output] for row in rows])
+        unit = f" {unit}"
+    known = [(row[along["key"]], factor * row[output]) for row in rows]
     (first, start), (last, end) = known[0], known[-1]
     (low_at, low), (high_at, high) = min(known, key=lambda at: at[1]), max(known, key=lambda at: at[1])
     said = f"{words} {start:.4g}{unit} at {_one(along, first)}, {end:.4g}{unit} at {_one(along, last)}"

@@ -11,13 +11,17 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
-from ..simulation.outputs import COMMON, unit_of
+from ..simulation.outputs import common, unit_of
 from ..status import Status
-from ._words import shown_in
+from ._words import quantity, shown_in
 
 WITH_WAVES = True
+# Of radial seals as of face seals.
+ANY_SEAL = True
 # Seconds of a run at least, bytes of its row.
 LEAST, ROW = 2e-3, 500
+# Changes over a grid of fewer of the accuracy's errors than this may be errors.
+NEAR = 5.0
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -31,8 +35,8 @@ class Settings:
     vary: list[str] | str = ()
     """"key=from:to:count" (":log" at its end for even ratios) or "key=a,b,c"; a number without a unit takes that of
     its neighbours, none means SI; several make a grid."""
-    outputs: list[str] | str = COMMON
-    """Dotted keys of the run's summary."""
+    outputs: list[str] | str = ()
+    """Dotted keys of the run's summary (`run --json` shows all); without them the usual ones of the kind of seal."""
 
 
 def run(scenario, settings, tools) -> dict:
@@ -40,7 +44,7 @@ def run(scenario, settings, tools) -> dict:
     vary = [settings.vary] if isinstance(settings.vary, str) else list(settings.vary)
     if not vary:
         raise ScenarioError(scenario.name, "study.sweep.vary", "nothing to vary", '--vary "rotor.runout=0:1 mrad:21"')
-    outputs = settings.outputs
+    outputs = settings.outputs or common(scenario.scene)
     outputs = [w.strip() for w in outputs.split(",")] if isinstance(outputs, str) else list(outputs)
     axes = [axis(words, scenario.name, "study.sweep.vary") for words in vary]
     keys = [a["key"] for a in axes]
@@ -52,8 +56,9 @@ def run(scenario, settings, tools) -> dict:
         raise ScenarioError(scenario.name, "study.sweep.vary", size, f"at most {MOST:g} runs; sweep a part at a time")
     grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
     # What is wrong with every point is found before any is run; a point that cannot run is a row.
+    model = None
     with contextlib.suppress(SceneError):
-        first_ready(scenario, grid)
+        model = first_ready(scenario, grid).model
     refuse_outputs(scenario, grid, outputs, "study.sweep.outputs")
     found = tools.map(
         Together(partial(run_many, scenario)), [{"outputs": outputs, "set": values} for values in grid], "runs"
@@ -63,13 +68,29 @@ def run(scenario, settings, tools) -> dict:
     answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
     if all("failed" in row for row in rows):
         answer["status"] = Status.FAILED
-    return {**answer, "rows": rows, "verdict": sentences(keys, rows)}
+    return {**answer, "rows": rows, "verdict": [*sentences(keys, rows), *unresolved(outputs, rows, model)]}
 
 
 def sentences(keys, rows) -> list[str]:
     """The verdict: how many points ended how."""
     ends = counted([row.get("status", "not possible") for row in rows])
     return [f"{len(rows)} points over {' and '.join(keys)}: {ends}."]
+
+
+def unresolved(outputs, rows, model) -> list[str]:
+    """Outputs that change over the grid by so little that the asked accuracy of the runs may be all of it."""
+    if model is None:
+        return []
+    tilt = model.clearance / model.scene.film.outer_radius
+    scales = {"h_min.value": model.clearance, "h_min.of_clearance": 1.0}
+    scales |= {f"relative_misalignment.{name}": tilt for name in ("max", "min", "mean", "steady_max", "steady_min")}
+    lost = []
+    for output in (name for name in outputs if name in scales):
+        values, error = [row[output] for row in rows if row.get(output) is not None], model.accuracy * scales[output]
+        if values and 0.0 < max(values) - min(values) < NEAR * error:
+            lost.append(f"{output} ({quantity(error, unit_of(output), 3)})")
+    short = f"by little more than run.accuracy = {model.accuracy:g} lets err; a smaller one would tell"
+    return [f"Over the grid {', '.join(lost)} change {short}."] if lost else []
 
 
 def tables(answer) -> list:

@@ -2,6 +2,8 @@
 
 from command import SCENARIOS, sealdyn
 
+DAM = SCENARIOS / "gas_dam_reference.toml"
+
 
 def test_check_says_what_the_floor_of_a_pressure_costs(tmp_path):
     answer = sealdyn("check", SCENARIOS / "ludwig_allen.toml", cwd=tmp_path)
@@ -40,3 +42,47 @@ def test_a_stiffness_that_counts_asperities_says_so(tmp_path):
     smooth = sealdyn("check", SCENARIOS / "axial_only.toml", cwd=tmp_path).out
     assert "stiffness of film and asperities" in rough and "film stiffness" not in rough
     assert "film stiffness" in smooth and "asperities" not in smooth
+
+
+def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
+    scene = (SCENARIOS / "axial_only.toml").read_text()
+    (tmp_path / "a.toml").write_text(scene + "\n[study.contact-onest]\nvalues = ['1 urad']\n")
+    for words in (("check", "a.toml"), ("run", "a.toml", "--set", "run.turns=1"), ("study", "sweep", "a.toml")):
+        refused = sealdyn(*words, cwd=tmp_path)
+        assert refused.code == 2 and refused.err.count("\n") == 1, refused
+        assert "[study] contact-onest: found an unknown study" in refused.err
+        assert "nearest 'contact-onset'" in refused.err
+    (tmp_path / "b.toml").write_text(scene + "\n[study.contact-onset]\nvalue = ['1 urad']\n")
+    refused = sealdyn("check", "b.toml", cwd=tmp_path)
+    assert refused.code == 2 and "value: found an unknown key" in refused.err and "nearest values" in refused.err
+    # A hyphen is as good as an underscore.
+    (tmp_path / "c.toml").write_text(scene + "\n[study.work-precision]\nmethods = ['adsms']\n")
+    refused = sealdyn("study", "work-precision", "c.toml", cwd=tmp_path)
+    assert refused.code == 2 and "methods: found 'adsms'" in refused.err and refused.err.count("\n") == 1
+    refused = sealdyn("study", "critical-speed", SCENARIOS / "fms_reference.toml", "--method", "adsms", cwd=tmp_path)
+    assert refused.code == 2 and "method: found 'adsms'" in refused.err and refused.err.count("\n") == 1
+
+
+def test_check_warns_before_a_run_does(tmp_path):
+    """Slips of units, inertia left out and edges that boil need no run to be seen."""
+    slips = ["--set", "film.outer_pressure=8", "--set", 'film.vapour_pressure="2 bar"']
+    answer = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, cwd=tmp_path)
+    assert answer.code == 0
+    assert "# WARNING film.outer_pressure without a unit is read as 8 Pa, which is 8e-05 bar" in answer.out
+    assert "below the vapour pressure of 200 kPa: it boils there" in answer.out
+    told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
+    assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
+
+
+def test_check_warns_of_units_and_a_refusal_names_them(tmp_path):
+    """What `run` says of numbers without a unit, before any run; and why there is no balance."""
+    done = sealdyn("check", DAM, "--set", "stator.mass=150", cwd=tmp_path)
+    assert "# WARNING stator.mass without a unit is read as 150 kg, which is 150000 g" in done.out
+    told = sealdyn("check", DAM, "--set", "stator.mass=150", "--json", cwd=tmp_path).found["warnings"]
+    assert any("stator.mass" in sentence for sentence in told)
+    assert sealdyn("check", DAM, "--json", cwd=tmp_path).found["warnings"] == []
+    held = "closing = { balance_ratio = 0.8, spring_force = '20 N' }\n"
+    (tmp_path / "bar.toml").write_text(held + DAM.read_text().replace('clearance = "0.25 mil"', ""))
+    for verb in ("check", "run"):
+        done = sealdyn(verb, "bar.toml", "--set", "film.inner_pressure=16", cwd=tmp_path)
+        assert done.code == 2 and "film.inner_pressure without a unit is read as 16 Pa" in done.err

@@ -5,6 +5,7 @@ import pytest
 from command import REFERENCE, sealdyn
 
 from sealdyn.archive import column, read_info
+from sealdyn.report.comparison import comparison_lines
 
 SHORT = ["--set", "run.turns=2", "--set", "run.samples_per_turn=16", "--no-plot"]
 
@@ -48,3 +49,12 @@ def test_bad_input_is_one_line(words, folder):
     answer = sealdyn("compare", *words, cwd=folder)
     assert answer.code == 2 and len(answer.err.strip().splitlines()) == 1
     assert any(word in answer.err for word in ("nothing.h5", "study"))
+
+
+def test_the_leakage_of_gases_is_told_in_litres_a_minute():
+    row = {"key": "leakage.mean", "values": [1e-4, 5e-5], "change": -0.5}
+    found = {"names": ["a", "b"], "status": ["ok", "ok"], "scene": [], "series": []}
+    told = " ".join(comparison_lines(found | {"summary": [row]}))
+    assert "leakage, l/min" in told and "6 -> 3" in told
+    told = " ".join(comparison_lines(found | {"summary": [row | {"values": [1e-8, None], "change": None}]}))
+    assert "leakage, ml/h" in told and "36 -> -" in told

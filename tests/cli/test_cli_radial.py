@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 from command import SCENARIOS, sealdyn
+from drawn import drawn, text_trouble
 from PIL import Image
 
+import sealdyn as package
 from sealdyn import ScenarioError, open_archive
+from sealdyn.report.charts import followers
 from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.scenario.rule_names import RADIAL
 from sealdyn.simulation.simulate import simulate
 
 LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
@@ -77,14 +81,94 @@ def test_show_plot_and_what_is_of_face_seals(folder):
     for words in (
         ("plot", "x.h5", "--kind", "orbit"),
         ("animate", "x.h5"),
-        ("report", "x.h5"),
-        ("compare", "x.h5", "x.h5"),
     ):
         refused = sealdyn(*words, cwd=place)
         assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
     for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
         refused = sealdyn("study", study, path, cwd=place)
         assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
+
+
+def test_two_runs_beside_each_other_and_on_a_page(folder, tmp_path):
+    place, found = folder
+    calm = sealdyn("run", SEGMENTS, *SHORT, "--out", tmp_path / "calm.h5", cwd=tmp_path)
+    assert calm.code == 0
+    compared = sealdyn("compare", tmp_path / "calm.h5", place / "x.h5", cwd=tmp_path)
+    assert compared.code == 0 and "shaft.eccentricity: 0.0001 -> 0.0003" in compared.out
+    assert f"largest gap, um             0 -> {1e6 * found['whole']['largest_gap']:.4g}" in compared.out
+    assert "largest_gap differs by up to" in compared.out
+    written = sealdyn("report", tmp_path / "calm.h5", place / "x.h5", "--out", tmp_path / "r.html", cwd=tmp_path)
+    assert written.code == 0 and not written.err
+    page = (tmp_path / "r.html").read_text()
+    assert page.count("data:image/png;base64") == 2 and page.count("<td>table 3.4</td>") == 2
+    assert "0.2 mm TIR" in page and "0.6 mm TIR" in page and "left the shaft" in page
+
+
+def test_a_face_seal_is_not_compared_with_a_radial_one(folder, tmp_path):
+    place, _ = folder
+    words = ("run", SCENARIOS / "axial_only.toml", "--set", "run.turns=1", "--out", tmp_path / "face.h5")
+    assert sealdyn(*words, cwd=tmp_path).code == 0
+    refused = sealdyn("compare", tmp_path / "face.h5", place / "x.h5", cwd=tmp_path)
+    assert refused.code == 2 and refused.err.count("\n") == 1
+    assert "x.h5: the archive of a radial seal; expected that of a face seal" in refused.err
+
+
+def test_a_sweep_and_numbers_of_runs(folder, tmp_path):
+    _, found = folder
+    words = ("--vary", "shaft.eccentricity=0.1,0.3 mm", *SHORT, "--json")
+    swept = sealdyn("study", "sweep", SEGMENTS, *words, cwd=tmp_path)
+    calm, lost = swept.found["rows"]
+    assert swept.code == 0 and calm["settled.contact_share"] == 1.0 and calm["whole.largest_gap"] == 0.0
+    assert lost["whole.largest_gap"] == pytest.approx(found["whole"]["largest_gap"], rel=1e-5)
+    assert swept.found["output_units"]["settled.friction_torque"] == "N m"
+    asked = {"run.turns": 2, "shaft.eccentricity": "0.3 mm"}
+    numbers = package.evaluate(SEGMENTS, asked, ["whole.largest_gap", "closed_form.margin"])
+    assert numbers["whole.largest_gap"] == pytest.approx(found["whole"]["largest_gap"], rel=1e-5)
+    assert numbers["closed_form.margin"] == pytest.approx(found["closed_form"]["margin"])
+    table = package.sweep(SEGMENTS, {"shaft.eccentricity": ["0.1 mm", "0.3 mm"], "run.turns": [2]}, workers=1)
+    assert list(table["whole.largest_gap"]) == [0.0, numbers["whole.largest_gap"]]
+    assert table.attrs["units"]["whole.largest_gap"] == "m"
+    many = package.simulate_many(read_scenario(SEGMENTS), [asked, {"run.turns": 2, "shaft.speed": 0}], workers=1)
+    assert [*many.status.values] == ["ok", "not possible"]
+    with pytest.raises(ValueError, match=r"nearest whole\.largest_gap"):
+        package.evaluate(SEGMENTS, asked, "largest_gap")
+
+
+def test_a_broken_rule_is_acknowledged_by_its_name(tmp_path):
+    reason = ("--set", "application.acknowledge.segment_runout='kept at the bearing, 2024 survey'")
+    found = sealdyn("check", SEGMENTS, *reason, "--json", cwd=tmp_path).found["design_rules"]
+    (row,) = (row for row in found if row["rule"] == "segment_runout")
+    assert row["verdict"] == "acknowledged" and row["reason"] == "kept at the bearing, 2024 survey"
+    for name in ("segmnt_runout", "lip_speed"):
+        refused = sealdyn("check", SEGMENTS, "--set", f"application.acknowledge.{name}='why'", cwd=tmp_path)
+        assert (
+            refused.code == 2 and f"acknowledge.{name}" in refused.err.replace("] ", ".") and "nearest" in refused.err
+        )
+    assert {row["rule"] for row in found} == set(RADIAL["circumferential"])
+
+
+def lip_rules(tmp_path, *values):
+    given = [word for value in values for word in ("--set", value)]
+    return {row["rule"]: row for row in sealdyn("check", LIP, *given, "--json", cwd=tmp_path).found["design_rules"]}
+
+
+def test_hydrodynamic_lips_have_tables_of_their_own(tmp_path):
+    """Each rule passes and fails: load, pressure over speed, eccentricity."""
+    ribbed = "application.hydrodynamic_lip=true"
+    usual = lip_rules(tmp_path)
+    found = lip_rules(tmp_path, ribbed, "lip.preload='40 N/m'", "shaft.eccentricity='0.02 mm'")
+    assert set(found) == set(RADIAL["lip"]) == set(usual)
+    load = found["lip_load"]
+    assert load["verdict"] == "pass" and (load["least"], load["most"]) == (52.5, 70)
+    assert lip_rules(tmp_path, "lip.preload='40 N/m'")["lip_load"]["verdict"] == "note"
+    assert found["lip_speed"]["verdict"] == "not applicable" and usual["lip_speed"]["source"] == "table 3.2"
+    assert found["lip_eccentricity"]["verdict"] == "pass" and usual["lip_eccentricity"]["verdict"] == "not applicable"
+    assert lip_rules(tmp_path, ribbed, "shaft.eccentricity='0.028 mm'")["lip_eccentricity"]["verdict"] == "fail"
+    # Between two rows: 1 and 3 psi allow 1830 and 1220 m/min, and 3000 and 2000 ft/min of conventional lips.
+    speed = "shaft.speed='9600 rpm'"
+    for pressure, ends in (("0.1 bar", "pass"), ("0.25 bar", "fail"), ("0.4 bar", "fail")):
+        row = lip_rules(tmp_path, ribbed, "shaft.radius='20 mm'", f"lip.pressure_difference='{pressure}'", speed)
+        assert row["lip_pressure"]["verdict"] == ends and row["lip_pressure"]["source"] == "table 3.3"
 
 
 def test_a_run_goes_on_where_it_was_broken_off(tmp_path):
@@ -141,3 +225,28 @@ def test_values_are_set_as_of_face_seals():
     scenario = read_scenario(LIP).with_(lip__preload="60 N/m", shaft__eccentricity=2e-4)
     assert scenario.scene.lip.preload == 60.0 and scenario.scene.shaft.eccentricity == 2e-4
     assert parse_scenario(scenario.to_toml(), "again").scene == scenario.scene
+
+
+def test_figures_of_radial_seals(folder, tmp_path):
+    """Where nothing leaves the shaft there is no gap to be drawn; the preload is in view; nothing lies on another."""
+    place, _ = folder
+    assert sealdyn("run", SEGMENTS, *SHORT, "--no-plot", "--out", "rides.h5", cwd=tmp_path).code == 0
+    for archive, gaps in ((tmp_path / "rides.h5", 0), (place / "x.h5", 2)):
+        figure = drawn(followers, archive, tmp_path / "chart.png")
+        assert text_trouble(figure) == ([], [])
+        titles = [ax.get_title("left") for ax in figure.axes]
+        assert sum("gap" in title.lower() for title in titles) == gaps
+        load = figure.axes[titles.index("Least load of those that ride")]
+        (preload,) = [line for line in load.lines if line.get_label() == "preload"]
+        low, high = load.get_ylim()
+        assert low < preload.get_ydata()[0] < 0.9 * high
+
+
+def test_a_load_that_hardly_differs_is_one_colour(tmp_path):
+    words = ["--set", "shaft.eccentricity=1 nm", "--set", "shaft.offset=0 mm", "--set", "lip.sectors=6", *SHORT]
+    assert sealdyn("run", LIP, *words, "--no-plot", "--out", "even.h5", cwd=tmp_path).code == 0
+    figure = drawn(followers, tmp_path / "even.h5", tmp_path / "chart.png")
+    (image,) = [ax.collections[0] for ax in figure.axes if ax.get_title("left") == "Load around the shaft"]
+    assert len(image.colorbar.ax.get_yticks()) == 1
+    shades = {tuple(shade) for shade in image.to_rgba(image.get_array().ravel()).round(1).tolist()}
+    assert len(shades) == 1

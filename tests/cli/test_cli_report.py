@@ -94,6 +94,17 @@ def test_runs_of_different_scenes_are_told_apart(folder):
     assert first < text.index("(a.h5)") < text.index("(b.h5)") < second < text.index("(c.h5)")
 
 
+def test_a_seal_whose_support_has_no_radius(folder):
+    """Its sketch; and a rule that is broken on purpose, whose reason is a sentence of its own."""
+    support = "rotor.support={axial_stiffness=5e5, axial_damping=300, tilt_stiffness=400, tilt_damping=0.24}"
+    broken = 'application.acknowledge={leakage="drained"}'
+    words = ["--set", support, "--set", broken, "--set", "run.turns=1", "--no-plot", "--out", "d.h5"]
+    assert sealdyn("run", REFERENCE, *words, cwd=folder).code == 0
+    assert sealdyn("report", "d.h5", "--out", "d.html", cwd=folder).code == 0
+    page = (folder / "d.html").read_text()
+    assert '<figure class="sketch">' in page and ". Acknowledged: drained" in page
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -10,11 +10,13 @@ from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.analysis.truncated_heights import carried, plateaus
+from sealdyn.dynamics.cells import with_cells
 from sealdyn.dynamics.film_modes import even
 from sealdyn.dynamics.interface import opening_parts
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
+from sealdyn.films.reynolds import film as reynolds_film
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
@@ -257,3 +259,11 @@ def test_modes_of_a_film_with_cavities_are_those_of_all_its_cells():
     for value in exact:
         assert min(abs(value - other) for other in found) < 1e-6 * abs(value)
     assert exact[0].real == pytest.approx(-210.0, rel=0.01)
+
+
+def test_the_friction_of_a_standing_shaft_asks_for_no_cells():
+    """It is rounding, whose logarithm never settles: the search went on to its finest cells, for minutes."""
+    scene = lebeck().scene
+    film = replace(scene.film, reynolds=Reynolds(grid_accuracy=0.05))
+    standing = replace(scene, film=film, shaft=replace(scene.shaft, speed=0.0))
+    assert with_cells(standing, reynolds_film).reynolds.cells_r <= 24

@@ -9,6 +9,7 @@ from in_process import InProcess
 from oracles import green_film, tilt_roots
 
 from sealdyn import read_scenario
+from sealdyn.dynamics.model import Model
 from sealdyn.report.charts import study_campbell
 from sealdyn.studies import campbell
 from sealdyn.studies._runner import run_study
@@ -164,3 +165,26 @@ def test_decrements_beyond_the_figure_are_told(tmp_path):
 def test_massless_ring_has_one_tilt_mode_and_no_rate():
     found = answer("massless_ring", points=11)
     assert [m["kind"] for m in found["modes"]] == ["tilt", "axial"]
+
+
+def test_a_seal_that_turns_nothing_has_both_its_tilt_modes():
+    # A gas dam at rest in its own cone has no cross-coupling: both tilts are one frequency, and neither mode turns.
+    found = answer("gas_dam_reference", points=5)
+    tilts = [mode for mode in found["modes"] if mode["kind"] == "tilt"]
+    assert [mode["kind"] for mode in found["modes"]] == ["tilt", "tilt", "axial"]
+    assert [mode["direction"] for mode in tilts] == ["forward", "backward"]
+    assert tilts[0]["frequency"] == pytest.approx(tilts[1]["frequency"], rel=1e-9)
+    # I x'' + D x' + K x = 0 with what support and film have.
+    scene = read_scenario(SCENARIOS / "gas_dam_reference.toml").scene
+    stiffness, damping = scene.stator.support.tilt()
+    film, _ = Model(scene).film_matrices()
+    inertia = scene.stator.transverse_inertia
+    root = np.roots([inertia, damping, stiffness + film[1, 1]])[0]
+    assert tilts[0]["frequency"][-1] == pytest.approx(abs(root.imag), rel=1e-6)
+    assert tilts[0]["growth_rate"][-1] == pytest.approx(root.real, rel=1e-6)
+
+
+def test_modes_of_one_frequency_are_numbered_alike_whatever_the_speeds():
+    for points in (9, 10):
+        directions = [mode["direction"] for mode in answer("fms_reference", points=points)["modes"]]
+        assert directions == ["forward", "backward", "axial"]

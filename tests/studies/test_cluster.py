@@ -20,7 +20,7 @@ from sealdyn.numerics.parallel import Together, evaluate, processes
 from sealdyn.numerics.results import Results
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.batch import run_many
-from sealdyn.studies import sweep
+from sealdyn.simulation.outputs import COMMON
 from sealdyn.studies._runner import run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
@@ -230,7 +230,7 @@ def test_ctrl_c_of_the_command_cancels_what_waits(scheduler, tmp_path):
 @pytest.mark.slow
 def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path):
     """SIGKILL: nothing is lost, nothing is there twice, and the rows are those of a local run."""
-    points = [{"outputs": list(sweep.COMMON), "set": {"rotor.runout": f"{x} urad"}} for x in range(10, 22)]
+    points = [{"outputs": list(COMMON), "set": {"rotor.runout": f"{x} urad"}} for x in range(10, 22)]
     log, kept = tmp_path / "log", tmp_path / "kept"
     function = partial(logged, str(log), scenario())
     with cluster(tmp_path, "--no-nanny") as (address, (_, victim, _)):

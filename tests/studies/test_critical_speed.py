@@ -6,10 +6,11 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from in_process import InProcess
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms
 
-from sealdyn.analysis.whirl import growth_rate, time_domain
+from sealdyn.analysis.whirl import growth_rate, time_domain, tipping_disturbance
 from sealdyn.analysis.whirl.time_domain import followed
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import critical_speed
@@ -103,6 +104,52 @@ def test_rotor_whirls_bounded_above_its_threshold(tmp_path):
                        ("small", True): "contact", ("large", True): "contact"}  # fmt: skip
 
 
+def test_runs_that_would_not_part_within_the_turns_are_not_bisected():
+    """A seal whose whirl parts with a hundredth of Green's rate: twenty runs of thousands of turns decide nothing."""
+    path = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+    scene = parse_scenario(path.read_text(), "fms").scene
+    row = tipping_disturbance(scene, 5560.0, 0.1)
+    assert row["disturbance"] is None and row["whirl"] is None
+    assert row["turns"] == pytest.approx(math.log(1e6) / 0.1 * 5560.0 / (2 * math.pi))
+    assert "not bisected in time" in row["said"]
+    family = {"amplitude": [1e-4, 3e-4]}
+    slow = [{"speed": speed, "branch": size, "difference": None, **row} for speed, size in ((950, 2e-4), (980, 1e-4))]
+    found = {"kind": "subcritical", "contact_tilt": 4e-4, "branch": family, "contact_speed": 930.0, "tipping": slow}
+    said = " ".join(critical_speed.nonlinear_sentences({**found, "directions": []}, 1000.0))
+    assert "At 0.9500 to 0.9800 of the threshold a whirl of 200 to 100 urad tips it, by the family alone" in said
+
+
+# An oil seal with a long rotor: its inertia closes the faces at 15 600 rpm, below the speed at which it would whirl.
+CLOSED_BY_INERTIA = """
+shaft.speed = "12000 rpm"
+[rotor]
+mass = 3.2
+transverse_inertia = 1.1e-2
+polar_inertia = 4.4e-3
+support = { axial_stiffness = 4e5, axial_damping = 300, radius = 0.045 }
+[film]
+inner_diameter = "84 mm"
+outer_diameter = "100 mm"
+clearance = "14 um"
+coning = "1.5 mrad"
+viscosity = "8 cP"
+density = 850
+outer_pressure = "4 barg"
+inner_pressure = "1 barg"
+inertia = true
+"""
+
+
+def test_speeds_at_which_no_film_holds_the_seal_are_none_without_whirl(tmp_path):
+    """It was said that a disturbance dies out up to 1000 m/s, where there is no film from 82 m/s on."""
+    scenario = parse_scenario(CLOSED_BY_INERTIA, "closed")
+    answer = run_study("critical-speed", scenario, tmp_path / "out.h5", workers=1)
+    first = answer["verdict"][0]
+    assert answer["eigenvalue"] is None and answer["speeds_held"][1] == pytest.approx(1636.5, abs=0.1)
+    assert first.startswith("No critical speed up to 1636.5 rad/s (15627 rpm), beyond which no film holds the closing")
+    assert "m/s at the outer radius" not in first
+
+
 # A slow shaft in a stator that runs the other way: the whirl turns twenty times as fast as the shaft at the threshold.
 COUNTER = ["stator.speed=-5000"]
 
@@ -154,3 +201,19 @@ def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
     assert answer["time_domain"]["value"] is None and answer["growth"]["speed"] == []
     assert answer["nonlinear"]["tipping"] == [] and "branch" not in answer["nonlinear"]
     assert max(study("fmr_reference", tmp_path)["growth"]["speed"]) == pytest.approx(fastest)
+
+
+def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
+    # A fortieth of the inertia.
+    overrides = ["stator.transverse_inertia=2e-5", "stator.polar_inertia=4e-5"]
+    text = (Path(__file__).parents[2] / "scenarios" / "fms_reference.toml").read_text()
+    scenario = parse_scenario(text, "fast", overrides)
+    answer = critical_speed.run(scenario, critical_speed.Settings(), InProcess())
+    growth, threshold = answer["growth"], answer["eigenvalue"]
+    assert threshold * 0.04 > 1000 and answer["time_domain"]["value"] is None
+    assert growth["time_domain"] == len(growth["speed"]) * [None]
+    # It grows above the threshold alone.
+    assert all(
+        (rate > 0) == (speed > threshold) for speed, rate in zip(*map(growth.get, ("speed", "eigenvalue")), strict=True)
+    )
+    assert "e+0" not in answer["verdict"][0]

@@ -8,13 +8,14 @@ import pytest
 from drawn import drawn, text_trouble
 
 from sealdyn import open_archive, read_scenario
-from sealdyn.report.charts import study_load_support
+from sealdyn.report.charts import study_load_support, study_sweep
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.studies import load_support
+from sealdyn.studies import equilibrium, load_support, sweep
 from sealdyn.studies._runner import run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
+SWEPT = {"vary": ["film.clearance=5,6 um"], "outputs": ["leakage.mean"]}
 COARSE = ["film.reynolds.cells_r=6", "film.reynolds.cells_theta=72"]
 
 
@@ -56,7 +57,7 @@ def test_the_archive_is_a_grid_and_the_figure_a_page(tmp_path):
     assert np.all(np.diff(data["load_support"]) > 0.0) and data["leakage"].attrs["units"] == "m^3/s"
     figure = drawn(study_load_support, Path(answer["archive"]), tmp_path / "s.png")
     assert text_trouble(figure) == ([], [])
-    assert sum(line.get_label() == "at rest" for ax in figure.axes for line in ax.lines) == 4
+    assert sum(line.get_label() == "where it rides" for ax in figure.axes for line in ax.lines) == 4
 
 
 def test_values_without_a_balance_are_rows(tmp_path):
@@ -75,3 +76,18 @@ def test_nothing_to_vary_is_said(tmp_path):
     scenario = read_scenario(SCENARIOS / "fms_reference.toml")
     with pytest.raises(ScenarioError, match="nothing to vary"):
         load_support.run(scenario, load_support.Settings(), None)
+
+
+def test_the_leakage_of_a_gas_is_told_in_litres_a_minute_by_sentence_table_and_figure(tmp_path):
+    scenario = read_scenario(SCENARIOS / "gas_dam_reference.toml")
+    answer = run_study("load-support", scenario, tmp_path / "s.h5", flags={"vary": "film.clearance=5,6 um"}, workers=1)
+    assert any(said.startswith("Leakage") and "l/min at" in said for said in answer["verdict"])
+    (_, columns), *_ = load_support.tables(answer)
+    assert ("leakage, l/min", "leakage", 6e4) in columns
+    labels = [ax.get_ylabel() for ax in drawn(study_load_support, Path(answer["archive"]), tmp_path / "s.png").axes]
+    assert "leakage, l/min" in labels
+    assert ("leakage, l/min", "leakage", 6e4) in equilibrium.tables({"roots": answer["rows"][0]["roots"]})[0][1]
+    answer = run_study("sweep", scenario, tmp_path / "t.h5", flags=SWEPT, workers=1)
+    assert sweep.tables(answer)[0][0][0]["unit"] == "l/min"
+    (panel,) = drawn(study_sweep, Path(answer["archive"]), tmp_path / "t.png").axes
+    assert panel.get_ylabel() == "l/min"

@@ -9,7 +9,8 @@ import pytest
 from threadpoolctl import threadpool_info
 
 from sealdyn.numerics import parallel, results
-from sealdyn.numerics.parallel import Checkpoint, Together, evaluate, processes
+from sealdyn.numerics.parallel import Checkpoint, Together, evaluate, processes, row_of
+from sealdyn.scenario.errors import ScenarioError
 
 CALLS = "SEALDYN_TEST_CALLS"
 
@@ -144,6 +145,17 @@ def test_a_row_is_the_same_alone_and_together(calls):
     with pytest.raises(ValueError, match="not for squaring"):
         Together(squares)({"x": 2})
     assert results.content_keys(Together(squares), points(1)) != results.content_keys(Together(cube), points(1))
+
+
+def test_a_row_that_failed_tells_why_in_the_words_of_a_user():
+    def refuses(_):
+        raise ScenarioError("seal", "rotor.runout", "a film closed at the start", "a smaller one")
+
+    def breaks(_):
+        raise ZeroDivisionError("division by zero")
+
+    assert row_of(refuses, {})[0]["failed"].startswith("seal: [rotor] runout: found a film closed")
+    assert row_of(breaks, {})[0]["failed"] == "ZeroDivisionError: division by zero"
 
 
 def long_for_the_second(point):

@@ -206,3 +206,14 @@ def test_a_growth_rate_that_is_another_one_does_not_agree(rate, agrees, monkeypa
     monkeypatch.setattr(stability, "growth_rate", lambda *given: {"rate": rate, "uncertainty": 0.5})
     point = {"values": {"shaft.speed": 1000.0}, "rate": -100.5}
     assert stability.confirmed(read_scenario(FMS), point)["agrees"] is agrees
+
+
+def test_a_gap_that_follows_the_speed_has_no_formula_and_its_map_says_what_it_keeps(tmp_path):
+    """The map keeps the clearance and is unstable where the critical speed, of the closing force kept, is none."""
+    changes = ["film.inertia=true", "film.clearance=14 um", "rotor.polar_inertia=3e-4", "shaft.speed=700"]
+    scenario = parse_scenario(FMR.read_text(), "inert", changes)
+    answer = stability.run(scenario, Settings(x="shaft.speed=100:9000:20", confirm=0), InProcess())
+    assert answer["unconditional"]["limit"] is None
+    said = " ".join(answer["verdict"])
+    assert "The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap." in said
+    assert "Stable at every speed" not in said

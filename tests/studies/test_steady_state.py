@@ -8,6 +8,7 @@ from drawn import curve, drawn, panel, points, text_trouble
 from oracles import tilt_roots
 
 import sealdyn
+from sealdyn.analysis.shooting import Shooter
 from sealdyn.archive import read_study
 from sealdyn.report.charts import study_steady_state
 from sealdyn.scenario.reader import parse_scenario
@@ -129,3 +130,17 @@ def test_counts_of_nothing_are_refused(key, value):
     with pytest.raises(sealdyn.ScenarioError) as refused:
         sealdyn.study("steady-state", SCENARIOS / "fms_reference.toml", **{key: value})
     assert refused.value.key == f"study.steady_state.{key}"
+
+
+def test_the_orbit_shown_is_closer_than_the_run_was_asked(tmp_path):
+    text = (SCENARIOS / "fms_reference.toml").read_text()
+    scenario = parse_scenario(text, "loose", ["run.accuracy=1e-4"])
+    found = run_study("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
+    # The same film, a period as exact as can be.
+    shooter = Shooter(scenario.scene, 1e-4)
+    sharp = shooter.extremes(shooter.find().start, accuracy=1e-10)
+    assert found["relative_misalignment"] == pytest.approx(sharp["relative_misalignment"], rel=1e-5)
+    # It closes.
+    for name in ("relative_tilt_x", "relative_tilt_y"):
+        waves = np.array(found["orbit"][name])
+        assert abs(waves[-1] - waves[0]) < 1e-5 * np.ptp(waves)

@@ -185,3 +185,18 @@ def test_a_sweep_of_which_no_run_is_possible_has_failed(count, status):
     scenario = parse_scenario(PATH.read_text(), "fms_reference", list(SHORT))
     answer = study.run(scenario, study.Settings(vary="rotor.runout=20,40 urad"), Failing(count))
     assert answer.get("status", "ok") == status
+
+
+def test_changes_as_small_as_the_accuracy_are_not_shown_as_an_answer(tmp_path):
+    """A ring that follows to a thousandth of a microradian: a coarse accuracy draws a zigzag of its own errors."""
+    vary, rough = "closing.spring_force=100:104 N:3", ["run.turns=1", "run.accuracy=1e-2"]
+    path = Path(__file__).parents[2] / "scenarios" / "pump_seal.toml"
+    scenario = parse_scenario(path.read_text(), "pump", rough)
+    answer = study.run(scenario, study.Settings(vary=vary, outputs=["h_min.value", "friction.power"]), InProcess())
+    clearance = simulate_in_memory(scenario)["film"]["clearance"]
+    (said,) = answer["verdict"][1:]
+    assert said.startswith("Over the grid h_min.value (0.00") and "friction" not in said
+    assert float(said.split("(")[1].split(" um")[0]) == pytest.approx(1e4 * clearance, rel=0.02)
+    fine = parse_scenario(path.read_text(), "pump", ["run.turns=1", "run.accuracy=1e-6"])
+    wide = study.Settings(vary="closing.spring_force=100:200 N:3", outputs=["h_min.value"])
+    assert len(study.run(fine, wide, InProcess())["verdict"]) == 1

@@ -158,6 +158,14 @@ def test_a_turning_stator_carries_the_static_forcing_along():
             assert row[name] == pytest.approx(found[row["seal"]][name][at[row["speed"]]], abs=0.01)
 
 
+def test_words_say_what_is_static_and_that_the_total_is_no_angle():
+    quiet = {"points": 3, "time_points": 0}
+    still, turning = (" ".join(answer(overrides=["film.model=linear", f"stator.speed={w}"], **quiet)["verdict"])
+                      for w in (0, -500))  # fmt: skip
+    assert "static of the stator's (fixed in space)" in still and "static of the stator's (turns with it)" in turning
+    assert "maximum relative misalignment (total, per unit tilts): FMR" in still
+
+
 def test_a_point_without_a_steady_state_is_a_row_with_its_reason():
     found = answer(points=3, speed_to=8000.0, time_points=1)
     failed = [row for row in found["time_domain"] if "failed" in row]

@@ -1,15 +1,13 @@
 """Charts of seals that nobody tuned: tiny tilts, aligned faces, no threshold, nothing that touches."""
 
 import re
-import warnings
-from importlib import import_module
 
 import numpy as np
 import pytest
-from drawn import drawn, panel, text_trouble
+from drawn import drawn, panel, study, text_trouble
 from made_up_run import SUMMARY, drop, whirling, write
+from matplotlib.collections import LineCollection
 
-from sealdyn.archive import write_study
 from sealdyn.report.charts import film, orbit, overview, spectrum
 from sealdyn.report.charts.page import free_side
 from sealdyn.report.charts.record import fitting
@@ -50,15 +48,6 @@ def empty(figure):
 
 def said(figure):
     return [text.get_text() for text in figure.texts]
-
-
-def study(tmp_path, name, answer, scenario="", **meta):
-    """The figure of a study's answer, as it is saved."""
-    meta = {"study": name, "name": "seal", "question": "Does it ride?", "overrides": [], "version": "1", **meta}
-    path = write_study(tmp_path / "s.h5", scenario, {}, meta, {"verdict": ["It rides."], **answer}, {})
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        return drawn(import_module(f"sealdyn.report.charts.study_{name}"), path, tmp_path / "s.png")
 
 
 # --- runs --------------------------------------------------------------------------------------------------
@@ -176,7 +165,7 @@ def test_an_onset_without_an_answer_shows_what_linear_theory_sees(tmp_path):
 def test_growth_without_a_threshold_is_seen_at_every_speed(tmp_path, scenario, unit):
     speed, rates = [1.6e5, 5.2e5, 1.6e6, 5.2e6], [-9.9, -15.0, -68.0, -670.0]
     growth = {"speed": speed, "eigenvalue": rates, "time_domain": rates, "uncertainty": 4 * [1e-3]}
-    nothing = {"verdict": "no threshold, so no whirl branches off", "tipping": []}
+    nothing = {"verdict": "No threshold, so no whirl branches off.", "tipping": []}
     answer = {"formula": None, "eigenvalue": None, "time_domain": {"value": None}, "growth": growth,
               "nonlinear": nothing}  # fmt: skip
     figure = study(tmp_path, "critical_speed", answer, scenario)
@@ -270,3 +259,19 @@ def test_a_steady_state_that_was_not_found_shows_linear_theory_alone(tmp_path):
     figure = study(tmp_path, "steady_state", {"linear": linear, "status": "failed", "reason": "a trial orbit"})
     must_be_legible(figure)
     assert empty(figure) == [] and len(figure.axes) == 2
+
+
+def test_transmissibility_of_a_turning_stator_and_bars_that_end_at_the_frame(tmp_path):
+    seal = {name: [0.1, 0.1, 0.1] for name in ("static", "dynamic", "total", "static_phase", "dynamic_phase")}
+    seal["stable"] = 3 * [True]
+    wild = dict.fromkeys(("static", "dynamic", "total", "static_phase", "dynamic_phase"), 5.0)
+    row = {"seal": "fmr", "speed": 2.0, "error": wild, **dict.fromkeys(wild, 0.1)}
+    best = {name: [{"seal": "fmr", "from": 1.0, "to": 3.0}] for name in ("static", "dynamic", "total")}
+    answer = {"speed": [1.0, 2.0, 3.0], "unit": "rad/s", "formula_holds": True, "phase": "", "crossings": [],
+              "film": "", "table": [], "best": best, "time_domain": [row], "stator_speed": -600.0,
+              **{name: {**seal, "linear_algebra": seal} for name in ("fmr", "fms", "fmsr")}}  # fmt: skip
+    figure = study(tmp_path, "transmissibility", answer)
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert "Static: turns with the stator" in titles and "Static: fixed in space" not in titles
+    bars = [line for ax in figure.axes for line in ax.collections if isinstance(line, LineCollection)]
+    assert bars and all(line.get_clip_on() for line in bars)

@@ -166,12 +166,14 @@ def test_a_diverging_film_has_only_an_unstable_one():
     with pytest.raises(SceneError) as raised:
         started(scene(Closing(0.3, spring), clearance=None, coning=-1e-3), 1e-3)
     assert "20 um" in raised.value.found
+    side = "above" if P_O >= P_I else "below"
+    assert f"film.coning {side} 0" in raised.value.expected and "this one widens" in raised.value.expected
 
 
 def test_flat_faces_have_none():
     """The same force at every clearance: whatever the closing force, nothing decides the clearance."""
     for spring in (0.0, opening(1e-5, 0.0) - closing_force(0.5, 0.0)):
-        with pytest.raises(SceneError):
+        with pytest.raises(SceneError, match="same at every clearance"):
             started(scene(Closing(0.5, spring), clearance=None, coning=0.0), 1e-3)
 
 

@@ -9,7 +9,8 @@ import pytest
 from sealdyn.dynamics.cautions import Concern
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import with_values
-from sealdyn.simulation import plausibility, simulate
+from sealdyn.scene.scene import SceneError
+from sealdyn.simulation import bare_numbers, plausibility, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = SCENARIOS / "fms_reference.toml"
@@ -139,6 +140,37 @@ def test_numbers_without_units_that_no_seal_has(key, slip, fine, shown):
     told = [s for s in cautions(*light, f"{key}={slip}").get(Concern.UNITS, []) if s.startswith(key)]
     assert len(told) == 1 and numbers(told[0])[0] == float(slip) and shown in numbers(told[0])
     assert Concern.UNITS not in cautions(*light, f"{key}={fine}")
+
+
+PUMP = SCENARIOS / "pump_seal.toml"
+
+
+@pytest.mark.parametrize(
+    "key, slip, shown",
+    [
+        ("contact.compressive_strength", 250, "0.00025 MPa"),
+        ("contact.roughness", 0.15, "150000 um"),
+        ("stator.body.length", 15, "15000 mm"),
+        ("stator.support.radius", 28, "28000 mm"),
+        ("closing.balance_ratio", 75, "7500 %"),
+    ],
+)
+def test_a_seal_that_cannot_be_for_want_of_a_unit_says_so(key, slip, shown):
+    """The refusal was of a closing force or a closed film alone, far from the number that was wrong."""
+    with pytest.raises(SceneError) as refused:
+        simulate.prepare_run(read_scenario(PUMP, [f"{key}={slip}"]))
+    assert refused.value.expected.endswith(f"; {key} without a unit is read as {read_as(key, slip)}, which is {shown}")
+
+
+def read_as(key, slip) -> str:
+    return f"{slip} {bare_numbers.USUAL[key].unit}".strip()
+
+
+def test_a_bare_diameter_is_told_as_it_was_written():
+    scenario = read_scenario(PUMP, ["film.inner_diameter=50", "film.outer_diameter=60"])
+    said = bare_numbers.slips(scenario)
+    assert "film.inner_diameter without a unit is read as 50 m, which is 50000 mm" in said
+    assert all("radius" not in sentence for sentence in said)
 
 
 def test_wear_of_millimetres_an_hour():

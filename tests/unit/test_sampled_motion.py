@@ -257,6 +257,7 @@ RISING = "time = [0, 1, 2, 3, 4, 5]"
         (RISING, "axial"),
         (f"{RISING}\naxial = [0, 1e-6]", "axial"),
         ("time = [0, 1, 2, 2, 4, 5]\naxial = [0, 0, 0, 0, 0, 1e-6]", "time"),
+        ("time = [0, 1, 2, 2.0001, 4, 5]\naxial = [0, 0, 0, 0, 0, 1e-6]", "time"),
         ("time = [1, 2, 3, 4, 5, 6]\naxial = [0, 0, 0, 0, 0, 1e-6]", "time"),
         (f"{RISING}\naxial = [0, 0, 0, 0, 0, nan]", "axial.5"),
         (f'{RISING}\naxial = [0, 0, 0, 0, 0, "1 urad"]', "axial"),

@@ -67,7 +67,7 @@ def test_shipped_scenarios_use_every_key_and_tell_their_question(path):
 
 def test_the_named_scenarios_are_shipped():
     named = "fmr_reference fms_reference fmsr_both_flexible runup_through_critical housing_vibration"
-    named += " axial_only free_precession massless_ring gear_mesh"
+    named += " axial_only free_precession massless_ring gear_mesh housing_sweep"
     assert set(named.split()) <= {p.stem for p in SHIPPED}
 
 

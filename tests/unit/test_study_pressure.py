@@ -134,7 +134,7 @@ def test_further_clearances_are_those_of_their_own(tmp_path):
     figure = drawn(study_pressure, out, tmp_path / "beside.png")
     assert text_trouble(figure) == ([], [])
     axes = panel(figure, "Over the radius")
-    _, mean = curve(axes, "at 12 um")
+    _, mean = curve(axes, "at 12 µm")
     assert mean == pytest.approx(1e-5 * np.array(found["beside"][2]["circle_mean"]))
     with pytest.raises(ScenarioError, match="beside: found"):
         pressure.run(REFERENCE, Settings("", "5 bar"), None)

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sealdyn
 from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import overview
 from sealdyn.report.text import lines
@@ -144,3 +145,23 @@ def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
         litres = 1e3 * 60 * summary["leakage"]["mean"]
         assert dict(overview._numbers(summary, ("rad/s", 1.0)))["mean leakage"].startswith(f"{litres:.4g} l/min (0 °C")
     assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["film"]["exit_mach"] is None
+
+
+IN_A_DAM = [
+    "film.inner_pressure={time=[0, '15 ms', '20 ms'], value=['14 bar', '14 bar', '8 bar']}", "run.duration='60 ms'",
+    "rotor.runout=0", "stator.misalignment=0", "run.accuracy=1e-4",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name, changes", [("axial_only", []), ("gas_dam_reference", IN_A_DAM)])
+def test_beside_the_means_of_a_run_stands_the_aligned_seal_at_its_end(name, changes):
+    """Means over a step of the pressure are numbers of neither side of it."""
+    scenario = read_scenario(SCENARIOS / f"{name}.toml", changes)
+    result = sealdyn.run(scenario)
+    film, said = result.summary["film"], "\n".join(words for _, words in printed(scenario, result.summary))
+    for key, signal in (("leakage", "leakage_outer"), ("friction_power", "friction_power")):
+        assert film[key] == pytest.approx(float(result.data[signal][-1]), rel=1e-3)
+    assert "aligned, at the end of the run" in said
+    if film["exit_mach"] is not None:
+        before = sealdyn.evaluate(scenario, {"film.inner_pressure": "14 bar"}, "film.exit_mach")["film.exit_mach"]
+        assert film["exit_mach"] < 0.9 * before

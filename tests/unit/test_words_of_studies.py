@@ -6,6 +6,7 @@ import pytest
 
 from sealdyn.report.text import study_lines
 from sealdyn.studies._words import frequencies, quantity, shown_in, speed
+from sealdyn.studies.tolerance.verdict import _contact_sentence
 
 
 @pytest.mark.parametrize(
@@ -23,6 +24,7 @@ from sealdyn.studies._words import frequencies, quantity, shown_in, speed
         (2.0, "N", "2 N"),
         (0.0, "rad", "0 urad"),
         (1000.0, "rad/s", "1000 rad/s (9549.3 rpm)"),
+        (38849.4, "rad/s", "38849 rad/s (370980 rpm)"),
     ],
 )
 def test_a_quantity_in_words(value, unit, words):
@@ -45,3 +47,9 @@ def test_speeds_of_a_table_have_no_exponent():
     rows = [{"w": 5600.0}, {"w": 5.6e6}, {"w": 0.01}]
     cells = [line.strip() for line in study_lines({"verdict": []}, [(rows, (("rpm", "w", 30 / math.pi),))])]
     assert cells == ["rpm", "53480", "5.348e+07", "0.09549"]
+
+
+def test_shares_of_seals_up_to_all_of_them():
+    risk = {"value": 1.0, "count": 32, "runs": 32, "low": 0.888, "high": 1.0}
+    answer = {"probability_of_contact": risk, "runs": {"unstable": 0, "closed_at_start": 0}}
+    assert "88.8 to 100 %" in _contact_sentence(answer)

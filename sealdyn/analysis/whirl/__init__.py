@@ -2,7 +2,7 @@
 (time_domain.py)."""
 
 from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped
-from .time_domain import bounded_or_not, followed, growth_rate, tipping_disturbance
+from .time_domain import bounded_or_not, followed, growth_rate, linear_growth, tipping_disturbance
 
 __all__ = [
     "RotatingWave",
@@ -14,5 +14,6 @@ __all__ = [
     "free_model",
     "growth_rate",
     "least_damped",
+    "linear_growth",
     "tipping_disturbance",
 ]

@@ -14,6 +14,8 @@ from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least
 SMALL = 3e-4
 PER_TURN = 8
 TIGHTER = 1 / 30
+# Nearest runs that a bisection tells apart, over the disturbance; turns that it may take them to part.
+NEAREST, PATIENCE = 1e-6, 2000
 # Blocks of a few hundred steps that one run may take: a hundred times what a healthy one does.
 MOST_BLOCKS = 2000
 
@@ -74,6 +76,11 @@ def fitted(t, tilt) -> tuple[float, float]:
     return whole, max(abs(first - whole), abs(second - whole))
 
 
+def linear_growth(model) -> float:
+    """Growth rate (1/s) of the least damped tilt mode, by eigenvalues."""
+    return float(max(mode.value.real for mode in model.linear_scene().modes() if mode.kind == "tilt"))
+
+
 def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
     """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until its uncertainty is a tenth of
     it or the method can do no better.
@@ -83,10 +90,10 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
     is three times that; `eigenvalue` (1/s) the linear rate, for comparison only; `accuracy` reached.
     """
     model = free_model(scene, speed)
-    values = [m.value.real for m in model.linear_scene().modes() if m.kind == "tilt"]
+    linear = linear_growth(model)
     start = SMALL * contact_tilt_aligned(model)
     # Some forty samples of a disturbance that dies within a turn.
-    interval = 0.2 / max(abs(max(values)), 1e-300)
+    interval = 0.2 / max(abs(linear), 1e-300)
 
     def rate_at(accuracy):
         _, t, tilt, run = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
@@ -112,19 +119,25 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
         "uncertainty": uncertainty,
         "numerical_damping": own,
         "decided": bool(abs(finer) > 3 * uncertainty),
-        "eigenvalue": float(max(values)),
+        "eigenvalue": linear,
         "accuracy": accuracy * TIGHTER,
     }
 
 
-def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns: int = 4000) -> dict:
+def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1e-7, most_turns: int = 4000) -> dict:
     """Smallest circular whirl in the shape of the least damped mode (gap not opened) that grows to contact, by
-    bisection between decay and contact; and the whirl both last runs linger at before they part.  `speed` in rad/s.
+    bisection between decay and contact; and the whirl both last runs linger at before they part.  `speed` in rad/s,
+    `parting` the growth rate (1/s) with which runs leave that whirl.
 
     `disturbance`, `whirl`: relative tilts (rad); `frequency` of that whirl (rad/s); `apart` its uncertainty (rad).
-    Where none or any tips it both are None, and `said` tells which.
+    Where none or any tips it, or runs part too slowly to be told apart, both are None, and `said` tells which.
     """
-    unit = contact_tilt_aligned(free_model(scene, speed))
+    model = free_model(scene, speed)
+    turns = math.log(1.0 / NEAREST) / max(parting, 1e-300) * pace(model, speed) / (2 * math.pi)
+    if turns > PATIENCE:
+        said = f"not bisected in time: runs leave the whirl with {parting:.2g} 1/s, and part after {turns:.2g} turns"
+        return {"disturbance": None, "whirl": None, "said": said, "turns": turns}
+    unit = contact_tilt_aligned(model)
     low, high, runs = 0.0, 0.985 * unit, {}
 
     def tips(amplitude):
@@ -134,7 +147,7 @@ def tipping_disturbance(scene, speed: float, accuracy: float = 1e-7, most_turns:
 
     if not tips(high):
         return {"disturbance": None, "whirl": None, "said": "no whirl short of contact tips it"}
-    while high - low > 1e-6 * high:
+    while high - low > NEAREST * high:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if tips(middle) else (middle, high)
         runs = {a: run for a, run in runs.items() if a in (low, high)}

@@ -12,14 +12,14 @@ from ...archive import ArchiveError
 from .face import annulus, in_the_middle
 from .film import around, thickness
 from .orbit import contact_circle
-from .page import absent, header, look, sheet
+from .page import absent, header, level, look, sheet
 from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
 from .record import Run
 
 # Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
 PER_TURN, PER_SECOND, MOST, SIZE, DPI = 36, 15, 2000, (11.0, 6.2), 80
 # Radii of the face in the map; colours of the map and of the whole picture.
-RADII, STEPS, COLOURS = 5, 24, 128
+RADII, STEPS, COLOURS = 5, 24, 255
 # Height of a ring in the section, as a share of what is drawn.
 THICK = 0.22
 # Share of the gap that enlarged tilts leave open, and what they may lift a ring's edge by, in the thickest film.
@@ -70,7 +70,8 @@ def _write(pictures: Iterator[Image.Image], path: Path) -> None:
     """One palette for all, so that only what moves is stored."""
     few, palette = [], None
     for picture in pictures:
-        palette = palette or picture.quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
+        # Not the commonest colours: a mark of a few dots keeps its own.
+        palette = palette or picture.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
         few.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
     more = {"save_all": True, "append_images": few[1:], "duration": round(1000 / PER_SECOND), "loop": 0}
     few[0].save(path, **(more if path.suffix == ".gif" else {}))
@@ -223,8 +224,10 @@ def _face(ax, run: Run, rows: _Rows):
     )  # fmt: skip
     in_the_middle(ax, annulus(ax, 1e3 * inner, 1e3 * outer))
     ax.set_title("Film thickness over the face", pad=16, loc="center")
+    # Room for the mark on the rotor.
+    ax.tick_params(axis="x", pad=7)
     figure, box = ax.figure, ax.get_position()
-    place = figure.add_axes((box.x1 + 0.022, box.y0, 0.009, box.height))
+    place = figure.add_axes((box.x1 + 0.032, box.y0, 0.009, box.height))
     figure.colorbar(image, cax=place).ax.set_title(shown[0], fontsize=8, weight="normal", loc="center")
     (thinnest,) = ax.plot([], [], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     (mark,) = ax.plot([], [], "v", ms=7, color=MARK, clip_on=False)
@@ -252,12 +255,14 @@ def _orbit(ax, run: Run, rows: _Rows):
     unit, per = run.shown("relative_tilt_x")
     x, y = (per * rows.values(f"relative_tilt_{axis}") for axis in "xy")
     reach = np.hypot(x, y).max()
-    limit = 1.15 * max(reach, contact_circle(ax, per * (run.contact_tilt or 0.0), reach))
+    circle = contact_circle(ax, per * (run.contact_tilt or 0.0), reach)
+    limit = 1.15 * max(reach, circle)
     ax.plot(x, y, color=TILT, lw=0.6, alpha=0.35)
     (tail,) = ax.plot([], [], color=TILT, lw=1.4)
     (dot,) = ax.plot([], [], "o", color=TILT, ms=6)
     ax.set(xlim=(-limit, limit), ylim=(-limit, limit), aspect="equal", title=title)
-    ax.set(xlabel=f"about x, {unit}", ylabel=f"about y, {unit}")
+    dashed = "\ndashed: touch at clearance C" if circle else ""
+    ax.set(xlabel=f"about x, {unit}{dashed}", ylabel=f"about y, {unit}")
     length = 1.0 if run.turning else 0.1 * (rows.at[-1] - rows.at[0])
 
     def move(moment):
@@ -274,8 +279,9 @@ def _line(ax, run: Run, rows: _Rows):
     unit, per = run.shown("h_min")
     ax.plot(rows.at, per * rows.values("h_min"), color=FILM)
     if run.touch_at or run.touches:
-        ax.axhline(per * run.touch_at, color=CONTACT, lw=0.9, ls="--")
-    now = ax.axvline(rows.at[0], color=MARK, lw=1.2)
+        at = per * run.touch_at
+        level(ax, at, "asperities meet", CONTACT, side="left", below=at > 0.5 * sum(ax.get_ylim()))
+    now = ax.axvline(rows.at[0], color=MARK, lw=1.2, clip_on=False)
     ax.set(xlabel=run.progress_label, ylabel=f"h_min, {unit}", xlim=(rows.at[0], rows.at[-1]))
 
     def move(moment):

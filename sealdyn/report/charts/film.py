@@ -3,11 +3,12 @@
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Normalize
+from matplotlib.ticker import MaxNLocator
 
 from ...archive import FIELD_TIME, field
 from .face import annulus, in_the_middle
-from .page import absent, header, look, save, sheet
-from .palette import CONTACT, PRESSURE, THICKNESS
+from .page import EVEN, absent, header, look, save, sheet
+from .palette import CONTACT, FILM, PRESSURE, SKY, THICKNESS
 from .record import BLOCK, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
@@ -34,14 +35,16 @@ def draw(archive_path, out_path, turns: float = 6.0):
             absent(face, "Thinnest moment")
             return save(figure, out_path)
         label = f"film thickness, {run.shown('h_min')[0]}"
-        figure.colorbar(map_over_turns(over_turns, run, turns), cax=_axes(figure, 6.48, 0.13, 0.64), label=label)
+        if _uneven(run, turns):
+            _bar(figure, map_over_turns(over_turns, run, turns), 6.48, label)
+        else:
+            lines_over_turns(over_turns, run)
         image = face_at_minimum(face, run)
         if image is not None:
-            figure.colorbar(image, cax=_axes(figure, 11.34, 0.13, 0.64), label=label)
+            _bar(figure, image, 11.34, label)
         if pressed:
             image = pressure(_axes(figure, 12.5, 2.76, 0.58, "polar"), run)
-            label = f"film pressure, {run.info['fields']['pressure'].display_unit}"
-            figure.colorbar(image, cax=_axes(figure, 15.74, 0.13, 0.64), label=label)
+            _bar(figure, image, 15.74, f"film pressure, {run.info['fields']['pressure'].display_unit}")
         return save(figure, out_path)
 
 
@@ -50,6 +53,14 @@ def _axes(figure, left: float, width: float, height: float, projection=None):
     whole, share = figure.get_figwidth(), HEIGHT / figure.get_figheight()
     low = 0.1 if projection else 0.11
     return figure.add_axes((left / whole, low * share, width / whole, height * share), projection=projection)
+
+
+def _bar(figure, image, left: float, label: str) -> None:
+    """The colours of an image; of one that is even a single number."""
+    low, high = image.get_array().min(), image.get_array().max()
+    even = high - low <= EVEN * abs(high)
+    figure.colorbar(image, cax=_axes(figure, left, 0.13, 0.64), label=label, ticks=[low] if even else MaxNLocator(6),
+                    format="{x:.5g}")  # fmt: skip
 
 
 def thickness(run: Run, radius, angle, first: int, stop: int):
@@ -75,14 +86,51 @@ def around(run: Run) -> np.ndarray:
     return np.linspace(0, 2 * np.pi, max(ANGLES, PER_WAVE * max(run.wave_orders, default=0)) + 1)
 
 
+def _uneven(run: Run, turns: float) -> bool:
+    """Whether the film differs around the circle, by tilt or waves, in the last `turns`."""
+    first = run.last(turns, run.rows)
+    tilts = max((np.abs(run.values(f"relative_tilt_{axis}", first)).max() for axis in "xy"
+                 if run.has(f"relative_tilt_{axis}")), default=0.0)  # fmt: skip
+    rise = 2 * tilts * _edge(run, first)
+    return bool(run.wave_orders) or rise > max(NOTHING, EVEN * np.abs(run.values("h_min", first)).max())
+
+
+def lines_over_turns(ax, run: Run) -> None:
+    """Of faces that stay square with each other the film over the whole run, at either edge."""
+    unit, per = run.shown("h_min")
+    radii = (run.film("inner_radius"), run.film("outer_radius"))
+    rows = _columns(run, 0)
+    for radius, colour, width, edge in zip(radii, (FILM, SKY), (2.6, 1.0), ("inner", "outer"), strict=True):
+        if radius:
+            values = _thickness_of(run, rows, radius, np.zeros(1))[:, 0]
+            ax.plot(run.progress[rows], per * values, color=colour, lw=width, label=f"at the {edge} radius")
+    ax.set(title="Film thickness, even around the circle", xlabel=run.progress_label, ylabel=f"film thickness, {unit}")
+    ax.set_xlim(run.progress[0], run.progress[-1])
+    ax.set_ylim(min(0.0, 1.1 * ax.dataLim.y0), 1.25 * ax.dataLim.y1)
+    ax.legend(loc="upper right", ncols=2)
+
+
+def _columns(run: Run, first: int) -> np.ndarray:
+    """Rows from `first` on, evenly thinned to the columns of a map."""
+    return np.unique(np.linspace(first, run.rows - 1, min(MOST_COLUMNS, run.rows - first)).round().astype(int))
+
+
+def _thickness_of(run: Run, rows, radius: float, angles) -> np.ndarray:
+    """Film thickness (m) of rising rows over angles; read in blocks, of which the rows are kept."""
+    kept = []
+    for start in range(rows[0], rows[-1] + 1, MOST_COLUMNS):
+        inside = rows[(rows >= start) & (rows < start + MOST_COLUMNS)]
+        if len(inside):
+            kept.append(thickness(run, radius, angles, start, inside[-1] + 1)[inside - start])
+    return np.concatenate(kept)
+
+
 def map_over_turns(ax, run: Run, turns: float):
     """Angle against turns; the line follows the smallest film thickness."""
-    first = run.last(turns, MOST_COLUMNS)
-    radius = _edge(run, first)
-    over = thickness(run, radius, around(run), first, run.rows)
-    tilted = (over.max(1) - over.min(1)).max() > NOTHING
-    over = run.shown("h_min")[1] * over
-    progress = run.progress[first:]
+    first = run.last(turns, run.rows)
+    radius, rows, angles = _edge(run, first), _columns(run, first), around(run)
+    over = run.shown("h_min")[1] * _thickness_of(run, rows, radius, angles)
+    progress = run.progress[rows]
     even = np.linspace(progress[0], progress[-1], len(progress))
     over = over[np.clip(np.searchsorted(progress, even), 0, len(progress) - 1)]
     image = ax.imshow(
@@ -91,16 +139,16 @@ def map_over_turns(ax, run: Run, turns: float):
         aspect="auto",
         extent=(progress[0], progress[-1], 0, 360),
         cmap=colormaps[THICKNESS].resampled(STEPS),
-        norm=_scale(over),
+        norm=scale(over),
         interpolation="bilinear",
         interpolation_stage="data",
     )
-    if run.has("h_min_angle") and tilted:
-        angle = np.degrees(run.values("h_min_angle", first)) % 360
+    title = "Film thickness around the circle"
+    if run.has("h_min_angle"):
+        angle = np.degrees(run.values("h_min_angle", first)[rows - first]) % 360
         ax.plot(progress, angle, ".", ms=1.6, color="white")
-        ax.set_title("Film thickness around the circle  (white: where it is thinnest)")
-    else:
-        ax.set_title("Film thickness around the circle  (aligned faces)")
+        title += "  (white: where it is thinnest)"
+    ax.set_title(title)
     ax.grid(False)
     ax.set(xlabel=run.progress_label, yticks=range(0, 361, 60))
     ax.set_ylabel(f"angle from the x axis, degrees, at r = {1e3 * radius:.4g} mm")
@@ -152,7 +200,7 @@ def pressure(ax, run: Run):
 def _over_face(ax, radius, angle, over, colours: str):
     """Values (radii, angles) over the face."""
     image = ax.pcolormesh(
-        angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=_scale(over)
+        angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=scale(over)
     )
     in_the_middle(ax, annulus(ax, 1e3 * radius[0], 1e3 * radius[-1]))
     return image
@@ -163,10 +211,10 @@ def _thinnest_place(ax, angle, radius) -> None:
 
 
 def _when(run: Run, row: int) -> str:
-    return f"{'turn' if run.turning else 'ms'} {run.progress[row]:.4g}"
+    return f"turn {run.progress[row]:.4g}" if run.turning else f"{run.progress[row]:.4g} ms"
 
 
-def _scale(over) -> Normalize:
+def scale(over) -> Normalize:
     """From the thinnest to the thickest, but never a scale so fine that nothing happens all over it."""
     return Normalize(over.min(), max(over.max(), over.min() + 2e-3 * abs(over).max()))
 

@@ -6,47 +6,68 @@ import numpy as np
 
 from ...archive import FIELD_TIME, field
 from ..radial import radial_rows
-from .page import absent, header, look, panels, save, sheet
+from .film import scale
+from .page import EVEN, absent, header, look, panels, save, sheet
 from .palette import CONTACT, FILM, LEAK, PRESSURE, THEORY, THICKNESS
 from .record import Run
 
-NUMBERS = ("follower", "load", "largest gap", "leakage", "closed form", "energy audit", "accuracy")
+NUMBERS = ("follower", "contact", "largest gap", "load", "leakage", "closed form", "energy audit", "accuracy")
+# As print has it, in place of what a terminal shows.
+PRINT = (("^2", "²"), (" um", " µm"), (" deg", "°"))
+# Letters of a line of numbers, and inches from one to the next.
+LETTERS, LINE = 44, 0.175
+LOW, HIGH = 6.2, 9.0
+# Panels of a run in which nothing leaves the shaft, and of another.
+RIDES = [["load", "load", "numbers"], ["loads", "loads", "numbers"]]
+LOST = [[[["gap", "share", "load"]]], [[["gaps", "gaps", "numbers"], ["loads", "loads", "numbers"]]]]
 
 
 @look()
 def draw(archive_path, out_path, turns: float = 4.0):
-    """All of it; the maps show the last `turns` turns of the shaft."""
+    """All of it; the maps show the last `turns` turns of the shaft.  Where nothing leaves the shaft there is no gap to
+    be shown."""
     run = Run(archive_path)
-    figure = sheet(13.0, 8.6)
-    ax = panels(figure, header(figure, run), [["gap", "share", "load"], ["gaps", "gaps", "numbers"],
-                                              ["loads", "loads", "numbers"]])  # fmt: skip
-    _line(ax["gap"], run, "largest_gap", "Largest gap", FILM)
-    _line(ax["share"], run, "contact_share", "On the shaft", CONTACT)
-    _line(ax["load"], run, "least_load", "Least load of a follower that rides", LEAK)
-    needed = run.summary.get("follower", {}).get("preload")
-    if needed:
-        ax["load"].axhline(needed, color=THEORY, ls="--", label="preload")
-        ax["load"].legend(loc="lower right")
-    _map(ax["gaps"], run, "gap", "Gap around the shaft", THICKNESS, turns)
+    lost = run.has("largest_gap") and run.largest("largest_gap") > 0
+    figure = sheet(13.0, HIGH if lost else LOW)
+    layout = {"height_ratios": (1, 3)} if lost else {}
+    ax = panels(figure, header(figure, run), LOST if lost else RIDES, **layout)
+    _load(ax["load"], run)
+    if lost:
+        _line(ax["gap"], run, "largest_gap", "Largest gap", FILM)
+        _line(ax["share"], run, "contact_share", "Share of followers on the shaft", CONTACT)
+        ax["share"].set_ylim(-3, 105)
+        _map(ax["gaps"], run, "gap", "Gap around the shaft", THICKNESS, turns)
     _map(ax["loads"], run, "follower_load", "Load around the shaft", PRESSURE, turns)
     _numbers(ax["numbers"], run)
     return save(figure, out_path)
 
 
-def _line(ax, run, name, title, colour):
+def _line(ax, run, name, title, colour) -> float:
+    """One series over the whole run, from zero; returns its largest value."""
     if not run.has(name):
-        return absent(ax, title, "no rows yet")
+        absent(ax, title, "no rows yet")
+        return 0.0
     x, values, unit = run.drawn(name)
     ax.plot(x, values, color=colour)
     top = max(float(np.nanmax(values)), 0.0)
-    ax.set(title=title, xlabel=run.progress_label,
-           ylabel=unit, ylim=(-0.03 * (top or 1.0), 1.15 * (top or 1.0)))  # fmt: skip
-    return None
+    ax.set(title=title, xlabel=run.progress_label, ylabel=unit, xlim=(run.progress[0], run.progress[-1]))
+    ax.set_ylim(-0.03 * (top or 1.0), 1.2 * (top or 1.0))
+    return top
+
+
+def _load(ax, run) -> None:
+    """The least load beside the preload, from which it falls by what a follower's motion takes."""
+    top = _line(ax, run, "least_load", "Least load of those that ride", LEAK)
+    if preload := run.summary.get("follower", {}).get("preload"):
+        top = max(top, preload)
+        ax.axhline(preload, color=THEORY, ls="--", label="preload", zorder=1.5)
+        ax.set_ylim(-0.03 * top, 1.25 * top)
+        ax.legend(loc="upper right", borderaxespad=0.0)
 
 
 def _map(ax, run, name, title, colours, turns):
     instants = run.info["grid"].get(FIELD_TIME, 0)
-    if instants < 2:
+    if instants < 3:
         return absent(ax, title, "no instants kept")
     times, values = field(run.path, FIELD_TIME), field(run.path, name)
     theta = np.degrees(field(run.path, "theta"))
@@ -57,10 +78,13 @@ def _map(ax, run, name, title, colours, turns):
     edges = np.append(theta - 0.5 * step, theta[-1] + 0.5 * step)
     x, values = x[shown], about.display_factor * values[shown]
     middles = 0.5 * (x[1:] + x[:-1])
-    image = ax.pcolormesh(middles, edges, values[1:-1].T, cmap=colours, shading="flat", rasterized=True)
-    ax.figure.colorbar(image, ax=ax, fraction=0.03, pad=0.01, label=f"{about.display_unit}")
+    image = ax.pcolormesh(middles, edges, values[1:-1].T, cmap=colours, shading="flat", rasterized=True,
+                          norm=scale(values))  # fmt: skip
+    even = np.ptp(values) <= EVEN * np.abs(values).max()
+    ax.figure.colorbar(image, ax=ax, fraction=0.03, pad=0.01, label=about.display_unit,
+                       ticks=[values.min()] if even else None, format="{x:.4g}")  # fmt: skip
     ax.grid(False)
-    ax.set(title=title, xlabel=run.progress_label, ylabel="angle, deg")
+    ax.set(title=title, xlabel=run.progress_label, ylabel="angle, degrees", yticks=range(0, 360, 60))
     return None
 
 
@@ -71,9 +95,13 @@ def _numbers(ax, run):
     lines, on = [], False
     for name, words in radial_rows({**run.summary, "wall_time": 0.0}):
         on = name in NUMBERS if name else on
+        for told, printed in PRINT:
+            words = words.replace(told, printed)
         if on:
-            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(words, 44))]
+            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(words, LETTERS))]
+    ax.figure.draw_without_rendering()
+    height = ax.get_position().height * ax.figure.get_figheight()
     for k, (name, words) in enumerate(lines):
-        y = 1.0 - 0.043 * k
+        y = 1.0 - k * min(LINE, height / len(lines)) / height
         ax.text(0.0, y, name, transform=ax.transAxes, fontsize=8, weight="bold", va="top")
-        ax.text(0.27, y, words, transform=ax.transAxes, fontsize=8, va="top")
+        ax.text(0.29, y, words, transform=ax.transAxes, fontsize=8, va="top")

@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from .page import absent, look, once, run_page, save
+from .page import absent, look, once, run_page, save, written
 from .palette import CONTACT, GREY, MARK, RING, TILT
 from .record import BLOCK, Run
 
 DIRECTIONS = 72
+# Of the reach: a ring that moves by less is marked, for its path is no line.
+STILL = 5e-3
 
 
 @look()
@@ -39,17 +41,22 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
         if first > 0:
-            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=once(ax, f"whole run: to {whole:.3g} {unit}"))
+            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=once(ax, f"whole run: to {written(whole, 3)} {unit}"))
         x, y = (per * run.values(f"{prefix}_{axis}", first) for axis in "xy")
-        ax.plot(x, y, color=colour, lw=0.9, label=label or window(run, first))
+        # A ring that follows the other closely lies upon it, one that stands still is a point.
+        under = len(tilts) > 1 and prefix == tilts[0][0]
+        width, mark = (2.6, 5) if under else (0.9, 2)
+        ax.plot(x, y, color=colour, lw=width, label=label or window(run, first))
+        if max(np.ptp(x), np.ptp(y)) < STILL * whole:
+            ax.plot(x[-1], y[-1], "s", ms=mark, color=colour)
         mark_turns(ax, run, first, x, y)
         drawn = max(drawn, np.hypot(x, y).max())
     # A start-up transient much larger than what is left of it would hide the orbit: look closer.
     reach = drawn if 0 < 3 * drawn < whole else whole
     circle = contact_circle(ax, per * (run.contact_tilt or 0.0), reach) if contact else 0.0
     limit = 1.12 * max(reach, circle)
-    ax.axhline(0, color=GREY, lw=0.5)
-    ax.axvline(0, color=GREY, lw=0.5)
+    ax.axhline(0, color=GREY, lw=0.5, zorder=0.8)
+    ax.axvline(0, color=GREY, lw=0.5, zorder=0.8)
     ax.set(xlim=(-limit, limit), ylim=(-limit, limit * 1.3), aspect="equal", title=title)
     ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
     ax.locator_params(nbins=7)

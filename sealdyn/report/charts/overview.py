@@ -6,8 +6,8 @@ from matplotlib import rc_context
 from ...status import Status
 from ..radial import is_radial
 from ..text import speed_unit
-from . import followers, orbit, spectrum
-from .page import PAPER, absent, free_side, header, level, look, save, sheet
+from . import followers, housing_sweep, orbit, spectrum
+from .page import PAPER, absent, free_side, header, level, look, save, sheet, written
 from .palette import CONTACT, FILM, GREY, LEAK, PALE, STATUS, THEORY, TILT, YELLOW
 from .record import Run, fitting
 
@@ -15,8 +15,14 @@ from .record import Run, fitting
 ROWS = {"film": "film, end", "tilt": "tilt, end", "flow": "spectrum"}
 # Height of a name beside a line, as a share of the panel.
 NAME_HEIGHT = 0.1
+# Samples that a panel of the last turns needs.
+FEWEST = 16
+# Numbers on the x axis of a panel of the last turns: of thousands of turns more would touch each other.
+TURNS = 5
 # Of the thickest film: a line further off is not drawn.
 FAR = 4.0
+# How the units of stiffnesses begin, which are told in thousands where they are large.
+STIFF = ("N/", "N ")
 # A speed, in the unit that the scenario has.
 SPEED = "{} speed"
 # Name of a row, and what stands in it: key of the summary, factor, words, digits.
@@ -36,9 +42,6 @@ NUMBERS = (
     ("energy residual", ("energy_residual", 1, "{}", 2)),
 )  # fmt: skip
 
-# Of a gas, at normal conditions.
-GAS_LEAKAGE = (("leakage.mean_ml_per_h", 1 / 6e4, "{} l/min (0 °C, 1.01325 bar)", 4),)
-
 
 # Titles stay where they are put: nothing is above them that they had to make room for, and looking takes a quarter of
 # the drawing.
@@ -51,7 +54,8 @@ def draw(archive_path, out_path, turns: float = 4.0):
         return followers.draw(archive_path, out_path, turns)
     first, tilts, moves = run.last(turns), _tilts(run), spectrum.has_orders(run)
     figure = sheet(13.5, 9.0 if tilts else 6.6)
-    ax = _placed(figure, header(figure, run) - 0.225 / figure.get_figheight(), tilts, first > 0, moves)
+    ends = first > 0 and run.rows - first >= FEWEST
+    ax = _placed(figure, header(figure, run) - 0.225 / figure.get_figheight(), tilts, ends, moves)
     key_numbers(ax["numbers"], run)
     if tilts:
         ax["orbit"].set_anchor("N")
@@ -68,6 +72,8 @@ def draw(archive_path, out_path, turns: float = 4.0):
     for name in ("flow", "tilt, end" if tilts else "film, end"):
         if name in ax:
             ax[name].set_xlabel(run.progress_label)
+    if "film, end" in ax:
+        ax["film, end"].locator_params(axis="x", nbins=TURNS)
     if moves:
         spectrum.panel(ax["spectrum"], run)
     return save(figure, out_path)
@@ -82,7 +88,7 @@ def _placed(figure, top: float, tilts: bool, ends: bool, moves: bool) -> dict:
     """Axes by name, by hand: every run draws this page, and a layout engine would take half of its time.  Aligned faces
     have no panels of tilts, a short run none of its end, one without orders no spectrum: the others take their room."""
     height = figure.get_figheight()
-    low, ratios = 0.63 / height, {"height_ratios": (5, 3), "hspace": 0.17} if tilts else {}
+    low, ratios = 0.63 / height, {"height_ratios": (5, 3), "hspace": 0.27} if tilts else {}
     left = figure.add_gridspec(1 + tilts, 1, left=0.056, right=0.326, bottom=low, top=top, **ratios)
     rows = [name for name in ROWS if tilts or name != "tilt"]
     right = figure.add_gridspec(len(rows), 2, left=0.385, right=0.975, bottom=0.74 / height, top=top, wspace=0.26,
@@ -119,10 +125,18 @@ def film_panel(ax, run: Run, first: int) -> None:
         lines = [line for line in lines if line[0] < FAR * max(top, clearance)]
         top = 1.2 * max(top, *(line[0] for line in lines))
         room = NAME_HEIGHT * top
+        # A line for each sweep has its place above the curve.
+        top *= 1.0 + housing_sweep.HEIGHT * housing_sweep.sweep_lines(ax, run)
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
-        for at, name, style in lines:
-            others = [np.full_like(x, other) for other, *_ in lines if other != at]
-            found = free_side(x, [h, *others], at, room)
+        levels = [np.full_like(x, at) for at, *_ in lines]
+        places = [free_side(x, [h, *levels[:k], *levels[k + 1 :]], line[0], room) for k, line in enumerate(lines)]
+        if None in places:
+            # A film that swings through a name everywhere: the names stand above it.
+            for at, name, style in lines:
+                level(ax, at, "", label=name, **style)
+            ax.set_ylim(top=1.15 * top)
+            ax.legend(loc="upper left", ncols=2, borderaxespad=0.0)
+        for (at, name, style), found in zip(lines, places if None not in places else (), strict=False):
             level(ax, at, name, **found, **style)
             if found["below"] and at < 1.5 * room:
                 ax.set_ylim(bottom=min(ax.get_ylim()[0], at - 1.5 * room))
@@ -154,8 +168,11 @@ def tilt_panel(ax, run: Run, first: int) -> None:
     _span(ax, run, first)
 
 
-# Leakage (ml/h) from which it is drawn in l/min, as that of gases.
+# Mean leakage (ml/h), and a tenth of the largest, from which it is told in l/min, as that of gases.
 MUCH = 1e5
+# Of the largest contact force: with less on average the faces touch now and then, and the largest one is marked.
+BRIEF = 0.1
+LITRES, NORMAL = "l/min", "l/min (0 °C, 1.01325 bar)"
 
 
 def leakage_panel(ax, run: Run) -> None:
@@ -166,10 +183,10 @@ def leakage_panel(ax, run: Run) -> None:
         return
     # The outer one wide and pale beneath, so that both are seen where they agree.
     flows = {side: run.drawn(f"leakage_{side}") for side in reversed(sides)}
-    large = max(np.nanmax(np.abs(flow)) for _, flow, _ in flows.values()) > MUCH
+    coarser = _litres(run)
     for side, (x, flow, unit) in flows.items():
-        if large:
-            flow, unit = flow / 6e4, "l/min"
+        if coarser:
+            flow, unit = flow / 6e4, coarser
         colour, width = (LEAK, 0.8) if side == "inner" else (YELLOW, 2.0)
         ax.plot(x, flow, label=f"at the {side} radius", color=colour, lw=width)
     ax.set(title=title, ylabel=unit)
@@ -178,14 +195,31 @@ def leakage_panel(ax, run: Run) -> None:
     _span(ax, run, 0)
 
 
+def _litres(run: Run) -> str:
+    """The unit of a leakage that is told in litres, a gas's always; empty of one told in millilitres."""
+    if (run.summary.get("leakage") or {}).get("conditions"):
+        return NORMAL
+    mean = abs(_value(run.summary, "leakage.mean_ml_per_h") or 0.0)
+    sides = [f"leakage_{side}" for side in ("inner", "outer") if run.has(f"leakage_{side}")]
+    most = max((run.shown(side)[1] * run.largest(side) for side in sides), default=0.0)
+    return LITRES if max(mean, 0.1 * most) > MUCH else ""
+
+
 def contact_panel(ax, run: Run) -> None:
-    """Load that the touching asperities carry, beside the closing force it is a share of."""
+    """Load that the touching asperities carry, how much at most, and which share of the closing force."""
     x, force, unit = run.drawn("contact_force")
     ax.fill_between(x, force, color=CONTACT, alpha=0.25, lw=0)
     ax.plot(x, force, color=CONTACT, lw=0.9)
+    most = int(np.nanargmax(force))
+    if np.nanmean(force) < BRIEF * force[most]:
+        # A touch at the edge of the panel would lie on its frame.
+        ax.plot(x[most], force[most], "o", ms=3.5, color=CONTACT, clip_on=False)
+    words = f"at most {written(force[most], 3)} {unit}"
     share = (run.summary.get("contact") or {}).get("share_of_closing")
-    words = f", {100 * share:.3g} % of the absolute closing force on average" if isinstance(share, float) else ""
-    ax.set(title=f"Contact force{words}", ylabel=unit, ylim=(0, 1.15 * np.nanmax(force)))
+    if isinstance(share, float):
+        words += f"\non average {written(100 * share, 3)} % of the absolute closing force"
+    ax.text(0.99, 0.97, words, transform=ax.transAxes, ha="right", va="top", fontsize=8, color=CONTACT)
+    ax.set(title="Contact force", ylabel=unit, ylim=(0, 1.35 * np.nanmax(force)))
     _span(ax, run, 0)
 
 
@@ -201,7 +235,7 @@ def key_numbers(ax, run: Run) -> None:
     """A short table from the summary; rows the run does not have are left out."""
     ax.set_axis_off()
     ax.set_title("Key numbers")
-    rows = list(_numbers(run.summary, speed_unit(run.info))) or [("no summary", run.status)]
+    rows = list(_numbers(run.summary, speed_unit(run.info), _litres(run))) or [("no summary", run.status)]
     step = min(0.082, 0.97 / len(rows))
     for line, (name, value) in enumerate(rows):
         y = 0.95 - step * line
@@ -211,11 +245,12 @@ def key_numbers(ax, run: Run) -> None:
     ax.hlines(below, 0, 1, color=PALE, lw=0.5, capstyle="projecting", transform=ax.transAxes)
 
 
-def _numbers(summary: dict, speed: tuple[str, float]):
+def _numbers(summary: dict, speed: tuple[str, float], litres: str):
     """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name.
-    `speed`: unit of speeds, and how many of it make one rad/s."""
+    `speed`: unit of speeds, and how many of it make one rad/s; `litres`: unit of the leakage if not ml/h."""
     for name, *parts in NUMBERS:
-        parts = GAS_LEAKAGE if name == "mean leakage" and (summary.get("leakage") or {}).get("conditions") else parts
+        if name == "mean leakage" and litres:
+            parts = ((parts[0][0], 1 / 6e4, f"{{}} {litres}", 4),)
         if name == "film stiffness" and summary.get("contact"):
             name = "film and asperities"
         values = [_value(summary, key) for key, *_ in parts]
@@ -250,17 +285,13 @@ def _said(value: float, factor: float, words: str, digits: int, speed: tuple[str
     if words == SPEED:
         words, factor = f"{{}} {speed[0]}", speed[1]
     number, _, unit = words.partition(" ")
-    finer, more = fitting(unit, abs(factor * value))
-    return f"{number} {finer}".format(written(more * factor * value, digits)).rstrip()
-
-
-def written(value: float, digits: int) -> str:
-    """`digits` significant figures; large numbers in full, with thousands marked."""
-    if 1e4 <= abs(value) < 1e7:
-        return f"{float(f'{value:.{digits}g}'):,.0f}".replace(",", " ")
-    return f"{value:.{digits}g}"
+    size = abs(factor * value)
+    other, more = (f"k{unit}", 1e-3) if unit[:2] in STIFF and size >= 1e5 else fitting(unit, size)
+    return f"{number} {other}".format(written(more * factor * value, digits)).rstrip()
 
 
 def _span(ax, run: Run, first: int) -> None:
     start, end = run.progress[first], run.progress[-1]
-    ax.set_xlim(start, end if end > start else start + 1)
+    # A tick at an end is not to be lost to rounding.
+    more = 1e-6 * (end - start)
+    ax.set_xlim(start - more, end + more if end > start else start + 1)

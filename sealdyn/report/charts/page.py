@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
 from ...status import Status
@@ -121,6 +121,8 @@ def save(figure, path) -> Path | Figure:
     returns its path; without a path nothing is written, and the figure itself is returned."""
     for ax in figure.axes:
         flatten(ax)
+        for axis in (ax.xaxis, ax.yaxis):
+            numbered(axis)
     if path is None:
         return figure
     path = Path(path)
@@ -183,9 +185,9 @@ def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", be
                 bbox=PAPER)  # fmt: skip
 
 
-def free_side(x, curves, at: float, room: float) -> dict:
-    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`; `room` is the height
-    that the name takes, in data."""
+def free_side(x, curves, at: float, room: float) -> dict | None:
+    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`, None where it hides
+    one everywhere; `room` is the height that the name takes, in data."""
     start, end = x[0], x[-1]
     for below in (False, True):
         for side in ("right", "left"):
@@ -193,13 +195,14 @@ def free_side(x, curves, at: float, room: float) -> dict:
             away = [(at - y if below else y - at)[part] for y in curves]
             if not any(((0.15 * room < far) & (far < room)).any() for far in away):
                 return {"side": side, "below": below}
-    return {"side": "right", "below": False}
+    return None
 
 
-def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", **line) -> None:
-    """A vertical line with its name beside it at a `height` (share of the panel)."""
+def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", bbox=None,
+            **line) -> None:  # fmt: skip
+    """A vertical line with its name beside it at a `height` (share of the panel), on a `bbox` before colours."""
     ax.axvline(at, color=colour, **{"lw": 1.0, **line})
-    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha)
+    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha, bbox=bbox)
 
 
 def legend(ax, loc: str, **look) -> None:
@@ -249,6 +252,31 @@ def decades(axis) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
+def numbered(axis) -> None:
+    """A logarithmic axis on which fewer than three numbers would be seen gets plain ones closer together."""
+    low, high = sorted(axis.get_view_interval())
+    if axis.get_scale() != "log" or isinstance(axis.get_major_locator(), FixedLocator) or not 0 < low < high:
+        return
+    # A factor of two and less has no room for a logarithmic choice.
+    closer = [LogLocator(subs=(1, 2, 5)), LogLocator(subs=(1, 1.5, 2, 3, 5, 7)), MaxNLocator(5, steps=(1, 2, 5, 10))]
+    for locator in (None, *closer):
+        if locator is not None:
+            axis.set_major_locator(locator)
+            axis.set_major_formatter(lambda value, _: number(value))
+            axis.set_minor_formatter(NullFormatter())
+        if sum(low <= at <= high for at in axis.get_majorticklocs()) >= 3:
+            return
+
+
 def number(value: float, form: str = "g") -> str:
     """A number with the minus of print."""
     return f"{value:{form}}".replace("-", "−")
+
+
+def written(value: float, digits: int) -> str:
+    """`digits` significant figures; large numbers in full, with thousands marked from 10 000 on."""
+    if not 1e2 <= abs(value) < 1e9:
+        return number(value, f".{digits}g")
+    rounded = float(f"{value:.{digits}g}")
+    whole = f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 1e4 else f"{rounded:.{max(digits, 4)}g}"
+    return whole.replace("-", "−")

@@ -13,6 +13,10 @@ BLOCK = 1 << 16
 POINTS = 20_000
 
 
+# SI unit of a key -> what its values are read in, and how many of that make one; radii and other lengths that are no
+# films from LONG (m) on in mm.
+READ_IN = {"m": ("µm", 1e6), "rad": ("mrad", 1e3), "Pa": ("bar", 1e-5), "Pa*s": ("mPa s", 1e3)}
+LONG = 2e-3
 # A number in µ below this is read better in n, in n below it in p.
 SMALL = 0.05
 
@@ -22,6 +26,16 @@ def fitting(unit: str, size: float) -> tuple[str, float]:
     if unit[:1] != "µ" or not 0 < size < SMALL:
         return unit, 1.0
     return ("n" + unit[1:], 1e3) if size >= 1e-3 * SMALL else ("p" + unit[1:], 1e6)
+
+
+def read_in(unit: str, values, speeds: tuple[str, float] = ("rad/s", 1.0)) -> tuple[str, float]:
+    """What the values (SI) of a scenario key are read in, speeds as in `speeds`, and how many of it make one of its SI
+    `unit`."""
+    if unit == "rad/s":
+        return speeds
+    if unit == "m" and max(map(abs, values), default=0.0) > LONG:
+        return "mm", 1e3
+    return READ_IN.get(unit, ("" if unit == "1" else unit.replace("*", " "), 1.0))
 
 
 def done(rows) -> list[dict]:

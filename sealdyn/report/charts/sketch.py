@@ -3,20 +3,23 @@
 import numpy as np
 from matplotlib.patches import Polygon, Rectangle
 
-from .page import look, save, sheet
+from .page import PAPER, look, save, sheet, written
 from .palette import BLACK, CONTACT, GREY, PALE, RING, SKY
 from .record import Run
 
-# Along the shaft, in widths of the face: length of a ring, clearance, cone, room for a support.
-LONG, CLEARANCE, CONE, ROOM = 1.2, 0.08, 0.14, 1.0
-COIL = (0, 0, 1, -1, 1, -1, 1, -1, 1, -1, 1, 0, 0)
+# Along the shaft, in widths of the face: length of a ring, clearance, cone, room for a support, and the part of a ring
+# that reaches to a support or an O-ring beyond its face.
+LONG, CLEARANCE, CONE, ROOM, COLLAR = 1.2, 0.08, 0.14, 1.0, 0.45
+COIL = np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, -1, 1, 0, 0])
+# Radii at which the face is drawn.
+RADII = 61
 
 
 @look()
 def draw(archive_path, out_path):
     """The figure alone."""
     figure = sheet(6.0, 4.4)
-    panel(figure.add_axes((0.1, 0.12, 0.87, 0.78)), Run(archive_path))
+    panel(figure.add_axes((0.13, 0.16, 0.85, 0.75)), Run(archive_path))
     return save(figure, out_path)
 
 
@@ -24,71 +27,124 @@ def panel(ax, run: Run) -> None:
     """Rings, film, supports, secondary seals and balance radius over the radius (mm)."""
     inner, outer = 1e3 * run.film("inner_radius"), 1e3 * run.film("outer_radius")
     width = outer - inner
-    cone = np.sign(run.film("coning") or 0.0) * CONE * width
-    near, far = CLEARANCE * width + max(0.0, -cone), CLEARANCE * width + max(0.0, cone)
+    radii, gap = np.linspace(inner, outer, RADII), width * _gap(run)
     back = CLEARANCE * width + CONE * width + LONG * width
-    ax.add_patch(Polygon([(0, inner), (near, inner), (far, outer), (0, outer)], fc=SKY, alpha=0.5, lw=0))
-    ax.add_patch(Rectangle((-LONG * width, inner), LONG * width, width, fc=RING["rotor"], alpha=0.75, ec=BLACK))
-    stator = [(near, inner), (far, outer), (back, outer), (back, inner)]
-    ax.add_patch(Polygon(stator, fc=RING["stator"], alpha=0.75, ec=BLACK))
     ends = {"rotor": (-LONG * width, -1), "stator": (back, 1)}
-    low, high = inner, outer
+    ax.add_patch(Polygon([*zip(gap, radii, strict=True), (0, outer), (0, inner)], fc=SKY, alpha=0.5, lw=0))
+    ax.add_patch(Rectangle((-LONG * width, inner), LONG * width, width, fc=RING["rotor"], alpha=0.75, ec=BLACK))
+    stator = [*zip(gap, radii, strict=True), (back, outer), (back, inner)]
+    ax.add_patch(Polygon(stator, fc=RING["stator"], alpha=0.75, ec=BLACK))
+    balance, ratio = _balance(run, inner, outer)
+    reached = [inner, outer]
     for ring, (end, way) in ends.items():
-        ax.text(end - way * 0.5 * LONG * width, inner + 0.5 * width, ring, ha="center", va="center", rotation=90)
-        low, high = _held(ax, run, ring, end, way, width, low, high)
-    low, high = _balance(ax, run, inner, outer, back, low, high)
-    for key, radius, side in (("outer_pressure", outer, "bottom"), ("inner_pressure", inner, "top")):
-        pressure = run.film(key)
-        if pressure is not None:
-            words = f"  {1e-5 * pressure:.4g} bar"
-            offset = 0.06 * width * (1 if side == "bottom" else -1)
-            ax.text(0.5 * near, radius + offset, words, ha="center", va=side, fontsize=8)
+        ax.text(end - way * 0.75 * LONG * width, inner + 0.5 * width, ring, ha="center", va="center", rotation=90)
+        reached += _held(ax, run, ring, end, way, width, balance)
+    if balance is not None:
+        ax.axhline(balance, color=CONTACT, lw=0.9, ls="--", zorder=3)
+        reached.append(balance)
+    _pressures(ax, run, inner, outer, width, gap)
     reach = LONG + 1.3 * ROOM
-    ax.set(xlim=(-reach * width, back + 1.3 * ROOM * width), ylim=(low - 0.5 * width, high + 0.5 * width))
+    ax.set(xlim=(-reach * width, back + 1.3 * ROOM * width),
+           ylim=(min(reached) - 0.5 * width, max(reached) + 0.5 * width))  # fmt: skip
     ax.set(ylabel="radius, mm", xticks=[], title="Radii to scale; cone and clearance enlarged")
+    dashed = [] if balance is None else [f"dashed: balance radius {balance:.4g} mm, balance ratio {ratio:.3g}"]
+    ax.set_xlabel("\n".join([*dashed, *_not_drawn(run)]), fontsize=8, color=CONTACT if dashed else BLACK)
     ax.grid(axis="x", visible=False)
 
 
-def _held(ax, run: Run, ring: str, end: float, way: int, width: float, low: float, high: float):
-    """What carries a ring: a spring at the radius of its support, or nothing that gives; its secondary seal."""
+def _gap(run: Run) -> np.ndarray:
+    """The gap over the radius, in widths of the face: cone and profile enlarged to the same height for every seal."""
+    film = [run.film("inner_radius"), run.film("outer_radius")]
+    shape = np.broadcast_to(run.shape(np.linspace(*film, RADII)), RADII)
+    rise = shape - shape.min()
+    return CLEARANCE + (CONE * rise / rise.max() if rise.max() > 0 else rise)
+
+
+def _pressures(ax, run: Run, inner: float, outer: float, width: float, gap) -> None:
+    """The pressures at both edges of the face; from the lowest to the highest of one that changes with time."""
+    for key, radius, way, at in (("outer_pressure", outer, 1, gap[-1]), ("inner_pressure", inner, -1, gap[0])):
+        value = (run.resolved.get("film") or {}).get(key)
+        values = value["value"] if isinstance(value, dict) else [value]
+        if None not in values:
+            words = " to ".join(dict.fromkeys(f"{1e-5 * p:.4g}" for p in (min(values), max(values))))
+            side = "bottom" if way > 0 else "top"
+            ax.text(0.5 * at, radius + way * 0.06 * width, f"{words} bar abs.", ha="center", va=side, fontsize=8)
+
+
+def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: float | None) -> list[float]:
+    """What carries a ring: a spring at the radius of its support, or nothing that gives; its secondary seal.  Returns
+    the radii (mm) that this reaches."""
     table = run.resolved.get(ring) or {}
     support, seal = table.get("support"), table.get("secondary_seal")
-    wall = end + way * ROOM * width
-    middle = 0.5e3 * (run.film("inner_radius") + run.film("outer_radius"))
+    inner, outer = 1e3 * run.film("inner_radius"), 1e3 * run.film("outer_radius")
+    middle, wall = 0.5 * (inner + outer), end + way * ROOM * width
+    reached = []
     if support:
-        radius = 1e3 * support["radius"]
-        along = np.linspace(end, wall, 13)
-        ax.plot(
-            along, radius + 0.09 * width * np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, -1, 1, 0, 0]), color=BLACK, lw=1.2
-        )
+        given = _has_radius(support)
+        radius = 1e3 * support["radius"] if given else middle
+        tilt = support.get("tilt_stiffness") or 0.0
+        words = f"support, r {radius:.4g}" if given else f"support,\n{written(tilt, 3)} N m/rad"
+        ax.plot(np.linspace(end, wall, len(COIL)), radius + 0.09 * width * COIL, color=BLACK, lw=1.2)
         ax.plot([wall, wall], [radius - 0.4 * width, radius + 0.4 * width], color=BLACK, lw=2.5)
-        ax.text(0.5 * (end + wall), radius + 0.16 * width, f"support, r {radius:.4g}", ha="center", fontsize=7.5)
-        low, high = min(low, radius - 0.4 * width), max(high, radius + 0.4 * width)
+        # On the side of the spring that the line of the balance radius leaves free.
+        side = -1 if balance is not None and radius < balance < radius + 0.5 * width else 1
+        ax.text(0.5 * (end + wall), radius + side * 0.16 * width, words, ha="center",
+                va="bottom" if side > 0 else "top", fontsize=7.5)  # fmt: skip
+        reached += [radius - 0.4 * width, radius + 0.4 * width]
     else:
         ax.add_patch(Rectangle((min(end, wall), middle - 0.5 * width), ROOM * width, width, fc=PALE, ec=GREY))
-        fixed = "on the shaft" if ring == "rotor" else "in the housing"
+        fixed = "on the shaft" if ring == "rotor" else "on its carrier" if table.get("speed") else "in the housing"
         ax.text(0.5 * (end + wall), middle, fixed, ha="center", va="center", fontsize=7.5, rotation=90)
     if seal:
         radius = 1e3 * seal["radius"]
-        ax.plot(end - way * 0.3 * LONG * width, radius, "o", ms=11, color=BLACK)
-        ax.text(
-            end - way * 0.3 * LONG * width, radius + 0.2 * width, f"O-ring, r {radius:.4g}", ha="center", fontsize=7.5
-        )
-        low, high = min(low, radius), max(high, radius)
-    return low, high
+        place = end - way * 0.2 * LONG * width
+        ax.plot(place, radius, "o", ms=11, color=BLACK, zorder=4)
+        # Beyond the ring, where its name does not lie on that of the ring.
+        side = -1 if radius < inner else 1
+        beyond = max(radius, outer) if side > 0 else radius
+        ax.text(place, beyond + side * 0.14 * width, f"O-ring, r {radius:.4g}", ha="center",
+                va="bottom" if side > 0 else "top", fontsize=7.5, bbox=PAPER)  # fmt: skip
+        reached += [radius, beyond + side * 0.2 * width]
+    carried = [1e3 * table[part]["radius"] for part in ("support", "secondary_seal") if _has_radius(table.get(part))]
+    if carried:
+        _collar(ax, ring, end, way, (inner, outer), carried)
+    return reached
 
 
-def _balance(ax, run: Run, inner: float, outer: float, back: float, low: float, high: float):
-    """The radius at which the closing pressure ends, from the balance ratio and the side of the higher pressure."""
+def _has_radius(part: dict | None) -> bool:
+    """A support may be given by its tilt stiffness instead."""
+    return bool(part and part.get("radius"))
+
+
+def _collar(ax, ring: str, end: float, way: int, face: tuple[float, float], carried: list[float]) -> None:
+    """The back of a ring, which ends at `end`, as far as the radii (mm) beyond its `face` at which it is carried."""
+    inner, outer = face
+    low, high = min(inner, *carried), max(outer, *carried)
+    long = COLLAR * LONG * (outer - inner)
+    start = end - long if way > 0 else end
+    for edge, height in ((low, inner - low), (outer, high - outer)):
+        if height > 0:
+            ax.add_patch(Rectangle((start, edge), long, height, fc=RING[ring], alpha=0.75, ec=BLACK))
+
+
+def _balance(run: Run, inner: float, outer: float) -> tuple[float | None, float]:
+    """The radius (mm) at which the closing pressure ends, from the balance ratio and the side of the higher pressure,
+    and that ratio; None where there is none."""
     ratio = (run.summary.get("closing") or {}).get("balance_ratio")
     pressures = [run.film(key) for key in ("outer_pressure", "inner_pressure")]
     if ratio is None or None in pressures or pressures[0] == pressures[1]:
-        return low, high
+        return None, 0.0
     area = ratio * (outer**2 - inner**2)
     square = outer**2 - area if pressures[0] > pressures[1] else inner**2 + area
-    if square <= 0:
-        return low, high
-    radius = square**0.5
-    ax.axhline(radius, color=CONTACT, lw=0.9, ls="--")
-    ax.set_xlabel(f"dashed: balance radius {radius:.4g} mm, balance ratio {ratio:.3g}", fontsize=8, color=CONTACT)
-    return min(low, radius), max(high, radius)
+    return (square**0.5 if square > 0 else None), ratio
+
+
+def _not_drawn(run: Run) -> list[str]:
+    """What the faces have around the circle, which a section does not show."""
+    found = []
+    for ring in RING:
+        waves = (run.resolved.get(ring) or {}).get("waviness") or []
+        found += [f"{wave['order']} waves of {1e6 * wave['amplitude']:.3g} µm in the {ring}'s face" for wave in waves]
+    pads = (run.resolved.get("film") or {}).get("pads") or []
+    found += [f"{pad['count']} pads {1e6 * pad['depth']:.3g} µm deep" for pad in pads]
+    return [f"not drawn: {', '.join(found)}"] if found else []

@@ -2,18 +2,24 @@
 
 import numpy as np
 
-from .page import absent, decades, look, number, run_page, save
+from .page import absent, decades, look, number, run_page, save, written
 from .palette import CONTACT, FILM, LEAK, TILT
-from .record import Run
+from .record import Run, fitting
 
 MOST_ROWS = 1 << 14
+# Turns that a spectrum needs: the Hann window tells half the shaft speed from it only from four turns on.
+LEAST_TURNS = 4
+TOO_SHORT = "fewer than four turns: no spectrum"
 FLOOR = 1e-5
 NOTHING = 1e-13  # m or rad: below what any run resolves
 CLEAR = 4  # lines
+CLEAN = 0.02  # of a peak: by which the lines beside one that is clear of others are off
 HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 # Power in the top tenth of the band, of all that moves, above which a spectrum may be folded.  Measured: below 3e-7 in
 # well sampled runs; 9e-4 with the housing's 5.4 kHz at order 33.75 of 160 Hz, 64 samples a turn.
 FOLDED = 1e-4
+# Tables of the housing whose frequencies are those of a band.
+BANDS = ("axial_random", "angular_random", "axial_sweep", "angular_sweep")
 
 
 @look()
@@ -21,6 +27,10 @@ def draw(archive_path, out_path, turns: float | None = None):
     """Spectra of the relative tilt (forward and backward), the axial gap and h_min over the last `turns`
     turns; default the last half of the run."""
     run = Run(archive_path)
+    if not has_orders(run):
+        figure, ax = run_page(run, 8.5, 3.4, [["tilt"]])
+        absent(ax["tilt"], "Orders of shaft speed", "nothing moves" if _long_enough(run) else TOO_SHORT)
+        return save(figure, out_path)
     tilts = [name for name in ("relative_tilt_x", "relative_tilt_y") if run.has(name)]
     # Aligned faces have their axial motion in the place of the tilt.
     aligned = not any(run.largest(name) for name in tilts)
@@ -34,12 +44,21 @@ def draw(archive_path, out_path, turns: float | None = None):
 
 
 def has_orders(run: Run) -> bool:
-    """Whether there is a spectrum at all: two turns, and something that moves."""
-    if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
+    """Whether there is a spectrum at all: some turns, and something that moves."""
+    if not _long_enough(run):
         return False
-    first = run.last(run.turns[-1] / 2, MOST_ROWS)
+    first = _window(run, None)
     names = ("relative_tilt_x", "relative_tilt_y", "axial_gap_change")
     return any(np.ptp(run.values(name, first)) > NOTHING for name in names if run.has(name))
+
+
+def _long_enough(run: Run) -> bool:
+    return run.turning and run.turns[-1] >= LEAST_TURNS * (1 - 1e-9) and run.has("shaft_speed")
+
+
+def _window(run: Run, turns: float | None) -> int:
+    """First row of the last `turns`, by default of the last half."""
+    return run.last(turns or max(run.turns[-1] / 2, LEAST_TURNS), MOST_ROWS)
 
 
 def panel(ax, run: Run, turns: float | None = None) -> None:
@@ -64,23 +83,30 @@ def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, 
 def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None, said=True):
     """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), `shown` is the unit for people
     and how many of it make one SI unit."""
-    if not run.turning or run.turns[-1] < 2 or not run.has("shaft_speed"):
-        return absent(ax, title, "fewer than two turns: no spectrum")
-    first = run.last(turns or run.turns[-1] / 2, MOST_ROWS)
+    if not _long_enough(run):
+        return absent(ax, title, TOO_SHORT)
+    first = _window(run, turns)
     if run.rows - first < 16:
         first = 0
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
     if not amplitude.max() > NOTHING:
         return absent(ax, title, "does not move")
     unit, per = shown
-    amplitude *= per
+    unit, finer = fitting(unit, per * amplitude.max())
+    amplitude *= per * finer
     largest = amplitude.max()
     named = peaks(orders, amplitude)
+    if orders[0] == 0:
+        # One cycle in the window is no order but a drift.
+        named = named[orders[named] > resolution]
     reach = min(max(3.0, 1.15 * np.abs(orders[named]).max() if len(named) else 0), np.abs(orders).max())
     two_sided = orders[0] < 0
     # Names that would lie upon one another: the larger peak keeps its own.
     room = 0.5 / (ax.get_position().width * ax.figure.get_figwidth()) * reach * (1 + two_sided)
-    named = [at for n, at in enumerate(named) if (np.abs(orders[named[:n]] - orders[at]) > room).all()]
+    told: list[int] = []
+    for at in named:
+        if all(abs(orders[other] - orders[at]) > room for other in told):
+            told.append(at)
     ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
     ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
     share = at_the_edge(orders, amplitude, resolution)
@@ -88,8 +114,10 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     top = 2000 if share > FOLDED else 20
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * top))
     decades(ax.yaxis)
-    for at in named:
-        words = f"{number(orders[at], '.3g')}×\n{number(amplitude[at], '.3g')}"
+    decimals = max(0, int(np.ceil(-np.log10(resolution / 5))))
+    for at in told:
+        order, size = located(orders, amplitude, at)
+        words = f"{number(round(order, decimals) + 0.0)}×\n{written(size, 3)}"
         # A name at the left edge of the panel would lie on its ticks.
         edge = not two_sided and orders[at] < 0.08 * reach
         ax.annotate(words, (orders[at], amplitude[at]), xytext=(2 * edge, 3), textcoords="offset points",
@@ -110,7 +138,7 @@ def folded(run: Run, first: int, highest: float) -> str:
     """A warning when the housing shakes faster than the samples can follow: such tones show at wrong orders."""
     slowest = np.abs(run.values("shaft_speed", first)).min()
     tones = [tone.get("frequency") for kind in ("axial", "angular") for tone in run.housing(kind)]
-    bands = [band for kind in ("axial_random", "angular_random") for band in run.housing(kind)]
+    bands = [band for kind in BANDS for band in run.housing(kind)]
     tones += [max(band["frequency"]) for band in bands]
     fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
     return f"\n{max(fast):.4g} Hz, above order {highest:.3g}, folds back: raise samples_per_turn" if fast else ""
@@ -119,7 +147,7 @@ def folded(run: Run, first: int, highest: float) -> str:
 def at_the_edge(orders, amplitude, resolution: float) -> float:
     """Share of the power of all that moves (constant part left out) in the top tenth of the sampled band: a response
     that has not died out there goes on beyond, and shows folded at orders that are not its own."""
-    power = np.where(np.abs(orders) > 2 * resolution, amplitude**2, 0.0)
+    power = np.where(np.abs(orders) > resolution, amplitude**2, 0.0)
     total = power.sum()
     return float(power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum() / total) if total > 0 else 0.0
 
@@ -168,12 +196,27 @@ def cubic(at, x, y):
 def peaks(orders, amplitude, most: int = 5) -> np.ndarray:
     """Rows of the largest local maxima, above 1 % of the largest and clear of one another."""
     inside = np.r_[False, (amplitude[1:-1] >= amplitude[:-2]) & (amplitude[1:-1] > amplitude[2:]), False]
-    # A peak stands at least twice above what is a few lines to its left and to its right.
-    around = np.pad(amplitude, CLEAR, mode="reflect")
-    inside &= amplitude > 2 * np.maximum(around[: -2 * CLEAR], around[2 * CLEAR :])
+    # A peak stands at least twice above a valley a few lines to its left, and one to its right.
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(amplitude, CLEAR, mode="reflect"), CLEAR)
+    inside &= amplitude > 2 * np.maximum(around[: -CLEAR - 1].min(1), around[CLEAR + 1 :].min(1))
     ranked = np.flatnonzero(inside & (amplitude > 0.01 * amplitude.max()))
     kept: list[int] = []
     for at in ranked[np.argsort(-amplitude[ranked])]:
         if all(abs(orders[at] - orders[other]) > 0.3 for other in kept) and len(kept) < most:
             kept.append(int(at))
     return np.array(kept, int)
+
+
+def located(orders, amplitude, at: int) -> tuple[float, float]:
+    """Order and amplitude of a peak between the lines of a spectrum with a Hann window, from its line and the larger
+    one beside it: with the ratio r of these it lies d = (2 r - 1)/(r + 1) of a line towards that one.  The line on the
+    other side, (1 - d)/(2 + d) of its own, tells whether it is clear of others; else it is taken as it stands.
+
+    **Source** Grandke (1983), IEEE Trans. Instrum. Meas. 32, 350.  **Valid** of one order, clear of others."""
+    towards = 1 if amplitude[at + 1] > amplitude[at - 1] else -1
+    near, far = (amplitude[at + side] / amplitude[at] for side in (towards, -towards))
+    off = (2 * near - 1) / (near + 1)
+    if not 0 <= off <= 0.5 or abs(far - (1 - off) / (2 + off)) > CLEAN:
+        return float(orders[at]), float(amplitude[at])
+    order = orders[at] + towards * off * (orders[1] - orders[0])
+    return float(order), float(amplitude[at] * (1 - off**2) / np.sinc(off))

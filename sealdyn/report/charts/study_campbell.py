@@ -10,6 +10,8 @@ from .palette import BLACK, CYCLE, GREY, VERMILLION
 DASHES = {"forward": ("-", "forward"), "backward": ((0, (5, 2)), "backward"), "axial": ((0, (1, 1.2)), "axial"),
           "none": ((0, (1, 4)), "does not oscillate")}  # fmt: skip
 RPM = 60 / (2 * np.pi)
+# Of marks on the axis of decrements the least, where all are small.
+TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 3, 10, 30, 100, 300, 1000)
 # Beyond this a curve runs along the top: the mode hardly oscillates.
 MOST_DECREMENT = 1000.0
 
@@ -61,7 +63,7 @@ def _frequencies(ax, answer, speed, factor):
             ax.plot(factor * c["speed"], turning, "s", mfc="white", mec=BLACK, ms=6, zorder=4,
                     label=once(ax, "meets it"))  # fmt: skip
     if speed[0] < factor * answer["own_speed"] < speed[-1]:
-        ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":")
+        ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":", label="this scenario")
 
 
 def _name_line(ax, order, speed, top, curves, points, others):
@@ -100,25 +102,37 @@ def _decrements(ax, answer, speed, factor):
     for k, (mode, values) in enumerate(zip(answer["modes"], shown, strict=True)):
         _by_direction(ax, speed, np.minimum(values, MOST_DECREMENT), mode["directions"], k)
     every = np.concatenate([*shown, [0.0]])
-    lowest, highest = np.nanmin(every), min(max(np.nanmax(every), 1.0), MOST_DECREMENT)
+    lowest, highest = np.nanmin(every), min(np.nanmax(every), MOST_DECREMENT)
+    highest = highest if highest > 0.0 or lowest < 0.0 else 1.0
     # Linear near zero, where stability is decided; logarithmic above, where a mode dies within a cycle.
     ax.set_yscale("asinh", linear_width=1.0)
-    ax.set_yticks([t for t in (-10, -3, -1, 0, 1, 3, 10, 30, 100, 300, 1000) if lowest - 1 <= t <= highest])
+    ax.set_yticks(_ticks(lowest, highest))
     ax.yaxis.set_major_formatter(lambda value, _: number(value))
     ax.minorticks_off()
     ax.axhline(0.0, color=BLACK, lw=1.0)
-    bottom = max(1.3 * lowest, -MOST_DECREMENT) if lowest < 0 else -0.15
+    bottom = max(1.3 * lowest, -MOST_DECREMENT) if lowest < 0 else -0.15 * min(highest, 1.0)
     thresholds = [factor * point["speed"] for point in answer["thresholds"] if point["what"] == "damping"]
     if thresholds:
         # Room for the threshold's number below zero.
         bottom = min(bottom, -np.sinh(0.09 * np.arcsinh(highest)))
     ax.axhspan(bottom, 0.0, color=VERMILLION, alpha=0.08, lw=0)
     capped = f" (beyond {MOST_DECREMENT:g}: drawn there)" if np.nanmax(every) > MOST_DECREMENT else ""
-    ax.set(ylim=(bottom, 1.05 * highest), ylabel=f"logarithmic decrement{capped}", title="Damping")
+    ax.set(
+        ylim=(bottom, 1.05 * highest if highest > 0.0 else -0.15 * bottom),
+        ylabel=f"logarithmic decrement{capped}",
+        title="Damping",
+    )
     for at in thresholds:
         _name_threshold(ax, at, speed, shown)
     if bottom < -0.3:
         ax.text(speed[0] + 0.02 * (speed[-1] - speed[0]), 0.5 * bottom, "unstable", color=VERMILLION, va="center")
+
+
+def _ticks(lowest: float, highest: float) -> list[float]:
+    """Zero and numbers on both sides of it that are a fifth apart and more of what is shown."""
+    size = max(abs(lowest), highest)
+    sizes = [t for t in TICKS if t >= min(1.0, 0.15 * size)]
+    return [*(-t for t in reversed(sizes) if -t >= 1.3 * lowest), 0.0, *(t for t in sizes if t <= 1.05 * highest)]
 
 
 def _name_threshold(ax, at, speed, curves):

@@ -7,6 +7,7 @@ from ...archive import read_study
 from ..text import speed_unit
 from .page import logarithmic, look, number, right_axis, save, shortened, stacked, study_page
 from .palette import BLACK, BLUE, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from .record import fitting
 
 DASHED = (0, (5, 2))
 TILT = (("K$_{xx}$", 1, 1, BLUE, "-"), ("K$_{yy}$", 2, 2, GREEN, DASHED), ("K$_{xy}$", 1, 2, VERMILLION, "-"),
@@ -18,13 +19,13 @@ SWEEPS = {"speed": ("Over speed", 1.0, "shaft speed"), "clearance": ("Over clear
 AXES = {"coning": (1e3, "coning, mrad", "{:.4g} mrad"), "frequency": (1 / (2 * np.pi), "frequency, Hz", "{:.4g} Hz"),
         "speed": (60 / (2 * np.pi), "shaft speed, rpm", "{:.5g} rpm")}  # fmt: skip
 MAP = {"map axial": ("Axial K, N/µm", "stiffness", (0, 0), 1e-6),
-       "map tilt": ("Tilt K, N m/rad", "stiffness", (1, 1), 1.0),
-       "map cross": ("Cross K, N m/rad", "stiffness", (1, 2), 1.0),
+       "map tilt": ("Tilt K", "stiffness", (1, 1), None),
+       "map cross": ("Cross K", "stiffness", (1, 2), None),
        "map damping": ("Tilt D, N m s/rad", "damping", (1, 1), 1.0)}  # fmt: skip
 MOST_LINES = 6
 # Large stiffnesses (N m/rad) in units with fewer digits.
 LARGE = ((1e7, 1e-6, "MN m/rad"), (1e4, 1e-3, "kN m/rad"), (0.0, 1.0, "N m/rad"))
-FREQUENCY = {"frequency": ("Over frequency", 1.0, "frequency of the motion, rad/s")}
+FREQUENCY = {"frequency": ("Over frequency", 1 / (2 * np.pi), "frequency of the motion, Hz")}
 
 
 @look()
@@ -50,10 +51,14 @@ def draw(archive_path, out_path):
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
             logarithmic(below, "x")
+        else:
+            below.locator_params(axis="x", nbins=6 if len(shown) < 4 else 4)
     ax["K speed"].set_ylabel(f"tilt stiffness, {unit}")
-    # Beside the title: no curve is below it.
-    ax["K speed"].legend(loc="lower right", bbox_to_anchor=(1.01, 0.985), ncols=4, columnspacing=0.6, handlelength=1.1,
-                         handletextpad=0.3, borderaxespad=0.0, fontsize=7)  # fmt: skip
+    # Beside the page's title: no curve and no panel's title is below it.
+    at = 1 - 0.2 / figure.get_size_inches()[0], 1 - 0.26 / figure.get_size_inches()[1]
+    ax["K speed"].legend(loc="center right", bbox_to_anchor=at, bbox_transform=figure.transFigure, ncols=4,
+                         borderaxespad=0.0)  # fmt: skip
+    ax["K speed"].get_legend().set_in_layout(False)
     ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
     said = (f"{number(rpm * answer['at']['speed'], '.5g')} {speeds}", "Tilted: " + answer["tilted"]["said"])
     _matrix(ax["aligned"], answer, answer["at"], "Aligned", said[0])
@@ -78,6 +83,8 @@ def _map(ax, found):
     factor, label, _ = AXES[along]
     places = list(np.ndindex(*(len(found[name]) for name in others)))
     shown = sorted({round(k) for k in np.linspace(0, len(places) - 1, MOST_LINES)})
+    tilts = np.array(found["stiffness"], dtype=float)[..., 1:, 1:]
+    per, unit = _large(np.nanmax(np.abs(tilts), initial=0.0))
     for nth, (colour, place) in enumerate(zip(CYCLE, [places[k] for k in shown], strict=False)):
         # Lines that lie on each other are seen.
         style = {"color": colour, "lw": 3.6 - 0.5 * nth, "ms": 3}
@@ -86,6 +93,7 @@ def _map(ax, found):
         words = ", ".join(AXES[n][2].format(AXES[n][0] * found[n][k]) for n, k in at.items() if len(found[n]) > 1)
         mark = "-o" if len(found[along]) < 3 else "-"
         for panel, (title, name, entry, scale) in MAP.items():
+            title, scale = (title, scale) if scale else (f"{title}, {unit}", per)
             values = scale * np.array(found[name], dtype=float)[(*index, *entry)]
             ax[panel].plot(factor * np.array(found[along]), values, mark, **style)
             ax[panel].set(title=title, xlabel=label)
@@ -106,7 +114,11 @@ def _entries(sweep, name, i, j):
 def _stiffness_unit(sweeps) -> tuple[float, str]:
     """How many of the unit of tilt stiffnesses make one N m/rad, and its name, by the largest of them."""
     every = [np.abs(_entries(sweep, "stiffness", i, j)) for sweep in sweeps for _, i, j, *_ in TILT]
-    largest = np.nanmax(np.concatenate([*every, [0.0]]))
+    return _large(np.nanmax(np.concatenate([*every, [0.0]])))
+
+
+def _large(largest: float) -> tuple[float, str]:
+    """The same of the largest one."""
     return next((per, unit) for least, per, unit in LARGE if largest >= least)
 
 
@@ -130,12 +142,17 @@ def _damping(ax, sweep, x, name, last):
     else:
         # A film without damping has an axis, too.
         low, high = shown.min(initial=0.0), shown.max(initial=0.0)
-        ax.set_ylim(1.15 * low, 1.15 * high if high > 0 or low < 0 else 1.0)
+        ax.set_ylim(1.3 * low, 1.3 * high if high > 0 or low < 0 else 1.0)
+        if not np.any(shown):
+            ax.set_yticks([0.0], ["none"])
     other = right_axis(ax, "axial stiffness, N/µm" if last else "", GREY)
     axial = 1e-6 * _entries(sweep, "stiffness", 0, 0)
     other.plot(x, axial, color=GREY, lw=1.7)
     low, high = np.nanmin(np.append(axial, 0)), np.nanmax(np.append(axial, 0))
-    other.set_ylim(1.15 * low, 1.15 * high if high > 0 else 0.1)
+    # Higher up than the damping, so that neither hides the other where both are constant.
+    other.set_ylim(1.05 * low, 1.05 * high if high > 0 else 0.1)
+    if not np.nan_to_num(axial).any():
+        other.set_yticks([0.0], ["none"])
 
 
 def _matrix(ax, found, at, title, speed):
@@ -145,9 +162,12 @@ def _matrix(ax, found, at, title, speed):
     ax.text(0, 1.0, shortened(title, 72), weight="bold", va="top", fontsize=9.5)
     if found["stiffness"] is None:
         return
-    tilt = 1e6 * np.hypot(at["tilt_x"], at["tilt_y"])
-    words = f"clearance {1e6 * at['clearance']:.4g} µm, opening {1e6 * at['axial_opening']:.3g} µm, "
-    words += f"tilt {tilt:.4g} µrad, {speed}, thinnest film {1e6 * at['h_min']:.4g} µm"
+    tilt, opening = 1e6 * np.hypot(at["tilt_x"], at["tilt_y"]), 1e6 * at["axial_opening"]
+    # What is left of the balance's rounding is no opening.
+    opening = opening if abs(opening) > 1e-7 * 1e6 * at["clearance"] else 0.0
+    (angle, finest), (unit, finer) = fitting("µrad", tilt), fitting("µm", abs(opening))
+    words = f"clearance {1e6 * at['clearance']:.4g} µm, opening {finer * opening:.3g} {unit}, "
+    words += f"tilt {finest * tilt:.4g} {angle}, {speed}, thinnest film {1e6 * at['h_min']:.4g} µm"
     ax.text(0, 0.87, words, va="top", fontsize=8, color=GREY)
     for left, name, letter, unit in ((0.01, "stiffness", "K", "N, m, rad"), (0.52, "damping", "D", "N, m, s, rad")):
         ax.text(left, 0.72, f"{letter}  ({unit})", va="top", fontsize=8.5)
@@ -158,6 +178,9 @@ def _matrix(ax, found, at, title, speed):
             ax.text(left, y, down, va="top", fontsize=8.5, color=GREY)
             for j in range(3):
                 value = found[name][i][j]
+                # Nor is what is left of cells that cancel a coupling.
+                if abs(value) < 1e-9 * np.sqrt(abs(found[name][i][i] * found[name][j][j])):
+                    value = 0.0
                 words = number(value, ".2e" if abs(value) >= 9999.5 or 0 < abs(value) < 1e-3 else ".4g")
                 words = words.replace("e+0", "e").replace("e−0", "e−")
                 ax.text(left + 0.17 + 0.15 * j, y, words, va="top", ha="right", fontsize=8)

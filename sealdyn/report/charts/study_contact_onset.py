@@ -3,8 +3,10 @@
 import numpy as np
 
 from ...archive import read_study
+from ..text import speed_unit
 from .page import absent, look, save, study_page, upright
 from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
+from .record import read_in
 
 
 @look()
@@ -15,12 +17,20 @@ def draw(archive_path, out_path):
     bold = " ".join(answer["verdict"]) if "failed" in answer else answer["verdict"][0]
     # What linear theory says stands where nothing was followed, too.
     known = answer.get("path") or answer.get("linear") or (answer["formula"] and answer.get("clearance"))
-    panels = {_film: known, _opening: answer.get("path"), _curve: answer["curve"]}
+    # Faces that touch without any forcing have no onset: what carries them stands in its place.
+    rests = answer["nonlinear"] == 0.0 and answer.get("closing_force")
+    lifts = np.any((answer.get("path") or {}).get("axial", 0.0))
+    panels = {_rest: rests, _film: known, _opening: lifts, _curve: answer["curve"]}
     panels = {draws.__name__: draws for draws, there in panels.items() if there}
-    mosaic, size = [list(panels) or ["nothing"]], (12, 5.2) if len(panels) > 1 else (8.5, 5.2 if panels else 3.0)
+    mosaic, size = [list(panels) or ["nothing"]], (12, 5.2) if len(panels) > 1 else (8.5, 5.2)
+    if list(panels) in ([], ["_rest"]):
+        size = 8.5, 3.0
     figure, ax = study_page(study, *size, mosaic, title, bold=bold)
+    # Archives of earlier versions do not hold the key's unit.
+    speeds = speed_unit(study)
+    unit = read_in((answer.get("units") or {}).get("forcing", "rad"), [], speeds)
     for name, draws in panels.items():
-        draws(ax[name], answer)
+        draws(ax[name], answer, *unit, speeds)
     if not panels:
         absent(ax["nothing"], "Smallest film thickness", _why(answer))
     return save(figure, out_path)
@@ -31,61 +41,82 @@ def _why(answer):
     return "touching when aligned" if answer["nonlinear"] == 0.0 else answer.get("failed") or "no orbit followed"
 
 
-def _path(answer, name):
-    """Forcing (mrad) and a column of the path, in the order of the forcing, from where nothing forces."""
+def _rest(ax, answer, *_):
+    """Of faces that touch at rest: the film there, and what the asperities carry of the closing force."""
+    film, touch, force, closing = (answer[name] for name in ("clearance", "touch", "contact_force", "closing_force"))
+    said = f"film {1e6 * film:.3g} µm\nof {1e6 * touch:.3g} µm, where asperities meet"
+    carried = f"asperities carry {force:.4g} N\nof the closing force {closing:.4g} N"
+    rows = (said, film / touch, FILM), (carried, force / closing, CONTACT)
+    for at, (_, share, colour) in enumerate(rows):
+        ax.barh(at, 100 * share, 0.5, color=colour)
+        ax.text(100 * share, at, f" {100 * share:.3g} %", va="center", color=colour)
+    ax.set_yticks(range(len(rows)), [words for words, *_ in rows])
+    ax.set(title="At rest, nothing out of square", xlabel="%", xlim=(0, 115), ylim=(len(rows) - 0.5, -0.5))
+    ax.grid(False, axis="y")
+
+
+def _path(answer, name, per):
+    """Forcing (`per` of its unit in one SI unit) and a column of the path, in the order of the forcing, from where
+    nothing forces."""
     forcing = np.array(answer["path"]["forcing"])
     order = np.argsort(forcing)
     start = answer["clearance"] if name == "h_min" else 0
-    return np.r_[0, 1e3 * forcing[order]], np.r_[start, np.array(answer["path"][name])[order]]
+    return np.r_[0, per * forcing[order]], np.r_[start, np.array(answer["path"][name])[order]]
 
 
-def _film(ax, answer):
+def _film(ax, answer, unit, per, _):
     if answer.get("path"):
-        forcing, h_min = _path(answer, "h_min")
+        forcing, h_min = _path(answer, "h_min", per)
         ax.plot(forcing, 1e6 * h_min, "o-", color=FILM, ms=3.5, label="nonlinear orbit")
     touch, linear = 1e6 * (answer.get("touch") or 0.0), answer.get("linear")
     if linear:
-        forcing, h_min = 1e3 * np.array(linear["forcing"]), 1e6 * np.array(linear["h_min"])
+        forcing, h_min = per * np.array(linear["forcing"]), 1e6 * np.array(linear["h_min"])
     else:
-        forcing, h_min = [0, 1e3 * answer["formula"]], [1e6 * answer["clearance"], touch]
+        forcing, h_min = [0, per * answer["formula"]], [1e6 * answer["clearance"], touch]
     ax.plot(forcing, h_min, "--", color=THEORY, label="linear theory")
     ax.axhline(touch, color=CONTACT, lw=1.2, label="asperities meet" if touch else "touch")
     own = linear["own"] if linear else answer.get("times_own") and answer["formula"] / answer["times_own"]
     if own:
-        upright(ax, 1e3 * own, "the scenario's own", BLUE, height=0.4, ls=":")
-    ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, mrad", ylabel="h_min, µm")
-    ax.set_ylim(top=1.25 * ax.get_ylim()[1])
-    ax.legend(loc="upper right", ncols=3)
+        upright(ax, per * own, "the scenario's own", BLUE, height=0.4, ls=":")
+    ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, {unit}", ylabel="h_min, µm")
+    # Beside the curves where they fall, above them where they do not.
+    ax.set_ylim(top=1.3 * ax.get_ylim()[1])
+    ax.legend(loc="upper right")
 
 
-def _opening(ax, answer):
-    forcing, axial = _path(answer, "axial")
+def _opening(ax, answer, unit, per, _):
+    forcing, axial = _path(answer, "axial", per)
     ax.plot(forcing, 100 * axial / answer["clearance"], "o-", color=BLUE, ms=3.5)
-    upright(ax, 1e3 * answer["formula"], "linear onset", THEORY, height=0.93, ha="right", ls="--")
+    upright(ax, per * answer["formula"], "linear onset", THEORY, height=0.93, ha="right", ls="--")
     if answer["nonlinear"] is not None:
-        upright(ax, 1e3 * answer["nonlinear"], "onset", CONTACT, ha="right")
-    ax.set(title="The seal lifts: axial opening", xlabel=f"{answer['key']}, mrad", ylabel="opening, % of the clearance")
+        upright(ax, per * answer["nonlinear"], "onset", CONTACT, ha="right")
+    ax.set(
+        title="The seal lifts: axial opening", xlabel=f"{answer['key']}, {unit}", ylabel="opening, % of the clearance"
+    )
 
 
-def _curve(ax, answer):
+def _curve(ax, answer, unit, per, speeds):
     rows = answer["curve"]
     words = any(isinstance(row["value"], str) for row in rows)
-    at = list(range(len(rows))) if words else [row["value"] for row in rows]
+    # Values as they were asked: with their unit, or SI.
+    si = (answer.get("units") or {}).get("value", "SI")
+    name, factor = ("SI", 1.0) if si == "SI" else read_in(si, [] if words else [row["value"] for row in rows], speeds)
+    at = list(range(len(rows))) if words else [factor * row["value"] for row in rows]
     floored = [row.get("floored", {}) for row in rows]
     # Where an onset was not found the curve has a gap, and a cross on the axis.
-    for found, name, style in (
+    for found, column, style in (
         (rows, "nonlinear", {"color": TILT, "marker": "o", "ms": 4.5, "label": "nonlinear"}),
         (floored, "nonlinear", {"color": PURPLE, "marker": "s", "mfc": "white", "label": "pressure floored"}),
         (rows, "formula", {"color": THEORY, "ls": "--", "marker": ".", "label": "linear theory"}),
     ):
         if any(found):
-            ax.plot(at, 1e3 * np.array([row.get(name) for row in found], dtype=float), **style)
+            ax.plot(at, per * np.array([row.get(column) for row in found], dtype=float), **style)
     missing = [x for x, *pair in zip(at, rows, floored, strict=True) if any("failed" in row for row in pair)]
     if missing:
         ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found")
     if words:
         ax.set_xticks(at, [str(row["value"]) for row in rows])
     ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
-    ax.set(title=f"Onset over {answer['over']}", xlabel=answer["over"] if words else f"{answer['over']}, SI",
-           ylabel=f"{answer['key']} at touch, mrad")  # fmt: skip
+    ax.set(title=f"Onset over {answer['over']}", xlabel=answer["over"] if words else f"{answer['over']}, {name}",
+           ylabel=f"{answer['key']} at touch, {unit}")  # fmt: skip
     ax.legend(loc="upper right")

@@ -53,8 +53,9 @@ def linear(ax, answer, shown):
         return absent(ax, title, why)
     ax.axhline(0, color=BLACK, lw=0.8)
     ax.plot(speed, eigen, color=ORANGE, lw=1.6, label="eigenvalues")
-    ax.errorbar(speed, rates, yerr=uncertain, fmt="o", ms=5, mfc="none", color=BLUE, capsize=3,
-                label="in time (bar: uncertainty)")  # fmt: skip
+    if np.isfinite(rates).any():
+        ax.errorbar(speed, rates, yerr=uncertain, fmt="o", ms=5, mfc="none", color=BLUE, capsize=3,
+                    label="in time (bar: uncertainty)")  # fmt: skip
     if answer["formula"]:
         label = f"formula {shown.said(answer['formula'])}"
         ax.axvline(shown.scale * answer["formula"], color=GREY, ls="--", lw=1.2, label=label)
@@ -134,5 +135,7 @@ def _frame(ax, title, ylabel, columns, shown):
     top = ax.secondary_xaxis("top", functions=(lambda x: x * per, lambda x: x / per))
     top.spines["top"].set_color(PALE)
     top.tick_params(labelsize=7, colors=GREY)
+    if ax.get_xscale() == "log":
+        logarithmic(top, "x")
     top.xaxis.set_major_formatter(lambda at, _: number(at))
     ax.text(-0.045, 1.015, name, transform=ax.transAxes, color=GREY, fontsize=7, ha="right", va="bottom")

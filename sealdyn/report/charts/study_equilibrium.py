@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import logarithmic, look, save, study_page
+from .page import PAPER, logarithmic, look, save, study_page
 from .palette import BLACK, CONTACT, FILM, GREEN, GREY, THEORY, VERMILLION
 
 # Colour and mark of a root by its stability.
@@ -20,15 +20,16 @@ def draw(archive_path, out_path):
     title = "At which clearance does the seal ride?"
     figure, ax = study_page(study, 9.5, 7.2, [["force"], ["stiffness"]], title, height_ratios=(5, 3))
     clearance = 1e6 * np.array(answer["curve"]["clearance"])
-    _forces(ax["force"], answer, clearance)
+    shown = _forces(ax["force"], answer, clearance)
     _stiffness(ax["stiffness"], answer, clearance)
     for panel in ax.values():
         logarithmic(panel, "x")
-        panel.set(xlim=(clearance[0], clearance[-1]), xlabel="clearance at the inner radius, µm")
+        panel.set(xlim=(clearance[shown], clearance[-1]), xlabel="clearance at the inner radius, µm")
     return save(figure, out_path)
 
 
-def _forces(ax, answer, clearance):
+def _forces(ax, answer, clearance) -> int:
+    """Forces over clearance; returns the first point in view: asperities pressed flat fill no part of the panel."""
     opening, closing = np.array(answer["curve"]["opening_force"]), answer["closing_force"]
     rough = np.array(answer["curve"].get("contact_force", [0.0]))
     label = "opening force, film and asperities" if rough.any() else "opening force of the aligned film"
@@ -43,12 +44,16 @@ def _forces(ax, answer, clearance):
         at = [1e6 * root["clearance"] for root in answer["roots"] if root["stable"] == stable]
         if at:
             ax.plot(at, [closing] * len(at), mark, ms=10, mfc=colour, mec=BLACK, label=label, zorder=4)
+        # Above a force that falls, below one that rises: on its right both sides are free there.
         for x in at:
-            ax.annotate(f"{x:.4g} µm", (x, closing), xytext=(0, -18), textcoords="offset points", fontsize=9,
-                        ha="center")  # fmt: skip
+            ax.annotate(f"{x:.4g} µm", (x, closing), xytext=(7, 6 if stable else -6), textcoords="offset points",
+                        fontsize=9, va="bottom" if stable else "top", bbox=PAPER)  # fmt: skip
     ax.set(ylim=(min(opening.min(), closing) - 0.08 * span, max(top, closing) + 0.18 * span),
            ylabel="axial force, N", title="Opening and closing force")  # fmt: skip
     ax.legend(loc="upper right", ncols=2)
+    # A quarter of a decade before the force comes into view.
+    seen = clearance >= clearance[np.argmax(opening <= top + 0.18 * span)] / 10**0.25
+    return int(np.argmax(seen)) if rough.any() else 0
 
 
 def _stiffness(ax, answer, clearance):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...archive import read_study
-from .page import legend, look, save, study_page
+from .page import legend, logarithmic, look, save, study_page
 from .palette import CYCLE, GREY, MARK
 
 RPM = 30.0 / math.pi
@@ -30,7 +30,8 @@ def draw(archive_path, out_path):
     ax.plot(speeds, 1e3 * np.array(guide["eccentricity"]), "s--", color=GREY, ms=5, label=f"guide, {guide['words']}")
     if answer["eccentricity"] > 0:
         ax.plot(RPM * answer["speed"], 1e3 * answer["eccentricity"], "*", color=MARK, ms=11, label="this scenario")
-    ax.set(xlabel="shaft speed, rpm", ylabel="largest eccentricity followed, mm", yscale="log",
-           title="Contact is lost above")  # fmt: skip
+    ax.set(xlabel="shaft speed, rpm", ylabel="largest eccentricity followed, mm",
+           title="Contact is lost above the curve")  # fmt: skip
+    logarithmic(ax, "y")
     legend(ax, "best")
     return save(figure, out_path)

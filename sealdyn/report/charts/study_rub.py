@@ -5,19 +5,20 @@ import numpy as np
 
 from ...archive import read_study
 from ...status import Status
+from ..text import speed_unit
 from .page import legend, level, look, save, stacked, study_page
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
 from .poincare import frame
+from .record import read_in
 
-# Name of a key on the axis, unit, and how many of it make one SI unit.
-NAMES = {
-    "rotor.runout": ("runout of the rotor", "mrad", 1e3),
-    "stator.misalignment": ("misalignment of the stator", "mrad", 1e3),
-    "rotor.misalignment": ("misalignment of the rotor", "mrad", 1e3),
-    "shaft.speed": ("shaft speed", "rad/s", 1.0),
-}
+# Names of keys on the axis, and their SI units.
+NAMES = {"rotor.runout": "runout of the rotor", "stator.misalignment": "misalignment of the stator",
+         "rotor.misalignment": "misalignment of the rotor", "shaft.speed": "shaft speed"}  # fmt: skip
+UNITS = {**dict.fromkeys(NAMES, "rad"), "shaft.speed": "rad/s"}
 COLOURS = {"chaotic": VERMILLION, "quasi-periodic": PURPLE, "no contact": GREY, "settling": ORANGE, "undecided": ORANGE}
 DIRECTION = {"up": (BLUE, "growing"), "down": (ORANGE, "falling")}
+# Values of the key up to which the diagram has large points.
+FEW = 30
 # Points of the diagram shown one by one.
 MOST = 3
 
@@ -27,7 +28,7 @@ def draw(archive_path, out_path):
     """The figure of a study's archive."""
     study = read_study(archive_path)
     answer = study["answer"]
-    name, unit, factor = NAMES.get(answer["key"], (answer["key"], "SI", 1.0))
+    name, unit, factor = _named(study, answer)
     rows = [row for row in answer["rows"] if row["status"] == Status.OK]
     points = _chosen(rows, answer)
     whirl = (answer["whirl"] or {}).get("rows")
@@ -35,7 +36,9 @@ def draw(archive_path, out_path):
     below = {draws.__name__: draws for draws, there in below.items() if there}
     left = 5 * [6 * ["diagram"]] + 3 * [6 * ["exponents"]]
     left += 3 * [[panel for panel in below for _ in range(6 // len(below))]] if below else []
+    # One point has its section above its spectrum, several have them side by side.
     right = [[f"section {k}", f"spectrum {k}"] for k in range(len(points))]
+    right = [[name] for name in right[0]] if len(right) == 1 else right
     words = next((v for v in answer["verdict"] if v.startswith(answer["key"])), answer["verdict"][0])
     words = f"{study['name']}: {words}"
     sides = {"mosaic": [[left, right]], "width_ratios": (5, 4)} if right else {"mosaic": left}
@@ -50,6 +53,14 @@ def draw(archive_path, out_path):
         _section(ax[f"section {k}"], row, f"{factor * row['value']:.4g} {unit}: {row['class']}")
         _spectrum(ax[f"spectrum {k}"], row)
     return save(figure, out_path)
+
+
+def _named(study, answer) -> tuple[str, str, float]:
+    """Name of the key on the axis, the unit its values are read in, and how many of it make one SI unit."""
+    key = answer["key"]
+    # Archives of earlier versions do not hold its unit.
+    unit = (answer.get("units") or {}).get("rows/value", UNITS.get(key, ""))
+    return NAMES.get(key, key), *read_in(unit, [row["value"] for row in answer["rows"]], speed_unit(study))
 
 
 def _aside(answer, factor) -> dict:
@@ -68,7 +79,7 @@ def _diagram(ax, answer, rows, factor):
         if mine:
             x = np.concatenate([np.full(len(r["h_min"]), factor * r["value"] + aside[direction]) for r in mine])
             y = 1e6 * np.concatenate([r["h_min"] for r in mine])
-            ax.plot(x, y, ".", ms=3, mew=0, color=colour, label=label)
+            ax.plot(x, y, ".", ms=3 if len(mine) > FEW else 6, mew=0, color=colour, label=label)
     level(ax, 1e6 * answer["touch"], "asperities meet", CONTACT)
     lost = [factor * row["value"] for row in answer["rows"] if row["status"] != Status.OK]
     if lost:
@@ -98,7 +109,7 @@ def _separation(ax, answer):
     ax.semilogy(np.arange(len(apart)), apart, color=BLUE)
     size = answer["separation"]["spread"]
     if size > 1e-3:
-        level(ax, size, "size of the attractor")
+        level(ax, size, "size of the attractor", side="left")
     lost = answer["separation"]["lost"]
     if lost is not None:
         ax.axvspan(lost, len(apart), color=VERMILLION, alpha=0.08, lw=0)

@@ -67,6 +67,11 @@ def _speed_ramps(study, answer, title, story):
     return figure
 
 
+def _rate(value: float, speeds: str) -> str:
+    """A ramp rate in words."""
+    return f"{number(float(f'{value:.4g}'))} {speeds}/s".replace("s/s", "s²")
+
+
 def _grown(answer) -> list:
     """Runs whose whirl was followed past the threshold."""
     return [(colour, row) for colour, row in _runs(answer) if row.get("growth")]
@@ -101,7 +106,7 @@ def _order(top, below, answer, speeds, per):
         for way, style in (("up", "-"), ("down", (0, (4, 2)))):
             if not row[way]["speed"]:
                 continue
-            label = f"{per * row['rate']:.4g} {speeds}/s".replace("s/s", "s²") if way == "up" else None
+            label = _rate(per * row["rate"], speeds) if way == "up" else None
             at = per * np.array(row[way]["speed"])
             top.plot(at, micro * np.array(row[way]["amplitude"]), color=colour, ls=style, label=label)
             if driven:
@@ -157,7 +162,7 @@ def _waterfall(panels, ways, answer, speeds, per):
     bar = panels[0].figure.colorbar(image, ax=panels, fraction=0.03, pad=0.02)
     bar.set_label(f"log₁₀ of amplitude in {'rad' if answer['tilting'] else 'm'}", fontsize=7.5)
     row = next(row for row in answer["rows"] if row["rate"] == fall["rate"])
-    rate = f"{per * fall['rate']:.4g} {speeds}/s".replace("s/s", "s²")
+    rate = _rate(per * fall["rate"], speeds)
     words = (f"{rate}; Hann windows of {fall['window']} turns: {row['resolution']:.2g} orders, "
              f"{per * row['speed_in_window']:.3g} {speeds}")  # fmt: skip
     words += "; dashed orange: linear whirl" if answer["whirl"] else ""
@@ -173,7 +178,7 @@ def _growth(ax, answer, speeds, per):
         curve = row["growth"]["curve"]
         # Time times the rate: the speed gained, the same for every rate.
         gained = per * np.array(curve["time"]) * row["rate"]
-        label = f"{per * row['rate']:.4g} {speeds}/s".replace("s/s", "s²")
+        label = _rate(per * row["rate"], speeds)
         ax.plot(gained, curve["measured"], color=colour, lw=2.0, label=label)
         ax.plot(gained, curve["foretold"], color=BLACK, lw=0.9, ls=(0, (3, 2)))
     top = per * (answer["end"] - answer["crossing"])
@@ -215,7 +220,7 @@ def _curve(ax, answer, speeds, per):
         ax.plot(fine, said, color=BLACK, lw=0.9, ls=(0, (3, 2)), label="foretold: forced + whirl, to touch")
     touch = (answer["touch_rate"] or {}).get("value")
     if touch:
-        upright(ax, per * touch, f"{per * touch:.4g} {rates}", CONTACT)
+        upright(ax, per * touch, _rate(per * touch, speeds), CONTACT)
     low, high = np.nanmin(tilt), np.nanmax(tilt)
     ax.set(title=title, xlabel=f"ramp rate, {rates}", ylabel=f"largest relative tilt, {unit}")
     ax.set_ylim(0.6 * low, 3.0 * high if high > 0 else 1.0)
@@ -231,9 +236,12 @@ def _curve(ax, answer, speeds, per):
 
 
 def _load_ramps(study, answer, title, story):
-    mosaic = [[f"{name} over rate" for name in LOADS], [f"{name} in time" for name in LOADS]]
+    # An aligned seal has no tilt to show.
+    moves = any(row.get("relative_misalignment") for _, row in _runs(answer)) or not _runs(answer)
+    loads = {name: load for name, load in LOADS.items() if moves or name != "relative_misalignment"}
+    mosaic = [[f"{name} over rate" for name in loads], [f"{name} in time" for name in loads]]
     figure, ax = study_page(study, 12.5, 8.6, mosaic, title, story, height_ratios=(6, 5))
-    for name, load in LOADS.items():
+    for name, load in loads.items():
         _over_rate(ax[f"{name} over rate"], answer, name, *load)
         _in_time(ax[f"{name} in time"], answer, *load)
     legend(ax["h_min in time"], "best", fontsize=7.5)

@@ -4,7 +4,7 @@ and where a released ring hangs up, rides or straightens."""
 import numpy as np
 
 from ...archive import read_study
-from .page import legend, level, look, save, study_page
+from .page import absent, legend, level, look, save, study_page
 from .palette import BLACK, BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILLION
 from .record import done
 
@@ -25,10 +25,11 @@ def draw(archive_path, out_path):
     story = f"{study['name']}: {answer['verdict'][0]}"
     mosaic = [["numbers", "ratios"], ["numbers", "map"]]
     figure, ax = study_page(study, 13.0, 8.2, mosaic, below=story, width_ratios=(3, 2), height_ratios=(6, 7))
+    # What was asked, and always where the closed form has no balance and where it has one.
+    ratios = [row["force_ratio"] for row in answer["balance"]] + [1.2, 2.0 * answer["least_force_ratio"]]
     _numbers(ax["numbers"], answer, rows)
     _ratios(ax["ratios"], rows)
-    _map(ax["map"], answer, rows)
-    ratios = [row["force_ratio"] for row in answer["balance"]]
+    _map(ax["map"], answer, rows, max(ratios))
     for panel in ax.values():
         panel.set(xscale="log", xlabel="spring force over friction of half the secondary seal, q = F_s/F_d")
         panel.set_xticks(TICKS, [f"{t:g}" for t in TICKS])
@@ -61,7 +62,7 @@ def _numbers(ax, answer, rows):
     _zones(ax, answer)
     ax.set(ylabel="sealing number  h0² F_s / (µ U ΔR³)",
            title="Mean film, as the sealing number (bars: least and largest)")  # fmt: skip
-    ax.legend(loc="upper left", bbox_to_anchor=(0.36, 0.44))
+    ax.legend(loc="upper left", bbox_to_anchor=(0.42, 0.4))
 
 
 def _columns(rows) -> dict:
@@ -87,7 +88,7 @@ def _zones(ax, answer):
     # Their film, which the scene's has to be for the figure to be theirs.
     words += "\n\nLudwig & Allen's Fig. 8 needs a flat planar film, constant"
     words += "\nover the face, its pressure ambient where it diverges"
-    ax.annotate(words, (attracting, 0.80), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0),
+    ax.annotate(words, (attracting, 0.8), xycoords=("data", "axes fraction"), fontsize=8, xytext=(6, 0), va="top",
                 textcoords="offset points", annotation_clip=True)  # fmt: skip
 
 
@@ -114,13 +115,17 @@ def _ratios(ax, rows):
             if mine:
                 ax.plot([r["force_ratio"] for r in mine], [r["ratio"][name] for r in mine], mark, color=colour, ms=4,
                         mfc=colour if own else "white", label=words if own else None)  # fmt: skip
+    if not ax.lines:
+        return absent(
+            ax, "How far the closed form carries", "no released ring and closed form have a film at one ratio"
+        )
     level(ax, 1.0, "hollow: with a tilt spring that carries R F_s h1/h0", BLACK, ls="-", lw=0.8, zorder=1)
     ax.set(yscale="log", ylabel="released / closed form", title="How far the closed form carries")
     ax.set_ylim(top=12)
     legend(ax, "lower left", title="on its own support", alignment="left", title_fontsize=8)
 
 
-def _map(ax, answer, rows):
+def _map(ax, answer, rows, last):
     """Fates over force ratio and what the support carries."""
     found, need = answer["map"], answer["map"]["closed_form"]
     guide, hang, straight = (np.array(found[n]) for n in ("guide", "hang_up_below", "straightens_above"))
@@ -134,9 +139,14 @@ def _map(ax, answer, rows):
             colour, mark, _ = FATES[row["fate"]]
             ax.plot(row["force_ratio"], row["guide"], mark, color=colour, ms=6, mec="white", mew=0.6, zorder=4,
                     clip_on=False)  # fmt: skip
-    named = ((1.22, 0.62, 90, "hangs up", PURPLE), (5.5, 0.4, 0, "straightens", VERMILLION),
-             (13.0, 0.86, 0, "film", GREEN),
-             (7.0, np.interp(7.0, need["force_ratio"], need["guide"]) - 0.05, 0, "closed form", BLACK))  # fmt: skip
+    # Each name in its region, however far it goes to the right.
+    inner, outer, film = last**0.75, min(last**0.5, need["force_ratio"][-1]), last**0.9
+    middle = 0.5 * sum(np.interp(film, ends, guide) for ends in (hang, straight))
+    named = ((1.22, 0.62, 90, "hangs up", PURPLE), (inner, 0.12, 0, "straightens", VERMILLION),
+             (film, min(middle, 1.0), 0, "film", GREEN))  # fmt: skip
+    at = outer, np.interp(outer, need["force_ratio"], need["guide"])
+    ax.annotate("closed form", at, xytext=(5, -3), textcoords="offset points", weight="bold", fontsize=9, va="top",
+                annotation_clip=True)  # fmt: skip
     for x, y, turned, words, colour in named:
         ax.text(x, y, words, color=colour, rotation=turned, weight="bold", fontsize=9, ha="center", va="center",
                 clip_on=True)  # fmt: skip

@@ -9,11 +9,11 @@ from ...archive import read_study
 from ..text import speed_unit
 from .page import absent, look, number, once, save, study_page
 from .palette import BLACK, PALE, VERMILLION, YELLOW
+from .record import read_in
 
-# Axis values as an engineer reads them.
-SHOWN = {"m": (1e6, "µm"), "rad": (1e3, "mrad"), "Pa": (1e-5, "bar"), "Pa*s": (1e3, "mPa s")}
 WORDS = {"inertia_ratio": "inertia ratio c = I/J (transverse over polar)", "shaft.speed": "shaft speed"}
 COLOURS = "PuOr_r"
+FEW = 6
 
 
 @look()
@@ -50,6 +50,10 @@ def _map(ax, answer, shown):
             scale("log")
             # Plain numbers, as on axes that are not logarithmic.
             (ax.xaxis if axis is x else ax.yaxis).set_major_formatter(lambda value, _: number(value))
+    # A few values stand at their cells.
+    for values, put in ((at_x, ax.set_xticks), (at_y, ax.set_yticks)):
+        if len(values) <= FEW:
+            put(values, [number(value, ".4g") for value in values])
     ax.patch.set(hatch="///", edgecolor="white")
     norm, colours = _colours(rates)
     mesh = ax.pcolormesh(at_x, at_y, np.ma.masked_invalid(rates), norm=norm, cmap=colours, shading="nearest",
@@ -100,8 +104,13 @@ def _say(ax, x, y, rates):
             continue
         # Steps from each cell to the edge of its region; the map's edge counts.
         depth = distance_transform_cdt(np.pad(region, 1), "taxicab")[1:-1, 1:-1]
-        j, i = np.unravel_index(int(np.argmax(depth)), depth.shape)
-        ax.text(x[i], y[j], word, ha="center", va="center", fontsize=13, weight="bold",
+        # Of equally inner ones the one in the middle.
+        inner = np.argwhere(depth == depth.max())
+        j, i = inner[len(inner) // 2]
+        # Inside the map, however near to its edge.
+        across = (i + 0.5) / len(x)
+        side = "left" if across < 0.06 else "right" if across > 0.94 else "center"
+        ax.text(x[i], y[j], word, ha=side, va="center", fontsize=13, weight="bold",
                 bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 2})  # fmt: skip
 
 
@@ -116,16 +125,12 @@ def _marks(ax, answer, per_x, per_y):
             edge, width, grows = BLACK, 1.0, point["time_domain"] > 0
             mark, words = ("^", "grows in the time domain") if grows else ("v", "decays in the time domain")
         ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=8, mfc="white", mec=edge, mew=width, zorder=5,
-                label=once(ax, words))  # fmt: skip
+                clip_on=False, label=once(ax, words))  # fmt: skip
 
 
 def _shown(axis, speeds: str, per: float) -> tuple[float, str]:
-    """How many of the unit for people make one SI unit, and what stands at the axis; radii in mm, films in µm, speeds
-    as the scenario has them (`speeds`, of which `per` make one rad/s)."""
-    factor, unit = SHOWN.get(axis["unit"], (1.0, axis["unit"].replace("*", " ")))
-    if axis["unit"] == "rad/s":
-        factor, unit = per, speeds
-    if axis["unit"] == "m" and max(map(abs, axis["values"])) > 2e-3:
-        factor, unit = 1e3, "mm"
+    """How many of the unit for people make one SI unit, and what stands at the axis; speeds as the scenario has them
+    (`speeds`, of which `per` make one rad/s)."""
+    unit, factor = read_in(axis["unit"], axis["values"], (speeds, per))
     words = WORDS.get(axis["key"], axis["key"].replace(".", " ").replace("_", " "))
-    return factor, words if unit == "1" else f"{words}, {unit}"
+    return factor, f"{words}, {unit}" if unit else words

@@ -5,7 +5,7 @@ import numpy as np
 from ...archive import read_study
 from .page import absent, look, save, study_page
 from .palette import CONTACT, FILM, GREY, MARK, THEORY, TILT
-from .record import done
+from .record import done, fitting
 
 
 @look()
@@ -35,12 +35,14 @@ def _orbit(ax, answer):
     if not answer.get("orbit"):
         return _defects(ax, answer)
     x, y = (1e6 * np.array(answer["orbit"][f"relative_tilt_{axis}"]) for axis in "xy")
+    unit, finer = fitting("µrad", float(np.max(np.hypot(x, y))))
+    x, y = finer * x, finer * y
     ax.plot(x, y, color=TILT)
     ax.plot(x[0], y[0], "o", color=MARK, ms=4, label="shaft angle 0")
     ax.plot(0, 0, "+", color=GREY)
     ax.set_aspect("equal", "datalim")
     title = "Orbit of the relative tilt" if answer["period"] else "Relative tilt over the last turns"
-    ax.set(title=title, xlabel="tilt about x, µrad", ylabel="tilt about y, µrad")
+    ax.set(title=title, xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")
     ax.legend(loc="upper right")
 
 

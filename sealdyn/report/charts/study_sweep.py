@@ -6,13 +6,19 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from ...archive import read_study
-from .page import absent, look, save, study_page
-from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PURPLE, SKY, THICKNESS, YELLOW
+from .page import absent, look, number, save, study_page
+from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
 
 # SI unit of an output -> what it is shown in, and the factor.
-SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/min", 6e7)}
+SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/h", 3.6e9)}
+# Leakage (m^3/s) from which it is shown in l/min, as that of gases; as in the tables of the studies.
+MUCH = 1e-5
 WORDS = (GREEN, CONTACT, ORANGE, BLUE, PURPLE, SKY, YELLOW, GREY)
 MOST = 8
+# Letters from which on a title is small.
+LONG = 27
+# Numbers at the cells of a map.
+FEW = 6
 
 
 @look()
@@ -26,6 +32,8 @@ def draw(path, out):
     mosaic = np.array(outputs + ["."] * (across * down - len(outputs))).reshape(down, across).tolist()
     title = f"{study['name'].replace('_', ' ')} over {' and '.join(answer['keys'])}"
     said = " ".join(answer["verdict"][:2])
+    if len(answer["keys"]) == 2 and any(not np.isfinite(column(answer, name)[0]).all() for name in outputs):
+        said += "\nHatched: no value."
     figure, panels = study_page(study, max(3.6 * across, 7.2), 1.1 + 2.7 * down, mosaic, title, said)
     for output, ax in panels.items():
         values, unit, words = column(answer, output)
@@ -33,8 +41,9 @@ def draw(path, out):
             absent(ax, output, "more than two keys: see the table in the archive")
         elif not np.isfinite(values).any():
             absent(ax, output, "no value at any point")
+            ax.set_title(output, fontsize=9.5 if len(output) < LONG else 8)
         else:
-            ax.set_title(output)
+            ax.set_title(output, fontsize=9.5 if len(output) < LONG else 8)
             (lines if len(answer["keys"]) == 1 else maps)(ax, answer, values, unit, words)
     return save(figure, out)
 
@@ -51,8 +60,16 @@ def column(answer, output):
         words = list(dict.fromkeys(value for value in raw if value is not None))
         return np.array([np.nan if value is None else words.index(value) for value in raw]), "", words
     unit = answer["output_units"].get(output, "")
-    unit, factor = SHOWN.get(unit, (unit, 1.0))
-    return factor * np.array(raw, dtype=float), unit, None
+    values = np.array(raw, dtype=float)
+    unit, factor = shown(unit, values)
+    return factor * values, unit, None
+
+
+def shown(unit: str, values) -> tuple[str, float]:
+    """What `values` in this SI unit are shown in, and how many of it make one."""
+    if unit == "m^3/s" and np.nanmax(np.abs(values), initial=0.0) >= MUCH:
+        return "l/min", 6e4
+    return SHOWN.get(unit, (unit, 1.0))
 
 
 def positions(axis: dict) -> np.ndarray:
@@ -70,7 +87,8 @@ def lines(ax, answer, values, unit, words):
         ax.set_yticks(range(len(words)), words, rotation=90 if len(words) < 4 else 0, va="center")
         ax.set_ylim(-0.7, len(words) - 0.3)
     else:
-        ax.plot(x, values, "-o", ms=3.5, color=BLUE)
+        # Between words there is nothing.
+        ax.plot(x, values, "o" if axis["unit"] is None else "-o", ms=3.5, color=BLUE)
         ax.set_ylabel(unit)
     if not good.all():
         ax.plot(x[~good], np.full((~good).sum(), 0.03), "x", ms=6, color=CONTACT, transform=ax.get_xaxis_transform(),
@@ -81,12 +99,13 @@ def lines(ax, answer, values, unit, words):
 
 
 def maps(ax, answer, values, unit, words):
-    """One output over two keys; white where a run was not possible or gave no value."""
+    """One output over two keys; hatched where a run was not possible or gave no value."""
     first, second = answer["axes"]
     cells = np.ma.masked_invalid(values.reshape(len(first["values"]), len(second["values"])).T)
     x, y = positions(first), positions(second)
     ax.grid(False)
-    ax.set_facecolor("white")
+    ax.set_facecolor(PALE)
+    ax.patch.set(hatch="///", edgecolor="white")
     if words:
         colours = ListedColormap([WORDS[k % len(WORDS)] for k in range(len(words))])
         norm = BoundaryNorm(np.arange(len(words) + 1) - 0.5, len(words))
@@ -96,8 +115,8 @@ def maps(ax, answer, values, unit, words):
     else:
         drawn = ax.pcolormesh(edges(x), edges(y), cells, cmap=THICKNESS)
         ax.figure.colorbar(drawn, ax=ax, label=unit)
-    _ticks(ax.set_xticks, first, x)
-    _ticks(ax.set_yticks, second, y)
+    _ticks(ax.set_xticks, first, x, few=True)
+    _ticks(ax.set_yticks, second, y, few=True)
     ax.set(xlabel=axis_label(first), ylabel=axis_label(second))
 
 
@@ -109,6 +128,9 @@ def edges(x) -> np.ndarray:
     return np.concatenate([[2 * x[0] - middle[0]], middle, [2 * x[-1] - middle[-1]]])
 
 
-def _ticks(put, axis, x):
+def _ticks(put, axis, x, few=False):
+    """Words stand at their place; of a map so do a few numbers."""
     if axis["unit"] is None:
         put(x, axis["values"])
+    elif few and len(x) <= FEW:
+        put(x, [number(value) for value in axis["values"]])

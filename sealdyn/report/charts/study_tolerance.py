@@ -3,8 +3,9 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import absent, legend, look, number, save, study_page, upright
-from .palette import BLUE, CONTACT, CYCLE, GREY, ORANGE, PALE, SKY
+from .page import EVEN, PAPER, absent, legend, look, number, save, study_page, upright
+from .palette import BLACK, BLUE, CONTACT, CYCLE, GREY, ORANGE, PALE, SKY
+from .record import fitting
 from .study_sweep import SHOWN
 
 # Outputs that have a histogram, and keys that have a row.
@@ -22,17 +23,22 @@ def draw(path, out):
     outputs = answer["outputs"][:MOST]
     top = [name for name in outputs for _ in range(12 // len(outputs))]
     top += [outputs[-1]] * (12 - len(top))
-    mosaic = [top, 4 * ["shares"] + 4 * ["matrix"] + 4 * ["cloud"], 4 * ["quantiles"] + 4 * ["risk"] + 4 * ["totals"]]
-    said = " ".join(answer["verdict"][:2])
-    figure, ax = study_page(study, 14, 10, mosaic, below=f"{study['name']}: {said}", height_ratios=(4, 5, 4))
+    mosaic, heights = [top, 4 * ["shares"] + 4 * ["matrix"] + 4 * ["cloud"]], (4, 5)
+    # How the numbers settle is seen from two counts of runs on.
+    settles = len(answer["convergence"]["runs"]) > 1
+    if settles:
+        mosaic, heights = [*mosaic, 4 * ["quantiles"] + 4 * ["risk"] + 4 * ["totals"]], (4, 5, 4)
+    said, height = " ".join(answer["verdict"][:2]), 1.5 + 0.65 * sum(heights)
+    figure, ax = study_page(study, 14, height, mosaic, below=f"{study['name']}: {said}", height_ratios=heights)
     for name in outputs:
         _histogram(ax[name], answer, name)
     _shares(ax["shares"], answer)
     _matrix(ax["matrix"], answer, outputs)
     _cloud(ax["cloud"], answer)
-    _quantiles(ax["quantiles"], answer)
-    _risk(ax["risk"], answer)
-    _totals(ax["totals"], answer)
+    if settles:
+        _quantiles(ax["quantiles"], answer)
+        _risk(ax["risk"], answer)
+        _totals(ax["totals"], answer)
     return save(figure, out)
 
 
@@ -41,10 +47,17 @@ def _shown(unit: str) -> tuple[str, float]:
     return ALSO.get(unit, (unit, 1.0))
 
 
+def _key_shown(unit: str, values) -> tuple[str, float]:
+    """The same of a key: angles from a milliradian on in mrad."""
+    return ("mrad", 1e3) if unit == "rad" and np.abs(values).max() >= 1e-3 else _shown(unit)
+
+
 def _values(answer, name) -> tuple[np.ndarray, str, float]:
     """Values (n,) of an output as shown, the axis label and the factor."""
     unit, factor = _shown(answer["output_units"][name])
     values = factor * np.array(answer["samples"]["outputs"][name], dtype=float)
+    unit, finer = fitting(unit, np.abs(values[np.isfinite(values)]).max(initial=0.0))
+    values, factor = finer * values, finer * factor
     return values, f"{name}, {unit}" if unit else name, factor
 
 
@@ -55,6 +68,10 @@ def _histogram(ax, answer, name):
     known = np.isfinite(values)
     if not known.any():
         return absent(ax, name, "no value in any run")
+    low, high = values[known].min(), values[known].max()
+    if high - low <= EVEN * max(abs(low), abs(high)):
+        quantity = label.removeprefix(name).removeprefix(", ")
+        return absent(ax, name, f"{number(high, '.4g')} {quantity}".strip() + " in every run that has a value")
     touched = np.array(answer["samples"]["contact"], dtype=float) == 1
     edges = np.histogram_bin_edges(values[known], bins=min(40, max(8, int(np.sqrt(known.sum())))))
     ax.hist([values[known & touched], values[known & ~touched]], edges, stacked=True, color=[CONTACT, SKY],
@@ -64,7 +81,8 @@ def _histogram(ax, answer, name):
     if answer["nominal"][name] is not None:
         nominal = factor * answer["nominal"][name]
         side = "right" if nominal > 0.5 * (edges[0] + edges[-1]) else "left"
-        upright(ax, nominal, "as drawn", height=0.93, ha=side, ls="--")
+        upright(ax, nominal, "as drawn", BLACK, height=0.93, ha=side, ls="--", bbox=PAPER)
+    ax.locator_params(axis="x", nbins=5)
     ax.set(title=name, xlabel=label, ylabel="runs")
     if name == answer["outputs"][-1]:
         legend(ax, "best")
@@ -126,10 +144,12 @@ def _cloud(ax, answer):
     key = answer["tighten"][name][0]["key"]
     if not np.isfinite(values).any():
         return absent(ax, f"{name} over {key}", "no value in any run")
-    unit, factor = _shown(answer["scatter"][key]["unit"])
-    x = factor * np.array(answer["samples"]["keys"][key])
+    x = np.array(answer["samples"]["keys"][key])
+    unit, factor = _key_shown(answer["scatter"][key]["unit"], x)
+    x = factor * x
     touched = np.array(answer["samples"]["contact"], dtype=float) == 1
-    ax.plot(x[~touched], values[~touched], ".", ms=3.5, color=BLUE, label="apart")
+    if not touched.all():
+        ax.plot(x[~touched], values[~touched], ".", ms=3.5, color=BLUE, label="apart")
     if touched.any():
         ax.plot(x[touched], values[touched], ".", ms=4.5, color=CONTACT, label="touched")
     missing = ~np.isfinite(values)
@@ -144,7 +164,7 @@ def _cloud(ax, answer):
 def _quantiles(ax, answer):
     """Quantiles of the first output over the number of runs they are taken from."""
     found = answer["convergence"]
-    unit, factor = _shown(answer["output_units"][found["output"]])
+    _, label, factor = _values(answer, found["output"])
     columns = {level: factor * np.array(found["quantiles"].get(level, []), dtype=float) for level in ("1", "50", "99")}
     if not np.isfinite(columns["50"]).any():
         return absent(ax, "Quantiles", "no value in any run")
@@ -155,7 +175,7 @@ def _quantiles(ax, answer):
     for level, values in columns.items():
         ax.plot(runs, values, "-" if level == "50" else ":", color=BLUE, label=LINES[level])
     _over_runs(ax, runs)
-    ax.set(title="Quantiles", ylabel=f"{found['output']}, {unit}", xlabel="runs")
+    ax.set(title="Quantiles", ylabel=label, xlabel="runs")
     legend(ax, "above", ncols=3, handlelength=1.2, columnspacing=0.8, handletextpad=0.4)
 
 

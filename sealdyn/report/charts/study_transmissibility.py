@@ -29,7 +29,7 @@ WORDS = {
     "dynamic_transmissibility": "dynamic transmissibility",
     "maximum_relative_misalignment": "maximum relative misalignment",
     "critical_misalignment": "critical misalignment, C/r_o",
-    "critical_speed": "critical speed, rad/s",
+    "critical_speed": "critical speed",
 }
 
 
@@ -55,7 +55,7 @@ def draw(archive_path, out_path):
     ax["static phase"].set_ylabel("phase behind the forcing, deg")
     _legend(ax["legend"], answer)
     if answer["table"]:
-        _table(ax["table"], answer["table"], answer["formula_holds"])
+        _table(ax["table"], answer["table"], answer["formula_holds"], answer["unit"])
     return save(figure, out_path)
 
 
@@ -74,8 +74,9 @@ def _roads(ax, answer, quantity: str):
             # The scenario's own speed may lie elsewhere.
             if row["seal"] != seal or not inside[0] <= row["speed"] <= inside[1]:
                 continue
-            ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt=MARK[seal], ms=4.5, lw=1.0,
-                        mfc="white", mec=colour, ecolor=colour, capsize=3, clip_on=False)  # fmt: skip
+            ax.errorbar(factor * row["speed"], row[quantity], row["error"][quantity], fmt="none", lw=1.0,
+                        ecolor=colour, capsize=3)  # fmt: skip
+            ax.plot(factor * row["speed"], row[quantity], MARK[seal], ms=4.5, mfc="white", mec=colour, clip_on=False)
     ax.set(xlim=(speed[0], speed[-1]))
     ax.locator_params(axis="x", nbins=5)
     return np.concatenate([answer[s][quantity] for s in COLOUR])
@@ -95,7 +96,8 @@ def _amplitudes(ax, answer, quantity: str):
             ax.yaxis.set_major_locator(LogLocator())
     else:
         ax.set_ylim(0, (1 + room) * highest)
-    ax.set_title(TITLES[quantity])
+    turns = quantity == "static" and answer.get("stator_speed")
+    ax.set_title("Static: turns with the stator" if turns else TITLES[quantity])
     _best(ax, answer, quantity)
 
 
@@ -141,7 +143,7 @@ def _legend(ax, answer):
     if errors:
         apart = max(error[name] for error in errors for name in TITLES)
         turned = max(error[name] for error in errors for name in ("static_phase", "dynamic_phase"))
-        label = f"time domain (error bars up to\n{apart:.0e} and {turned:.0e} deg)"
+        label = f"time domain (error bars up to\n{_short(apart, 1)} and {_short(turned, 1)} deg)"
         ax.plot([], [], "o", color=GREY, mfc="white", label=label)
     if not all(all(answer[seal]["stable"]) for seal in COLOUR):
         ax.plot([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped")
@@ -151,7 +153,7 @@ def _legend(ax, answer):
     ax.text(0.0, 0.0, words, fontsize=8.5, color=GREY, va="bottom", linespacing=1.4, transform=ax.transAxes)
 
 
-def _table(ax, rows, by_formula: bool):
+def _table(ax, rows, by_formula: bool, unit: str):
     """The arrangements, as Green's Table 1."""
     ax.axis("off")
     roads = {"formula": "formula", "linear_algebra": "lin. algebra", "time_domain": "in time"}
@@ -162,8 +164,10 @@ def _table(ax, rows, by_formula: bool):
     columns = (0.0, *(0.28 + 0.25 * i + 0.08 * j for i in range(len(COLOUR)) for j in range(len(roads))))
     lines = [heads, below]
     for row in rows:
-        cells = [_cell(row, seal, road, by_formula) for seal in COLOUR for road in roads]
-        lines.append((WORDS[row["quantity"]], *cells))
+        speed = row["quantity"] == "critical_speed"
+        factor = RPM if speed and unit == "rpm" else 1.0
+        cells = [_cell(row, seal, road, by_formula, factor) for seal in COLOUR for road in roads]
+        lines.append((WORDS[row["quantity"]] + (f", {unit}" if speed else ""), *cells))
     for i, cells in enumerate(lines):
         y = 1 - i / (len(lines) - 0.5)
         for x, words in zip(columns, cells, strict=True):
@@ -174,10 +178,17 @@ def _table(ax, rows, by_formula: bool):
     ax.set(xlim=(0, 1), ylim=(0, 1))
 
 
-def _cell(row, seal, road, by_formula: bool) -> str:
+def _short(value: float, digits: int) -> str:
+    """So many digits, in no more letters than a column has."""
+    plain = 1e-3 <= abs(value) < 1e7
+    words = f"{float(f'{value:.{digits}g}'):.7g}" if plain else f"{value:.{digits - 1}e}"
+    return number(float(words)) if digits == 1 and plain else words.replace("e-0", "e−").replace("e+0", "e")
+
+
+def _cell(row, seal, road, by_formula: bool, factor: float) -> str:
     value = row[road][seal]
     if value is not None:
-        return f"{value:.5g}"
+        return _short(factor * value, 5 if factor * abs(value) >= 0.01 else 4)
     # No critical speed is an answer; no formula for it, and no search for it in time, are none.
     answers = road == "linear_algebra" or (road == "formula" and by_formula and seal != "fmsr")
     return "none" if row["quantity"] == "critical_speed" and answers else "–"

@@ -4,7 +4,7 @@ takes up; modes, gear mesh and accelerations asked at the side."""
 import numpy as np
 
 from ...archive import read_study
-from .page import logarithmic, look, number, save, stacked, study_page
+from .page import PAPER, logarithmic, look, number, save, stacked, study_page
 from .palette import BLACK, GREY, PALE, RING, VERMILLION
 
 GRAVITY = 9.80665
@@ -43,7 +43,7 @@ def draw(archive_path, out_path):
     ax["gain"].set(xlim=(frequency[0], frequency[-1]), xlabel="frequency, Hz", ylim=(0.0, None),
                    ylabel=f"gap's motion, {unit} of the housing's")  # fmt: skip
     ax["touch"].set(ylabel="acceleration of the housing at touch, g")
-    _lines_of_amplitude(ax["touch"], frequency)
+    _lines_of_amplitude(ax["touch"], frequency, [line for line in ax["touch"].lines if len(line.get_xdata()) > 2])
     _key(ax["key"], answer)
     _numbers(ax["numbers"], answer)
     return save(figure, out_path)
@@ -109,19 +109,34 @@ def _decades_only(ax):
         ax.yaxis.set_major_locator(LogLocator(numticks=9))
 
 
-def _lines_of_amplitude(ax, frequency):
-    """Straight lines of equal amplitude of the housing behind the curves, named where they end."""
+def _lines_of_amplitude(ax, frequency, curves):
+    """Straight lines of equal amplitude of the housing behind the curves, named where they are farthest from those."""
     low, high = ax.get_ylim()
     for amplitude, words in AMPLITUDES.items():
         line = (2 * np.pi * frequency) ** 2 * amplitude / GRAVITY
         inside = np.nonzero((line > low * (high / low) ** 0.02) & (line < high))[0]
         ax.plot(frequency, line, color=PALE, lw=0.8, zorder=0)
         if len(inside) > len(frequency) // 6:
-            at = inside[len(inside) // 12]
-            ax.text(
-                frequency[at], line[at], words, fontsize=7, color=GREY, ha="right", va="bottom", zorder=0, clip_on=True
-            )
+            # Not at the ends, where the name would leave the panel.
+            middle = inside[len(inside) // 8 : -(len(inside) // 8) or None]
+            middle = middle[frequency[middle] > frequency[0] * (frequency[-1] / frequency[0]) ** 0.1]
+            away = [_away(frequency[k], line[k], curves, frequency[-1] / frequency[0], high / low) for k in middle]
+            at = middle[int(np.argmax(away))]
+            ax.text(frequency[at], line[at], words, fontsize=7, color=GREY, ha="center", va="center", zorder=0,
+                    clip_on=True, bbox=PAPER | {"alpha": 1.0})  # fmt: skip
     ax.set_ylim(low, high)
+
+
+def _away(x: float, y: float, curves, across: float, up: float) -> float:
+    """Least distance of a point to the curves in parts of the panel, both axes logarithmic over these ratios, no more
+    than is needed."""
+    near = [0.15]
+    for curve in curves:
+        at, values = (np.asarray(v, dtype=float) for v in curve.get_data())
+        good = np.isfinite(values) & (values > 0)
+        apart = np.hypot(np.log(at[good] / x) / np.log(across), np.log(values[good] / y) / np.log(up))
+        near.append(apart.min(initial=np.inf))
+    return min(near)
 
 
 def _key(ax, answer):

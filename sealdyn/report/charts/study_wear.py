@@ -25,10 +25,11 @@ def draw(archive_path, out_path):
         absent(ax["none"], "No profile", said)
         return save(figure, out_path)
     unit, factor = _time_unit(history["time"][-1])
-    panels, left = _over_time(history), [[[["stator", "rotor"]]], ["gap"], ["pressed"]]
+    worn = [face for face in ("stator", "rotor") if np.any(answer["profile"][face])] or ["stator"]
+    panels, left = _over_time(history, worn), [[[worn]], ["gap"], ["pressed"]]
     right = [[title] for title in panels]
     figure, ax = study_page(study, 13.0, 8.6, [[left, right]], bold=said, width_ratios=(4, 3))
-    _faces(figure, ax, answer, unit, factor)
+    _faces(figure, ax, answer, worn, unit, factor)
     _pressed(ax["pressed"], answer)
     stacked(*(ax[title] for title in panels))
     for title, panel in panels.items():
@@ -48,14 +49,14 @@ def _length_unit(largest) -> tuple[str, float]:
     return ("µm", 1e6) if largest >= 3e-7 else ("nm", 1e9)
 
 
-def _faces(figure, ax, answer, unit, factor):
+def _faces(figure, ax, answer, worn, unit, factor):
     """Worn depth of each face over the radius, coloured by time; below, the gap they leave."""
     time = factor * np.array(answer["history"]["time"])
     radius = 1e3 * np.array(answer["radius"])
     colour, scale = colormaps[THICKNESS].reversed(), Normalize(0.0, time[-1] or 1.0)
     shown = np.unique([int(np.argmin(np.abs(time - t))) for t in np.linspace(0.0, time[-1], LINES)])
     gap = np.array(answer["profile"]["gap"])
-    depths = {face: np.array(answer["profile"][face]) for face in ("stator", "rotor")}
+    depths = {face: np.array(answer["profile"][face]) for face in worn}
     for face, depth in {**depths, "gap": gap - gap.min(axis=1, keepdims=True)}.items():
         title = "Shape of the gap, from its narrowest place" if face == "gap" else f"{face.capitalize()}: worn off"
         name, per = _length_unit(depth.max())
@@ -73,7 +74,7 @@ def _faces(figure, ax, answer, unit, factor):
             ax[face].invert_yaxis()
         ax[face].margins(x=0.01)
         ax[face].set(xlabel="radius, mm", ylabel=f"{'depth' if face in depths else 'gap'}, {name}", title=title)
-    bar = figure.colorbar(ScalarMappable(scale, colour), ax=[ax["rotor"]], fraction=0.04, label=f"time, {unit}")
+    bar = figure.colorbar(ScalarMappable(scale, colour), ax=[ax[worn[-1]]], fraction=0.04, label=f"time, {unit}")
     bar.outline.set_visible(False)
 
 
@@ -95,8 +96,9 @@ def _pressed(ax, answer):
     legend(ax, "above", ncols=2)
 
 
-def _over_time(history) -> dict:
-    """Unit and curves (factor, column of the history, colour, label) of every panel over the hours."""
+def _over_time(history, worn) -> dict:
+    """Unit and curves (factor, column of the history, colour, label) of every panel over the hours; volumes of the
+    faces that are `worn`."""
     leakage = ("l/h", 3.6e6) if max(history["leakage"]) > 1e4 / 3.6e9 else ("ml/h", 3.6e9)
     return {
         "Leakage": (leakage[0], (leakage[1], "leakage", LEAK, "")),
@@ -104,8 +106,7 @@ def _over_time(history) -> dict:
         "Contact": ("%", (100.0, "contact_share", CONTACT, "of the absolute closing force"),
                     (100.0, "contact_area_fraction", ORANGE, "of the face touches")),
         "Film": ("µm", (1e6, "mean_clearance", FILM, "mean over the face"), (1e6, "h_min", GREY, "thinnest")),
-        "Worn volume": ("mm³", (1e9, "stator_volume", RING["stator"], "stator"),
-                        (1e9, "rotor_volume", RING["rotor"], "rotor")),
+        "Worn volume": ("mm³", *((1e9, f"{face}_volume", RING[face], face) for face in worn)),
     }  # fmt: skip
 
 

@@ -212,10 +212,11 @@ def _tones(scene, tilting, order, begin, end) -> list[str]:
     tones = scene.housing.angular if tilting else scene.housing.axial
     met = [(v.frequency, 2 * math.pi * v.frequency / abs(order)) for v in tones if order]
     bands = scene.housing.angular_random if tilting else scene.housing.axial_random
+    bands = [*bands, *(scene.housing.angular_sweep if tilting else scene.housing.axial_sweep)]
     said = [
-        f"the housing's {band.frequency[0]:.4g} to {band.frequency[-1]:.4g} Hz meet order {order:g} and add to it"
-        for band in bands
-        if begin * abs(order) < 2 * math.pi * band.frequency[-1] and 2 * math.pi * band.frequency[0] < end * abs(order)
+        f"the housing's {low:.4g} to {high:.4g} Hz meet order {order:g} and add to it"
+        for low, high in ((min(band.frequency), max(band.frequency)) for band in bands)
+        if begin * abs(order) < 2 * math.pi * high and 2 * math.pi * low < end * abs(order)
     ]
     return said + [
         f"the housing's {f:.4g} Hz meets order {order:g} at {w:.5g} rad/s: near there the order holds both"
@@ -227,7 +228,7 @@ def _tones(scene, tilting, order, begin, end) -> list[str]:
 def _per_turn(scene, settings, begin) -> tuple[int, list[str]]:
     """Samples of a turn for the highest order known beforehand, and a warning if that is not enough."""
     orders = [abs(w.ratio) for w in scene.shaft.whirl] + [abs(r.order) for r in scene.rotor.axial_runout]
-    tones = [v.frequency for v in scene.housing.tones]
+    tones = [v.frequency for v in scene.housing.tones] + [max(v.frequency) for v in scene.housing.sweeps]
     highest = max([1.0, *orders, *(2 * math.pi * f / max(begin, 1e-9) for f in tones)])
     count = settings.samples_per_turn
     if count is None:

@@ -1,7 +1,7 @@
 """What a run-up says, in sentences."""
 
 from ...status import Status
-from .._words import RPM, quantity, speed
+from .._words import RPM, plain, quantity, speed
 
 WAYS = ("up", "down")
 # Up to this share of the tilt that touches, a seal is near its aligned film; of the power that may be folded.
@@ -22,7 +22,7 @@ def sentences(answer) -> list[str]:
 
 
 def rate_words(rate) -> str:
-    return f"{rate:.4g} rad/s^2 ({rate * RPM:.4g} rpm/s)"
+    return f"{plain(rate, 4)} rad/s^2 ({plain(rate * RPM, 4)} rpm/s)"
 
 
 def _passing(answer, rows) -> str:

@@ -12,6 +12,7 @@ from ... import closed_form as cf
 from ...analysis.whirl import free_model, growth_rate
 from ...analysis.whirl.time_domain import pace
 from ...dynamics import modes
+from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...scenario.errors import ScenarioError
@@ -22,8 +23,8 @@ from ...scene.excitation import Housing, Shaft
 from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.method_selection import choose_method
-from ...simulation.stability import critical_speed, whirl_ratio
-from .._words import speed
+from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
+from .._words import no_film_beyond, speed
 from .grid import INERTIA_RATIO, Grid
 
 REFUSES = ("secondary-seal",)
@@ -207,16 +208,17 @@ def margins(scene) -> dict:
         "growth_rate_uncertainty": modes.uncertainty(found),
         "whirl_ratio": whirl_ratio(found, speed),
         "critical_speed": critical,
+        "speeds_held": speeds_held(model),
         "speed_margin": critical / abs(speed) if critical and speed else None,
     }
 
 
 def unconditional(scene) -> dict:
     """The inertia ratio up to which a flexible rotor is stable at every speed, `c <= 1/nu`; None for other seals, and
-    for a film that stores, of which there is no such formula."""
+    for a film that stores or changes with the speed, of which there is no such formula."""
     nothing = {"limit": None, "inertia_ratio": None, "holds": None}
     model = Model(scene)
-    if arrangement(scene) != "FMR" or model.interface.stores:
+    if arrangement(scene) != "FMR" or model.interface.stores or moves_with_speed(scene.film):
         return nothing
     damping = scene.rotor.support.tilt()[1]
     stiffness, film_damping = model.film_matrices()
@@ -304,10 +306,14 @@ def _verdict(answer, scenario, axes, total) -> list[str]:
         times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
         said.append(f"Critical speed {speed(margin['critical_speed'])}{times}.")
     else:
-        said.append("No critical speed.")
+        held = margin["speeds_held"]
+        said.append(f"No critical speed{no_film_beyond(held)}.")
+    if moves_with_speed(scenario.scene.film) and scenario.scene.film.clearance is not None:
+        said.append("The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap.")
     if limit["limit"]:
         own = f"; its own is {limit['inertia_ratio']:.4g}" if limit["inertia_ratio"] else ""
-        said.append(f"Stable at every speed for inertia ratios c <= 1/nu = {limit['limit']:.5g}{own}.")
+        ratio = "transverse over polar inertia c <= 1/nu"
+        said.append(f"Stable at every speed for {ratio} = {limit['limit']:.5g}, nu the whirl ratio{own}.")
     possible = np.isfinite(total)
     share = np.mean(total[possible] < 0) if possible.any() else 0.0
     said.append(

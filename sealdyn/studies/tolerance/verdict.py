@@ -21,7 +21,7 @@ def _contact_sentence(answer) -> str:
         return f"No run ended, so whether the faces touch is not known ({counted_ends(answer)})."
     share = f"{100 * risk['value']:.3g} %" if risk["count"] else "None"
     words = (f"{share} of the seals touch ({risk['count']} of {risk['runs']} runs; 95 % interval "
-             f"{100 * risk['low']:.2g} to {100 * risk['high']:.2g} %)")  # fmt: skip
+             f"{100 * risk['low']:.3g} to {100 * risk['high']:.3g} %)")  # fmt: skip
     closed = answer["runs"]["closed_at_start"]
     # The linear steady state that a run may begin with touches before the film, which lifts the faces, would.
     words += f"; {closed} of them before anything moves (contact-onset follows the film further)" if closed else ""

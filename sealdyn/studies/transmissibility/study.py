@@ -80,6 +80,7 @@ def run(scenario, settings, tools) -> dict:
     speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
     answer = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
+    answer["stator_speed"] = frozen_at_start(scenario.scene).stator.speed
     answer["phase"] = PHASE
     for name, seal in seals.items():
         algebra = curves(speeds, np.array([seal.relative_tilts(w) for w in speeds]).T)
@@ -218,12 +219,17 @@ def _verdict(answer: dict, own_speed: float) -> list[str]:
         said.append("Both rings float: FMR and FMS are this scene with the other ring held rigid.")
     else:
         said.append("FMSR is this scene with the same ring and support on the other side too.")
+    carried = "turns with it" if answer["stator_speed"] else "fixed in space"
+    static = f"static of the stator's ({carried})"
+    said.append(f"Relative tilt per unit tilt: {static}, dynamic of what turns with the shaft, total of both.")
     said += [f"{quantity}: {_stretches(answer['best'][quantity])}." for quantity in QUANTITIES]
     for pair in answer["pairs"]:
         one, other = (name.upper() for name in pair["seals"])
         said.append(f"{one} against {other} in total: {_stretches(pair['best'], 'better')}.")
     for row in answer["table"][:3]:
-        name, numbers = row["quantity"].replace("_", " "), ", ".join(f"{s.upper()} {row[s]:.4g}" for s in SEALS)
+        # Green's name of the total does not tell that it is no angle.
+        name = row["quantity"].replace("_", " ").replace("misalignment", "misalignment (total, per unit tilts)")
+        numbers = ", ".join(f"{s.upper()} {row[s]:.4g}" for s in SEALS)
         said.append(f"At {speed_words(own_speed)} {name}: {numbers}.")
     for name in SEALS:
         ends = answer["stability_ends"][name]

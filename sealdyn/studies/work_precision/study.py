@@ -42,6 +42,7 @@ ALONG = {f"methods/{name}": ("tolerance",) for name in NAMES} | {
 units = {"wall": "s", "processor": "s", "*": "1"}
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
+Method = Literal[*FAST, *SLOW]
 WITH_WAVES = True
 # Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 TIGHT, JUDGE = 1e-11, 1e-11
@@ -78,7 +79,7 @@ class Settings:
     """Times the fastest run of that error: beyond, a cross."""
     samples: int = 400
     """Intervals at which errors are taken."""
-    methods: tuple[str, ...] = ()
+    methods: tuple[Method, ...] = ()
     """Methods to judge; empty: all."""
     judging: float = 120.0
     """Seconds that the reference may take."""

@@ -2,6 +2,7 @@
 
 import collections
 import contextlib
+import math
 import os
 import signal
 import sys
@@ -44,6 +45,11 @@ class TooLong(BaseException):
     """Nothing was said for too long."""
 
 
+def shared(seconds: float) -> int:
+    """So many seconds of a machine that others use, too: longer by the processes that wait for each core."""
+    return math.ceil(seconds * max(1.0, os.getloadavg()[0] / os.cpu_count()))
+
+
 def _late(*_):
     raise TooLong
 
@@ -51,7 +57,7 @@ def _late(*_):
 def tried(action, patience=PATIENCE):
     """What an action of this process gives; whether it is "done", "refused" or "escaped"; and how it escaped."""
     signal.signal(signal.SIGALRM, _late)
-    signal.alarm(patience)
+    signal.alarm(shared(patience))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -85,7 +91,7 @@ def command(*words, patience=PATIENCE) -> tuple[int, str, str]:
         child = os.fork()
         if child == 0:
             _be_the_command(words, out, error)
-        code, end = None, time.monotonic() + patience
+        code, end = None, time.monotonic() + shared(patience)
         while code is None:
             done, status = os.waitpid(child, os.WNOHANG)
             if done:

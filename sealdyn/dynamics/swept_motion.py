@@ -1,0 +1,203 @@
+"""Sine sweeps of the housing in the solver's inner loop: rows of a block, looked up by compiled kernels.
+
+`x = A E sin(phase)`: amplitude A over the frequency, ramps E over time.  All three have their derivatives in closed
+form, so that displacement, velocity and acceleration are those of one motion; the phase at the start of a row is
+reduced modulo one turn in 60 digits, however many turns went before.
+
+Block layout: number of rows, then rows of SWEEP_ROW: whether it is a tilt, cos and sin of its direction, segment time
+at which the row's own clock begins (s), what has gone of the sweep by then and what is left of it (s), phase (rad),
+frequency (rad/s) and its pace then, whether that is logarithmic (1/s) or linear (rad/s^2), amplitude and crossover
+(`level` of scene/sweep.py), ramps (s).
+"""
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+from ..numerics.kernel import inner_kernel
+from ..scene.scene import SceneError
+from ..scene.sweep import CORNER, AngularSweep, end, level, ramps, span
+from .intervals import TURN, Interval
+
+(TILTS, COS, SIN, BEGIN, GONE, LEFT, PHASE, FREQUENCY, PACE, LOGARITHMIC, AMPLITUDE, CROSSOVER, RISE,
+ FALL, SWEEP_ROW) = range(15)  # fmt: skip
+# Parts of an octave in each of which a sweep is bounded by its largest frequency, amplitude and pace.
+PARTS_PER_OCTAVE = 8
+# Largest derivatives of the ramp over its share of time, zeroth to fourth; and what those of the logarithm of the
+# amplitude by that of the frequency are at most.
+RAMP_SLOPES = (1.0, 630.0 / 256.0, 9.372, 78.76, 622.6)
+CORNER_SLOPES = (2.0, CORNER, 0.77 * CORNER**2, 2.0 * CORNER**3)
+
+
+def sweeps_of(scene) -> list[tuple[str, object]]:
+    """All sweeps of a scene that move anything, with their dotted keys."""
+    found = [(f"housing.{kind}.{n}", sweep) for kind in ("axial_sweep", "angular_sweep")
+             for n, sweep in enumerate(getattr(scene.housing, kind))]  # fmt: skip
+    return [(key, sweep) for key, sweep in found if level(sweep)[0]]
+
+
+def sweep_breaks(scene) -> list[float]:
+    """Times (s) at which a sweep begins or ends; between them it has no kink."""
+    return [t for _, sweep in sweeps_of(scene) for t in (sweep.start, end(sweep))]
+
+
+def check_begins(scene, duration: float) -> None:
+    """Raises SceneError for a sweep that begins after a run of `duration` (s) ends."""
+    for key, sweep in sweeps_of(scene):
+        if sweep.start >= duration:
+            found = f"{sweep.start:g} s, a run of {duration:g} s"
+            raise SceneError(f"{key}.start", found, "a start within the run, or a longer run")
+
+
+def sweeps_of_segment(scene, interval: Interval) -> np.ndarray:
+    """Rows (n, SWEEP_ROW) of the sweeps that move the housing in an interval."""
+    rows = []
+    for _, sweep in sweeps_of(scene):
+        begin, last = Fraction(sweep.start), Fraction(end(sweep))
+        base = max(begin, interval.start)
+        if base >= min(last, interval.start + interval.span):
+            continue
+        direction = getattr(sweep, "direction", 0.0)
+        shape = isinstance(sweep, AngularSweep), math.cos(direction), math.sin(direction)
+        times = float(base - interval.start), float(base - begin), float(last - base)
+        clock = (*_clock(sweep, base - begin), sweep.spacing == "logarithmic")
+        rows.append([*shape, *times, *clock, *level(sweep), *ramps(sweep)])
+    return np.array(rows, dtype=np.float64).reshape(-1, SWEEP_ROW)
+
+
+def _clock(sweep, gone: Fraction) -> tuple[float, float, float]:
+    """Phase (rad, modulo one turn), frequency (rad/s) and pace a time `gone` (s) after a sweep's start."""
+    first, last, length = map(Decimal, (*sweep.frequency, span(sweep)))
+    past = Decimal(gone.numerator) / Decimal(gone.denominator)
+    if sweep.spacing == "linear":
+        pace = (last - first) / length
+        cycles, frequency, pace = past * (first + pace * past / 2), first + pace * past, TURN * pace
+    else:
+        pace = (last / first).ln() / length
+        frequency = first * (pace * past).exp()
+        cycles = (frequency - first) / pace
+    return float(cycles % 1 * TURN), float(frequency * TURN), float(pace)
+
+
+def fastest_sweep(rows: np.ndarray, length: float) -> float:
+    """Highest frequency (rad/s) of the rows over a segment of `length` (s)."""
+    return max((w for row in rows for w in _ends(row, length)), default=0.0)
+
+
+def _ends(row, length: float) -> tuple[float, float]:
+    """Frequency (rad/s) of a row where it begins and where it, or its segment, ends."""
+    s = min(length - row[BEGIN], row[LEFT])
+    last = row[FREQUENCY] * math.exp(row[PACE] * s) if row[LOGARITHMIC] else row[FREQUENCY] + row[PACE] * s
+    return row[FREQUENCY], last
+
+
+def largest_sweep(rows: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds over a segment of `length` (s): of axial displacement (m) and tilt (rad), and of their fourth derivatives
+    (per s^4), (2,) each.  The frequencies are cut into parts; in each the Taylor coefficients of amplitude, ramp and
+    phasor are bounded by what they are at most there, and those of their product by the product of the bounds."""
+    reach, fourth = np.zeros(2), np.zeros(2)
+    for row in rows:
+        low, high = sorted(_ends(row, length))
+        count = max(1, math.ceil(PARTS_PER_OCTAVE * math.log2(high / low)))
+        edges, part = np.geomspace(low, high, count + 1), int(row[TILTS])
+        bounds = np.array([_bounds(row, *pair) for pair in pairwise(edges)])
+        reach[part] += bounds[:, 0].max()
+        fourth[part] += bounds[:, 1].max()
+    return reach, fourth
+
+
+def _bounds(row, low, high) -> tuple[float, float]:
+    """Bounds of a row's motion and its fourth derivative while its frequency is between two (rad/s)."""
+    # Logarithm of the frequency, and phase.
+    pace = abs(row[PACE]) if row[LOGARITHMIC] else abs(row[PACE]) / low
+    grown = np.array([0.0, pace, *((0.0 if row[LOGARITHMIC] else pace**j / j) for j in range(2, 5))])
+    w = high * _exponential(grown) if row[LOGARITHMIC] else np.array([high, abs(row[PACE]), 0.0, 0.0, 0.0])
+    phase = np.array([0.0, *(w[j] / (j + 1) for j in range(4))])
+    if math.isinf(row[CROSSOVER]):
+        slopes = np.zeros(4)
+    elif row[CROSSOVER] == 0.0:
+        slopes = np.array([2.0, 0.0, 0.0, 0.0])
+    else:
+        slopes = np.array(CORNER_SLOPES)
+    power, bent = np.array([1.0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5)
+    for j in range(4):
+        power = _product(power, grown)
+        bent += slopes[j] / math.factorial(j + 1) * power
+    size = amplitude(row[AMPLITUDE], row[CROSSOVER], low)[0]
+    shortest = min(row[RISE], row[FALL])
+    ramp = np.array([slope / shortest**j / math.factorial(j) for j, slope in enumerate(RAMP_SLOPES)])
+    series = _product(_product(size * _exponential(bent), ramp), _exponential(phase))
+    return size, 24.0 * series[4]
+
+
+def _product(one, other):
+    """Product of two power series, to the fourth power."""
+    return np.convolve(one, other)[:5]
+
+
+def _exponential(series):
+    """Exponential of a power series without a constant, to the fourth power."""
+    out = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
+    for j in range(1, 5):
+        out[j] = sum(k * series[k] * out[j - k] for k in range(1, j + 1)) / j
+    return out
+
+
+@inner_kernel()
+def amplitude(size, crossover, w):
+    """Amplitude at a frequency w (rad/s), of `size` and `crossover` as `level` has them; and which share of the corner
+    has been passed: 0 where the displacement is kept, 1 where the acceleration is."""
+    if crossover == 0.0:
+        return size / (w * w), 1.0
+    r = (w / crossover) * (w / crossover)
+    if r < 1.0:
+        small = r**CORNER
+        return size * (1.0 + small) ** (-1.0 / CORNER), small / (1.0 + small)
+    small = (1.0 / r) ** CORNER
+    return size / r * (1.0 + small) ** (-1.0 / CORNER), 1.0 / (1.0 + small)
+
+
+@inner_kernel()
+def ramp(share):
+    """Polynomial of ninth degree from 0 to 1 with four derivatives that vanish at both ends; its first two as well."""
+    if share >= 1.0:
+        return 1.0, 0.0, 0.0
+    rest, both = 1.0 - share, share * (1.0 - share)
+    cube = share * share * share
+    value = cube * share * share * (126.0 + share * (-420.0 + share * (540.0 + share * (-315.0 + 70.0 * share))))
+    return value, 630.0 * both**4, 2520.0 * both**3 * (rest - share)
+
+
+@inner_kernel()
+def sweep_at(tau, p, at):
+    """Motion of the row that begins at `at` in `p`, at segment time tau (s): value, rate, acceleration (m or rad)."""
+    s = tau - p[at + BEGIN]
+    gone, left = p[at + GONE] + s, p[at + LEFT] - s
+    if gone <= 0.0 or left <= 0.0:
+        return 0.0, 0.0, 0.0
+    pace = p[at + PACE]
+    if p[at + LOGARITHMIC] != 0.0:
+        grown = math.expm1(pace * s)
+        phase, w = p[at + PHASE] + p[at + FREQUENCY] * grown / pace, p[at + FREQUENCY] * (1.0 + grown)
+        rate, bend = pace, 0.0
+    else:
+        phase, w = p[at + PHASE] + s * (p[at + FREQUENCY] + 0.5 * pace * s), p[at + FREQUENCY] + pace * s
+        rate = pace / w
+        bend = -rate * rate
+    # Amplitude a, its logarithm's first two derivatives, and ramp e; one ramp is over before the other begins.
+    a, share = amplitude(p[at + AMPLITUDE], p[at + CROSSOVER], w)
+    steep = 0.0 if p[at + CROSSOVER] == 0.0 else 2.0 * CORNER * share * (1.0 - share)
+    g, g_rate = -2.0 * share * rate, -2.0 * (steep * rate * rate + share * bend)
+    e, e_rate, e_second = ramp(gone / p[at + RISE])
+    e_rate, e_second = e_rate / p[at + RISE], e_second / (p[at + RISE] * p[at + RISE])
+    if left < p[at + FALL]:
+        e, e_rate, e_second = ramp(left / p[at + FALL])
+        e_rate, e_second = -e_rate / p[at + FALL], e_second / (p[at + FALL] * p[at + FALL])
+    b, b_rate = a * e, a * (g * e + e_rate)
+    b_second = a * ((g * g + g_rate) * e + 2.0 * g * e_rate + e_second)
+    cos, sin = math.cos(phase), math.sin(phase)
+    acceleration = (b_second - b * w * w) * sin + (2.0 * b_rate * w + b * w * rate) * cos
+    return b * sin, b_rate * sin + b * w * cos, acceleration
