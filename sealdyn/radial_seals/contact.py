@@ -1,7 +1,5 @@
 """When followers leave the shaft, land on it, stop on their flange and slip again: found between the solver's steps."""
 
-from dataclasses import replace
-
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -165,7 +163,7 @@ class Contacts:
     def _in_step(self, block, step):
         """Time and follower of the first change within a step, and whether it meets the shaft; or None."""
         taus = np.linspace(block.t[step], block.t[step + 1], LOOKS + 1)
-        block = _only(block, step)
+        block = block.only(step)
         allowed = np.full(len(self.modes), self.near), np.where(self.modes == FREE, self.slow, self.weak)
         first = None
         for which, values in enumerate(self.guards(block, taus)):
@@ -183,15 +181,6 @@ class Contacts:
                 if found is not None and (first is None or found < first[0]):
                     first = (found, int(j), which == 0)
         return first
-
-
-def _only(block, step):
-    """A block's one step, with what has been worked out."""
-    found = replace(block, begin=step, end=step + 1)
-    for name in ("motion", "slopes", "accelerations"):
-        if name in block.__dict__:
-            found.__dict__[name] = block.__dict__[name]
-    return found
 
 
 def _dips(values):

@@ -53,11 +53,17 @@ def lip_line(lip: Lip, radius: float) -> tuple[float, float]:
     **Source** Hayden & Keller (1974), eqs. 2.9 to 2.11, divided by the circumference.
     **Valid** a slender lip, small deflections.
     """
+    tension = _tension(lip)
     if lip.preload is not None:
-        return lip.preload + lip.garter_tension / radius, lip.stiffness
+        return lip.preload + tension / radius, lip.stiffness
     stiffness = 3.0 * lip.modulus * (lip.thickness**3 / 12.0) / lip.length**3
+    return tension / radius + stiffness * lip.interference, stiffness
+
+
+def _tension(lip: Lip) -> float:
+    """Tension (N) of hoop and garter spring."""
     hoop = lip.hoop_stress * lip.hoop_area if lip.hoop_stress is not None else 0.0
-    return (hoop + lip.garter_tension) / radius + stiffness * lip.interference, stiffness
+    return hoop + lip.garter_tension
 
 
 def _of_lip(scene: RadialScene) -> Followers:
@@ -65,8 +71,7 @@ def _of_lip(scene: RadialScene) -> Followers:
     as before, but the spring's own rate counts."""
     lip, radius, n = scene.lip, scene.shaft.radius, scene.lip.sectors
     preload, stiffness = lip_line(lip, radius)
-    hoop = lip.hoop_stress * lip.hoop_area if lip.hoop_stress is not None else 0.0
-    tension, arc = hoop + lip.garter_tension, 2.0 * math.pi * radius / n
+    tension, arc = _tension(lip), 2.0 * math.pi * radius / n
     orders = np.minimum(np.arange(n), n - np.arange(n))
     per_length = stiffness + tension * np.maximum(orders**2 - 1.0, 0.0) / radius**2
     per_length[0] += 2.0 * math.pi * lip.garter_rate / radius

@@ -55,7 +55,14 @@ class Block:
 
     def cut(self, until: float) -> "Block":
         """The block of a run that ends at `until` (s, of the segment)."""
-        found = replace(self, end=int(np.searchsorted(self.t, until)), until=until)
+        return self._with(end=int(np.searchsorted(self.t, until)), until=until)
+
+    def only(self, step: int) -> "Block":
+        """The block with one step new."""
+        return self._with(begin=step, end=step + 1)
+
+    def _with(self, **other) -> "Block":
+        found = replace(self, **other)
         # What has been worked out stays.
         for name in ("motion", "slopes", "accelerations"):
             if name in self.__dict__:
