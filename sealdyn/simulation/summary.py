@@ -52,7 +52,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    records = run.extrema.records
+    whole = _whole(run.extrema.records)
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
@@ -60,16 +60,16 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
         "message": outcome.message,
         "model": lambda: model_chosen(scenario, run, method, why),
         "h_min": lambda: {
-            "value": records[0][H],
-            "time": run.end_time(int(records[0][H_LEG]), records[0][H_TAU]),
-            "theta": records[0][H_THETA],
-            "radius": records[0][H_RADIUS],
-            "of_clearance": records[0][H] / model.clearance,
+            "value": whole[H],
+            "time": run.end_time(int(whole[H_LEG]), whole[H_TAU]),
+            "theta": whole[H_THETA],
+            "radius": whole[H_RADIUS],
+            "of_clearance": whole[H] / model.clearance,
             "steady": steady()["thinnest"],
         },
         "relative_misalignment": lambda: {
-            "max": records[0][MOST],
-            "min": records[0][LEAST],
+            "max": whole[MOST],
+            "min": whole[LEAST],
             "mean": lambda: tally.mean("relative_misalignment"),
             **{part: found for part, found in steady().items() if part != "thinnest"},
         },
@@ -107,6 +107,16 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
             "state": _state(run, outcome),
         },
     }
+
+
+def _whole(records) -> np.ndarray:
+    """The record of the whole run.  In each window an improvement that is small beside the accuracy is not located, so
+    what the last periods have found may lie beyond that of the run, of which they are a part."""
+    whole = records[0].copy()
+    thinnest = records[np.argmin(records[:, H])]
+    whole[[H, H_TAU, H_THETA, H_RADIUS, H_LEG]] = thinnest[[H, H_TAU, H_THETA, H_RADIUS, H_LEG]]
+    whole[MOST], whole[LEAST] = records[:, MOST].max(), records[:, LEAST].min()
+    return whole
 
 
 def _state(run, outcome) -> dict:
@@ -176,7 +186,7 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     leakage = _leakage(model, tally)["mean"]
     heat = _temperature_rise(model, tally), tally.mean("friction_power") / model.closing.area
     wear = 0.0 if model.contact is None else tally.mean("wear_rate")
-    low = run.extrema.records[0][H]
+    low = _whole(run.extrema.records)[H]
     lost = missing_energy(outcome.energy_residual, model.accuracy)
     energy = [Caution(Concern.ENERGY, lost)] if lost else []
     found = cautions(scenario, run, outcome, leakage, heat, low, wear)

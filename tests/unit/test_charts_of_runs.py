@@ -44,6 +44,10 @@ def test_leakage_has_one_unit_on_the_page(tmp_path):
     figure = drawn(overview, write(tmp_path / "b.h5", columns, summary=gas), tmp_path / "c.png")
     normal = panel(figure, "Leakage").get_ylabel()
     assert normal.startswith("l/min (0 °C") and f"0.06 {normal}" in names(panel(figure, "Key numbers"))
+    running = write(tmp_path / "c.h5", columns, "running", film=FILM | {"gas": "air"})
+    figure = drawn(overview, running, tmp_path / "c.png")
+    assert panel(figure, "Leakage").get_ylabel() == normal
+    assert any(text.get_text().startswith("running: the archive has no end") for text in figure.texts)
 
 
 @pytest.mark.parametrize("brief", [False, True], ids=["all along", "once"])
@@ -90,6 +94,13 @@ def test_a_panel_of_the_last_turns_has_something_to_show(tmp_path):
     archive = write(tmp_path / "seal.h5", whirling(samples=60, turns=400))
     figure = drawn(overview, archive, tmp_path / "chart.png", written=False)
     assert not any("last" in ax.get_title("left") for ax in figure.axes)
+
+
+def test_a_warning_of_one_word_tells_its_reason(tmp_path):
+    warnings = ["accuracy: errors add up over 9 periods; adams keeps 1e-9 at best", "not isothermal: friction heats"]
+    archive = write(tmp_path / "seal.h5", whirling(samples=200), summary=SUMMARY | {"warnings": warnings})
+    words = [text.get_text() for text in drawn(overview, archive, tmp_path / "chart.png", written=False).texts]
+    assert "warning: accuracy: errors add up over 9 periods; not isothermal" in words
 
 
 # --- spectra ----------------------------------------------------------------------------------------------

@@ -36,6 +36,16 @@ def test_a_run_that_begins_settled_has_no_transient():
     assert "whole run" in names and "transient" not in names
 
 
+@pytest.mark.parametrize(("key", "value"), [("rotor.runout", "1 nrad"), ("stator.misalignment", "0.1 urad")])
+def test_the_settled_motion_is_part_of_the_run(key, value):
+    """Also of tilts that are small beside the accuracy, whose extremes need not be located."""
+    still = ["rotor.runout=0", "stator.misalignment=0", "run.start='steady'", "run.turns=40", "run.accuracy=1e-2"]
+    summary = simulate_in_memory(read_scenario(SEAL, [*still, "rotor.runout=1 urad", f"{key}={value}"]))
+    tilt, h_min = summary["relative_misalignment"], summary["h_min"]
+    assert tilt["min"] <= tilt["steady_min"] <= tilt["steady_max"] <= tilt["max"]
+    assert h_min["value"] <= h_min["steady"]
+
+
 @pytest.mark.parametrize("film", ["linear", "radial"])
 def test_leakage_runs_from_high_to_low_pressure_also_where_they_turn(film):
     """Pressures that change sides halfway: as much leaks after it as before."""

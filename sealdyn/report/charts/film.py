@@ -59,8 +59,8 @@ def _bar(figure, image, left: float, label: str) -> None:
     """The colours of an image; of one that is even a single number."""
     low, high = image.get_array().min(), image.get_array().max()
     even = high - low <= EVEN * abs(high)
-    figure.colorbar(image, cax=_axes(figure, left, 0.13, 0.64), label=label, ticks=[low] if even else MaxNLocator(6),
-                    format="{x:.5g}")  # fmt: skip
+    ticks = [low] if even else MaxNLocator(6, steps=[1, 2, 2.5, 5, 10])
+    figure.colorbar(image, cax=_axes(figure, left, 0.13, 0.64), label=label, ticks=ticks, format="{x:.5g}")
 
 
 def thickness(run: Run, radius, angle, first: int, stop: int):

@@ -197,12 +197,16 @@ def leakage_panel(ax, run: Run) -> None:
 
 def _litres(run: Run) -> str:
     """The unit of a leakage that is told in litres, a gas's always; empty of one told in millilitres."""
-    if (run.summary.get("leakage") or {}).get("conditions"):
+    if _of_gas(run.summary) or (run.resolved.get("film") or {}).get("gas"):
         return NORMAL
-    mean = abs(_value(run.summary, "leakage.mean_ml_per_h") or 0.0)
+    mean = _value(run.summary, "leakage.mean_ml_per_h")
     sides = [f"leakage_{side}" for side in ("inner", "outer") if run.has(f"leakage_{side}")]
     most = max((run.shown(side)[1] * run.largest(side) for side in sides), default=0.0)
-    return LITRES if max(mean, 0.1 * most) > MUCH else ""
+    return LITRES if max(most if mean is None else abs(mean), 0.1 * most) > MUCH else ""
+
+
+def _of_gas(summary: dict) -> bool:
+    return bool((summary.get("leakage") or {}).get("conditions"))
 
 
 def contact_panel(ax, run: Run) -> None:
@@ -245,9 +249,10 @@ def key_numbers(ax, run: Run) -> None:
     ax.hlines(below, 0, 1, color=PALE, lw=0.5, capstyle="projecting", transform=ax.transAxes)
 
 
-def _numbers(summary: dict, speed: tuple[str, float], litres: str):
+def _numbers(summary: dict, speed: tuple[str, float], litres: str = ""):
     """(name, value in words) of what the summary holds; with strokes in the name, tilts in the order of the name.
     `speed`: unit of speeds, and how many of it make one rad/s; `litres`: unit of the leakage if not ml/h."""
+    litres = NORMAL if _of_gas(summary) else litres
     for name, *parts in NUMBERS:
         if name == "mean leakage" and litres:
             parts = ((parts[0][0], 1 / 6e4, f"{{}} {litres}", 4),)

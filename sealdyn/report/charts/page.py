@@ -31,6 +31,8 @@ ROUNDING = 1e-6
 EVEN = 1e-4
 # Lines of a heading that a sheet has room for, and the most it has: it grows by what is beyond.
 ROOM, MOST_LINES = 3, 14
+# Of an archive that is being written, or whose run was killed.
+NO_END = "the archive has no end yet; a run that was killed goes on with --continue"
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
 
@@ -81,11 +83,17 @@ def panels(figure, top: float, mosaic, space: float = 0.04, **layout) -> dict:
 def header(figure, run) -> float:
     """The scene's question, then name, model and verdict, warnings, then what happened; returns where they end, as
     `heading`."""
-    ended = f"{run.status}: {run.message}" if run.message else run.status
-    # Of a warning what stands before its reason.
-    warnings = dict.fromkeys(str(words).split(":")[0] for words in run.summary.get("warnings") or [])
+    message = run.message or (NO_END if run.status == Status.RUNNING else "")
+    ended = f"{run.status}: {message}" if message else run.status
+    warnings = dict.fromkeys(_headline(str(words)) for words in run.summary.get("warnings") or [])
     below = run.description + (f"\nwarning: {'; '.join(warnings)}" if warnings else "")
     return heading(figure, run.question, below, ended, STATUS.get(run.status, BLACK))
+
+
+def _headline(warning: str) -> str:
+    """Of a warning what stands before its reason; a single word says too little."""
+    head, _, reason = warning.partition(":")
+    return head if " " in head or not reason else f"{head}:{reason.split(';')[0]}"
 
 
 def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK) -> float:

@@ -13,6 +13,7 @@ TOO_SHORT = "fewer than four turns: no spectrum"
 FLOOR = 1e-5
 NOTHING = 1e-13  # m or rad: below what any run resolves
 CLEAR = 4  # lines
+NEAR = 0.1  # lines: an order this near is that of the line
 CLEAN = 0.02  # of a peak: by which the lines beside one that is clear of others are off
 HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
 # Power in the top tenth of the band, of all that moves, above which a spectrum may be folded.  Measured: below 3e-7 in
@@ -107,8 +108,9 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     for at in named:
         if all(abs(orders[other] - orders[at]) > room for other in told):
             told.append(at)
-    ax.fill_between(orders, largest * FLOOR / 2, amplitude, color=colour, alpha=0.25, lw=0)
-    ax.semilogy(orders, np.maximum(amplitude, largest * FLOOR / 2), color=colour, lw=0.9)
+    seen = np.maximum(amplitude, largest * FLOOR / 2)
+    ax.fill_between(orders, largest * FLOOR / 2, seen, color=colour, alpha=0.25, lw=0)
+    ax.semilogy(orders, seen, color=colour, lw=0.9)
     share = at_the_edge(orders, amplitude, resolution)
     # Room for the names of peaks, and above them for a warning.
     top = 2000 if share > FOLDED else 20
@@ -216,7 +218,7 @@ def located(orders, amplitude, at: int) -> tuple[float, float]:
     towards = 1 if amplitude[at + 1] > amplitude[at - 1] else -1
     near, far = (amplitude[at + side] / amplitude[at] for side in (towards, -towards))
     off = (2 * near - 1) / (near + 1)
-    if not 0 <= off <= 0.5 or abs(far - (1 - off) / (2 + off)) > CLEAN:
+    if not NEAR <= off <= 0.5 or abs(far - (1 - off) / (2 + off)) > CLEAN:
         return float(orders[at]), float(amplitude[at])
     order = orders[at] + towards * off * (orders[1] - orders[0])
     return float(order), float(amplitude[at] * (1 - off**2) / np.sinc(off))
