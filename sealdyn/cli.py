@@ -493,7 +493,12 @@ def _of_a_face_seal(file):
 @app.command()
 def new(
     kind: Annotated[
-        str, typer.Argument(help="fms, fmr, fmsr, gas, pump or wavy", autocompletion=_completes(_seal_kinds))
+        str,
+        typer.Argument(
+            help="fms (the stator floats), fmr (the rotor), fmsr (both), gas (a sealing dam), pump (rough faces that "
+            "touch) or wavy (wavy and rough ones)",
+            autocompletion=_completes(_seal_kinds),
+        ),
     ],
     out: Annotated[Path | None, typer.Option(help="scenario to write (default KIND.toml here)")] = None,
 ):

@@ -161,7 +161,8 @@ def _settled_rows(summary):
     words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
     if "relative_max" in form:
         words += f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
-        words += f"({form['road']})"
+        # Linear theory knows no friction: a ring on an O-ring lags by more.
+        words += f"({form['road']}{', without the O-ring' if summary['secondary_seal'] else ''})"
     yield "misalignment", words
 
 

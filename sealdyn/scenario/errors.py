@@ -12,6 +12,7 @@ from typing import Any
 
 from ..scene.scene import SceneError
 from ..units import (
+    Density,
     Length,
     ListedQuantity,
     Quantity,
@@ -23,7 +24,8 @@ from ..units import (
     quoted,
 )
 
-LENGTH, VELOCITY = Length.__metadata__[0], Velocity.__metadata__[0]
+LENGTH, VELOCITY, DENSITY = (kind.__metadata__[0] for kind in (Length, Velocity, Density))
+KINEMATIC = Quantity("kinematic viscosity", "m^2/s", '"1 cSt"')
 NOTHING = object()
 MISSING = ("nothing", "no such table")
 # Words of the trade that are no keys, and the keys that are meant, wherever the table has one.
@@ -229,6 +231,8 @@ def _in_place(key: str, value: Any, raw: dict) -> str:
     """What may be written in place of a `value` (as the file has it) of another dimension at a key; "" if nothing."""
     if key == "rotor.runout" and _si(LENGTH, value) is not None:
         return f', or a total indicator reading, "{value.strip()} TIR"'
+    if key == "film.viscosity" and (kinematic := _si(KINEMATIC, value)) is not None:
+        return f"; a kinematic one times the density: {_times_density(kinematic, value, raw.get('film'))}"
     film, velocity = raw.get("film"), _si(VELOCITY, value)
     if key not in ("shaft.speed", "stator.speed") or velocity is None or not isinstance(film, dict):
         return ""
@@ -237,6 +241,14 @@ def _in_place(key: str, value: Any, raw: dict) -> str:
         return ""
     rpm = velocity / (0.5 * sum(radii)) * 30.0 / math.pi
     return f'; {quoted(value)} at the mean radius of the face is "{rpm:.6g} rpm"'
+
+
+def _times_density(kinematic: float, value: str, film: Any) -> str:
+    """What a kinematic viscosity (m^2/s) is with the film's density (kg/m^3), or that of water."""
+    density = film.get("density") if isinstance(film, dict) else None
+    told = density if isinstance(density, int | float) else _si(DENSITY, density)
+    told = told if told and told > 0.0 else 1000.0
+    return f'{quoted(value)} at {told:.6g} kg/m^3 is "{1e3 * told * kinematic:.6g} mPa*s"'
 
 
 def _si(kind: Any, value: Any) -> float | None:

@@ -124,6 +124,8 @@ BROKEN = [
     (("misalignment =", 'runout = "20 um"\nmisalignment ='), ["[rotor] runout", '"20 um TIR"']),
     (('"1000 rad/s"', '"36 m/s"'), ["[shaft] speed", '"9549.3 rpm"', "mean radius"]),
     (("[stator]", '[stator]\nspeed = "36 m/s"'), ["[stator] speed", '"9549.3 rpm"']),
+    (('"0.5 mPa*s"', '"18 cSt"'), ["[film] viscosity", "a kinematic one times the density", '"18 mPa*s"']),
+    (('"0.5 mPa*s"', '"18 cSt"\ndensity = "0.85 g/cm^3"'), ["[film] viscosity", '850 kg/m^3 is "15.3 mPa*s"']),
     (('"radial"', '"gas"'), ["[film] model", "nearest 'gas_dam' and 'gas_reynolds'"]),
     (("[stator]", '[stator.body]\nmaterial = "carbon"\n[stator]'), ["[stator.body] mat", "nearest 'carbon graphite'"]),
     (("model =", 'temperature = "300 K"\nmodel ='), ["[film] temperature", "liquid", "coning_per_kelvin"]),

@@ -81,6 +81,9 @@ def test_the_settled_part_comes_first_and_the_transient_by_its_name():
     said = dict(row for row in rows if row[0])
     assert f"{low['steady'] * 1e6:.4g} um" in said["h_min"] and f"{low['value'] * 1e6:.4g} um" in said["transient"]
     assert f"max {tilt['steady_max'] * 1e6:.6g}" in said["misalignment"]
+    assert "O-ring" not in said["misalignment"]
+    held = dict(printed(scenario, {**summary, "secondary_seal": {"rings": {}, "sticks": None}}))
+    assert held["misalignment"] == said["misalignment"].removesuffix(")") + ", without the O-ring)"
     short = simulate_in_memory(read_scenario(SEAL, ["run.turns=1.5", "run.start='rest'"]), speeds=True)
     assert short["h_min"]["steady"] is None
     names = [name for name, _ in printed(scenario, short)]
