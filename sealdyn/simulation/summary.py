@@ -52,7 +52,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    whole = _whole(run.extrema.records)
+    whole = cache(lambda: _whole(run.extrema.records))
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
@@ -60,16 +60,16 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
         "message": outcome.message,
         "model": lambda: model_chosen(scenario, run, method, why),
         "h_min": lambda: {
-            "value": whole[H],
-            "time": run.end_time(int(whole[H_LEG]), whole[H_TAU]),
-            "theta": whole[H_THETA],
-            "radius": whole[H_RADIUS],
-            "of_clearance": whole[H] / model.clearance,
+            "value": whole()[H],
+            "time": run.end_time(int(whole()[H_LEG]), whole()[H_TAU]),
+            "theta": whole()[H_THETA],
+            "radius": whole()[H_RADIUS],
+            "of_clearance": whole()[H] / model.clearance,
             "steady": steady()["thinnest"],
         },
         "relative_misalignment": lambda: {
-            "max": whole[MOST],
-            "min": whole[LEAST],
+            "max": whole()[MOST],
+            "min": whole()[LEAST],
             "mean": lambda: tally.mean("relative_misalignment"),
             **{part: found for part, found in steady().items() if part != "thinnest"},
         },

@@ -9,6 +9,7 @@ from functools import partial
 from ..numerics.parallel import Together
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis
+from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
 from ..simulation.outputs import common, unit_of
@@ -79,7 +80,7 @@ def sentences(keys, rows) -> list[str]:
 
 def unresolved(outputs, rows, model) -> list[str]:
     """Outputs that change over the grid by so little that the asked accuracy of the runs may be all of it."""
-    if model is None:
+    if model is None or isinstance(model.scene, RadialScene):
         return []
     tilt = model.clearance / model.scene.film.outer_radius
     scales = {"h_min.value": model.clearance, "h_min.of_clearance": 1.0}

@@ -97,7 +97,8 @@ class _Entry:
         if last not in known.get(without_indices(table), {}):
             hint = nearest(Scene, table, last)
             # Of a table that there is not: which there are.
-            hint = hint if hint[-1] != " " else f"the tables are {', '.join(known[''])}"
+            if hint[-1] == " " or (without_indices(table) not in known and f"'{last}'" not in hint):
+                hint = f"the tables are {', '.join(known[''])}"
             raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
         last = radius_key(Scene, self.key).rpartition(".")[2]
         try:
