@@ -69,10 +69,6 @@ def _lip_eccentricity(scene):
     return within(said, total, "m", most=RIBBED_ECCENTRICITY)
 
 
-def _of_other_lips(said, scene):
-    return other_seals(said)
-
-
 def _lip_load(limits, scene):
     followers = followers_of(scene)
     load = followers.preload / followers.arc
@@ -133,7 +129,7 @@ def _hang_up(scene):
 FOLLOW = "sealdyn study followability FILE"
 # Rule: where it stands in the guide, the command that tests it, and the rule.
 LIP = {
-    "lip_eccentricity": ("table 3.3", FOLLOW, partial(_of_other_lips, "table 3.3 is of hydrodynamic lips")),
+    "lip_eccentricity": ("table 3.3", FOLLOW, lambda scene: other_seals("table 3.3 is of hydrodynamic lips")),
     "lip_load": ("lip load of conventional lips", FOLLOW, partial(_lip_load, LIP_LOAD)),
     "lip_pressure": ("table 3.1", "", partial(_lip_pressure, LIP_PRESSURE, LIP_PRESSURE_SPEED)),
     "lip_speed": ("table 3.2", FOLLOW, _lip_speed),
@@ -142,7 +138,7 @@ RIBBED_LIP = {
     "lip_eccentricity": ("table 3.3", FOLLOW, _lip_eccentricity),
     "lip_load": ("lip load of hydrodynamic lips", FOLLOW, partial(_lip_load, RIBBED_LOAD)),
     "lip_pressure": ("table 3.3", "", partial(_lip_pressure, RIBBED_PRESSURE, RIBBED_SPEED)),
-    "lip_speed": ("table 3.2", FOLLOW, partial(_of_other_lips, "table 3.2 is of conventional lips")),
+    "lip_speed": ("table 3.2", FOLLOW, lambda scene: other_seals("table 3.2 is of conventional lips")),
 }
 CIRCUMFERENTIAL = {
     "axial_load": ("axial load about 70 N/m", FOLLOW, _axial_load),

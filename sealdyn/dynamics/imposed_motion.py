@@ -15,7 +15,7 @@ from ..numerics.kernel import inner_kernel, outer_kernel
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
 from .sampled_motion import motion_at, motions, piece_at
-from .swept_motion import COS, SIN, SWEEP_ROW, TILTS, sweep_at
+from .swept_motion import AXIAL_SHARE, SWEEP_ROW, sweep_at
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both
@@ -119,12 +119,11 @@ def imposed_state(tau, p, c):
     for k in range(int(p[at]) if at > 0 else 0):
         row = at + 1 + SWEEP_ROW * k
         x, x_rate, x_acceleration = sweep_at(tau, p, row)
-        first = TILT_X if p[row + TILTS] != 0.0 else Z
-        for part in range(2 if first == TILT_X else 1):
-            share = 1.0 if first == Z else p[row + (COS if part == 0 else SIN)]
-            c[first + part] += share * x
-            c[first + Z_RATE + part] += share * x_rate
-            c[first + Z_ACCELERATION + part] += share * x_acceleration
+        for part in range(3):
+            share = p[row + AXIAL_SHARE + part]
+            c[Z + part] += share * x
+            c[Z_RATE + part] += share * x_rate
+            c[Z_ACCELERATION + part] += share * x_acceleration
     for k in range(int(p[OSCILLATOR_COUNT])):
         row = OSCILLATORS + ROW * k
         base = PER_RING * int(p[row])

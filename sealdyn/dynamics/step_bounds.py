@@ -21,7 +21,7 @@ from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
 from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, SWEEPS_AT, TURNING
 from .sampled_motion import motion_at, piece_at
-from .swept_motion import COS, SIN, SWEEP_ROW, TILTS, sweep_at
+from .swept_motion import AXIAL_SHARE, SWEEP_ROW, sweep_at
 
 # The three measures that are made small: the film thickness, minus the squared tilt, the squared tilt (smooth through
 # zero).
@@ -110,14 +110,10 @@ def imposed_gap(tau, p, at):
         for k in range(int(p[place])):
             row = place + 1 + SWEEP_ROW * k
             x, x_rate, _ = sweep_at(tau, p, row)
-            if p[row + TILTS] == 0.0:
-                at[0] += x
-                at[3] += x_rate
-            else:
-                at[1] += p[row + COS] * x
-                at[2] += p[row + SIN] * x
-                at[4] += p[row + COS] * x_rate
-                at[5] += p[row + SIN] * x_rate
+            for part in range(3):
+                share = p[row + AXIAL_SHARE + part]
+                at[part] += share * x
+                at[3 + part] += share * x_rate
     for k in range(int(p[LEG_AT + OSCILLATOR_COUNT])):
         row = LEG_AT + OSCILLATORS + ROW * k
         ring, kind = int(p[row]), int(p[row + 1])

@@ -4,10 +4,10 @@
 form, so that displacement, velocity and acceleration are those of one motion; the phase at the start of a row is
 reduced modulo one turn in 60 digits, however many turns went before.
 
-Block layout: number of rows, then rows of SWEEP_ROW: whether it is a tilt, cos and sin of its direction, segment time
-at which the row's own clock begins (s), what has gone of the sweep by then and what is left of it (s), phase (rad),
-frequency (rad/s) and its pace then, whether that is logarithmic (1/s) or linear (rad/s^2), amplitude and crossover
-(`level` of scene/sweep.py), ramps (s).
+Block layout: number of rows, then rows of SWEEP_ROW: its share of axial motion (1 or 0) and of both tilts (cos and sin
+of its direction, or 0), segment time at which the row's own clock begins (s), what has gone of the sweep by then and
+what is left of it (s), phase (rad), frequency (rad/s) and its pace then, whether that is logarithmic (1/s) or linear
+(rad/s^2), amplitude and crossover (`level` of scene/sweep.py), ramps (s).
 """
 
 import math
@@ -19,10 +19,10 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel
 from ..scene.scene import SceneError
-from ..scene.sweep import CORNER, AngularSweep, end, level, ramps, span
+from ..scene.sweep import CORNER, end, level, ramps, span, tilts
 from .intervals import TURN, Interval
 
-(TILTS, COS, SIN, BEGIN, GONE, LEFT, PHASE, FREQUENCY, PACE, LOGARITHMIC, AMPLITUDE, CROSSOVER, RISE,
+(AXIAL_SHARE, COS, SIN, BEGIN, GONE, LEFT, PHASE, FREQUENCY, PACE, LOGARITHMIC, AMPLITUDE, CROSSOVER, RISE,
  FALL, SWEEP_ROW) = range(15)  # fmt: skip
 # Parts of an octave in each of which a sweep is bounded by its largest frequency, amplitude and pace.
 PARTS_PER_OCTAVE = 8
@@ -60,8 +60,7 @@ def sweeps_of_segment(scene, interval: Interval) -> np.ndarray:
         base = max(begin, interval.start)
         if base >= min(last, interval.start + interval.span):
             continue
-        direction = getattr(sweep, "direction", 0.0)
-        shape = isinstance(sweep, AngularSweep), math.cos(direction), math.sin(direction)
+        shape = (0.0, math.cos(sweep.direction), math.sin(sweep.direction)) if tilts(sweep) else (1.0, 0.0, 0.0)
         times = float(base - interval.start), float(base - begin), float(last - base)
         clock = (*_clock(sweep, base - begin), sweep.spacing == "logarithmic")
         rows.append([*shape, *times, *clock, *level(sweep), *ramps(sweep)])
@@ -102,7 +101,7 @@ def largest_sweep(rows: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarr
     for row in rows:
         low, high = sorted(_ends(row, length))
         count = max(1, math.ceil(PARTS_PER_OCTAVE * math.log2(high / low)))
-        edges, part = np.geomspace(low, high, count + 1), int(row[TILTS])
+        edges, part = np.geomspace(low, high, count + 1), int(row[AXIAL_SHARE] == 0.0)
         bounds = np.array([_bounds(row, *pair) for pair in pairwise(edges)])
         reach[part] += bounds[:, 0].max()
         fourth[part] += bounds[:, 1].max()

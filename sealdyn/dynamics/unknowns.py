@@ -7,7 +7,7 @@ import numpy as np
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.coning import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
-from ..scene.sweep import AxialSweep, largest_amplitude
+from ..scene.sweep import largest_amplitude, tilts
 from ..scene.symmetry import tilt_is_given, tilt_is_imposed
 from ..scene.waviness import waves_of
 from . import equations
@@ -197,7 +197,7 @@ class Unknowns:
             for column, scale in zip(motion.columns(), (length, tilt, tilt), strict=True):
                 amplitude = max(amplitude, max(map(abs, column)) / scale)
         for sweep in scene.housing.sweeps:
-            amplitude = max(amplitude, largest_amplitude(sweep) / (length if isinstance(sweep, AxialSweep) else tilt))
+            amplitude = max(amplitude, largest_amplitude(sweep) / (tilt if tilts(sweep) else length))
         for start in (scene.initial.stator, scene.initial.rotor):
             for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
                 amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)

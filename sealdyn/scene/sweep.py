@@ -23,16 +23,16 @@ CORNER = 16
 
 
 @dataclass(frozen=True)
-class AxialSweep:
-    """Sine sweep of the housing along the shaft axis."""
+class Sweep:
+    """What sweeps along the shaft axis and of tilt have in common; amplitudes in m or rad and their like per s^2."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
     frequency: Listed[Frequency]
     """From and to: two of them, upwards or downwards."""
-    displacement: Length | None = None
+    displacement: float | None = None
     """Amplitude that is kept (below `crossover`); or give `acceleration`."""
-    acceleration: Acceleration | None = None
+    acceleration: float | None = None
     """Amplitude that is kept (above `crossover`), in place of `displacement`."""
     crossover: Frequency | None = None
     """Below it the displacement keeps its amplitude, above it the acceleration; without it one does throughout."""
@@ -50,35 +50,21 @@ class AxialSweep:
 
 
 @dataclass(frozen=True)
-class AngularSweep:
+class AxialSweep(Sweep):
+    """Sine sweep of the housing along the shaft axis."""
+
+    displacement: Length | None = None
+    acceleration: Acceleration | None = None
+
+
+@dataclass(frozen=True)
+class AngularSweep(Sweep):
     """Sine sweep of the housing about a fixed axis at `direction` (rad) from the x axis."""
 
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
-    frequency: Listed[Frequency]
-    """From and to: two of them, upwards or downwards."""
     displacement: Angle | None = None
-    """Amplitude that is kept (below `crossover`); or give `acceleration`."""
     acceleration: AngularAcceleration | None = None
-    """Amplitude that is kept (above `crossover`), in place of `displacement`."""
-    crossover: Frequency | None = None
-    """Below it the displacement keeps its amplitude, above it the acceleration; without it one does throughout."""
     direction: Angle = 0.0
     """Of the axis about which the housing rocks, from the x axis."""
-    start: Time = 0.0
-    """When the sweep begins."""
-    duration: Time | None = None
-    """How long the sweep takes; or give `octaves_per_minute`."""
-    octaves_per_minute: float | None = None
-    """Rate of a logarithmic sweep, in place of `duration`."""
-    spacing: Literal["logarithmic", "linear"] = "logarithmic"
-    """Equal times for equal ratios of frequency, or for equal differences."""
-    ramp: Time | None = None
-    """In which the amplitude rises at the start of the sweep and falls at its end; without it ten periods of the
-    frequency there, at most a tenth of the sweep."""
-
-
-Sweep = AxialSweep | AngularSweep
 
 
 def sweep_errors(sweep: Sweep) -> list[tuple[str, str, str]]:
@@ -111,6 +97,11 @@ def sweep_errors(sweep: Sweep) -> list[tuple[str, str, str]]:
     if not found and sweep.ramp is not None and not 0.0 < sweep.ramp <= 0.5 * span(sweep):
         found.append(("ramp", f"{sweep.ramp:g} s", f"a time > 0, at most half of the sweep's {span(sweep):g} s"))
     return found
+
+
+def tilts(sweep: Sweep) -> bool:
+    """Whether a sweep tilts the housing, or moves it along the shaft axis."""
+    return isinstance(sweep, AngularSweep)
 
 
 def span(sweep: Sweep) -> float:
@@ -184,7 +175,7 @@ def largest_amplitude(sweep: Sweep) -> float:
 
 def remark(sweep: Sweep, duration: float) -> str:
     """A sentence of what a sweep is, and how far a run of `duration` (s) has it."""
-    how, unit, per = ("axially", "um", "m/s^2") if isinstance(sweep, AxialSweep) else ("angularly", "urad", "rad/s^2")
+    how, unit, per = ("angularly", "urad", "rad/s^2") if tilts(sweep) else ("axially", "um", "m/s^2")
     first, last = sweep.frequency
     pace = f"{abs(octaves(sweep)) / span(sweep) * 60.0:.4g} octaves a minute"
     if sweep.spacing == "linear":

@@ -211,5 +211,5 @@ def _alone(scenario, point) -> dict:
 
 
 def _row(parts, point) -> dict:
-    row = {"status": "", **{key: output(parts, key) for key in point["outputs"]}} | {"status": str(parts["status"])}
+    row = {key: output(parts, key) for key in ("status", *point["outputs"])}
     return row if row["status"] == Status.OK else {**row, "message": parts["message"]}

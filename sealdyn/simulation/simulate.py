@@ -211,19 +211,18 @@ def in_memory(scenario, speeds: bool = False) -> dict:
 
 
 def prepare_run(scenario):
-    """The same as `_prepare_run`; where the scene cannot be, its refusal names the numbers that may want a unit."""
+    """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
+    number of intervals, and a linear film's estimated error (or None).
+    Raises SceneError, which names the numbers that may want a unit, or ArchiveError."""
     try:
-        return _prepare_run(scenario)
+        return _prepared(scenario)
     except SceneError as error:
         if not (meant := slips(scenario)):
             raise
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 
 
-def _prepare_run(scenario):
-    """A scenario made ready: run (RunState with its start and windows), method, a sentence why, sample interval (s),
-    number of intervals, and a linear film's estimated error (or None).
-    Raises SceneError or ArchiveError."""
+def _prepared(scenario):
     refuse_large(scenario, allowed=True)
     settings = scenario.run
     chosen = []

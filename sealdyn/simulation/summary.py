@@ -1,6 +1,7 @@
 """What a run amounts to: the numbers of `run --json`, from the run, the outcome and the running tallies."""
 
 import math
+from enum import StrEnum
 from functools import cache
 
 import numpy as np
@@ -136,7 +137,8 @@ def _state_places(unknowns) -> dict:
 
 
 def plain(value):
-    """JSON-ready: what a function finds, numpy scalars as Python's, NaN and infinity as null."""
+    """JSON-ready: what a function finds, numpy scalars as Python's, words of an enumeration as words, NaN and infinity
+    as null."""
     if callable(value):
         value = value()
     if isinstance(value, dict):
@@ -145,6 +147,8 @@ def plain(value):
         return [plain(item) for item in value]
     if isinstance(value, np.generic):
         value = value.item()
+    if isinstance(value, StrEnum):
+        return str(value)
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -95,10 +95,9 @@ class _Entry:
         table, _, last = self.key.rpartition(".")
         known = {table: keys | diameters(keys) for table, keys in tables(Scene).items()}
         if last not in known.get(without_indices(table), {}):
-            hint = nearest(Scene, table, last)
-            # Of a table that there is not: which there are.
-            if hint[-1] == " " or (without_indices(table) not in known and f"'{last}'" not in hint):
-                hint = f"the tables are {', '.join(known[''])}"
+            # Of a table that there is not, and a key that none has: which tables there are.
+            strange = without_indices(table) not in known and not any(last in keys for keys in known.values())
+            hint = f"the tables are {', '.join(known[''])}" if strange else nearest(Scene, table, last)
             raise self.wrong(f"an unknown key {self.key}", f"a key of the scene; {hint}")
         last = radius_key(Scene, self.key).rpartition(".")[2]
         try:
