@@ -200,6 +200,7 @@ def test_speeds_of_no_seal_are_not_run(tmp_path, monkeypatch):
     assert answer["eigenvalue"] > fastest and answer["status"] == "ok"
     growth = answer["growth"]
     assert answer["time_domain"]["value"] is None and growth["time_domain"] == len(growth["speed"]) * [None]
+    assert min(growth["eigenvalue"]) < 0 < max(growth["eigenvalue"])
     assert answer["nonlinear"]["tipping"] == [] and "branch" not in answer["nonlinear"]
     assert max(study("fmr_reference", tmp_path)["growth"]["speed"]) == pytest.approx(fastest)
 
@@ -212,6 +213,7 @@ def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
     answer = critical_speed.run(scenario, critical_speed.Settings(), InProcess())
     growth, threshold = answer["growth"], answer["eigenvalue"]
     assert threshold * 0.04 > 1000 and answer["time_domain"]["value"] is None
+    assert min(growth["speed"]) < threshold < max(growth["speed"])
     assert growth["time_domain"] == len(growth["speed"]) * [None]
     # It grows above the threshold alone.
     assert all(
