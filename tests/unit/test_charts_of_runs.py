@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SUMMARY, drop, first, whirling, write
+from matplotlib.figure import Figure
 
 from sealdyn.report.charts import film, orbit, overview, poincare, sketch, spectrum
+from sealdyn.report.charts.housing_sweep import sweep_lines
 from sealdyn.report.charts.page import free_side, written
 from sealdyn.report.charts.record import Run
 from sealdyn.report.charts.spectrum import located, order_spectrum, peaks
@@ -76,6 +78,32 @@ def test_names_of_levels_leave_a_film_that_swings_through_them(tmp_path):
     box = ax.get_legend().get_window_extent()
     points = ax.transData.transform(np.column_stack(ax.lines[0].get_data()))
     assert not any(box.contains(*point) for point in points)
+
+
+def test_levels_and_a_sweep_have_a_row_each_above_the_film(tmp_path):
+    """The names of levels that stand above the film stand below the line of a sweep."""
+    sweep = {"frequency": [40.0, 4000.0], "start": 0.02, "duration": 0.3, "spacing": "logarithmic"}
+    columns = whirling(samples=2000)
+    columns["h_min"] = 1e-5 * (1.0 + 0.95 * np.sin(37.0 * columns["shaft_angle"]))
+    run = write(tmp_path / "seal.h5", columns, housing={"axial_sweep": [sweep]})
+    figure = drawn(overview, run, tmp_path / "c.png")
+    ax = panel(figure, "Smallest film thickness")
+    figure.draw_without_rendering()
+    box = ax.get_legend().get_window_extent()
+    told = [text for text in ax.texts if text.get_text().endswith("Hz")]
+    assert len(told) > 2 and not any(box.overlaps(text.get_window_extent()) for text in told)
+
+
+def test_frequencies_of_a_sweep_stand_apart(tmp_path):
+    """Also beside the name of the last one, which ends where the line does."""
+    for ratio in np.geomspace(2.0, 400.0, 25):
+        sweep = {"frequency": [40.0, 40.0 * ratio], "start": 0.0, "duration": 0.35, "spacing": "logarithmic"}
+        ax = Figure(figsize=(4.0, 1.8)).subplots()
+        sweep_lines(ax, Run(write(tmp_path / "seal.h5", whirling(samples=400), housing={"axial_sweep": [sweep]})))
+        ax.set_xlim(0, 60)
+        ax.figure.draw_without_rendering()
+        boxes = [text.get_window_extent() for text in ax.texts]
+        assert len(boxes) > 1 and not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2)), ratio
 
 
 def test_thousands_of_turns_have_ticks_apart(tmp_path):

@@ -10,7 +10,7 @@ from .record import Run
 KINDS = {"axial_sweep": "axial", "angular_sweep": "angular"}
 # Frequencies that are named (times a power of ten), the least room between two names, how much more the first one
 # needs, and the height of a line with its names, as shares of the panel.
-NAMED, ROOM, FIRST, HEIGHT = (1, 2, 5), 0.12, 0.17, 0.11
+NAMED, ROOM, FIRST, HEIGHT = (1, 2, 5), 0.15, 0.17, 0.11
 
 
 def sweep_lines(ax, run: Run) -> int:
@@ -29,22 +29,35 @@ def sweep_lines(ax, run: Run) -> int:
         places = np.interp(shown, time, run.progress)
         way = ax.get_xaxis_transform()
         ax.plot(places, [level, level], color=GREY, lw=1.0, transform=way, clip_on=False)
-        taken = -math.inf
-        for frequency, at in _marks(sweep):
-            if not shown[0] <= at <= shown[1] * (1 + 1e-12):
-                continue
-            place = float(np.interp(at, time, run.progress))
-            if (place - taken) < ROOM * (high - low):
-                continue
-            first = math.isinf(taken)
-            words = f"{KINDS[kind]} sweep, {frequency:.4g} Hz" if first else f"{frequency:.4g} Hz"
-            taken = place + FIRST * first * (high - low)
+        marks = [(f, float(np.interp(at, time, run.progress))) for f, at in _marks(sweep)
+                 if shown[0] <= at <= shown[1] * (1 + 1e-12)]  # fmt: skip
+        for k, (frequency, place) in enumerate(_named(marks, low, high)):
+            words = f"{frequency:.4g} Hz" if k else f"{KINDS[kind]} sweep, {frequency:.4g} Hz"
             ax.plot([place], [level], marker="|", ms=5, color=GREY, transform=way, clip_on=False)
-            left = place < high - ROOM * (high - low)
+            left = _fits(place, low, high)
             ax.annotate(words, (place, level), xycoords=way, xytext=(2 if left else -2, -3), va="top", fontsize=7,
                         textcoords="offset points", ha="left" if left else "right", color=GREY)  # fmt: skip
         level -= HEIGHT
     return len(found)
+
+
+def _fits(place: float, low: float, high: float) -> bool:
+    """Whether a name has room to the right of its place; else it stands to the left."""
+    return place < high - ROOM * (high - low)
+
+
+def _named(marks, low: float, high: float) -> list[tuple[float, float]]:
+    """Those of `marks` (frequency, place) whose names have room between `low` and `high`; one that stands to the left
+    of its place, as the last one may, goes before those that are in its way."""
+    found = []
+    for frequency, place in marks:
+        fits = _fits(place, low, high)
+        while len(found) > 1 and not fits and place - found[-1][1] < 2.0 * ROOM * (high - low):
+            found.pop()
+        taken = found[-1][1] + FIRST * (len(found) == 1) * (high - low) if found else -math.inf
+        if place - taken >= (1.0 if fits else 2.0) * ROOM * (high - low):
+            found.append((frequency, place))
+    return found
 
 
 def span(sweep: dict) -> float:

@@ -126,7 +126,8 @@ def film_panel(ax, run: Run, first: int) -> None:
         top = 1.2 * max(top, *(line[0] for line in lines))
         room = NAME_HEIGHT * top
         # A line for each sweep has its place above the curve.
-        top *= 1.0 + housing_sweep.HEIGHT * housing_sweep.sweep_lines(ax, run)
+        swept = housing_sweep.HEIGHT * housing_sweep.sweep_lines(ax, run)
+        top *= 1.0 + swept
         ax.set_ylim(min(1.1 * low, -0.03 * top), top)
         levels = [np.full_like(x, at) for at, *_ in lines]
         places = [free_side(x, [h, *levels[:k], *levels[k + 1 :]], line[0], room) for k, line in enumerate(lines)]
@@ -134,8 +135,8 @@ def film_panel(ax, run: Run, first: int) -> None:
             # A film that swings through a name everywhere: the names stand above it.
             for at, name, style in lines:
                 level(ax, at, "", label=name, **style)
-            ax.set_ylim(top=1.15 * top)
-            ax.legend(loc="upper left", ncols=2, borderaxespad=0.0)
+            ax.set_ylim(top=(1.15 + 0.5 * swept) * top)
+            ax.legend(loc="upper left", ncols=2, borderaxespad=0.0, bbox_to_anchor=(0.0, 1.0 - 1.5 * swept))
         for (at, name, style), found in zip(lines, places if None not in places else (), strict=False):
             level(ax, at, name, **found, **style)
             if found["below"] and at < 1.5 * room:
