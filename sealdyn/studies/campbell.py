@@ -28,7 +28,7 @@ SAME = 1e-9
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 3)
+TIMED = ("fms_reference", 2)
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ units |= dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fract
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("run_in", 3)
+TIMED = ("run_in", 2)
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ TORN, STEADY = 1e-9, 0.1
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 10)
+TIMED = ("lebeck_n3 --vary contact.roughness=0.1:0.4um:7", 3)
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ REFUSES = ("contact", "secondary-seal")
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 93)
+TIMED = ("fms_reference", 22)
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ units |= dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transi
 SHARP = 1e-8
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 26)
+TIMED = ("fms_reference", 5)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ NEAR = 5.0
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference --vary rotor.runout=0:1mrad:21", 5)
+TIMED = ("fms_reference --vary rotor.runout=0:1mrad:21", 2)
 
 
 @dataclass(frozen=True)

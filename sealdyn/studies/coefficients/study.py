@@ -45,7 +45,7 @@ units = {
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 3)
+TIMED = ("fmr_reference", 2)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ ALONG = {"rows": ("item",)}
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 28)
+TIMED = ("fms_reference", 41)
 
 
 @dataclass(frozen=True)

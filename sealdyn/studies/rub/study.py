@@ -45,7 +45,7 @@ units |= dict.fromkeys(("period", "distinct", "contacts", "contact_share", "cont
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("rub_chaotic", 408)
+TIMED = ("rub_chaotic", 82)
 
 
 @dataclass(frozen=True)

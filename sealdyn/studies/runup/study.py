@@ -46,7 +46,7 @@ units |= {f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment"
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("runup_past_threshold", 35)
+TIMED = ("runup_past_threshold", 6)
 
 
 @dataclass(frozen=True)

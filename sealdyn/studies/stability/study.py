@@ -37,7 +37,7 @@ ACCURACY, SHARE = 1e-7, 0.01
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 8)
+TIMED = ("fmr_reference", 4)
 
 
 @dataclass(frozen=True)

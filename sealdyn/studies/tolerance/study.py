@@ -31,7 +31,7 @@ FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("tolerance", 150)
+TIMED = ("tolerance", 48)
 
 
 @dataclass(frozen=True)

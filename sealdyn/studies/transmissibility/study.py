@@ -46,7 +46,7 @@ units |= dict.fromkeys(
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 8)
+TIMED = ("fmr_reference", 3)
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ units = {"axial_gain": "m/m", "angular_gain": "rad/rad", "axial_per_acceleration
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("housing_vibration", 5)
+TIMED = ("housing_vibration", 3)
 
 
 @dataclass(frozen=True)

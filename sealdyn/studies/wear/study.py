@@ -36,7 +36,7 @@ units = {f"history/{name}": unit for name, unit in HISTORY.items()} | {
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("run_in", 15)
+TIMED = ("run_in", 7)
 # What a refusal of wavy faces goes on with.
 OF_WAVES = "; how fast crests wear the study equilibrium says, with wear coefficients in [contact]"
 

@@ -58,7 +58,7 @@ BUSY = 1.1
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 74)
+TIMED = ("fmr_reference", 33)
 
 
 @dataclass(frozen=True)
