@@ -342,6 +342,8 @@ class _Progress:
     def __init__(self):
         self.bar = self.task = None
         self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
+        # A run that is done once more, sharper or to measure its error, begins again.
+        self.runs = 1
         # Clock (s) and motion (s): two seconds ago or one, and one second ago or less.
         self.marks = []
         self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
@@ -359,10 +361,28 @@ class _Progress:
 
     def __call__(self, done: float, end: float, words: str | None = None):
         """`done` of `end`; without `words` both are times (s)."""
-        words = words or f"t = {done:.4g} of {end:.4g} s{self._pace(done)}"
+        again = done < self.now["completed"]
+        if words is None:
+            self.runs += again
+            self.marks = [] if again else self.marks
+            moved = f"t = {done:.4g} s: summing up" if done >= end else f"t = {done:.4g} of {end:.4g} s{self._pace(done)}"
+            words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
         self.now = {"completed": done, "total": end, "words": words}
         if self.bar:
+            if again:
+                self.task = self._line(self.bar)
             self.bar.update(self.task, **self.now)
+
+    def _line(self, bar):
+        """A line that has moved by nothing yet, in place of the one there was, its clock going on."""
+        before = [task.start_time for task in bar.tasks]
+        for task in bar.task_ids:
+            bar.remove_task(task)
+        line = bar.add_task("", visible=False, **self.now)
+        if before:
+            bar.tasks[0].start_time = before[0]
+        bar.update(line, visible=True)
+        return line
 
     def _pace(self, done: float) -> str:
         """How much motion a second of the clock brings: a run that crawls shows it."""
@@ -388,7 +408,7 @@ class _Progress:
                 console=Console(stderr=True),
                 transient=False,
             )
-            self.task = bar.add_task("", **self.now)
+            self.task = self._line(bar)
             bar.start()
             self.bar = bar
 

@@ -1,0 +1,29 @@
+"""The progress bar: what it says of a run that is done more than once, and of the wait after the last step."""
+
+import pytest
+
+from sealdyn.cli import _Progress
+
+
+@pytest.fixture
+def shown():
+    bar = _Progress()
+    bar._show()
+    yield bar
+    bar.bar.stop()
+
+
+def test_a_run_done_again_begins_again(shown):
+    shown(2.0, 2.0)
+    begun = shown.bar.tasks[0].start_time
+    shown(0.001, 2.0)
+    (line,) = shown.bar.tasks
+    assert line.fields["words"].startswith("run 2: t = 0.001 of 2 s")
+    # A line of the bar that once was full says "0:00:00 remaining" for ever.
+    assert not line.finished and line.time_remaining is None
+    assert line.start_time == begun
+
+
+def test_a_full_bar_says_what_is_waited_for(shown):
+    shown(2.0, 2.0)
+    assert shown.bar.tasks[0].fields["words"] == "t = 2 s: summing up"
