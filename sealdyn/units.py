@@ -126,8 +126,8 @@ class TemperatureScale(Quantity):
         number, unit = self._split(text)
         # Degrees per kelvin, and where absolute zero lies.
         celsius, fahrenheit = ("1", "273.15"), ("1.8", "459.67")
-        scale = {"degC": celsius, "C": celsius, "deg C": celsius, "degF": fahrenheit, "F": fahrenheit,
-                 "deg F": fahrenheit}.get(unit)  # fmt: skip
+        scale = {"degc": celsius, "c": celsius, "deg c": celsius, "celsius": celsius, "degf": fahrenheit,
+                 "f": fahrenheit, "deg f": fahrenheit, "fahrenheit": fahrenheit}.get(unit.lower())  # fmt: skip
         if scale is None:
             if re.search("deg[CF]", unit):
                 raise QuantityError(f"{quoted(text)} (a scale with another zero)", self.expected())

@@ -36,6 +36,8 @@ MEANT = {
     "film_thickness": ("clearance",), "inertia": ("transverse_inertia",), "rpm": ("speed",), "od": ("outer_diameter",),
     "id": ("inner_diameter",), "spring": ("spring_force",), "balance": ("balance_ratio",),
 }  # fmt: skip
+# A pure number as some write it.
+PERCENT = re.compile(r"\s*([+-]?\d+(?:\.\d*)?)\s*(?:%|percent|per cent)\s*")
 # What `nearest` says of a key of the same table.
 NEAR = re.compile(r"nearest '(\w+)'$")
 # Keys that stand in no table.
@@ -224,6 +226,8 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
     words = [w for a in (holds, *typing.get_args(holds)) for w in typing.get_args(a) if isinstance(w, str)]
     near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
     near = near or [word for word in words if isinstance(value, str) and value and value.lower() in word]
+    if isinstance(value, str) and (percent := PERCENT.fullmatch(value)):
+        expected += f", e.g. {float(percent[1]) / 100:.6g}"
     return ScenarioError(name, key, quoted(value), expected + (f"; nearest '{near[0]}'" if near else ""))
 
 

@@ -233,7 +233,8 @@ def test_bad_gas_keys_get_one_clear_line(changes, key, hint):
 
 
 @pytest.mark.parametrize(
-    "words,kelvin", [("800 degF", 699.8167), ("20 degC", 293.15), ("20 °C", 293.15), ("300 K", 300.0)]
+    "words,kelvin",
+    [("800 degF", 699.8167), ("20 degC", 293.15), ("20 °C", 293.15), ("20 celsius", 293.15), ("300 K", 300.0)],
 )
 def test_temperatures_have_scales(words, kelvin):
     text = REFERENCE.read_text().replace('"800 degF"', f'"{words}"')

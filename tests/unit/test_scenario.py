@@ -117,6 +117,7 @@ BROKEN = [
     # words of the trade, notations of the field
     (('axial_stiffness', "stiffness"), ["[rotor.support] stiffness", "nearest 'axial_stiffness'"]),
     (('axial_damping', "damping"), ["[rotor.support] damping", "nearest 'axial_damping'"]),
+    (("[run]", '[closing]\nbalance_ratio = "75 %"\n[run]'), ["[closing] balance_ratio", "a number, e.g. 0.75"]),
     (("[run]", "[contact]\nhardness = 1\n[run]"), ["[contact] hardness", "nearest 'compressive_strength'"]),
     (("[run]", "[contact]\nfriction = 1\n[run]"), ["[contact] friction", "nearest 'friction_coefficient'"]),
     (("[run]", "[rotor.secondary_seal]\nfriction = 1\n[run]"), ["seal] friction", "nearest 'friction_force'"]),
