@@ -13,7 +13,7 @@ from ..scenario.errors import scene_errors_of
 from ..scenario.reader import Scenario
 from ..scenario.settings import scenario_of
 from ..status import Status
-from .batch import run_many
+from .batch import refuse_outputs, run_many
 from .result import Result
 from .simulate import simulate
 
@@ -75,13 +75,14 @@ def evaluate(
 
     `values` {key: SI number, or "5 um"}; `outputs` dotted keys of the summary, "h_min.value".  What a run does not have
     (the steady extremes of one that does not settle) is NaN.
-    Raises ScenarioError for what cannot be run, ValueError for an output that there is not, and RunEnded if the run
-    did not end well, unless its "status" is among the outputs.
+    Raises ScenarioError for what cannot be run and, before it is, for an output that there is not, and RunEnded if the
+    run did not end well, unless its "status" is among the outputs.
 
     >>> sealdyn.evaluate("fms.toml", {"film.clearance": "9 um"}, ["h_min.value", "status"])
     {'h_min.value': 8.2...e-06, 'status': 'ok'}
     """
     scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
+    refuse_outputs(scenario, [dict(values)], outputs, "outputs")
     (row,) = run_many(scenario, [{"set": dict(values), "outputs": outputs}])
     if isinstance(row, Exception):
         with scene_errors_of(scenario.name):

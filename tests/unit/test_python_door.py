@@ -170,9 +170,16 @@ def test_numbers_of_a_run_that_collapses_are_not_handed_out_unasked():
     ],
 )
 def test_what_cannot_be_evaluated_is_told_in_one_line(values, outputs, told):
-    with pytest.raises((sealdyn.ScenarioError, ValueError)) as refused:
+    with pytest.raises(sealdyn.ScenarioError) as refused:
         sealdyn.evaluate(TILTED, values, outputs)
     assert told in str(refused.value) and "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("output", ["leakage.maen", "stability.critical_sped", "h_min"])
+def test_outputs_are_looked_for_before_the_run(output, monkeypatch):
+    monkeypatch.setattr("sealdyn.simulation.run.run_many", lambda *_: pytest.fail("the run has begun"))
+    with pytest.raises(sealdyn.ScenarioError, match=output):
+        sealdyn.evaluate(TILTED, SHORT, output)
 
 
 def test_a_sweep_is_a_table_of_its_keys():
