@@ -207,6 +207,11 @@ def _since(times, apart) -> str:
     return "" if not len(seen) or seen[0] == 0 else f" from {times[seen[0]]:.4g} s on"
 
 
+def _so_many(error: float | None, wanted: float) -> str:
+    """How many times the cells there are bring their error, of second order, to what is wanted, in words."""
+    return f", some {(error / wanted) ** 0.5:.2g} times as many each way" if error and math.isfinite(error) else ""
+
+
 def certify(
     run: RunState,
     method: str,
@@ -251,8 +256,10 @@ def certify(
         since = f" from {until:.4g} s on" if until is not None else ""
         cure = CURE.get(method, "a sharper run.accuracy")
         if coarse:
-            cure = "a higher film rung" if by_cells is None else f"more film.{run.model.interface.name}.cells"
+            more = f"more film.{run.model.interface.name}.cells{_so_many(by_cells, 0.5 * asked)}"
+            cure = "a higher film rung" if by_cells is None else more
         sentence += f"; NOT met{since}: try {cure}"
     if grid is not None and not by_cells <= grid:
-        sentence += "; cells NOT as fine as asked: try more cells_r and cells_theta, or a looser grid_accuracy"
+        more = f"more cells_r and cells_theta{_so_many(by_cells, grid)}"
+        sentence += f"; cells NOT as fine as asked: try {more}, or a looser grid_accuracy"
     return Certificate(asked, by_solver, by_model, sentence, until, by_cells if grid is not None else None, grid)
