@@ -171,7 +171,8 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
     outcome, interrupted if the measuring was."""
     none = {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None, "met": None, "horizon": None}
     if outcome.status != Status.OK:
-        return {**none, "said": f"no certificate: the run {outcome.status}"}, outcome
+        was = "was " if outcome.status == Status.INTERRUPTED else ""
+        return {**none, "said": f"no certificate: the run {was}{outcome.status}"}, outcome
     measured = cells = None
     if seen:
         try:
@@ -185,6 +186,8 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
         measured = None if apart is None else (seen.times, apart)
     found = certify(run, method, outcome.tolerance, errors, by_model, measured, cells)
     beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
+    unseen = "; the run was done before it was continued, begun anew it is measured"
+    found = replace(found, said=found.said + unseen) if seen and seen.columns is None else found
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
 

@@ -37,7 +37,7 @@ from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, er
 from sealdyn.simulation.film_error import model_error, model_errors
 from sealdyn.simulation.film_selection import select_film
 from sealdyn.simulation.second_run import Comparison, Nothing
-from sealdyn.simulation.simulate import simulate_in_memory
+from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.solvers.contract import Counts, tolerance_for
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
@@ -318,3 +318,19 @@ def test_what_to_try_fits_the_scene(method, advice):
     found = certify(choose(SCENES["fms"], 1e-4), method, 1e-8, SimpleNamespace(worst=1.0), 0.0).said
     assert "NOT met: try " in found and advice in found.partition("try ")[2]
     assert method == "adams" or "dop853" not in found
+
+
+def test_a_run_done_before_it_is_continued_says_that_nothing_measures_it(tmp_path):
+    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "massless_ring.toml", ["run.turns=5"])
+    reached = [0.0]
+    again = []
+
+    def progress(t, _):
+        again.extend([t] * (t < reached[-1]))
+        reached.append(t)
+
+    first = simulate(scenario, tmp_path / "x.h5", progress=progress, stop=lambda: bool(again))
+    assert first.status == "interrupted" and first.summary["end"]["time"] == first.summary["end"]["asked"]
+    rest = simulate(scenario, tmp_path / "x.h5", resume=True)
+    assert rest.status == "ok" and rest.summary["certificate"]["met"] is None
+    assert rest.summary["certificate"]["said"].endswith("begun anew it is measured")
