@@ -365,7 +365,8 @@ class _Progress:
         if words is None:
             self.runs += again
             self.marks = [] if again else self.marks
-            moved = f"t = {done:.4g} s: summing up" if done >= end else f"t = {done:.4g} of {end:.4g} s{self._pace(done)}"
+            left = " s: summing up" if done >= end else f" of {end:.4g} s{self._pace(done)}"
+            moved = f"t = {done:.4g}{left}"
             words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
         self.now = {"completed": done, "total": end, "words": words}
         if self.bar:
