@@ -1,8 +1,9 @@
 """A film linearised: derivatives by the gap, and what a film with unknowns answers to a small motion of the gap, its
 unknowns eliminated (dynamic condensation)."""
 
+from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,8 @@ NOISE, NOTHING = 4e-15, 1e-14
 # Error of the quadrature behind the forces, as a share of their derivatives.
 QUADRATURE = 1e-12
 EACH = np.arange(6)
+# Sectors of which there are more than mean, cosine and sine; what those that are alike may differ by, as a share.
+LEAST_SECTORS, ALIKE = 4, 1e-9
 
 
 def moved_gaps(s: np.ndarray, steps: tuple[float, float, float, float]) -> np.ndarray:
@@ -93,36 +96,102 @@ def factored(matrix):
         raise SceneError("film", "a film whose equations are singular", "thicknesses that one flow can pass") from None
 
 
+def _harmonics(sectors: int, each: int, kinds: int):
+    """Mean, cosine and sine around so many sectors of `each` unknowns, of so many kinds (kinds sectors each, 3 kinds
+    each), sparse."""
+    from scipy.sparse import csc_array, eye_array, kron
+
+    theta = 2.0 * np.pi * np.arange(sectors) / sectors
+    waves = np.stack([np.ones(sectors), np.cos(theta), np.sin(theta)], axis=1)
+    around = kron(csc_array(waves / np.linalg.norm(waves, axis=0)), eye_array(each))
+    return csc_array(kron(eye_array(kinds), around))
+
+
+def _away(part, turned) -> float:
+    """The largest element that columns (n, m) have outside of the combinations `turned`."""
+    return abs(part - turned @ (turned.T @ part)).max()
+
+
+@dataclass(frozen=True, eq=False)
 class LinearFilm:
-    """A film with unknowns about a gap state `s` and its unknowns `x` (n,).
+    """A film with unknowns about a gap state and its unknowns `x` (n,).
 
     With gap g exp(p t) and unknowns x exp(p t), p (1/s) complex, derivatives R of the residual and F of the force:
 
         (R_x + p R_x') x = -(R_g + p R_g') g,     H(p) = -[F_x x / g + F_g + p F_g']
 
-    H is the dynamic stiffness (3, 3) on (dz, g_x, g_y), K + p D at small p.  `derivatives` FilmDerivatives; `steps` as
-    in `gap_slopes`; `scales` (n,) of the unknowns.
+    H is the dynamic stiffness (3, 3) on (dz, g_x, g_y), K + p D at small p.  `by_x`, `by_rate` R_x and R_x' (n, n),
+    sparse; `by_gap`, `by_gap_rate` R_g and R_g' (n, 3); `force_by_x` (3, n), `force_by_gap` and `force_by_gap_rate`
+    (3, 3); `scales` (n,) of the unknowns; `around` as in FilmUnknowns.
     **Source** derived here from the two lines above; against the exact solution of a flat annulus that stores in
     tests/ladder/test_film_with_unknowns.py.
     **Valid** small motion about an equilibrium: neither x nor the gap changes in the state.
     """
 
-    def __init__(self, derivatives, s, x, steps):
+    by_x: Any
+    by_rate: Any
+    by_gap: np.ndarray
+    by_gap_rate: np.ndarray
+    force_by_x: np.ndarray
+    force_by_gap: np.ndarray
+    force_by_gap_rate: np.ndarray
+    scales: np.ndarray
+    around: tuple[int, int] | None = None
+
+    @classmethod
+    def about(cls, derivatives, s, x, steps) -> "LinearFilm":
+        """A film about a gap state `s` and its unknowns `x` (n,) there: `derivatives` FilmDerivatives, `steps` as in
+        `gap_slopes`."""
         film, f, rest, moved = derivatives.film, derivatives.f, np.zeros_like(x), moved_gaps(s, steps)
         residuals = np.empty((len(moved), len(x)))
         for gap, res in zip(moved, residuals, strict=True):
             film.residual(f, gap, x, rest, res)
             film.wrench(f, gap, x)
         by_gap, force_by_gap = gap_slopes(residuals, steps), gap_slopes(moved[:, FORCE : FORCE + 3], steps)
-        self.by_gap, self.by_gap_rate = by_gap[:, :3], by_gap[:, 3:]
-        self.force_by_gap, self.force_by_gap_rate = force_by_gap[:, :3], force_by_gap[:, 3:]
-        self.by_x, self.force_by_x = derivatives.matrix(s, x, rest, 0.0), derivatives.wrench(s, x)
-        self.by_rate = derivatives.matrix(s, x, rest, 1.0) - self.by_x
-        self.scales = derivatives.unknowns.scales
+        by_x = derivatives.matrix(s, x, rest, 0.0)
+        unknowns = derivatives.unknowns
+        return cls(
+            by_x, derivatives.matrix(s, x, rest, 1.0) - by_x, by_gap[:, :3], by_gap[:, 3:], derivatives.wrench(s, x),
+            force_by_gap[:, :3], force_by_gap[:, 3:], unknowns.scales, unknowns.around,
+        )  # fmt: skip
+
+    @cached_property
+    def few(self) -> "LinearFilm":
+        """The same film in those combinations of its unknowns that a gap moves, where its sectors are alike; itself
+        where none are."""
+        turned = self.combinations
+        if turned is None:
+            return self
+        back = turned.T
+        return LinearFilm(
+            (back @ self.by_x @ turned).tocsc(), (back @ self.by_rate @ turned).tocsc(), back @ self.by_gap,
+            back @ self.by_gap_rate, self.force_by_x @ turned, self.force_by_gap, self.force_by_gap_rate,
+            self.scales[turned.indices[turned.indptr[:-1]]],
+        )  # fmt: skip
+
+    @cached_property
+    def combinations(self):
+        """Those combinations (n, m), sparse and orthonormal: of what turns into each other from sector to sector the
+        mean, cosine and sine, for the most sectors that are alike; None if fewer than LEAST_SECTORS are.
+        **Source** a circulant operator leaves each harmonic of the circle to itself: Davis (1979), Circulant Matrices,
+        ch. 3."""
+        angles, cells = self.around or (0, 0)
+        # What hangs on no rate shows rounding there: over the film's own time it is small beside what hangs on the gap.
+        time = abs(self.by_rate).max() / abs(self.by_x).max()
+        least = abs(self.by_gap).max() * time
+        parts = (self.by_x, 0.0), (self.by_rate, 0.0), (self.by_gap, 0.0), (self.by_gap_rate, least)
+        for sectors in (count for count in range(angles, LEAST_SECTORS - 1, -1) if angles % count == 0):
+            turned = _harmonics(sectors, angles // sectors * cells, len(self.scales) // (angles * cells))
+            moved = [(part @ turned if part.shape[1] > 3 else part, size) for part, size in parts]
+            if all(_away(part, turned) <= ALIKE * max(abs(part).max(), size) for part, size in moved):
+                return turned
+        return None
 
     @cached_property
     def slow(self) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness K and damping D (3, 3) of slow motion: value and slope of H at p = 0."""
+        if self.few is not self:
+            return self.few.slow
         solved = factored(self.by_x)
         moved = -solved.solve(self.by_gap)
         stiffness = -(self.force_by_x @ moved + self.force_by_gap)
@@ -131,11 +200,14 @@ class LinearFilm:
 
     def unknowns(self, p: complex) -> np.ndarray:
         """Unknowns (n, 3) of the film per unit of the gap's three amplitudes, moving as exp(p t)."""
+        if self.few is not self:
+            return self.combinations @ self.few.unknowns(p)
         return -factored(self.by_x + p * self.by_rate).solve(self.by_gap + p * self.by_gap_rate)
 
     def stiffness(self, p: complex) -> np.ndarray:
         """Dynamic stiffness H(p) (3, 3), complex."""
-        return -(self.force_by_x @ self.unknowns(p) + self.force_by_gap + p * self.force_by_gap_rate)
+        few = self.few
+        return -(few.force_by_x @ few.unknowns(p) + few.force_by_gap + p * few.force_by_gap_rate)
 
     def matrices(self, omega: float) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness and damping matrices (3, 3) of a motion of angular frequency `omega` (rad/s)."""

@@ -164,7 +164,7 @@ def coupled_modes(linear, reach: float) -> tuple[np.ndarray, np.ndarray, Reduced
     next to growing are made exact.
     **Valid** a film that is stable between rings at rest.  Raises SceneError for eigenvalues that do not settle.
     """
-    reduced, n, watched = ReducedFilm(linear.film, reach / REACH), len(linear.mass), 1j * reach * WATCHED
+    reduced, n, watched = ReducedFilm(linear.film.few, reach / REACH), len(linear.mass), 1j * reach * WATCHED
     reduced.add(0.0)
     reduced.add(watched[-1])
     # Where the answer is in the basis already, what is left is rounding.

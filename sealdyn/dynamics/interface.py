@@ -231,7 +231,7 @@ class Interface:
         from .film_derivatives import FilmDerivatives
 
         f, unknowns = self.whole
-        return LinearFilm(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
+        return LinearFilm.about(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
 
     def about(self, s, steps, omega=0.0):
         """Stiffness and damping matrices (3, 3) of film and asperities about a gap state, `steps` as in

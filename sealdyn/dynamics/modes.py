@@ -163,8 +163,10 @@ class LinearScene:
 
         reduced = self._coupled[2]
         left, right, rows, columns = reduced.pencil(self)
-        whole = block_diag(np.eye(n), self.mass, reduced.stored_by_unknowns())
-        lift = block_diag(np.eye(2 * n), reduced.basis)
+        stored, basis, turned = reduced.stored_by_unknowns(), reduced.basis, self.film.combinations
+        if turned is not None:
+            stored, basis = stored @ turned.T, turned @ basis
+        whole, lift = block_diag(np.eye(n), self.mass, stored), block_diag(np.eye(2 * n), basis)
         rows = rows[:, None]
         return rows * left * columns, rows * right * columns, rows * whole, lift * columns
 

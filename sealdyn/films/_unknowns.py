@@ -13,13 +13,15 @@ class FilmUnknowns:
 
     `names`; `scales` (n,) in their units; `differential` (n,) bool, true where the residual's row of that unknown has
     its rate in it, false where unknown and row are algebraic; `pattern` (n, n) of the residual's derivative by x and
-    by x's rate together, a CSC array whose values do not matter.
+    by x's rate together, a CSC array whose values do not matter; `around`: how many angles of the whole circle, and how
+    many cells of each, the unknowns of one kind are (angle by angle, one kind after the other), None without any.
     """
 
     names: tuple
     scales: np.ndarray
     differential: np.ndarray
     pattern: csc_array
+    around: tuple[int, int] | None = None
 
     @cached_property
     def colours(self) -> np.ndarray:

@@ -1,13 +1,20 @@
 """Modes of rings on a linear film of a hundred unknowns made up here, against the eigenvalues of the whole system."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from gas_faces import gap_state, gas_film, linear_film, steady
 from scipy.linalg import block_diag, eig
 from scipy.sparse import csc_array
 
 from sealdyn.dynamics.condensation import LinearFilm
+from sealdyn.dynamics.film_derivatives import FilmDerivatives
 from sealdyn.dynamics.film_modes import ReducedFilm
 from sealdyn.dynamics.modes import LinearScene, RingNumbers
+from sealdyn.faces.waviness import lay_waves
+from sealdyn.films.gas_reynolds import film as gas
+from sealdyn.scene.waviness import Waviness
 
 N = 40
 STATOR = RingNumbers(1.0, True, 1.0, 8e-4, 0.0, 5e5, 300.0, 400.0, 0.24, 0.0)
@@ -20,18 +27,18 @@ def line_of_pressures(storage, carried, direct):
     rate and slope; the tilts' two lines carried around by the shaft, and a force of the gap itself, `direct`."""
     along = np.linspace(0.0, 1.0, N)
     diffusion = N**2 * (np.diag(-2 * np.ones(N)) + np.diag(np.ones(N - 1), 1) + np.diag(np.ones(N - 1), -1))
-    film = object.__new__(LinearFilm)
     turn = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-    film.by_rate = csc_array(-storage * np.eye(3 * N))
-    film.by_x = csc_array(np.kron(np.eye(3), diffusion) - storage * carried * np.kron(turn, np.eye(N)))
-    film.by_gap_rate = -np.kron(np.eye(3), np.ones((N, 1)))
-    film.by_gap = -3e3 * np.kron(np.eye(3), (1 - 2 * along)[:, None]) + 2500.0 * film.by_gap_rate @ turn
-    weights = 5e4 / N * (1 + 0.3 * along)
-    film.force_by_x = np.kron(np.diag([1.0, 1e-3, 1e-3]), weights[None, :])
-    film.force_by_gap = -direct * np.diag([1e6, 1e3, 1e3])
-    film.force_by_gap_rate = -direct * np.diag([200.0, 0.5, 0.5])
-    film.scales = np.full(3 * N, 1e-2)
-    return film
+    by_gap_rate, weights = -np.kron(np.eye(3), np.ones((N, 1))), 5e4 / N * (1 + 0.3 * along)
+    return LinearFilm(
+        by_rate=csc_array(-storage * np.eye(3 * N)),
+        by_x=csc_array(np.kron(np.eye(3), diffusion) - storage * carried * np.kron(turn, np.eye(N))),
+        by_gap_rate=by_gap_rate,
+        by_gap=-3e3 * np.kron(np.eye(3), (1 - 2 * along)[:, None]) + 2500.0 * by_gap_rate @ turn,
+        force_by_x=np.kron(np.diag([1.0, 1e-3, 1e-3]), weights[None, :]),
+        force_by_gap=-direct * np.diag([1e6, 1e3, 1e3]),
+        force_by_gap_rate=-direct * np.diag([200.0, 0.5, 0.5]),
+        scales=np.full(3 * N, 1e-2),
+    )
 
 
 def whole_system(rings, film):
@@ -78,3 +85,30 @@ def test_answers_that_leave_rounding_and_no_more_are_no_reason_to_give_up(monkey
     monkeypatch.setattr(ReducedFilm, "forced_residuals", lambda self, p: np.maximum(sharp(self, p), 2e-8))
     found = LinearScene([STATOR, RIGID], *film.slow, film).eigen()[0]
     assert np.sort_complex(found) == pytest.approx(np.sort_complex(expected), rel=1e-7)
+
+
+def test_a_film_alike_all_around_answers_as_its_few_combinations_do():
+    film = gas_film((6, 16), coning=3e-4)
+    whole = linear_film(film, gap_state(film, 1000.0))
+    alone = replace(whole, around=None)
+    assert len(whole.few.scales) == 3 * 6 and alone.few is alone
+    for p in (0.0, 3e3j, -2e3 + 5e4j):
+        assert whole.stiffness(p) == pytest.approx(alone.stiffness(p), rel=1e-10, abs=1e-3)
+        assert whole.unknowns(p) == pytest.approx(alone.unknowns(p), rel=1e-9, abs=1e-4)
+    for one, other in zip(whole.slow, alone.slow, strict=True):
+        assert one == pytest.approx(other, rel=1e-10, abs=1e-3)
+    rings = [STATOR, RIGID]
+    found, expected = (LinearScene(rings, *film.slow, film).eigen()[0] for film in (whole, alone))
+    assert np.sort_complex(found) == pytest.approx(np.sort_complex(expected), rel=1e-8)
+
+
+@pytest.mark.parametrize("order, few", [(3, None), (4, 3 * 6 * 4), (5, None), (8, 3 * 6 * 2)])
+def test_waves_leave_the_sectors_that_they_leave_alike(order, few):
+    film = gas_film((6, 16), coning=3e-4)
+    s, f = gap_state(film, 1000.0), gas.parameters(film, film.clearance)
+    lay_waves(f, [Waviness(order=order, amplitude=1e-6)], [])
+    x, steps = steady(f, s), (5e-8, 1e-6, 5e-5, 1e-3)
+    found = LinearFilm.about(FilmDerivatives(gas, gas.unknowns(f), f), s, x, steps)
+    assert (None if found.few is found else len(found.few.scales)) == few
+    alone = replace(found, around=None)
+    assert found.stiffness(2e3j) == pytest.approx(alone.stiffness(2e3j), rel=1e-9, abs=1e-3)

@@ -82,7 +82,7 @@ def unknowns(f) -> FilmUnknowns:
     pattern = csc_array((np.ones(len(rows)), (rows, columns)), shape=(n, n))
     pattern.sort_indices()
     names = tuple(f"gas_{angle}_{cell}" for angle in range(angles) for cell in range(cells))
-    return FilmUnknowns(names, np.full(n, f[SCALE]), np.full(n, True), pattern)
+    return FilmUnknowns(names, np.full(n, f[SCALE]), np.full(n, True), pattern, (angles, cells))
 
 
 def halved(film):

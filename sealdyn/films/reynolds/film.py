@@ -122,7 +122,7 @@ def unknowns(f) -> FilmUnknowns:
     names = tuple(f"{name}_{angle}_{cell}" for name in ("film", "liquid") for angle in range(angles)
                   for cell in range(cells))  # fmt: skip
     scales = np.concatenate([np.ones(n), np.full(n, f[CLEARANCE])])
-    return FilmUnknowns(names, scales, np.arange(2 * n) >= n, pattern(cells, angles))
+    return FilmUnknowns(names, scales, np.arange(2 * n) >= n, pattern(cells, angles), (angles, cells))
 
 
 def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None, contact=None):
