@@ -1,0 +1,90 @@
+"""Charts as a design review reads them: units of small numbers, names where numbers are none, words that are true."""
+
+import numpy as np
+import pytest
+from drawn import panel, study
+from test_charts_untuned import RPM, must_be_legible, ticks
+
+SEALS = ("fmr", "fms", "fmsr")
+AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
+
+
+def words_of(figure):
+    return [text.get_text() for ax in figure.axes for text in [*ax.texts, ax.xaxis.label, ax.yaxis.label]]
+
+
+# --- transmissibility ----------------------------------------------------------------------------------------
+
+
+def transmitted(size=0.1, stable=True, **more):
+    """An answer of three speeds whose curves have this size."""
+    curve = {name: [size, 0.9 * size, 0.8 * size] for name in AMPLITUDES}
+    curve |= {name: [0.0, -20.0, -38.0] for name in PHASES}
+    curve["stable"] = 3 * [stable]
+    best = [{"seal": "fmr" if stable else None, "from": 0.0, "to": 900.0}]
+    row = {"seal": "fmr", "speed": 450.0, "error": dict.fromkeys((*AMPLITUDES, *PHASES), 1e-2 * size)}
+    row |= dict.fromkeys(AMPLITUDES, 0.9 * size) | dict.fromkeys(PHASES, -20.0)
+    return {"speed": [0.0, 450.0, 900.0], "unit": "rad/s", "formula_holds": True, "phase": "", "film": "",
+            "crossings": [], "table": [], "best": dict.fromkeys(AMPLITUDES, best), "time_domain": [row],
+            **{name: {**curve, "linear_algebra": curve} for name in SEALS}, **more}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "size, unit, shown", [(2e-6, "nrad per mrad", 2.0), (2e-3, "µrad per mrad", 2.0), (0.2, "", 0.2)]
+)
+def test_small_transmissibilities_are_read_in_small_units(tmp_path, size, unit, shown):
+    figure = study(tmp_path, "transmissibility", transmitted(size), RPM)
+    must_be_legible(figure)
+    ax = panel(figure, "Static")
+    assert unit in ax.get_ylabel() and shown == pytest.approx(ax.lines[0].get_ydata()[0])
+    assert all("e" not in label for words in ticks(ax)[0] for label in words)
+    # Marks and bars of the time domain with the curves.
+    assert any(np.allclose(line.get_ydata(), 0.9 * shown) for line in ax.lines if len(line.get_ydata()) == 1)
+    (bar,) = ax.containers
+    assert np.ptp(bar[2][0].get_segments()[0][:, 1]) == pytest.approx(0.02 * shown)
+
+
+def test_seals_without_a_steady_state_are_not_called_best(tmp_path):
+    figure = study(tmp_path, "transmissibility", transmitted(stable=False))
+    assert "no steady state at any speed" in words_of(figure) and not any("none best" in w for w in words_of(figure))
+    ends = [{"seal": None, "from": 0.0, "to": 300.0}, {"seal": "fmr", "from": 300.0, "to": 900.0}]
+    figure = study(tmp_path, "transmissibility", transmitted(best=dict.fromkeys(AMPLITUDES, ends)))
+    assert "none best to 300 rad/s\nFMR best beyond 300 rad/s" in words_of(figure)
+
+
+def test_linear_algebra_alone_is_drawn_once(tmp_path):
+    for holds in (True, False):
+        figure = study(tmp_path, "transmissibility", transmitted(formula_holds=holds))
+        dashed = [line for line in panel(figure, "Static").lines if line.get_color() == "#000000"]
+        assert len(dashed) == 3 * holds
+        names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+        assert ("linear algebra" in names) == holds and ("FMR, linear algebra" in names) != holds
+
+
+def test_the_table_of_a_transmissibility_tells_its_speed_clear_of_its_columns(tmp_path):
+    quantities = ("static_transmissibility", "dynamic_transmissibility", "maximum_relative_misalignment",
+                  "critical_misalignment", "critical_speed")  # fmt: skip
+    cells = dict.fromkeys(SEALS, 1.8270e-4)
+    roads = {road: cells for road in ("formula", "linear_algebra", "time_domain")}
+    rows = [{"quantity": name, "unit": "1", **cells, **roads} for name in quantities]
+    # A formula that does not hold below zero stiffness finds none where linear algebra finds one.
+    rows[-1]["formula"] = dict.fromkeys(SEALS)
+    figure = study(tmp_path, "transmissibility", transmitted(2e-4, table=rows, own_speed=900.59), RPM)
+    must_be_legible(figure)
+    words = words_of(figure)
+    assert "At 8600 rpm (Green's Table 1)" in words and "none" not in words
+    texts = {text.get_text(): text for ax in figure.axes for text in ax.texts}
+    figure.draw_without_rendering()
+    heads = [texts[name].get_window_extent() for name in ("At 8600 rpm (Green's Table 1)", "FMR")]
+    assert heads[0].x1 + 20 < heads[1].x0
+
+
+def test_phases_of_some_degrees_have_round_ticks(tmp_path):
+    for turn in (1.0, 5.0, 12.0):
+        answer = transmitted()
+        for name in SEALS:
+            answer[name]["dynamic_phase"] = [0.0, -18.0 * turn, -36.0 * turn]
+        ax = [ax for ax in study(tmp_path, "transmissibility", answer).axes][4]
+        shown = [float(word.replace("−", "-")) for word in ticks(ax)[0][1]]
+        step = shown[1] - shown[0]
+        assert step in (10.0, 45.0, 90.0) and 3 <= len(shown) <= 7, shown
