@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from drawn import panel, study
-from test_charts_untuned import RPM, must_be_legible, ticks
+from test_charts_untuned import RPM, must_be_legible, said, ticks
 
 SEALS = ("fmr", "fms", "fmsr")
 AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
@@ -14,6 +14,12 @@ def words_of(figure):
 
 
 # --- transmissibility ----------------------------------------------------------------------------------------
+
+QUANTITIES = ("static_transmissibility", "dynamic_transmissibility", "maximum_relative_misalignment",
+              "critical_misalignment", "critical_speed")  # fmt: skip
+CELLS = dict.fromkeys(SEALS, 1.8270e-4)
+TABLE = [{"quantity": name, "unit": "1", **CELLS, "formula": CELLS, "linear_algebra": CELLS, "time_domain": CELLS}
+         for name in QUANTITIES]  # fmt: skip
 
 
 def transmitted(size=0.1, stable=True, **more):
@@ -52,6 +58,17 @@ def test_seals_without_a_steady_state_are_not_called_best(tmp_path):
     assert "none best to 300 rad/s\nFMR best beyond 300 rad/s" in words_of(figure)
 
 
+def test_words_of_a_transmissibility_are_below_its_legend(tmp_path):
+    film = "Film radial: -94.032 N m/rad, 5.83e+06 N m s/rad in tilt at 2600.5 rad/s (24828 rpm); "
+    film += 'Green\'s Fig. 8 has those of the narrow seal (film.model = "linear").'
+    phase = "Phase: how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that "
+    phase += "forcing in the forcing's own frame, against the shaft's rotation (negative: ahead)."
+    figure = study(tmp_path, "transmissibility", transmitted(stable=False, film=film, phase=phase, table=TABLE))
+    must_be_legible(figure)
+    (key,) = [ax for ax in figure.axes if ax.get_legend()]
+    assert key.texts[0].get_window_extent().y1 < key.get_legend().get_window_extent().y0
+
+
 def test_linear_algebra_alone_is_drawn_once(tmp_path):
     for holds in (True, False):
         figure = study(tmp_path, "transmissibility", transmitted(formula_holds=holds))
@@ -62,13 +79,8 @@ def test_linear_algebra_alone_is_drawn_once(tmp_path):
 
 
 def test_the_table_of_a_transmissibility_tells_its_speed_clear_of_its_columns(tmp_path):
-    quantities = ("static_transmissibility", "dynamic_transmissibility", "maximum_relative_misalignment",
-                  "critical_misalignment", "critical_speed")  # fmt: skip
-    cells = dict.fromkeys(SEALS, 1.8270e-4)
-    roads = {road: cells for road in ("formula", "linear_algebra", "time_domain")}
-    rows = [{"quantity": name, "unit": "1", **cells, **roads} for name in quantities]
     # A formula that does not hold below zero stiffness finds none where linear algebra finds one.
-    rows[-1]["formula"] = dict.fromkeys(SEALS)
+    rows = [*TABLE[:-1], {**TABLE[-1], "formula": dict.fromkeys(SEALS)}]
     figure = study(tmp_path, "transmissibility", transmitted(2e-4, table=rows, own_speed=900.59), RPM)
     must_be_legible(figure)
     words = words_of(figure)
@@ -80,11 +92,35 @@ def test_the_table_of_a_transmissibility_tells_its_speed_clear_of_its_columns(tm
 
 
 def test_phases_of_some_degrees_have_round_ticks(tmp_path):
-    for turn in (1.0, 5.0, 12.0):
+    for turn, start in ((1.0, 0.0), (5.0, 0.0), (12.0, 0.0), (-1.0, -180.0), (6.0, 180.0)):
         answer = transmitted()
         for name in SEALS:
-            answer[name]["dynamic_phase"] = [0.0, -18.0 * turn, -36.0 * turn]
+            answer[name]["dynamic_phase"] = [start, start - 18.0 * turn, start - 36.0 * turn]
         ax = [ax for ax in study(tmp_path, "transmissibility", answer).axes][4]
         shown = [float(word.replace("−", "-")) for word in ticks(ax)[0][1]]
         step = shown[1] - shown[0]
-        assert step in (10.0, 45.0, 90.0) and 3 <= len(shown) <= 7, shown
+        assert step in (10.0, 30.0, 45.0, 90.0) and 3 <= len(shown) <= 7, shown
+
+
+# --- equilibrium ---------------------------------------------------------------------------------------------
+
+
+def balance(contact=None, roots=(), verdict=("Balance at 0 clearances.", "Closing force 900 N.", "It carries less.")):
+    clearance = np.geomspace(1e-7, 1e-5, 21)
+    film = 300.0 + 1e-5 / clearance
+    rough = np.zeros(21) if contact is None else np.maximum(contact * (1 - clearance / 4e-7), 0.0)
+    curve = {"clearance": clearance.tolist(), "opening_force": (film + rough).tolist(),
+             "contact_force": rough.tolist(), "stiffness": (1e-5 / clearance**2).tolist()}  # fmt: skip
+    return {"curve": curve, "closing_force": 900.0, "roots": list(roots), "verdict": list(verdict)}
+
+
+def test_an_equilibrium_says_what_was_found(tmp_path):
+    figure = study(tmp_path, "equilibrium", balance())
+    must_be_legible(figure)
+    assert "Balance at 0 clearances. It carries less." in said(figure)
+
+
+def test_the_force_of_asperities_is_seen_to_its_end(tmp_path):
+    root = {"clearance": 3.7e-7, "stable": True, "stiffness": 1e9}
+    ax = panel(study(tmp_path, "equilibrium", balance(contact=8e3, roots=[root])), "Opening")
+    assert ax.get_ylim()[0] <= 0.0

@@ -119,9 +119,10 @@ def _phases(ax, answer, name: str):
     both = _roads(ax, answer, name)
     spread = max(np.ptp(both), 1.0)
     ax.axhline(0.0, color=BLACK, lw=0.6)
-    ax.set_ylim(min(both.min(), 0) - 0.1 * spread, max(both.max(), 0) + 0.1 * spread)
-    if spread > TICKS:
-        ax.yaxis.set_major_locator(MultipleLocator(next((d for d in DEGREES if TICKS * d > 1.2 * spread), 360)))
+    low, high = min(both.min(), 0) - 0.1 * spread, max(both.max(), 0) + 0.1 * spread
+    ax.set_ylim(low, high)
+    if high - low > TICKS:
+        ax.yaxis.set_major_locator(MultipleLocator(next((d for d in DEGREES if TICKS * d > high - low), 360)))
     ax.yaxis.set_major_formatter(lambda value, _: number(value))
 
 
@@ -169,9 +170,9 @@ def _legend(ax, answer, per: float):
     if not all(all(answer[seal]["stable"]) for seal in COLOUR):
         ax.plot([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped")
     ax.plot([], [], color=GREY, lw=6, label="strip: the one that transmits least")
-    ax.legend(loc="upper left", borderaxespad=0.0, fontsize=8.5)
-    words = "\n".join([*wrap(answer["film"], 48), "", *wrap(answer["phase"], 48)])
-    ax.text(0.0, 0.0, words, fontsize=8.5, color=GREY, va="bottom", linespacing=1.4, transform=ax.transAxes)
+    ax.legend(loc="upper left", borderaxespad=0.0, fontsize=8, labelspacing=0.35)
+    words = "\n".join([*wrap(answer["film"], 52), *wrap(answer["phase"], 52)])
+    ax.text(0.0, 0.0, words, fontsize=8, color=GREY, va="bottom", linespacing=1.3, transform=ax.transAxes)
 
 
 def _table(ax, answer):
