@@ -124,3 +124,30 @@ def test_the_force_of_asperities_is_seen_to_its_end(tmp_path):
     root = {"clearance": 3.7e-7, "stable": True, "stiffness": 1e9}
     ax = panel(study(tmp_path, "equilibrium", balance(contact=8e3, roots=[root])), "Opening")
     assert ax.get_ylim()[0] <= 0.0
+
+
+# --- Campbell ------------------------------------------------------------------------------------------------
+
+
+def whirls(decrement, verdict):
+    mode = {"kind": "tilt", "direction": "forward", "directions": 3 * ["forward"], "frequency": [300.0, 310.0, 320.0],
+            "log_decrement": decrement, "growth_rate": [-1.0, -1.0, -1.0]}  # fmt: skip
+    return {"speed": [0.0, 500.0, 1000.0], "unit": "rpm", "modes": [mode], "crossings": [], "lines": [1.0],
+            "thresholds": [], "stator_speed": 0.0, "stator_crossings": [], "own_speed": 400.0,
+            "verdict": verdict}  # fmt: skip
+
+
+def test_a_campbell_diagram_says_what_is_unstable(tmp_path):
+    verdict = ["Mode 1 (tilt, mostly forward): 300 rad/s.", "Unstable at every speed of this range: mode 1 (tilt).",
+               "Mode 1 meets once per turn at 310 rad/s."]  # fmt: skip
+    figure = study(tmp_path, "campbell", whirls([0.26, 0.26, 0.25], verdict))
+    must_be_legible(figure)
+    assert " ".join(verdict[1:]) in said(figure)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.26, 3.0, 300.0])
+def test_the_unstable_side_is_named_where_it_has_room(tmp_path, size):
+    ax = panel(study(tmp_path, "campbell", whirls([size, size, 0.9 * size], ["It whirls."])), "Damping")
+    bottom, zero = ax.transData.transform([(0, ax.get_ylim()[0]), (0, 0)])[:, 1]
+    named = [text for text in ax.texts if text.get_text() == "unstable"]
+    assert bool(named) == (zero - bottom > 0.05 * ax.bbox.height)

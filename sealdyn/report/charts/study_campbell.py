@@ -1,5 +1,7 @@
 """Campbell diagram: whirl frequencies and logarithmic decrements over shaft speed."""
 
+import re
+
 import numpy as np
 
 from ...archive import read_study
@@ -14,6 +16,10 @@ RPM = 60 / (2 * np.pi)
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 3, 10, 30, 100, 300, 1000)
 # Beyond this a curve runs along the top: the mode hardly oscillates.
 MOST_DECREMENT = 1000.0
+# Share of the panel from which the unstable side has room for its name.
+NAMED = 0.06
+# A line of the verdict that describes a mode.
+ONE_MODE = re.compile(r"Mode \d+ \(")
 
 
 @look()
@@ -21,7 +27,9 @@ def draw(archive_path, out_path):
     """Frequencies on the left, decrements on the right, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "At which frequencies does the seal whirl?"
-    figure, ax = study_page(study, 11.5, 6.6, [["frequency", "decrement"]], title, width_ratios=(3, 2))
+    # What each mode is, the curves show.
+    found = " ".join(line for line in answer["verdict"] if not ONE_MODE.match(line))
+    figure, ax = study_page(study, 11.5, 6.6, [["frequency", "decrement"]], title, bold=found, width_ratios=(3, 2))
     factor = RPM if answer["unit"] == "rpm" else 1.0
     speed = factor * np.array(answer["speed"])
     _frequencies(ax["frequency"], answer, speed, factor)
@@ -124,8 +132,11 @@ def _decrements(ax, answer, speed, factor):
     )
     for at in thresholds:
         _name_threshold(ax, at, speed, shown)
-    if bottom < -0.3:
-        ax.text(speed[0] + 0.02 * (speed[-1] - speed[0]), 0.5 * bottom, "unstable", color=VERMILLION, va="center")
+    below, above = np.arcsinh(-bottom), np.arcsinh(max(highest, 0.0))
+    if below > NAMED * (below + above):
+        ax.text(
+            speed[0] + 0.02 * (speed[-1] - speed[0]), np.sinh(-0.5 * below), "unstable", color=VERMILLION, va="center"
+        )
 
 
 def _ticks(lowest: float, highest: float) -> list[float]:
