@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from drawn import panel, study
+from drawn import crossed, panel, study
 from test_charts_untuned import RPM, must_be_legible, said, ticks
 
 SEALS = ("fmr", "fms", "fmsr")
@@ -151,3 +151,29 @@ def test_the_unstable_side_is_named_where_it_has_room(tmp_path, size):
     bottom, zero = ax.transData.transform([(0, ax.get_ylim()[0]), (0, 0)])[:, 1]
     named = [text for text in ax.texts if text.get_text() == "unstable"]
     assert bool(named) == (zero - bottom > 0.05 * ax.bbox.height)
+
+
+@pytest.mark.parametrize("decrement", [[-300.0, -12.0, -3.0], [2.0, -1.0, -3.0], [-3.0, -12.0, -300.0]])
+def test_the_name_of_the_unstable_side_is_on_no_curve(tmp_path, decrement):
+    answer = whirls(decrement, ["It whirls."])
+    answer |= {"speed": np.linspace(0, 1000, 61).tolist()}
+    mode = answer["modes"][0]
+    for name in ("frequency", "log_decrement", "growth_rate"):
+        mode[name] = np.interp(answer["speed"], [0, 150, 1000], mode[name]).tolist()
+    mode["directions"] = 61 * ["forward"]
+    ax = panel(study(tmp_path, "campbell", answer), "Damping")
+    assert "unstable" in [text.get_text() for text in ax.texts] and crossed(ax) == []
+
+
+def test_modes_above_a_campbell_diagram_are_named(tmp_path):
+    answer = whirls([0.3, 0.3, 0.3], ["It whirls."])
+    answer["modes"] *= 3
+    answer["modes"][1] = {**answer["modes"][1], "frequency": [9e3, 9e3, 9e3]}
+    figure = study(tmp_path, "campbell", answer)
+    must_be_legible(figure)
+    assert "above: mode 2" in words_of(figure)
+
+
+def test_units_of_a_heading_are_printed(tmp_path):
+    figure = study(tmp_path, "equilibrium", balance(verdict=["Balance at 1.5 um, 36 deg, 2 urad, 3 mm^2.", "Closing."]))
+    assert "Balance at 1.5 µm, 36°, 2 µrad, 3 mm²." in said(figure)

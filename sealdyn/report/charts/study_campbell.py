@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from ...archive import read_study
-from .page import look, number, once, save, study_page
+from .page import PAPER, look, number, once, save, study_page
 from .palette import BLACK, CYCLE, GREY, VERMILLION
 
 # Dashes of a direction of whirl, and its name.
@@ -56,6 +56,10 @@ def _frequencies(ax, answer, speed, factor):
         ax.plot([], [], color=GREY, lw=1.8, ls=dashes, label=label)
     unit = "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
     ax.set(ylim=(0, top), ylabel=f"whirl frequency, {unit}", title="Whirl frequency")
+    hidden = [str(k) for k, values in enumerate(curves, 1) if values.min() > top]
+    if hidden:
+        words = f"above: mode{'s' * (len(hidden) > 1)} {', '.join(hidden)}"
+        ax.text(0.02, 0.98, words, transform=ax.transAxes, va="top", fontsize=8, color=GREY, bbox=PAPER)
     named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
     for order in answer["lines"]:
         ax.plot(speed, order * speed, color=GREY, lw=0.9)
@@ -134,9 +138,22 @@ def _decrements(ax, answer, speed, factor):
         _name_threshold(ax, at, speed, shown)
     below, above = np.arcsinh(-bottom), np.arcsinh(max(highest, 0.0))
     if below > NAMED * (below + above):
-        ax.text(
-            speed[0] + 0.02 * (speed[-1] - speed[0]), np.sinh(-0.5 * below), "unstable", color=VERMILLION, va="center"
-        )
+        _name_unstable(ax, speed, shown, below)
+
+
+def _name_unstable(ax, speed, curves, depth):
+    """The name of the unstable side, `depth` high, in the corner that is farthest from the curves."""
+    start, end = speed[0], speed[-1]
+    corners = [(side, part * depth) for part in (0.5, 0.15, 0.85) for side in ("left", "right")]
+
+    def away(corner):
+        part = speed <= start + 0.3 * (end - start) if corner[0] == "left" else speed >= end - 0.3 * (end - start)
+        near = [np.nanmin(np.abs(np.arcsinh(v[part]) + corner[1]), initial=depth) for v in curves]
+        return min([0.2 * depth, *near])
+
+    side, height = max(corners, key=away)
+    at = start + (0.02 if side == "left" else 0.98) * (end - start)
+    ax.text(at, np.sinh(-height), "unstable", color=VERMILLION, va="center", ha=side)
 
 
 def _ticks(lowest: float, highest: float) -> list[float]:
