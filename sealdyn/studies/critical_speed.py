@@ -88,7 +88,7 @@ def run(scenario, settings, tools) -> dict:
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
-    answer["speeds_held"] = speeds_held(model)
+    answer["speeds_held"], answer["own_speed"] = speeds_held(model), abs(scene.shaft.speed)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     return {**answer, "verdict": sentences(answer)}

@@ -5,6 +5,8 @@ import pytest
 from drawn import crossed, panel, study
 from test_charts_untuned import RPM, must_be_legible, said, ticks
 
+from sealdyn.report.charts.study_sweep import axis_label
+
 SEALS = ("fmr", "fms", "fmsr")
 AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
 
@@ -177,3 +179,53 @@ def test_modes_above_a_campbell_diagram_are_named(tmp_path):
 def test_units_of_a_heading_are_printed(tmp_path):
     figure = study(tmp_path, "equilibrium", balance(verdict=["Balance at 1.5 um, 36 deg, 2 urad, 3 mm^2.", "Closing."]))
     assert "Balance at 1.5 µm, 36°, 2 µrad, 3 mm²." in said(figure)
+
+
+# --- sweeps and load support ---------------------------------------------------------------------------------
+
+
+def test_pure_numbers_have_no_unit_and_bare_ones_that_of_their_key():
+    axis = {"key": "closing.balance_ratio", "unit": "", "values": [0.7, 0.8]}
+    assert axis_label({**axis, "si": "1"}) == "closing.balance_ratio"
+    assert axis_label({**axis, "key": "film.coning", "si": "rad"}) == "film.coning, rad"
+    assert axis_label({**axis, "key": "rotor.runout", "unit": "um TIR"}) == "rotor.runout, µm TIR"
+    assert axis_label({**axis, "unit": None}) == "closing.balance_ratio"
+    # Archives of earlier versions do not hold the key's own unit.
+    assert axis_label(axis) == "closing.balance_ratio, SI"
+
+
+# --- critical speed, stability, contact onset ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scenario, unit", [(RPM, "9550 rpm"), ("", "1000.07 rad/s")], ids=["rpm", "rad per second"])
+def test_the_scenarios_own_speed_is_marked_beside_its_threshold(tmp_path, scenario, unit):
+    speed, rates = [800.0, 1200.0, 1600.0, 2000.0], [-9.0, -5.0, 1.0, 3.0]
+    growth = {"speed": speed, "eigenvalue": rates, "time_domain": rates, "uncertainty": 4 * [1e-3]}
+    answer = {"formula": None, "eigenvalue": 1500.0, "time_domain": {"value": 1500.0}, "growth": growth,
+              "own_speed": 9550 * np.pi / 30, "nonlinear": None}  # fmt: skip
+    figure = study(tmp_path, "critical_speed", answer, scenario)
+    must_be_legible(figure)
+    (ax,) = figure.axes
+    own = [line for line in ax.lines if line.get_label() == f"this scenario {unit}"]
+    assert len(own) == 1 and ax.get_xlim()[0] <= own[0].get_xdata()[0] <= ax.get_xlim()[1]
+    # Far away it would squeeze the curve: then it is told in the legend alone.
+    figure = study(tmp_path, "critical_speed", {**answer, "own_speed": 1e6}, scenario)
+    assert figure.axes[0].get_xlim()[1] < 1e5
+    assert any("this scenario" in text.get_text() for text in figure.axes[0].get_legend().get_texts())
+
+
+def test_an_onset_over_written_values_is_drawn_where_they_are(tmp_path):
+    rows = [{"value": value, "nonlinear": 1e-4, "formula": 1.1e-4} for value in ("0.1 mrad", "0.5 mrad", "2 mrad")]
+    answer = {"key": "rotor.runout", "formula": 1.1e-4, "nonlinear": 1e-4, "over": "film.coning", "curve": rows,
+              "clearance": 1e-5, "units": {"forcing": "rad", "value": "rad"}}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer)
+    must_be_legible(figure)
+    ax = panel(figure, "Onset over")
+    assert list(ax.lines[0].get_xdata()) == [0.1, 0.5, 2.0] and ax.get_xlabel() == "film.coning, mrad"
+    # Values in several units, and words, stand side by side.
+    rows[0]["value"] = "100 urad"
+    ax = panel(study(tmp_path, "contact_onset", answer), "Onset over")
+    assert [text.get_text() for text in ax.get_xticklabels()] == ["100 urad", "0.5 mrad", "2 mrad"]
+    plain = [{**row, "value": value} for row, value in zip(rows, (0.7, 0.8, 0.9), strict=True)]
+    answer |= {"over": "closing.balance_ratio", "curve": plain, "units": {"forcing": "rad", "value": "SI"}}
+    assert panel(study(tmp_path, "contact_onset", answer), "Onset over").get_xlabel() == "closing.balance_ratio"

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from ...archive import read_study
-from .page import absent, look, number, save, study_page
+from .page import absent, look, number, printed, save, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
 
 # SI unit of an output -> what it is shown in, and the factor.
@@ -49,8 +49,10 @@ def draw(path, out):
 
 
 def axis_label(axis: dict) -> str:
-    unit = "" if axis["unit"] is None else f", {axis['unit'] or 'SI'}"
-    return f"{axis['key']}{unit}"
+    """The key and the unit of its values: as written, or its own in SI; none of words and of pure numbers."""
+    # Archives of earlier versions do not hold the key's own unit.
+    unit = axis["unit"] or axis.get("si", "SI")
+    return axis["key"] if axis["unit"] is None or unit == "1" else f"{axis['key']}, {printed(unit)}"
 
 
 def column(answer, output):
