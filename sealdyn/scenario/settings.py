@@ -211,8 +211,8 @@ def si_unit(scene, key: str) -> str:
 
 
 def with_own_unit(scene, axis: dict) -> dict:
-    """An `axis` with the SI unit of its key as `si`, in which numbers without a unit are: "1" for pure numbers, "SI" where
-    the scene does not hold the key."""
+    """An `axis` with the SI unit of its key as `si`, in which numbers without a unit are: "1" for pure numbers, "SI"
+    where the scene does not hold the key."""
     try:
         unit = si_unit(scene, axis["key"])
     except (AttributeError, KeyError, IndexError, ValueError):
