@@ -196,7 +196,7 @@ def _time_domain(scenario, reason: str) -> dict:
     run.extrema.windows[1:] = [[half, run.duration], [half, run.duration]]
     recorder = Recorder(run.duration / turns / PER_TURN)
     outcome = solve(run, choose_method(run)[0], scenario.run.accuracy, recorder)
-    record = run.extrema.records[1]
+    record, unknowns = run.extrema.records[1], run.model.unknowns
     times, q, q_rate = (part[-SHOWN * PER_TURN :] for part in recorder.arrays())
     shown = {"times": times, "displacements": q, "rates": q_rate}
     return {
@@ -207,7 +207,9 @@ def _time_domain(scenario, reason: str) -> dict:
         "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / run.model.clearance)},
         "relative_misalignment": {"max": float(record[4]), "min": float(record[6])},
         "near_threshold": [],
-        "orbit": _waves(run.model, shown) if run.model.unknowns.constant else None,
+        # What a film holds is not recorded, and its forces do not follow from the motion alone.
+        "orbit": _waves(run.model, shown) if unknowns.constant and not unknowns.film_unknowns else None,
+        "reason": reason,
         "verdict": [
             f"In time over {turns} turns, the second half: h_min {record[0] * 1e6:.5g} um, relative misalignment "
             f"{record[6] * 1e6:.5g} to {record[4] * 1e6:.5g} urad.",

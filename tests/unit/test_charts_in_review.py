@@ -1,10 +1,16 @@
 """Charts as a design review reads them: units of small numbers, names where numbers are none, words that are true."""
 
+from itertools import pairwise
+from unittest import mock
+
 import numpy as np
 import pytest
-from drawn import crossed, panel, study
+from drawn import crossed, panel, study, text_trouble
+from made_up_run import whirling, write
 from test_charts_untuned import RPM, must_be_legible, said, ticks
 
+from sealdyn.report.charts import animation
+from sealdyn.report.charts.page import sheet
 from sealdyn.report.charts.study_sweep import axis_label
 
 SEALS = ("fmr", "fms", "fmsr")
@@ -229,3 +235,113 @@ def test_an_onset_over_written_values_is_drawn_where_they_are(tmp_path):
     plain = [{**row, "value": value} for row, value in zip(rows, (0.7, 0.8, 0.9), strict=True)]
     answer |= {"over": "closing.balance_ratio", "curve": plain, "units": {"forcing": "rad", "value": "SI"}}
     assert panel(study(tmp_path, "contact_onset", answer), "Onset over").get_xlabel() == "closing.balance_ratio"
+
+
+def grid(first, second=None, **outputs):
+    """A sweep's answer: keys `first` and `second` with their units and values, outputs as rows of values."""
+    axes = [{"key": key, "unit": unit, "values": values} for key, unit, values in filter(None, (first, second))]
+    rows = [dict(zip(outputs, row, strict=True)) for row in zip(*outputs.values(), strict=True)]
+    return {"keys": [a["key"] for a in axes], "axes": axes, "outputs": list(outputs), "rows": rows, "output_units": {}}
+
+
+def test_numbers_at_the_cells_of_a_map_are_apart(tmp_path):
+    speeds = ("shaft.speed", "rpm", [5000.0, 12000.0, 19000.0, 26000.0, 33000.0, 40000.0])
+    outputs = {f"output.{k}": list(map(float, range(12))) for k in range(8)}
+    figure = study(tmp_path, "sweep", grid(speeds, ("film.coning", "mrad", [0.5, 4.0]), **outputs))
+    assert text_trouble(figure) == ([], [])
+    (ax,) = [ax for ax in figure.axes if ax.get_title("left") == "output.0"]
+    shown = [label for label in ax.get_xticklabels() if label.get_text()]
+    boxes = [label.get_window_extent() for label in shown]
+    assert len(shown) >= 3 and all(one.x1 + 4 < other.x0 for one, other in pairwise(boxes))
+
+
+def test_stable_is_green_in_whatever_order_it_comes(tmp_path):
+    for words in (["unstable", "stable"], ["stable", "unstable"]):
+        answer = grid(("film.coning", "mrad", [0.0, 1.0]), **{"stability.verdict": words})
+        (ax,) = study(tmp_path, "sweep", answer).axes
+        colours = {words[round(line.get_xdata()[0])]: line.get_color() for line in ax.lines}
+        assert colours == {"stable": "#009E73", "unstable": "#D55E00"}
+
+
+def test_without_any_balance_a_load_support_says_so_once(tmp_path):
+    rows = [{"closing.balance_ratio": 0.5}, {"closing.balance_ratio": 1.3}]
+    axis = {"key": "closing.balance_ratio", "unit": "", "si": "1", "values": [0.5, 1.3]}
+    answer = {"keys": [axis["key"]], "axes": [axis], "outputs": [], "output_units": {"leakage": "m^3/s"}, "rows": rows,
+              "verdict": ["Nothing holds the faces apart."]}  # fmt: skip
+    figure = study(tmp_path, "load_support", answer)
+    assert len(figure.axes) == 1 and figure.get_figheight() < 4
+    assert "seal: Does it ride?" in said(figure) and "Nothing holds the faces apart." in said(figure)
+
+
+def test_a_point_that_is_not_confirmed_is_seen_on_every_colour(tmp_path):
+    axes = {"x": {"key": "film.coning", "unit": "rad", "values": [0.0, 1e-3], "here": 1e-3},
+            "y": {"key": "film.clearance", "unit": "m", "values": [1e-6, 2e-6], "here": 1e-6}}  # fmt: skip
+    rates, confirmed = [[-1.0, 1.0], [-1.0, 1.0]], [{"x": 1e-3, "y": 2e-6, "failed": "too fast"}]
+    answer = {"axes": axes, "growth_rate": rates, "tilt_growth_rate": rates, "unconditional": {"limit": None},
+              "confirmed": confirmed}  # fmt: skip
+    ax = study(tmp_path, "stability", answer).axes[0]
+    (mark,) = [line for line in ax.lines if line.get_label() == "not confirmed"]
+    assert mark.get_marker() == "X" and mark.get_markerfacecolor() == "white"
+
+
+def test_onsets_far_apart_are_all_seen(tmp_path):
+    rows = [{"value": 1e-4, "formula": 2.3, "nonlinear": None, "failed": "beyond any small tilt"},
+            {"value": 5e-4, "formula": 0.1, "nonlinear": 0.09},
+            {"value": 2e-3, "formula": 0.043, "nonlinear": 0.05}]  # fmt: skip
+    answer = {"key": "rotor.runout", "formula": 0.1, "nonlinear": 0.09, "over": "film.coning", "curve": rows,
+              "clearance": 1e-5, "units": {"forcing": "rad", "value": "rad"}}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer)
+    must_be_legible(figure)
+    assert panel(figure, "Onset over").get_yscale() == "log"
+
+
+# --- coefficients, steady state ------------------------------------------------------------------------------
+
+
+def test_damping_of_millions_has_short_ticks(tmp_path):
+    full = [[1.21e10, 0.0, 0.0], [0.0, 1.91e7, 2.75e7], [0.0, -2.75e7, 1.91e7]]
+    at = {"tilt_x": 0.0, "tilt_y": 0.0, "clearance": 5e-7, "axial_opening": 0.0, "speed": 9.4, "h_min": 5e-7}
+    answer = {"stiffness": full, "damping": full, "at": at,
+              "tilted": {"stiffness": full, "damping": full, "at": at, "said": "mean tilt"}}  # fmt: skip
+    for name, end in (("speed", 28.0), ("clearance", 1.6e-6), ("tilt", 1e-5)):
+        values = np.linspace(0.1 * end, end, 9)
+        share = (values[0] / values) ** 2
+        answer[f"against_{name}"] = {name: values.tolist(), "stiffness": [(s * np.array(full)).tolist() for s in share],
+                                     "damping": [(s * np.array(full)).tolist() for s in share]}  # fmt: skip
+    figure = study(tmp_path, "coefficients", answer, RPM)
+    must_be_legible(figure)
+    words = words_of(figure)
+    assert any("tilt damping, MN m s/rad" in word for word in words) and not any("e+" in word for word in words)
+    assert not any("e" in label for ax in figure.axes if ax.axison for part in ticks(ax)[0] for label in part)
+
+
+def test_why_a_transient_was_not_waited_for_is_told_clear_of_its_marks(tmp_path):
+    rows = [
+        {"part": part, "shooting": 100, "transient": None, "transient_ends": "the film closes"} for part in (0.5, 0.9)
+    ]
+    orbit = {name: np.sin(np.linspace(0, 6, 9)).tolist() for name in ("relative_tilt_x", "relative_tilt_y", "h_min")}
+    answer = {"orbit": {**orbit, "time": np.linspace(0, 1, 9).tolist()}, "period": 1.0, "multipliers": [[0.1, 0.0]],
+              "near_threshold": rows}  # fmt: skip
+    ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
+    assert text_trouble(ax.figure) == ([], [])
+    box = ax.get_legend().get_window_extent()
+    for line in ax.lines:
+        points = ax.transData.transform(np.column_stack(line.get_data()).astype(float))
+        assert not any(box.contains(*point) for point in points)
+    assert "transient: the film closes" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+# --- animation -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("part", [2e-3, 1e-6], ids=["little", "hardly"])
+def test_the_names_of_an_animation_are_on_its_page(tmp_path, part):
+    columns = whirling(samples=400, turns=10)
+    columns["h_min"] = 1.39141e-5 * (1 + part * np.sin(np.arange(400)))
+    figures = []
+    with mock.patch.object(animation, "sheet", lambda *size: figures.append(sheet(*size)) or figures[-1]):
+        animation.animate(write(tmp_path / "seal.h5", columns), tmp_path / "last.png")
+    (figure,) = figures
+    assert text_trouble(figure) == ([], [])
+    line = figure.axes[-1] if figure.axes[-1].get_xlabel() else figure.axes[3]
+    assert all(len(word) <= 7 for word in ticks(line)[0][1])

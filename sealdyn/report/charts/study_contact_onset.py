@@ -6,10 +6,12 @@ import numpy as np
 
 from ...archive import read_study
 from ..text import speed_unit
-from .page import absent, look, printed, save, study_page, upright
+from .page import absent, logarithmic, look, printed, save, study_page, upright
 from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
 from .record import read_in
 
+# Onsets further apart than this are seen on a logarithmic axis only.
+APART = 20.0
 # A number and its unit.
 WRITTEN = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 
@@ -116,10 +118,17 @@ def _curve(ax, answer, unit, per, speeds):
             ax.plot(at, per * np.array([row.get(column) for row in found], dtype=float), **style)
     missing = [x for x, *pair in zip(at, rows, floored, strict=True) if any("failed" in row for row in pair)]
     if missing:
-        ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found")
+        ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found",
+                transform=ax.get_xaxis_transform())  # fmt: skip
     if words:
         ax.set_xticks(at, [str(row["value"]) for row in rows])
-    ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
+    seen = [row[name] for row in [*rows, *floored] for name in ("nonlinear", "formula") if row.get(name)]
+    low, high = per * min(seen, default=0.0), per * max(seen, default=1.0)
+    if low > 0 and high > APART * low:
+        logarithmic(ax, "y")
+        ax.set_ylim(0.6 * low, high * (high / low) ** 0.45)
+    else:
+        ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
     ax.set(title=f"Onset over {answer['over']}", xlabel=", ".join(filter(None, (answer["over"], name))),
            ylabel=f"{answer['key']} at touch, {unit}")  # fmt: skip
     ax.legend(loc="upper right")

@@ -92,10 +92,14 @@ def _cost(ax, answer):
     waited = np.array([row["transient"] or np.nan for row in rows], dtype=float)
     if np.isfinite(waited).any():
         ax.loglog(away, waited, "s--", color=THEORY, label="waiting for the transient")
-    failed = away[np.isnan(waited)]
-    if len(failed):
-        words = "transient: not in the periods tried"
-        ax.loglog(failed, [20 * cost.max()] * len(failed), "x", color=CONTACT, label=words)
+    # Archives of earlier versions do not hold why.
+    ends = np.array([row.get("transient_ends") or "not in the periods tried" for row in rows])
+    for k, why in enumerate(dict.fromkeys(ends[np.isnan(waited)])):
+        failed = away[np.isnan(waited) & (ends == why)]
+        ax.loglog(failed, [20 * cost.max()] * len(failed), "x+1"[k], color=CONTACT, label=f"transient: {why}")
     ax.invert_xaxis()
     ax.set(title=title, xlabel="distance below the critical speed, 1 − w / w_cr", ylabel="periods integrated")
+    # Above everything.
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high * (high / low) ** 0.45)
     ax.legend(loc="upper left")
