@@ -329,7 +329,11 @@ def nonlinear_sentences(found, threshold) -> list[str]:
     unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
     speed = found["contact_speed"]
     at = f"{speed_words(speed)}, {speed / threshold:.4f} of the threshold" if speed else "no speed followed"
-    if found["kind"] == "subcritical":
+    if found["kind"] == "subcritical" and not speed:
+        said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
+                    f"stands beside rest, followed down to {speed_words(min(found['branch']['speed']))}: "
+                    "hysteresis.")  # fmt: skip
+    elif found["kind"] == "subcritical":
         said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
                     f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
     elif found["kind"] == "supercritical":

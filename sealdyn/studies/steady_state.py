@@ -24,6 +24,8 @@ from ..solvers.recorder import Recorder
 from ._words import RPM, speed
 
 WITH_WAVES = True
+# Cycles of a period of which each has samples of its own from there on, how many, and the most samples.
+FEW, PER_CYCLE, MOST = 4, 48, 20_000
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
 ALONG = {"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
@@ -46,7 +48,7 @@ class Settings:
     turns: int = 1
     """Common periods of the forcing that are taken as one period (2 finds half-frequency responses)."""
     samples: int = 256
-    """Samples of a period in the figure."""
+    """Samples of a period in the figure; more where the forcing has many cycles in it."""
     approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
     """Speeds, as parts of the critical speed, at which the cost is compared with a transient's; empty: none."""
     longest: int = 4000
@@ -80,7 +82,7 @@ def run(scenario, settings, tools) -> dict:
                 "verdict": list(said)}  # fmt: skip
     tools.say(0.1)
     # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
-    waves = shooter.extremes(orbit.start, settings.samples, min(scenario.run.accuracy, SHARP))
+    waves = shooter.extremes(orbit.start, _samples(shooter, settings.samples), min(scenario.run.accuracy, SHARP))
     answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
     most, least, _ = steady_extremes(linear, answers, shooter.period)
     rows = []
@@ -102,6 +104,13 @@ def run(scenario, settings, tools) -> dict:
         "critical_speed": critical,
     }
     return {**answer, "verdict": _verdict(answer)}
+
+
+def _samples(shooter, asked: int) -> int:
+    """Samples of a period: as asked, and more where the fastest forcing has many cycles in it."""
+    fastest = max((abs(h.frequency) for h in shooter.model.segment().harmonics()), default=0.0)
+    cycles = math.ceil(fastest * shooter.period / (2 * math.pi))
+    return max(asked, min(PER_CYCLE * cycles, MOST)) if cycles > FEW else asked
 
 
 def _linear_film(shooter, samples) -> dict:

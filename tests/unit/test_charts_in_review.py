@@ -345,3 +345,37 @@ def test_the_names_of_an_animation_are_on_its_page(tmp_path, part):
     assert text_trouble(figure) == ([], [])
     line = figure.axes[-1] if figure.axes[-1].get_xlabel() else figure.axes[3]
     assert all(len(word) <= 7 for word in ticks(line)[0][1])
+
+
+# --- what was not reached --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("contact, label", [(120.0, "whirl touches"), (None, "followed to here")])
+def test_a_whirl_that_was_not_followed_to_contact_does_not_touch(tmp_path, contact, label):
+    growth = {"speed": [600.0, 640.0, 680.0], "eigenvalue": [-1.0, 0.0, 1.0], "time_domain": [-1.0, 0.0, 1.0],
+              "uncertainty": 3 * [1e-3]}  # fmt: skip
+    branch = {"speed": [600.0, 300.0, 130.0], "amplitude": [1e-4, 2e-4, 3e-4], "growth_rate": [1.0, 1.0, 1.0]}
+    rows = [
+        {"speed": speed, "start": "small", "from": 1e-5, "fate": "decays", "whirl": None} for speed in (300.0, 600.0)
+    ]
+    found = {"verdict": "Beyond linear.", "branch": branch, "contact_tilt": 3e-4, "contact_speed": contact,
+             "tipping": [], "directions": rows}  # fmt: skip
+    answer = {"formula": None, "eigenvalue": 640.0, "time_domain": {"value": 640.0}, "growth": growth,
+              "own_speed": 2600.0, "nonlinear": found}  # fmt: skip
+    figure = study(tmp_path, "critical_speed", answer)
+    names = [text.get_text() for ax in figure.axes for text in ax.get_legend().get_texts()]
+    assert label in names and "this scenario 2600 rad/s, not shown" in names
+
+
+def test_a_search_of_one_step_counts_whole_steps(tmp_path):
+    figure = study(tmp_path, "steady_state", {"status": "failed", "reason": "it closes", "defects": [5e-3]})
+    ax = panel(figure, "Newton's method")
+    assert all("." not in word for word in ticks(ax)[0][0])
+    (ax,) = study(tmp_path, "steady_state", {"reason": "a film that stores", "period": None}).axes
+    assert ax.get_title("left") == "Orbit of the relative tilt"
+
+
+def test_a_sweep_of_zeros_has_one_tick(tmp_path):
+    answer = grid(("film.coning", "mrad", [0.0, 1.0]), **{"relative_misalignment.max": [0.0, 0.0]})
+    (ax,) = study(tmp_path, "sweep", answer).axes
+    assert ticks(ax)[0][1] == ["0"]

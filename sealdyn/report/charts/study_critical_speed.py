@@ -89,6 +89,7 @@ def _own(ax, answer, shown):
         return
     speeds, label = answer["growth"]["speed"], f"this scenario {shown.said(own)}"
     near = min(speeds) / FAR <= own <= FAR * max(speeds)
+    label += "" if near else ", not shown"
     ax.axvline(shown.scale * (own if near else speeds[0]), color=BLACK if near else "none", ls=":", lw=1.0, label=label)
 
 
@@ -109,7 +110,9 @@ def nonlinear(ax, answer, shown):
         if (stable == held).any():
             part = np.where(stable == held, size, np.nan)
             ax.plot(speed, part, style, color=BLACK, lw=1.8, label=label)
-    ax.plot(speed[-1], size[-1], "s", color=CONTACT, ms=7, label="whirl touches", zorder=5)
+    touches = found.get("contact_speed") is not None
+    ax.plot(speed[-1], size[-1], "s", color=CONTACT if touches else GREY, ms=7, zorder=5,
+            label="whirl touches" if touches else "followed to here")  # fmt: skip
     tips = [row for row in found["tipping"] if row.get("disturbance")]
     if tips:
         at = [shown.scale * row["speed"] for row in tips]

@@ -96,6 +96,8 @@ def lines(ax, answer, values, unit, words):
         # Between words there is nothing.
         ax.plot(x, values, "o" if axis["unit"] is None else "-o", ms=3.5, color=BLUE)
         ax.set_ylabel(unit)
+        if not np.nan_to_num(values).any():
+            ax.set(ylim=(-1.0, 1.0), yticks=[0.0], yticklabels=["0"])
     if not good.all():
         ax.plot(x[~good], np.full((~good).sum(), 0.03), "x", ms=6, color=CONTACT, transform=ax.get_xaxis_transform(),
                 label="no value")  # fmt: skip
