@@ -379,3 +379,15 @@ def test_a_sweep_of_zeros_has_one_tick(tmp_path):
     answer = grid(("film.coning", "mrad", [0.0, 1.0]), **{"relative_misalignment.max": [0.0, 0.0]})
     (ax,) = study(tmp_path, "sweep", answer).axes
     assert ticks(ax)[0][1] == ["0"]
+
+
+def test_a_transient_that_is_not_over_is_drawn_above_those_that_are(tmp_path):
+    waited = (65, 4776, None)
+    rows = [{"part": part, "shooting": 51, "transient": periods, "transient_ends": ""}
+            for part, periods in zip((0.5, 0.99, 0.995), waited, strict=True)]  # fmt: skip
+    orbit = {name: np.sin(np.linspace(0, 6, 9)).tolist() for name in ("relative_tilt_x", "relative_tilt_y", "h_min")}
+    answer = {"orbit": {**orbit, "time": np.linspace(0, 1, 9).tolist()}, "period": 1.0, "multipliers": [[0.1, 0.0]],
+              "near_threshold": rows}  # fmt: skip
+    ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
+    (cross,) = [line for line in ax.lines if line.get_marker() == "x"]
+    assert cross.get_ydata()[0] > 4776 and 3 <= len(ticks(ax)[0][1]) <= 9

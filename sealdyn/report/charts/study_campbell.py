@@ -59,7 +59,7 @@ def _frequencies(ax, answer, speed, factor):
     hidden = [str(k) for k, values in enumerate(curves, 1) if values.min() > top]
     if hidden:
         words = f"above: mode{'s' * (len(hidden) > 1)} {', '.join(hidden)}"
-        ax.text(0.02, 0.98, words, transform=ax.transAxes, va="top", fontsize=8, color=GREY, bbox=PAPER)
+        ax.text(0.02, 0.98, words, transform=ax.transAxes, va="top", fontsize=8, color=GREY, bbox=PAPER, zorder=5)
     named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
     for order in answer["lines"]:
         ax.plot(speed, order * speed, color=GREY, lw=0.9)

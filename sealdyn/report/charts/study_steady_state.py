@@ -1,7 +1,7 @@
 """Periodic steady state: the orbit with its once-per-turn mark, Floquet multipliers, and what waiting would cost."""
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
 from .page import absent, logarithmic, look, save, study_page
@@ -95,15 +95,18 @@ def _cost(ax, answer):
     waited = np.array([row["transient"] or np.nan for row in rows], dtype=float)
     if np.isfinite(waited).any():
         ax.loglog(away, waited, "s--", color=THEORY, label="waiting for the transient")
+    beyond = max(20 * cost.max(), 2 * np.nan_to_num(waited).max())
     # Archives of earlier versions do not hold why.
     ends = np.array([row.get("transient_ends") or "not in the periods tried" for row in rows])
     for k, why in enumerate(dict.fromkeys(ends[np.isnan(waited)])):
         failed = away[np.isnan(waited) & (ends == why)]
-        ax.loglog(failed, [20 * cost.max()] * len(failed), "x+1"[k], color=CONTACT, label=f"transient: {why}")
+        ax.loglog(failed, [beyond] * len(failed), "x+1"[k], color=CONTACT, label=f"transient: {why}")
     ax.invert_xaxis()
     ax.set(title=title, xlabel="distance below the critical speed, 1 − w / w_cr", ylabel="periods integrated")
     # Above everything.
     low, high = ax.get_ylim()
     ax.set_ylim(low, high * (high / low) ** 0.45)
     logarithmic(ax, "y")
+    if high > 100 * low:
+        ax.yaxis.set_major_locator(LogLocator())
     ax.legend(loc="upper left")
