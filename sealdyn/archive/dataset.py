@@ -79,7 +79,7 @@ def grid_variables(answer: dict) -> list[Variable]:
     found = []
     for axis in axes:
         # Words have no unit.
-        unit = "" if axis["unit"] is None else axis["unit"] or "SI"
+        unit = "" if axis["unit"] is None else axis["unit"] or axis.get("si", "SI")
         found.append(Variable(axis["key"], "", (axis["key"],), (axis["key"],), np.array(axis["values"]), unit, True))
     # A key that is varied and asked for is the coordinate already.
     outputs = [output for output in answer["outputs"] if output not in keys]

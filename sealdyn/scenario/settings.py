@@ -210,6 +210,16 @@ def si_unit(scene, key: str) -> str:
     return "SI"
 
 
+def with_own_unit(scene, axis: dict) -> dict:
+    """An `axis` with the SI unit of its key as `si`, in which numbers without a unit are: "1" for pure numbers, "SI"
+    where the scene does not hold the key."""
+    try:
+        unit = si_unit(scene, axis["key"])
+    except (AttributeError, KeyError, IndexError, ValueError):
+        return {**axis, "si": "SI"}
+    return {**axis, "si": "1" if unit == "SI" else unit}
+
+
 def must_be_number(scenario: Scenario, key: str, where: str) -> None:
     """Raises ScenarioError, that names the setting `where`, unless `key` is one of the scenario's scene that has a
     number."""

@@ -280,6 +280,9 @@ def _verdict(answer) -> list[str]:
         words = f"{frequencies(low, high)} at a shaft speed of {speed_words(ends[0])} to {speed_words(ends[1])}"
         words = "" if mode["direction"] == "none" and low == high == 0.0 else f": {words}"
         said.append(f"Mode {number} ({mode['kind']}, {way}{damping}){words}.")
+    growing = [f"mode {number} ({mode['kind']})" for number, mode in enumerate(answer["modes"], 1) if _grows(mode)]
+    if growing:
+        said.append(f"Unstable at every speed of this range: {', '.join(growing)}.")
     for point in answer["thresholds"]:
         if point["what"] == "damping":
             ratio = (
@@ -294,7 +297,12 @@ def _verdict(answer) -> list[str]:
     if not synchronous:
         said.append("No mode meets once per turn in this range.")
     for c in answer["stator_crossings"]:
-        said.append(f"Mode {c['mode']} meets the stator's own speed at a shaft speed of {c['speed']:.5g} rad/s.")
+        said.append(f"Mode {c['mode']} meets the stator's own speed at a shaft speed of {speed_words(c['speed'])}.")
     if turning and not answer["stator_crossings"]:
         said.append("No mode meets the stator's own speed in this range.")
     return said
+
+
+def _grows(mode) -> bool:
+    """Whether a mode grows at every speed, beyond rounding."""
+    return bool(np.all(np.array(mode["growth_rate"]) > SAME * (1.0 + np.abs(mode["frequency"]))))

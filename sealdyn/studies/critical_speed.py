@@ -88,7 +88,7 @@ def run(scenario, settings, tools) -> dict:
     method = "ida" if model.unknowns.has_residual_form else settings.method
     how = {"method": method, "accuracy": settings.accuracy, "turns": settings.turns}
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
-    answer["speeds_held"] = speeds_held(model)
+    answer["speeds_held"], answer["own_speed"] = speeds_held(model), abs(scene.shaft.speed)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
     answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
     return {**answer, "verdict": sentences(answer)}
@@ -329,7 +329,11 @@ def nonlinear_sentences(found, threshold) -> list[str]:
     unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
     speed = found["contact_speed"]
     at = f"{speed_words(speed)}, {speed / threshold:.4f} of the threshold" if speed else "no speed followed"
-    if found["kind"] == "subcritical":
+    if found["kind"] == "subcritical" and not speed:
+        said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
+                    f"stands beside rest, followed down to {speed_words(min(found['branch']['speed']))}: "
+                    "hysteresis.")  # fmt: skip
+    elif found["kind"] == "subcritical":
         said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
                     f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
     elif found["kind"] == "supercritical":

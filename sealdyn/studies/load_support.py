@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import axis, with_values
+from ..scenario.settings import axis, with_own_unit, with_values
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ._words import shown_in
@@ -47,7 +47,13 @@ def run(scenario, settings, tools) -> dict:
     with_values(scenario, values[0])
     found = tools.map(partial(balances, scenario), values, "balances")
     rows = [{along["key"]: value, **row} for value, row in zip(along["values"], found, strict=True)]
-    answer = {"keys": [along["key"]], "axes": [along], "outputs": list(OUTPUTS), "output_units": OUTPUTS, "rows": rows}
+    answer = {
+        "keys": [along["key"]],
+        "axes": [with_own_unit(scenario.scene, along)],
+        "outputs": list(OUTPUTS),
+        "output_units": OUTPUTS,
+        "rows": rows,
+    }
     return answer | {"verdict": _verdict(answer)}
 
 

@@ -24,6 +24,8 @@ from ..solvers.recorder import Recorder
 from ._words import RPM, speed
 
 WITH_WAVES = True
+# Cycles of a period of which each has samples of its own from there on, how many, and the most samples.
+FEW, PER_CYCLE, MOST = 4, 48, 20_000
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
 ALONG = {"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
@@ -46,7 +48,7 @@ class Settings:
     turns: int = 1
     """Common periods of the forcing that are taken as one period (2 finds half-frequency responses)."""
     samples: int = 256
-    """Samples of a period in the figure."""
+    """Samples of a period in the figure; more where the forcing has many cycles in it."""
     approach: tuple[float, ...] = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995)
     """Speeds, as parts of the critical speed, at which the cost is compared with a transient's; empty: none."""
     longest: int = 4000
@@ -80,7 +82,7 @@ def run(scenario, settings, tools) -> dict:
                 "verdict": list(said)}  # fmt: skip
     tools.say(0.1)
     # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
-    waves = shooter.extremes(orbit.start, settings.samples, min(scenario.run.accuracy, SHARP))
+    waves = shooter.extremes(orbit.start, _samples(shooter, settings.samples), min(scenario.run.accuracy, SHARP))
     answers = [(h, linear.response(h)) for h in shooter.model.segment().harmonics()]
     most, least, _ = steady_extremes(linear, answers, shooter.period)
     rows = []
@@ -102,6 +104,13 @@ def run(scenario, settings, tools) -> dict:
         "critical_speed": critical,
     }
     return {**answer, "verdict": _verdict(answer)}
+
+
+def _samples(shooter, asked: int) -> int:
+    """Samples of a period: as asked, and more where the fastest forcing has many cycles in it."""
+    fastest = max((abs(h.frequency) for h in shooter.model.segment().harmonics()), default=0.0)
+    cycles = math.ceil(fastest * shooter.period / (2 * math.pi))
+    return max(asked, min(PER_CYCLE * cycles, MOST)) if cycles > FEW else asked
 
 
 def _linear_film(shooter, samples) -> dict:
@@ -196,7 +205,7 @@ def _time_domain(scenario, reason: str) -> dict:
     run.extrema.windows[1:] = [[half, run.duration], [half, run.duration]]
     recorder = Recorder(run.duration / turns / PER_TURN)
     outcome = solve(run, choose_method(run)[0], scenario.run.accuracy, recorder)
-    record = run.extrema.records[1]
+    record, unknowns = run.extrema.records[1], run.model.unknowns
     times, q, q_rate = (part[-SHOWN * PER_TURN :] for part in recorder.arrays())
     shown = {"times": times, "displacements": q, "rates": q_rate}
     return {
@@ -207,7 +216,9 @@ def _time_domain(scenario, reason: str) -> dict:
         "h_min": {"value": float(record[0]), "of_clearance": float(record[0] / run.model.clearance)},
         "relative_misalignment": {"max": float(record[4]), "min": float(record[6])},
         "near_threshold": [],
-        "orbit": _waves(run.model, shown) if run.model.unknowns.constant else None,
+        # What a film holds is not recorded, and its forces do not follow from the motion alone.
+        "orbit": _waves(run.model, shown) if unknowns.constant and not unknowns.film_unknowns else None,
+        "reason": reason,
         "verdict": [
             f"In time over {turns} turns, the second half: h_min {record[0] * 1e6:.5g} um, relative misalignment "
             f"{record[6] * 1e6:.5g} to {record[4] * 1e6:.5g} urad.",

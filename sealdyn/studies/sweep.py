@@ -8,7 +8,7 @@ from functools import partial
 
 from ..numerics.parallel import Together
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import MOST, axis
+from ..scenario.settings import MOST, axis, with_own_unit
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
@@ -66,7 +66,12 @@ def run(scenario, settings, tools) -> dict:
     )
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
-    answer = {"keys": keys, "axes": axes, "outputs": outputs, "output_units": {o: unit_of(o) for o in outputs}}
+    answer = {
+        "keys": keys,
+        "axes": [with_own_unit(scenario.scene, a) for a in axes],
+        "outputs": outputs,
+        "output_units": {o: unit_of(o) for o in outputs},
+    }
     if all("failed" in row for row in rows):
         answer["status"] = Status.FAILED
     return {**answer, "rows": rows, "verdict": [*sentences(keys, rows), *unresolved(outputs, rows, model)]}

@@ -188,3 +188,13 @@ def test_modes_of_one_frequency_are_numbered_alike_whatever_the_speeds():
     for points in (9, 10):
         directions = [mode["direction"] for mode in answer("fms_reference", points=points)["modes"]]
         assert directions == ["forward", "backward", "axial"]
+
+
+def test_modes_that_grow_at_every_speed_are_named():
+    # Faces that open inwards: the film pushes the ring away, axially and in tilt.
+    film = ("film.coning=-0.5 mrad", "film.clearance=12 um")
+    found = answer("fms_reference", film, points=31)
+    growing = [k for k, mode in enumerate(found["modes"], 1) if min(mode["growth_rate"]) > 0]
+    (said,) = [line for line in found["verdict"] if line.startswith("Unstable at every speed of this range")]
+    assert growing and all(f"mode {k} (" in said for k in growing)
+    assert not any("every speed" in line for line in answer("fms_reference", points=31)["verdict"])

@@ -220,3 +220,17 @@ def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
         (rate > 0) == (speed > threshold) for speed, rate in zip(*map(growth.get, ("speed", "eigenvalue")), strict=True)
     )
     assert "e+0" not in answer["verdict"][0]
+
+
+def test_an_unstable_whirl_that_meets_no_contact_is_told_to_where_it_was_followed():
+    branch = {"speed": [600.0, 130.0], "amplitude": [1e-4, 3e-4]}
+    found = {
+        "kind": "subcritical",
+        "contact_tilt": 3e-4,
+        "contact_speed": None,
+        "branch": branch,
+        "tipping": [],
+        "directions": [],
+    }
+    said = " ".join(critical_speed.nonlinear_sentences(found, 640.0))
+    assert "no speed" not in said and "followed down to 130 rad/s" in said

@@ -15,7 +15,7 @@ from sealdyn.dynamics.whirl_speeds import one_by_one
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.studies import campbell, contact_onset, critical_speed
+from sealdyn.studies import campbell, contact_onset, critical_speed, steady_state
 from sealdyn.studies.runup.plan import planned
 from sealdyn.studies.runup.study import Settings as RunupSettings
 from sealdyn.studies.stability import study as stability
@@ -123,3 +123,10 @@ def test_summary_has_modes_and_steady_state_at_their_frequencies():
     tilt, theory = summary["relative_misalignment"], summary["closed_form"]
     # The rest is the film's nonlinearity.
     assert theory["relative_max"] == pytest.approx(tilt["steady_max"], rel=1e-4)
+
+
+def test_a_steady_state_of_a_film_that_stores_is_told_from_time():
+    scenario = reference("fms", "run.duration=3 ms", "run.accuracy=1e-2")
+    found = steady_state.run(scenario, steady_state.Settings(), InProcess())
+    assert found["orbit"] is None and found["h_min"]["value"] > 0
+    assert found["reason"] in found["verdict"][-1]

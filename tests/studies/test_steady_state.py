@@ -144,3 +144,12 @@ def test_the_orbit_shown_is_closer_than_the_run_was_asked(tmp_path):
     for name in ("relative_tilt_x", "relative_tilt_y"):
         waves = np.array(found["orbit"][name])
         assert abs(waves[-1] - waves[0]) < 1e-5 * np.ptp(waves)
+
+
+def test_a_period_of_many_cycles_has_samples_of_each(tmp_path):
+    text = (SCENARIOS / "fms_reference.toml").read_text()
+    text += "[[housing.axial]]\nfrequency = '230 Hz'\ndisplacement = '1 um'\n"
+    scenario = parse_scenario(text, "shaken").with_({"shaft.speed": "5000 rpm"})
+    found = run_study("steady-state", scenario, tmp_path / "s.h5", flags={"approach": []}, workers=1)
+    cycles = 230.0 * found["period"]
+    assert cycles > 20 and len(found["orbit"]["time"]) >= 24 * cycles

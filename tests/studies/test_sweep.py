@@ -14,7 +14,7 @@ import sealdyn
 from sealdyn.archive import as_dataset
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scenario.settings import axis
+from sealdyn.scenario.settings import axis, with_own_unit
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study
@@ -200,3 +200,9 @@ def test_changes_as_small_as_the_accuracy_are_not_shown_as_an_answer(tmp_path):
     fine = parse_scenario(path.read_text(), "pump", ["run.turns=1", "run.accuracy=1e-6"])
     wide = study.Settings(vary="closing.spring_force=100:200 N:3", outputs=["h_min.value"])
     assert len(study.run(fine, wide, InProcess())["verdict"]) == 1
+
+
+def test_an_axis_tells_the_unit_of_bare_numbers(tmp_path):
+    scene = sealdyn.example("fms_reference").scene
+    axes = [{"key": key, "unit": ""} for key in ("film.coning", "closing.balance_ratio", "stator.body.length")]
+    assert [with_own_unit(scene, a)["si"] for a in axes] == ["rad", "1", "SI"]

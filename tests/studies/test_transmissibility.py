@@ -14,6 +14,7 @@ from sealdyn.closed_form import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.variants import counterpart, frozen_at_start, with_single_flexible_ring
+from sealdyn.studies._words import speed
 from sealdyn.studies.transmissibility import study as transmissibility
 from sealdyn.studies.transmissibility.study import Settings
 
@@ -198,3 +199,26 @@ def test_held_scene_keeps_its_clearance_when_the_balance_gave_it():
     clearance = Model(scene).clearance
     assert Model(frozen_at_start(scene, 50.0, clearance)).clearance == clearance
     assert replace(frozen_at_start(scene), shaft=scene.shaft) == scene
+
+
+def test_phases_that_begin_half_a_turn_away_stay_near_zero_and_agree():
+    # A film that tilts the ring further: stiffness below zero, and half a turn is written with either sign.
+    found = answer("fms_reference.toml", ("film.coning=-0.5 mrad", "film.model=linear"), points=41, time_points=0)
+    for seal in ("fmr", "fms", "fmsr"):
+        for name in ("static_phase", "dynamic_phase"):
+            lag = np.array(found[seal][name])
+            assert abs(lag[0]) == pytest.approx(180.0) and abs(lag.mean()) < 180.0
+            assert np.abs(lag).max() < 270.0
+    assert found["phases_apart"] < 1e-6 and "phases to 3.6e+02" not in " ".join(found["verdict"])
+
+
+def test_rings_that_are_neutral_at_rest_have_no_end_of_stability_there():
+    overrides = ("film.model=linear", "stator.support.axial_damping=0")
+    found = answer("fms_reference.toml", overrides, points=61, time_points=0)
+    assert all(w > 1.0 for ends in found["stability_ends"].values() for w in ends)
+    assert all(stretches[0]["to"] > 1.0 for stretches in found["best"].values())
+
+
+def test_the_film_is_told_at_the_speed_in_both_units():
+    found = answer(points=5, time_points=0)
+    assert f"in tilt at {speed(found['own_speed'])}" in found["film"]

@@ -12,7 +12,7 @@ from ...archive import ArchiveError
 from .face import annulus, in_the_middle
 from .film import around, thickness
 from .orbit import contact_circle
-from .page import absent, header, level, look, sheet
+from .page import absent, flatten, header, level, look, sheet
 from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
 from .record import Run
 
@@ -282,7 +282,10 @@ def _line(ax, run: Run, rows: _Rows):
         at = per * run.touch_at
         level(ax, at, "asperities meet", CONTACT, side="left", below=at > 0.5 * sum(ax.get_ylim()))
     now = ax.axvline(rows.at[0], color=MARK, lw=1.2, clip_on=False)
-    ax.set(xlabel=run.progress_label, ylabel=f"h_min, {unit}", xlim=(rows.at[0], rows.at[-1]))
+    # Above it: beside it long numbers would push the name off the page.
+    ax.set_title(f"h_min, {unit}", fontsize=8.5, weight="normal", pad=3)
+    ax.set(xlabel=run.progress_label, xlim=(rows.at[0], rows.at[-1]))
+    flatten(ax)
 
     def move(moment):
         now.set_xdata([moment, moment])

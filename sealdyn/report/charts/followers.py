@@ -7,13 +7,11 @@ import numpy as np
 from ...archive import FIELD_TIME, field
 from ..radial import radial_rows
 from .film import scale
-from .page import EVEN, absent, header, look, panels, save, sheet
+from .page import EVEN, absent, header, look, panels, printed, save, sheet
 from .palette import CONTACT, FILM, LEAK, PRESSURE, THEORY, THICKNESS
 from .record import Run
 
 NUMBERS = ("follower", "contact", "largest gap", "load", "leakage", "closed form", "energy audit", "accuracy")
-# As print has it, in place of what a terminal shows.
-PRINT = (("^2", "²"), (" um", " µm"), (" deg", "°"))
 # Letters of a line of numbers, and inches from one to the next.
 LETTERS, LINE = 44, 0.175
 LOW, HIGH = 6.2, 9.0
@@ -95,10 +93,8 @@ def _numbers(ax, run):
     lines, on = [], False
     for name, words in radial_rows({**run.summary, "wall_time": 0.0}):
         on = name in NUMBERS if name else on
-        for told, printed in PRINT:
-            words = words.replace(told, printed)
         if on:
-            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(words, LETTERS))]
+            lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(printed(words), LETTERS))]
     ax.figure.draw_without_rendering()
     height = ax.get_position().height * ax.figure.get_figheight()
     for k, (name, words) in enumerate(lines):

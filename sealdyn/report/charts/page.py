@@ -1,6 +1,7 @@
 """The page of a chart: heading, panels in the house's look, what panels have in common, and a file at the end."""
 
 import os
+import re
 from pathlib import Path
 from textwrap import shorten, wrap
 
@@ -33,6 +34,8 @@ EVEN = 1e-4
 ROOM, MOST_LINES = 3, 14
 # Of an archive that is being written, or whose run was killed.
 NO_END = "the archive has no end yet; a run that was killed goes on with --continue"
+# As print has it, in place of what a terminal shows.
+PRINT = ((re.compile(r"\bu(m|rad)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"))
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
 
@@ -101,8 +104,8 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
     where there are many.  Returns where they end, as a share of the height."""
     width, height = figure.get_size_inches()
     titles = _lines(title, int(9.5 * width)) or [""]
-    lines = [(words, {}) for words in _lines(below, int(14 * width))]
-    lines += [(words, {"color": colour, "weight": "bold"}) for words in _lines(bold, int(12 * width))]
+    lines = [(words, {}) for words in _lines(printed(below), int(14 * width))]
+    lines += [(words, {"color": colour, "weight": "bold"}) for words in _lines(printed(bold), int(12 * width))]
     # A second line of the title is higher than those below.
     more = 0.24 * (len(titles) - 1)
     height += max(0.0, 0.2 * (len(lines) - ROOM) + more)
@@ -112,6 +115,13 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
     for k, (words, style) in enumerate(lines):
         figure.text(0.4 / width, 1 - (0.52 + more + 0.2 * k) / height, words, fontsize=9, va="center", **style)
     return 1 - (0.48 + more + 0.2 * len(lines)) / height
+
+
+def printed(words: str) -> str:
+    """Words of a terminal with the units of print."""
+    for told, letters in PRINT:
+        words = told.sub(letters, words)
+    return words
 
 
 def _lines(words: str, length: int) -> list[str]:

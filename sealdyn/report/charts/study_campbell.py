@@ -1,9 +1,11 @@
 """Campbell diagram: whirl frequencies and logarithmic decrements over shaft speed."""
 
+import re
+
 import numpy as np
 
 from ...archive import read_study
-from .page import look, number, once, save, study_page
+from .page import PAPER, look, number, once, save, study_page
 from .palette import BLACK, CYCLE, GREY, VERMILLION
 
 # Dashes of a direction of whirl, and its name.
@@ -14,6 +16,10 @@ RPM = 60 / (2 * np.pi)
 TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 3, 10, 30, 100, 300, 1000)
 # Beyond this a curve runs along the top: the mode hardly oscillates.
 MOST_DECREMENT = 1000.0
+# Share of the panel from which the unstable side has room for its name.
+NAMED = 0.06
+# A line of the verdict that describes a mode.
+ONE_MODE = re.compile(r"Mode \d+ \(")
 
 
 @look()
@@ -21,7 +27,9 @@ def draw(archive_path, out_path):
     """Frequencies on the left, decrements on the right, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "At which frequencies does the seal whirl?"
-    figure, ax = study_page(study, 11.5, 6.6, [["frequency", "decrement"]], title, width_ratios=(3, 2))
+    # What each mode is, the curves show.
+    found = " ".join(line for line in answer["verdict"] if not ONE_MODE.match(line))
+    figure, ax = study_page(study, 11.5, 6.6, [["frequency", "decrement"]], title, bold=found, width_ratios=(3, 2))
     factor = RPM if answer["unit"] == "rpm" else 1.0
     speed = factor * np.array(answer["speed"])
     _frequencies(ax["frequency"], answer, speed, factor)
@@ -48,6 +56,10 @@ def _frequencies(ax, answer, speed, factor):
         ax.plot([], [], color=GREY, lw=1.8, ls=dashes, label=label)
     unit = "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
     ax.set(ylim=(0, top), ylabel=f"whirl frequency, {unit}", title="Whirl frequency")
+    hidden = [str(k) for k, values in enumerate(curves, 1) if values.min() > top]
+    if hidden:
+        words = f"above: mode{'s' * (len(hidden) > 1)} {', '.join(hidden)}"
+        ax.text(0.02, 0.98, words, transform=ax.transAxes, va="top", fontsize=8, color=GREY, bbox=PAPER, zorder=5)
     named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
     for order in answer["lines"]:
         ax.plot(speed, order * speed, color=GREY, lw=0.9)
@@ -124,8 +136,24 @@ def _decrements(ax, answer, speed, factor):
     )
     for at in thresholds:
         _name_threshold(ax, at, speed, shown)
-    if bottom < -0.3:
-        ax.text(speed[0] + 0.02 * (speed[-1] - speed[0]), 0.5 * bottom, "unstable", color=VERMILLION, va="center")
+    below, above = np.arcsinh(-bottom), np.arcsinh(max(highest, 0.0))
+    if below > NAMED * (below + above):
+        _name_unstable(ax, speed, shown, below)
+
+
+def _name_unstable(ax, speed, curves, depth):
+    """The name of the unstable side, `depth` high, in the corner that is farthest from the curves."""
+    start, end = speed[0], speed[-1]
+    corners = [(side, part * depth) for part in (0.5, 0.15, 0.85) for side in ("left", "right")]
+
+    def away(corner):
+        part = speed <= start + 0.3 * (end - start) if corner[0] == "left" else speed >= end - 0.3 * (end - start)
+        near = [np.nanmin(np.abs(np.arcsinh(v[part]) + corner[1]), initial=depth) for v in curves]
+        return min([0.2 * depth, *near])
+
+    side, height = max(corners, key=away)
+    at = start + (0.02 if side == "left" else 0.98) * (end - start)
+    ax.text(at, np.sinh(-height), "unstable", color=VERMILLION, va="center", ha=side)
 
 
 def _ticks(lowest: float, highest: float) -> list[float]:

@@ -25,6 +25,9 @@ MAP = {"map axial": ("Axial K, N/µm", "stiffness", (0, 0), 1e-6),
 MOST_LINES = 6
 # Large stiffnesses (N m/rad) in units with fewer digits.
 LARGE = ((1e7, 1e-6, "MN m/rad"), (1e4, 1e-3, "kN m/rad"), (0.0, 1.0, "N m/rad"))
+# Large axial stiffnesses (N/m) alike, and the prefix of a damping by its number.
+AXIAL = ((1e11, 1e-9, "kN/µm"), (0.0, 1e-6, "N/µm"))
+PREFIX = ((1e6, 1e-6, "M"), (1e4, 1e-3, "k"), (0.0, 1.0, ""))
 FREQUENCY = {"frequency": ("Over frequency", 1 / (2 * np.pi), "frequency of the motion, Hz")}
 
 
@@ -40,14 +43,16 @@ def draw(archive_path, out_path):
         mosaic, heights = [*mosaic, [[[*MAP, *_clearance(answer["map"]), "map key"]]]], (9, 4, 5)
     figure, ax = study_page(study, 11.5, 2.6 + 0.415 * sum(heights), mosaic, title, height_ratios=heights)
     speeds, rpm = speed_unit(study)
-    per, unit = _stiffness_unit(answer[f"against_{name}"] for name in shown)
+    sweeps = [answer[f"against_{name}"] for name in shown]
+    per, unit = _stiffness_unit(sweeps)
+    units = [_unit_of(sweeps, "damping", (1, 2), PREFIX), _unit_of(sweeps, "stiffness", (0,), AXIAL)]
     for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
         stacked(above, below)
         scale, label = (rpm, f"{label}, {speeds}") if name == "speed" else (scale, label)
         x = scale * np.array(sweep[name])
         _stiffness(above, sweep, x, words, per)
-        _damping(below, sweep, x, name, name == list(shown)[-1])
+        _damping(below, sweep, x, name, name == list(shown)[-1], units)
         below.set(xlim=(x[0], x[-1]), xlabel=label)
         if name == "clearance":
             logarithmic(below, "x")
@@ -59,7 +64,7 @@ def draw(archive_path, out_path):
     ax["K speed"].legend(loc="center right", bbox_to_anchor=at, bbox_transform=figure.transFigure, ncols=4,
                          borderaxespad=0.0)  # fmt: skip
     ax["K speed"].get_legend().set_in_layout(False)
-    ax["D speed"].set_ylabel("tilt damping, N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
+    ax["D speed"].set_ylabel(f"tilt damping, {units[0][1]}N m s/rad\n(xx solid, yy dashed)", color=PURPLE)
     said = (f"{number(rpm * answer['at']['speed'], '.5g')} {speeds}", "Tilted: " + answer["tilted"]["said"])
     _matrix(ax["aligned"], answer, answer["at"], "Aligned", said[0])
     _matrix(ax["tilted"], answer["tilted"], answer["tilted"]["at"], said[1], said[0])
@@ -122,6 +127,13 @@ def _large(largest: float) -> tuple[float, str]:
     return next((per, unit) for least, per, unit in LARGE if largest >= least)
 
 
+def _unit_of(sweeps, matrix: str, entries, units) -> tuple[float, str]:
+    """How many of the unit of these entries of a diagonal make one in SI, and its name in `units`, by their largest."""
+    every = [np.abs(_entries(sweep, matrix, i, i)) for sweep in sweeps for i in entries]
+    largest = np.nanmax(np.concatenate([*every, [0.0]]))
+    return next((per, name) for least, per, name in units if largest >= least)
+
+
 def _stiffness(ax, sweep, x, title, per):
     for label, i, j, colour, dashes in TILT:
         ax.plot(x, per * _entries(sweep, "stiffness", i, j), color=colour, ls=dashes, lw=1.7, label=label)
@@ -129,9 +141,9 @@ def _stiffness(ax, sweep, x, title, per):
     ax.set_title(title)
 
 
-def _damping(ax, sweep, x, name, last):
-    """Tilt damping on the left, axial stiffness on the right."""
-    shown = [_entries(sweep, "damping", i, i) for i in (1, 2)]
+def _damping(ax, sweep, x, name, last, units):
+    """Tilt damping on the left, axial stiffness on the right, in these `units`."""
+    shown = [units[0][0] * _entries(sweep, "damping", i, i) for i in (1, 2)]
     for values, dashes in zip(shown, ("-", DASHED), strict=True):
         ax.plot(x, values, color=PURPLE, lw=1.7, ls=dashes)
     ax.tick_params(axis="y", colors=PURPLE)
@@ -145,8 +157,8 @@ def _damping(ax, sweep, x, name, last):
         ax.set_ylim(1.3 * low, 1.3 * high if high > 0 or low < 0 else 1.0)
         if not np.any(shown):
             ax.set_yticks([0.0], ["none"])
-    other = right_axis(ax, "axial stiffness, N/µm" if last else "", GREY)
-    axial = 1e-6 * _entries(sweep, "stiffness", 0, 0)
+    other = right_axis(ax, f"axial stiffness, {units[1][1]}" if last else "", GREY)
+    axial = units[1][0] * _entries(sweep, "stiffness", 0, 0)
     other.plot(x, axial, color=GREY, lw=1.7)
     low, high = np.nanmin(np.append(axial, 0)), np.nanmax(np.append(axial, 0))
     # Higher up than the damping, so that neither hides the other where both are constant.
@@ -182,5 +194,5 @@ def _matrix(ax, found, at, title, speed):
                 if abs(value) < 1e-9 * np.sqrt(abs(found[name][i][i] * found[name][j][j])):
                     value = 0.0
                 words = number(value, ".2e" if abs(value) >= 9999.5 or 0 < abs(value) < 1e-3 else ".4g")
-                words = words.replace("e+0", "e").replace("e−0", "e−")
+                words = words.replace("e+0", "e").replace("e+", "e").replace("e−0", "e−")
                 ax.text(left + 0.17 + 0.15 * j, y, words, va="top", ha="right", fontsize=8)

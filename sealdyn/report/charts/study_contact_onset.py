@@ -1,12 +1,19 @@
 """Contact onset: film and tilt of the periodic orbit as the forcing grows, linear and nonlinear onset, curve."""
 
+import re
+
 import numpy as np
 
 from ...archive import read_study
 from ..text import speed_unit
-from .page import absent, look, save, study_page, upright
+from .page import absent, logarithmic, look, printed, save, study_page, upright
 from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
 from .record import read_in
+
+# Onsets further apart than this are seen on a logarithmic axis only.
+APART = 20.0
+# A number and its unit.
+WRITTEN = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 
 
 @look()
@@ -97,11 +104,9 @@ def _opening(ax, answer, unit, per, _):
 
 def _curve(ax, answer, unit, per, speeds):
     rows = answer["curve"]
-    words = any(isinstance(row["value"], str) for row in rows)
-    # Values as they were asked: with their unit, or SI.
-    si = (answer.get("units") or {}).get("value", "SI")
-    name, factor = ("SI", 1.0) if si == "SI" else read_in(si, [] if words else [row["value"] for row in rows], speeds)
-    at = list(range(len(rows))) if words else [factor * row["value"] for row in rows]
+    at, name = _asked([row["value"] for row in rows], (answer.get("units") or {}).get("value", "SI"), speeds)
+    words = at is None
+    at = list(range(len(rows))) if words else at
     floored = [row.get("floored", {}) for row in rows]
     # Where an onset was not found the curve has a gap, and a cross on the axis.
     for found, column, style in (
@@ -113,10 +118,29 @@ def _curve(ax, answer, unit, per, speeds):
             ax.plot(at, per * np.array([row.get(column) for row in found], dtype=float), **style)
     missing = [x for x, *pair in zip(at, rows, floored, strict=True) if any("failed" in row for row in pair)]
     if missing:
-        ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found")
+        ax.plot(missing, [0.0] * len(missing), "x", color=CONTACT, clip_on=False, label="an onset was not found",
+                transform=ax.get_xaxis_transform())  # fmt: skip
     if words:
         ax.set_xticks(at, [str(row["value"]) for row in rows])
-    ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
-    ax.set(title=f"Onset over {answer['over']}", xlabel=answer["over"] if words else f"{answer['over']}, {name}",
+    seen = [row[name] for row in [*rows, *floored] for name in ("nonlinear", "formula") if row.get(name)]
+    low, high = per * min(seen, default=0.0), per * max(seen, default=1.0)
+    if low > 0 and high > APART * low:
+        logarithmic(ax, "y")
+        ax.set_ylim(0.6 * low, high * (high / low) ** 0.45)
+    else:
+        ax.set_ylim(0, 1.45 * ax.get_ylim()[1])
+    ax.set(title=f"Onset over {answer['over']}", xlabel=", ".join(filter(None, (answer["over"], name))),
            ylabel=f"{answer['key']} at touch, {unit}")  # fmt: skip
     ax.legend(loc="upper right")
+
+
+def _asked(values, si: str, speeds) -> tuple[list[float] | None, str]:
+    """Where values lie and in which unit, as they were asked: numbers in SI (`si` their unit, "SI" of pure numbers), or
+    written with one unit.  None for words, and for values in several units."""
+    written = [WRITTEN.fullmatch(value) if isinstance(value, str) else None for value in values]
+    if all(written) and len({found[2] for found in written}) == 1:
+        return [float(found[1]) for found in written], printed(written[0][2] or "")
+    if any(isinstance(value, str) for value in values):
+        return None, ""
+    name, factor = ("", 1.0) if si == "SI" else read_in(si, values, speeds)
+    return [factor * value for value in values], name

@@ -8,6 +8,8 @@ from .page import absent, legend, logarithmic, look, number, once, save, study_p
 from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PALE
 
 RPM = 30 / np.pi
+# Factor beyond the speeds that are drawn up to which the scenario's own is marked.
+FAR = 2.0
 FATE = {"decays": (GREEN, "dies out"), "bounded": (BLUE, "stays bounded"), "contact": (CONTACT, "ends in contact")}
 
 
@@ -59,6 +61,7 @@ def linear(ax, answer, shown):
     if answer["formula"]:
         label = f"formula {shown.said(answer['formula'])}"
         ax.axvline(shown.scale * answer["formula"], color=GREY, ls="--", lw=1.2, label=label)
+    _own(ax, answer, shown)
     value = answer["time_domain"]["value"]
     if value:
         ax.plot(shown.scale * value, 0, "x", ms=9, mew=2, color=BLACK, label=f"threshold in time {shown.said(value)}")
@@ -78,6 +81,18 @@ def linear(ax, answer, shown):
     _frame(ax, title, "growth rate, 1/s", 2, shown)
 
 
+def _own(ax, answer, shown):
+    """The scenario's own speed, where it is not far from the speeds that are drawn; its number in the legend anyway.
+    Archives of earlier versions do not hold it."""
+    own = answer.get("own_speed")
+    if not own:
+        return
+    speeds, label = answer["growth"]["speed"], f"this scenario {shown.said(own)}"
+    near = min(speeds) / FAR <= own <= FAR * max(speeds)
+    label += "" if near else ", not shown"
+    ax.axvline(shown.scale * (own if near else speeds[0]), color=BLACK if near else "none", ls=":", lw=1.0, label=label)
+
+
 def _decades(most: float) -> list[float]:
     """Three powers of ten up to a number."""
     top = int(np.floor(np.log10(most)))
@@ -95,7 +110,9 @@ def nonlinear(ax, answer, shown):
         if (stable == held).any():
             part = np.where(stable == held, size, np.nan)
             ax.plot(speed, part, style, color=BLACK, lw=1.8, label=label)
-    ax.plot(speed[-1], size[-1], "s", color=CONTACT, ms=7, label="whirl touches", zorder=5)
+    touches = found.get("contact_speed") is not None
+    ax.plot(speed[-1], size[-1], "s", color=CONTACT if touches else GREY, ms=7, zorder=5,
+            label="whirl touches" if touches else "followed to here")  # fmt: skip
     tips = [row for row in found["tipping"] if row.get("disturbance")]
     if tips:
         at = [shown.scale * row["speed"] for row in tips]

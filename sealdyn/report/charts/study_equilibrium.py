@@ -18,7 +18,9 @@ def draw(archive_path, out_path):
     study = read_study(archive_path)
     answer = study["answer"]
     title = "At which clearance does the seal ride?"
-    figure, ax = study_page(study, 9.5, 7.2, [["force"], ["stiffness"]], title, height_ratios=(5, 3))
+    # The closing force, second in the verdict, stands in the legend.
+    found = " ".join([*answer["verdict"][:1], *answer["verdict"][2:]])
+    figure, ax = study_page(study, 9.5, 7.4, [["force"], ["stiffness"]], title, bold=found, height_ratios=(5, 3))
     clearance = 1e6 * np.array(answer["curve"]["clearance"])
     shown = _forces(ax["force"], answer, clearance)
     _stiffness(ax["stiffness"], answer, clearance)
@@ -48,7 +50,9 @@ def _forces(ax, answer, clearance) -> int:
         for x in at:
             ax.annotate(f"{x:.4g} µm", (x, closing), xytext=(7, 6 if stable else -6), textcoords="offset points",
                         fontsize=9, va="bottom" if stable else "top", bbox=PAPER)  # fmt: skip
-    ax.set(ylim=(min(opening.min(), closing) - 0.08 * span, max(top, closing) + 0.18 * span),
+    # Asperities are seen to where they leave each other.
+    lowest = min(opening.min(), closing, 0.0 if rough.any() else np.inf)
+    ax.set(ylim=(lowest - 0.08 * span, max(top, closing) + 0.18 * span),
            ylabel="axial force, N", title="Opening and closing force")  # fmt: skip
     ax.legend(loc="upper right", ncols=2)
     # A quarter of a decade before the force comes into view.

@@ -23,7 +23,11 @@ def draw(archive_path, out_path):
     (along,) = answer["axes"]
     title = f"How much does the film carry, over {along['key']}?"
     said = " ".join(answer["verdict"][:2])
-    figure, ax = study_page(study, 10.5, 7.4, [["load", "friction"], ["leakage", "clearance"]], title, said)
+    if not any(row.get("load_support") is not None for row in answer["rows"]):
+        figure, ax = study_page(study, 10.5, 2.6, [["load"]], title, bold=said)
+        absent(ax["load"], "Load support", "no balance at any value")
+        return save(figure, out_path)
+    figure, ax = study_page(study, 10.5, 7.6, [["load", "friction"], ["leakage", "clearance"]], title, bold=said)
     x = positions(along)
     for name, (output, factor, label, colour) in PANELS.items():
         found = [row[output] for row in answer["rows"] if row.get(output) is not None]

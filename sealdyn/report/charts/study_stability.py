@@ -120,11 +120,11 @@ def _marks(ax, answer, per_x, per_y):
         ax.plot(x["here"] * per_x, y["here"] * per_y, "*", ms=15, mfc=YELLOW, mec=BLACK, clip_on=False, zorder=5,
                 label="this scenario")  # fmt: skip
     for point in answer["confirmed"]:
-        mark, words, edge, width = "x", "not confirmed", VERMILLION, 2.0
+        mark, words, edge, width = "X", "not confirmed", VERMILLION, 1.5
         if "failed" not in point:
             edge, width, grows = BLACK, 1.0, point["time_domain"] > 0
             mark, words = ("^", "grows in the time domain") if grows else ("v", "decays in the time domain")
-        ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=8, mfc="white", mec=edge, mew=width, zorder=5,
+        ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=9, mfc="white", mec=edge, mew=width, zorder=5,
                 clip_on=False, label=once(ax, words))  # fmt: skip
 
 

@@ -1,9 +1,10 @@
 """Periodic steady state: the orbit with its once-per-turn mark, Floquet multipliers, and what waiting would cost."""
 
 import numpy as np
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ...archive import read_study
-from .page import absent, look, save, study_page
+from .page import absent, logarithmic, look, save, study_page
 from .palette import CONTACT, FILM, GREY, MARK, THEORY, TILT
 from .record import done, fitting
 
@@ -48,11 +49,13 @@ def _orbit(ax, answer):
 
 def _defects(ax, answer):
     """Why there is no orbit: what Newton's method left at each step."""
-    title, left = "Newton's method on the period map", answer.get("defects")
+    left = answer.get("defects")
     if not left:
-        return absent(ax, title, answer.get("reason") or "no periodic orbit")
+        return absent(ax, "Orbit of the relative tilt", answer.get("reason") or "no periodic orbit")
     ax.semilogy(np.arange(1, len(left) + 1), left, "o-", color=CONTACT)
-    ax.set(title=title, xlabel="step", ylabel="defect over one period, scales")
+    ax.set(title="Newton's method on the period map", xlabel="step", ylabel="defect over one period, scales")
+    ax.set_xlim(0.5, len(left) + 0.5)
+    ax.xaxis.set_major_locator(MaxNLocator(8, integer=True, min_n_ticks=1))
 
 
 def _film(ax, answer):
@@ -92,10 +95,18 @@ def _cost(ax, answer):
     waited = np.array([row["transient"] or np.nan for row in rows], dtype=float)
     if np.isfinite(waited).any():
         ax.loglog(away, waited, "s--", color=THEORY, label="waiting for the transient")
-    failed = away[np.isnan(waited)]
-    if len(failed):
-        words = "transient: not in the periods tried"
-        ax.loglog(failed, [20 * cost.max()] * len(failed), "x", color=CONTACT, label=words)
+    beyond = max(20 * cost.max(), 2 * np.nan_to_num(waited).max())
+    # Archives of earlier versions do not hold why.
+    ends = np.array([row.get("transient_ends") or "not in the periods tried" for row in rows])
+    for k, why in enumerate(dict.fromkeys(ends[np.isnan(waited)])):
+        failed = away[np.isnan(waited) & (ends == why)]
+        ax.loglog(failed, [beyond] * len(failed), "x+1"[k], color=CONTACT, label=f"transient: {why}")
     ax.invert_xaxis()
     ax.set(title=title, xlabel="distance below the critical speed, 1 − w / w_cr", ylabel="periods integrated")
+    # Above everything.
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high * (high / low) ** 0.45)
+    logarithmic(ax, "y")
+    if high > 100 * low:
+        ax.yaxis.set_major_locator(LogLocator())
     ax.legend(loc="upper left")

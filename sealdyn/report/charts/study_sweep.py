@@ -6,19 +6,23 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from ...archive import read_study
-from .page import absent, look, number, save, study_page
-from .palette import BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
+from .page import absent, look, number, printed, save, study_page
+from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
 
 # SI unit of an output -> what it is shown in, and the factor.
 SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/h", 3.6e9)}
 # Leakage (m^3/s) from which it is shown in l/min, as that of gases; as in the tables of the studies.
 MUCH = 1e-5
-WORDS = (GREEN, CONTACT, ORANGE, BLUE, PURPLE, SKY, YELLOW, GREY)
+# Words whose colours mean something, in whatever order they come; the colours of others.
+KNOWN = {"stable": GREEN, "ok": GREEN, "unstable": CONTACT, "collapsed": CONTACT, "neutral": ORANGE}
+WORDS = (BLUE, PURPLE, SKY, YELLOW, GREY, BLACK)
 MOST = 8
 # Letters from which on a title is small.
 LONG = 27
 # Numbers at the cells of a map.
 FEW = 6
+# Letters of them that an inch of a panel has room for.
+LETTERS = 11
 
 
 @look()
@@ -49,8 +53,10 @@ def draw(path, out):
 
 
 def axis_label(axis: dict) -> str:
-    unit = "" if axis["unit"] is None else f", {axis['unit'] or 'SI'}"
-    return f"{axis['key']}{unit}"
+    """The key and the unit of its values: as written, or its own in SI; none of words and of pure numbers."""
+    # Archives of earlier versions do not hold the key's own unit.
+    unit = axis["unit"] or axis.get("si", "SI")
+    return axis["key"] if axis["unit"] is None or unit == "1" else f"{axis['key']}, {printed(unit)}"
 
 
 def column(answer, output):
@@ -83,13 +89,15 @@ def lines(ax, answer, values, unit, words):
     x, good = positions(axis), np.isfinite(values)
     if words:
         for k in range(len(words)):
-            ax.plot(x[values == k], values[values == k], "s", ms=5, color=WORDS[k % len(WORDS)])
+            ax.plot(x[values == k], values[values == k], "s", ms=5, color=_colour(words, k))
         ax.set_yticks(range(len(words)), words, rotation=90 if len(words) < 4 else 0, va="center")
         ax.set_ylim(-0.7, len(words) - 0.3)
     else:
         # Between words there is nothing.
         ax.plot(x, values, "o" if axis["unit"] is None else "-o", ms=3.5, color=BLUE)
         ax.set_ylabel(unit)
+        if not np.nan_to_num(values).any():
+            ax.set(ylim=(-1.0, 1.0), yticks=[0.0], yticklabels=["0"])
     if not good.all():
         ax.plot(x[~good], np.full((~good).sum(), 0.03), "x", ms=6, color=CONTACT, transform=ax.get_xaxis_transform(),
                 label="no value")  # fmt: skip
@@ -107,7 +115,7 @@ def maps(ax, answer, values, unit, words):
     ax.set_facecolor(PALE)
     ax.patch.set(hatch="///", edgecolor="white")
     if words:
-        colours = ListedColormap([WORDS[k % len(WORDS)] for k in range(len(words))])
+        colours = ListedColormap([_colour(words, k) for k in range(len(words))])
         norm = BoundaryNorm(np.arange(len(words) + 1) - 0.5, len(words))
         drawn = ax.pcolormesh(edges(x), edges(y), cells, cmap=colours, norm=norm)
         bar = ax.figure.colorbar(drawn, ax=ax, ticks=range(len(words)))
@@ -118,6 +126,12 @@ def maps(ax, answer, values, unit, words):
     _ticks(ax.set_xticks, first, x, few=True)
     _ticks(ax.set_yticks, second, y, few=True)
     ax.set(xlabel=axis_label(first), ylabel=axis_label(second))
+
+
+def _colour(words, k: int) -> str:
+    """The colour of a word among those of its panel."""
+    others = [word for word in words if word not in KNOWN]
+    return KNOWN.get(words[k]) or WORDS[others.index(words[k]) % len(WORDS)]
 
 
 def edges(x) -> np.ndarray:
@@ -133,4 +147,8 @@ def _ticks(put, axis, x, few=False):
     if axis["unit"] is None:
         put(x, axis["values"])
     elif few and len(x) <= FEW:
-        put(x, [number(value) for value in axis["values"]])
+        words = [number(value) for value in axis["values"]]
+        # Numbers that would touch: every second, or third.
+        room = LETTERS * put.__self__.bbox.width / put.__self__.figure.dpi
+        every = math.ceil(sum(len(word) + 1 for word in words) / room) if put.__name__ == "set_xticks" else 1
+        put(x[::every], words[::every])

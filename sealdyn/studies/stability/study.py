@@ -143,17 +143,23 @@ def _unit(holds) -> str:
 
 
 def _default_x(scene) -> str:
-    """From a tenth to fifteen times the scene's speed, or as far as the threshold where that is above."""
+    """From a tenth to fifteen times the scene's speed, or as far as the threshold where that is above; to three times
+    the speed where there is none and no ring spins, whose inertia ratio would bring one."""
     speed = abs(scene.shaft.speed) or 1000.0
     critical = critical_speed(Model(scene))
     if critical and critical > 14 * speed:
         return f"shaft.speed={speed / 10}:{2 * critical}:240:log"
-    return f"shaft.speed={speed / 10}:{15 * speed}:240"
+    return f"shaft.speed={speed / 10}:{(15 if critical or _spins(scene) else 3) * speed}:240"
+
+
+def _spins(scene) -> bool:
+    """Whether a ring that floats turns."""
+    return bool(scene.rotor.support and scene.rotor.transverse_inertia > 0)
 
 
 def _default_y(scene) -> str:
     """The inertia ratio where a ring spins; a stator's ratio does nothing, its support's damping does."""
-    if scene.rotor.support and scene.rotor.transverse_inertia > 0:
+    if _spins(scene):
         return f"{INERTIA_RATIO}=0.5:4:141"
     ring, support = ("rotor", scene.rotor.support) if scene.rotor.support else ("stator", scene.stator.support)
     name = "axial_damping" if support.radius is not None else "tilt_damping"
@@ -335,8 +341,18 @@ def _verdict(answer, scenario, axes, total) -> list[str]:
         said.append(f"{right} of {len(good)} {where} confirmed in the time domain (growth rates within {far:.2g} 1/s).")
     for p in answer["confirmed"]:
         if "failed" in p:
-            said.append(f"Not confirmed at ({p['x']:.4g}, {p['y']:.4g}): {p['failed']}")
+            said.append(f"Not confirmed at {_place(axes, p)}: {p['failed']}")
     return said
+
+
+def _place(axes, point) -> str:
+    """A point of the map in words."""
+    values = [point["x"], point["y"]]
+    return " and ".join(f"{a['key']} {_with_unit(v, a['unit'])}" for a, v in zip(axes, values, strict=True))
+
+
+def _with_unit(value: float, unit: str) -> str:
+    return speed(value, 4) if unit == "rad/s" else f"{value:.4g} {unit}".removesuffix(" 1")
 
 
 def _reason(scenario, axes, possible) -> str:

@@ -16,6 +16,19 @@ def phases(speeds, static, dynamic) -> tuple:
 def curves(speeds, tilts) -> dict:
     """Amplitudes and phases over speed, phases without jumps."""
     static, dynamic = np.abs(tilts)
-    lags = [np.unwrap(lag, period=360.0).tolist() for lag in phases(speeds, *tilts)]
+    lags = [_without_jumps(lag).tolist() for lag in phases(speeds, *tilts)]
     amplitudes = [a.tolist() for a in (static, dynamic, static + dynamic)]
     return dict(zip((*QUANTITIES, *PHASES), (*amplitudes, *lags), strict=True))
+
+
+def _without_jumps(lag) -> np.ndarray:
+    """Phases (deg) that run on; of those that begin behind and ahead at once, half a turn away, as near to zero as they
+    can be told."""
+    lag = np.unwrap(lag, period=360.0)
+    return lag - 360.0 * np.round(lag.mean() / 360.0) if abs(lag[0]) > 90.0 else lag
+
+
+def phases_apart(one, other) -> float:
+    """Largest distance (deg) of two rows of phases: 359 deg apart is 1 deg apart."""
+    away = np.abs(np.asarray(one) - other) % 360.0
+    return float(np.max(np.minimum(away, 360.0 - away)))

@@ -22,7 +22,7 @@ from ...analysis.arrangements import SEALS, Arrangement, seals_of
 from ...scene.variants import arrangement, frozen_at_start
 from ...units import Speed
 from .._words import speed as speed_words
-from .curves import PHASES, QUANTITIES, curves
+from .curves import PHASES, QUANTITIES, curves, phases_apart
 from .in_time import measured
 from .table import film_words, groups, table
 
@@ -33,6 +33,8 @@ PHASE = (
 REFUSES = ("secondary-seal",)
 # Relative difference below which two arrangements transmit the same; how well the end of stability is located.
 SAME, LOCATED = 1e-9, 1e-9
+# Share of the fastest speed below which stability ends by rounding: rings at rest may have a neutral mode.
+AT_REST = 1e-6
 
 ALONG = {seal + road: ("speed",) for seal in SEALS for road in ("", "/linear_algebra")}
 ALONG |= {"time_domain": ("speed",), "crossings": ("speed",)}
@@ -81,7 +83,7 @@ def run(scenario, settings, tools) -> dict:
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
     answer = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
     answer["stator_speed"] = frozen_at_start(scenario.scene).stator.speed
-    answer["phase"] = PHASE
+    answer["own_speed"], answer["phase"] = own_speed, PHASE
     for name, seal in seals.items():
         algebra = curves(speeds, np.array([seal.relative_tilts(w) for w in speeds]).T)
         answer[name] = dict(algebra)
@@ -175,7 +177,7 @@ def stability_ends(seal: Arrangement, speeds, stable: list[bool]) -> list[float]
         while before != after and abs(b - a) > LOCATED * max(abs(a), abs(b)):
             middle = 0.5 * (a + b)
             a, b = (middle, b) if (seal.growth(middle) < 0) == before else (a, middle)
-        if before != after:
+        if before != after and abs(a + b) > AT_REST * max(abs(speeds[0]), abs(speeds[-1])):
             found.append(float(0.5 * (a + b)))
     return found
 
@@ -187,8 +189,8 @@ def _apart(answer) -> tuple[float, float]:
     for seal in SEALS:
         for name in (*QUANTITIES, *PHASES):
             line, dashes = np.array(answer[seal][name]), np.array(answer[seal]["linear_algebra"][name])
-            scale = 1.0 if name in PHASES else np.max(np.abs(line)) or 1.0
-            far[seal, name] = float(np.max(np.abs(line - dashes)) / scale)
+            amplitudes = float(np.max(np.abs(line - dashes)) / (np.max(np.abs(line)) or 1.0))
+            far[seal, name] = phases_apart(line, dashes) if name in PHASES else amplitudes
     return tuple(max(far[seal, name] for seal in SEALS for name in names) for names in (QUANTITIES, PHASES))
 
 

@@ -9,6 +9,7 @@ from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps
 from ...scene.gas import viscosity_of
 from ...simulation.stability import critical_speed
+from .._words import speed as speed_words
 from .curves import QUANTITIES
 
 NAMES = {
@@ -77,7 +78,7 @@ def film_words(seals: dict[str, Arrangement], speed: float) -> str:
     seal = seals["fmr"]
     film, model = seal.scene.film, seal.model.interface.name
     k, d = (float(v) for v in seal.film_numbers(speed))
-    words = f"Film {model}: {k:.5g} N m/rad, {d:.4g} N m s/rad in tilt at {speed:.5g} rad/s"
+    words = f"Film {model}: {k:.5g} N m/rad, {d:.4g} N m s/rad in tilt at {speed_words(speed)}"
     if model == "linear" and film.coefficients == "green":
         return f"{words}, coefficients of the narrow seal as in Green's Fig. 8."
     return f'{words}; Green\'s Fig. 8 has those of the narrow seal (film.model = "linear").'

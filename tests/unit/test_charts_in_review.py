@@ -1,0 +1,393 @@
+"""Charts as a design review reads them: units of small numbers, names where numbers are none, words that are true."""
+
+from itertools import pairwise
+from unittest import mock
+
+import numpy as np
+import pytest
+from drawn import crossed, panel, study, text_trouble
+from made_up_run import whirling, write
+from test_charts_untuned import RPM, must_be_legible, said, ticks
+
+from sealdyn.report.charts import animation
+from sealdyn.report.charts.page import sheet
+from sealdyn.report.charts.study_sweep import axis_label
+
+SEALS = ("fmr", "fms", "fmsr")
+AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
+
+
+def words_of(figure):
+    return [text.get_text() for ax in figure.axes for text in [*ax.texts, ax.xaxis.label, ax.yaxis.label]]
+
+
+# --- transmissibility ----------------------------------------------------------------------------------------
+
+QUANTITIES = ("static_transmissibility", "dynamic_transmissibility", "maximum_relative_misalignment",
+              "critical_misalignment", "critical_speed")  # fmt: skip
+CELLS = dict.fromkeys(SEALS, 1.8270e-4)
+TABLE = [{"quantity": name, "unit": "1", **CELLS, "formula": CELLS, "linear_algebra": CELLS, "time_domain": CELLS}
+         for name in QUANTITIES]  # fmt: skip
+
+
+def transmitted(size=0.1, stable=True, **more):
+    """An answer of three speeds whose curves have this size."""
+    curve = {name: [size, 0.9 * size, 0.8 * size] for name in AMPLITUDES}
+    curve |= {name: [0.0, -20.0, -38.0] for name in PHASES}
+    curve["stable"] = 3 * [stable]
+    best = [{"seal": "fmr" if stable else None, "from": 0.0, "to": 900.0}]
+    row = {"seal": "fmr", "speed": 450.0, "error": dict.fromkeys((*AMPLITUDES, *PHASES), 1e-2 * size)}
+    row |= dict.fromkeys(AMPLITUDES, 0.9 * size) | dict.fromkeys(PHASES, -20.0)
+    return {"speed": [0.0, 450.0, 900.0], "unit": "rad/s", "formula_holds": True, "phase": "", "film": "",
+            "crossings": [], "table": [], "best": dict.fromkeys(AMPLITUDES, best), "time_domain": [row],
+            **{name: {**curve, "linear_algebra": curve} for name in SEALS}, **more}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "size, unit, shown", [(2e-6, "nrad per mrad", 2.0), (2e-3, "µrad per mrad", 2.0), (0.2, "", 0.2)]
+)
+def test_small_transmissibilities_are_read_in_small_units(tmp_path, size, unit, shown):
+    figure = study(tmp_path, "transmissibility", transmitted(size), RPM)
+    must_be_legible(figure)
+    ax = panel(figure, "Static")
+    assert unit in ax.get_ylabel() and shown == pytest.approx(ax.lines[0].get_ydata()[0])
+    assert all("e" not in label for words in ticks(ax)[0] for label in words)
+    # Marks and bars of the time domain with the curves.
+    assert any(np.allclose(line.get_ydata(), 0.9 * shown) for line in ax.lines if len(line.get_ydata()) == 1)
+    (bar,) = ax.containers
+    assert np.ptp(bar[2][0].get_segments()[0][:, 1]) == pytest.approx(0.02 * shown)
+
+
+def test_seals_without_a_steady_state_are_not_called_best(tmp_path):
+    figure = study(tmp_path, "transmissibility", transmitted(stable=False))
+    assert "no steady state at any speed" in words_of(figure) and not any("none best" in w for w in words_of(figure))
+    ends = [{"seal": None, "from": 0.0, "to": 300.0}, {"seal": "fmr", "from": 300.0, "to": 900.0}]
+    figure = study(tmp_path, "transmissibility", transmitted(best=dict.fromkeys(AMPLITUDES, ends)))
+    assert "none best to 300 rad/s\nFMR best beyond 300 rad/s" in words_of(figure)
+
+
+def test_words_of_a_transmissibility_are_below_its_legend(tmp_path):
+    film = "Film radial: -94.032 N m/rad, 5.83e+06 N m s/rad in tilt at 2600.5 rad/s (24828 rpm); "
+    film += 'Green\'s Fig. 8 has those of the narrow seal (film.model = "linear").'
+    phase = "Phase: how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that "
+    phase += "forcing in the forcing's own frame, against the shaft's rotation (negative: ahead)."
+    figure = study(tmp_path, "transmissibility", transmitted(stable=False, film=film, phase=phase, table=TABLE))
+    must_be_legible(figure)
+    (key,) = [ax for ax in figure.axes if ax.get_legend()]
+    assert key.texts[0].get_window_extent().y1 < key.get_legend().get_window_extent().y0
+
+
+def test_linear_algebra_alone_is_drawn_once(tmp_path):
+    for holds in (True, False):
+        figure = study(tmp_path, "transmissibility", transmitted(formula_holds=holds))
+        dashed = [line for line in panel(figure, "Static").lines if line.get_color() == "#000000"]
+        assert len(dashed) == 3 * holds
+        names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+        assert ("linear algebra" in names) == holds and ("FMR, linear algebra" in names) != holds
+
+
+def test_the_table_of_a_transmissibility_tells_its_speed_clear_of_its_columns(tmp_path):
+    # A formula that does not hold below zero stiffness finds none where linear algebra finds one.
+    rows = [*TABLE[:-1], {**TABLE[-1], "formula": dict.fromkeys(SEALS)}]
+    figure = study(tmp_path, "transmissibility", transmitted(2e-4, table=rows, own_speed=900.59), RPM)
+    must_be_legible(figure)
+    words = words_of(figure)
+    assert "At 8600 rpm (Green's Table 1)" in words and "none" not in words
+    texts = {text.get_text(): text for ax in figure.axes for text in ax.texts}
+    figure.draw_without_rendering()
+    heads = [texts[name].get_window_extent() for name in ("At 8600 rpm (Green's Table 1)", "FMR")]
+    assert heads[0].x1 + 20 < heads[1].x0
+
+
+def test_phases_of_some_degrees_have_round_ticks(tmp_path):
+    for turn, start in ((1.0, 0.0), (5.0, 0.0), (12.0, 0.0), (-1.0, -180.0), (6.0, 180.0)):
+        answer = transmitted()
+        for name in SEALS:
+            answer[name]["dynamic_phase"] = [start, start - 18.0 * turn, start - 36.0 * turn]
+        ax = [ax for ax in study(tmp_path, "transmissibility", answer).axes][4]
+        shown = [float(word.replace("−", "-")) for word in ticks(ax)[0][1]]
+        step = shown[1] - shown[0]
+        assert step in (10.0, 30.0, 45.0, 90.0) and 3 <= len(shown) <= 7, shown
+
+
+# --- equilibrium ---------------------------------------------------------------------------------------------
+
+
+def balance(contact=None, roots=(), verdict=("Balance at 0 clearances.", "Closing force 900 N.", "It carries less.")):
+    clearance = np.geomspace(1e-7, 1e-5, 21)
+    film = 300.0 + 1e-5 / clearance
+    rough = np.zeros(21) if contact is None else np.maximum(contact * (1 - clearance / 4e-7), 0.0)
+    curve = {"clearance": clearance.tolist(), "opening_force": (film + rough).tolist(),
+             "contact_force": rough.tolist(), "stiffness": (1e-5 / clearance**2).tolist()}  # fmt: skip
+    return {"curve": curve, "closing_force": 900.0, "roots": list(roots), "verdict": list(verdict)}
+
+
+def test_an_equilibrium_says_what_was_found(tmp_path):
+    figure = study(tmp_path, "equilibrium", balance())
+    must_be_legible(figure)
+    assert "Balance at 0 clearances. It carries less." in said(figure)
+
+
+def test_the_force_of_asperities_is_seen_to_its_end(tmp_path):
+    root = {"clearance": 3.7e-7, "stable": True, "stiffness": 1e9}
+    ax = panel(study(tmp_path, "equilibrium", balance(contact=8e3, roots=[root])), "Opening")
+    assert ax.get_ylim()[0] <= 0.0
+
+
+# --- Campbell ------------------------------------------------------------------------------------------------
+
+
+def whirls(decrement, verdict):
+    mode = {"kind": "tilt", "direction": "forward", "directions": 3 * ["forward"], "frequency": [300.0, 310.0, 320.0],
+            "log_decrement": decrement, "growth_rate": [-1.0, -1.0, -1.0]}  # fmt: skip
+    return {"speed": [0.0, 500.0, 1000.0], "unit": "rpm", "modes": [mode], "crossings": [], "lines": [1.0],
+            "thresholds": [], "stator_speed": 0.0, "stator_crossings": [], "own_speed": 400.0,
+            "verdict": verdict}  # fmt: skip
+
+
+def test_a_campbell_diagram_says_what_is_unstable(tmp_path):
+    verdict = ["Mode 1 (tilt, mostly forward): 300 rad/s.", "Unstable at every speed of this range: mode 1 (tilt).",
+               "Mode 1 meets once per turn at 310 rad/s."]  # fmt: skip
+    figure = study(tmp_path, "campbell", whirls([0.26, 0.26, 0.25], verdict))
+    must_be_legible(figure)
+    assert " ".join(verdict[1:]) in said(figure)
+
+
+@pytest.mark.parametrize("size", [0.02, 0.26, 3.0, 300.0])
+def test_the_unstable_side_is_named_where_it_has_room(tmp_path, size):
+    ax = panel(study(tmp_path, "campbell", whirls([size, size, 0.9 * size], ["It whirls."])), "Damping")
+    bottom, zero = ax.transData.transform([(0, ax.get_ylim()[0]), (0, 0)])[:, 1]
+    named = [text for text in ax.texts if text.get_text() == "unstable"]
+    assert bool(named) == (zero - bottom > 0.05 * ax.bbox.height)
+
+
+@pytest.mark.parametrize("decrement", [[-300.0, -12.0, -3.0], [2.0, -1.0, -3.0], [-3.0, -12.0, -300.0]])
+def test_the_name_of_the_unstable_side_is_on_no_curve(tmp_path, decrement):
+    answer = whirls(decrement, ["It whirls."])
+    answer |= {"speed": np.linspace(0, 1000, 61).tolist()}
+    mode = answer["modes"][0]
+    for name in ("frequency", "log_decrement", "growth_rate"):
+        mode[name] = np.interp(answer["speed"], [0, 150, 1000], mode[name]).tolist()
+    mode["directions"] = 61 * ["forward"]
+    ax = panel(study(tmp_path, "campbell", answer), "Damping")
+    assert "unstable" in [text.get_text() for text in ax.texts] and crossed(ax) == []
+
+
+def test_modes_above_a_campbell_diagram_are_named(tmp_path):
+    answer = whirls([0.3, 0.3, 0.3], ["It whirls."])
+    answer["modes"] *= 3
+    answer["modes"][1] = {**answer["modes"][1], "frequency": [9e3, 9e3, 9e3]}
+    figure = study(tmp_path, "campbell", answer)
+    must_be_legible(figure)
+    assert "above: mode 2" in words_of(figure)
+
+
+def test_units_of_a_heading_are_printed(tmp_path):
+    figure = study(tmp_path, "equilibrium", balance(verdict=["Balance at 1.5 um, 36 deg, 2 urad, 3 mm^2.", "Closing."]))
+    assert "Balance at 1.5 µm, 36°, 2 µrad, 3 mm²." in said(figure)
+
+
+# --- sweeps and load support ---------------------------------------------------------------------------------
+
+
+def test_pure_numbers_have_no_unit_and_bare_ones_that_of_their_key():
+    axis = {"key": "closing.balance_ratio", "unit": "", "values": [0.7, 0.8]}
+    assert axis_label({**axis, "si": "1"}) == "closing.balance_ratio"
+    assert axis_label({**axis, "key": "film.coning", "si": "rad"}) == "film.coning, rad"
+    assert axis_label({**axis, "key": "rotor.runout", "unit": "um TIR"}) == "rotor.runout, µm TIR"
+    assert axis_label({**axis, "unit": None}) == "closing.balance_ratio"
+    # Archives of earlier versions do not hold the key's own unit.
+    assert axis_label(axis) == "closing.balance_ratio, SI"
+
+
+# --- critical speed, stability, contact onset ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scenario, unit", [(RPM, "9550 rpm"), ("", "1000.07 rad/s")], ids=["rpm", "rad per second"])
+def test_the_scenarios_own_speed_is_marked_beside_its_threshold(tmp_path, scenario, unit):
+    speed, rates = [800.0, 1200.0, 1600.0, 2000.0], [-9.0, -5.0, 1.0, 3.0]
+    growth = {"speed": speed, "eigenvalue": rates, "time_domain": rates, "uncertainty": 4 * [1e-3]}
+    answer = {"formula": None, "eigenvalue": 1500.0, "time_domain": {"value": 1500.0}, "growth": growth,
+              "own_speed": 9550 * np.pi / 30, "nonlinear": None}  # fmt: skip
+    figure = study(tmp_path, "critical_speed", answer, scenario)
+    must_be_legible(figure)
+    (ax,) = figure.axes
+    own = [line for line in ax.lines if line.get_label() == f"this scenario {unit}"]
+    assert len(own) == 1 and ax.get_xlim()[0] <= own[0].get_xdata()[0] <= ax.get_xlim()[1]
+    # Far away it would squeeze the curve: then it is told in the legend alone.
+    figure = study(tmp_path, "critical_speed", {**answer, "own_speed": 1e6}, scenario)
+    assert figure.axes[0].get_xlim()[1] < 1e5
+    assert any("this scenario" in text.get_text() for text in figure.axes[0].get_legend().get_texts())
+
+
+def test_an_onset_over_written_values_is_drawn_where_they_are(tmp_path):
+    rows = [{"value": value, "nonlinear": 1e-4, "formula": 1.1e-4} for value in ("0.1 mrad", "0.5 mrad", "2 mrad")]
+    answer = {"key": "rotor.runout", "formula": 1.1e-4, "nonlinear": 1e-4, "over": "film.coning", "curve": rows,
+              "clearance": 1e-5, "units": {"forcing": "rad", "value": "rad"}}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer)
+    must_be_legible(figure)
+    ax = panel(figure, "Onset over")
+    assert list(ax.lines[0].get_xdata()) == [0.1, 0.5, 2.0] and ax.get_xlabel() == "film.coning, mrad"
+    # Values in several units, and words, stand side by side.
+    rows[0]["value"] = "100 urad"
+    ax = panel(study(tmp_path, "contact_onset", answer), "Onset over")
+    assert [text.get_text() for text in ax.get_xticklabels()] == ["100 urad", "0.5 mrad", "2 mrad"]
+    plain = [{**row, "value": value} for row, value in zip(rows, (0.7, 0.8, 0.9), strict=True)]
+    answer |= {"over": "closing.balance_ratio", "curve": plain, "units": {"forcing": "rad", "value": "SI"}}
+    assert panel(study(tmp_path, "contact_onset", answer), "Onset over").get_xlabel() == "closing.balance_ratio"
+
+
+def grid(first, second=None, **outputs):
+    """A sweep's answer: keys `first` and `second` with their units and values, outputs as rows of values."""
+    axes = [{"key": key, "unit": unit, "values": values} for key, unit, values in filter(None, (first, second))]
+    rows = [dict(zip(outputs, row, strict=True)) for row in zip(*outputs.values(), strict=True)]
+    return {"keys": [a["key"] for a in axes], "axes": axes, "outputs": list(outputs), "rows": rows, "output_units": {}}
+
+
+def test_numbers_at_the_cells_of_a_map_are_apart(tmp_path):
+    speeds = ("shaft.speed", "rpm", [5000.0, 12000.0, 19000.0, 26000.0, 33000.0, 40000.0])
+    outputs = {f"output.{k}": list(map(float, range(12))) for k in range(8)}
+    figure = study(tmp_path, "sweep", grid(speeds, ("film.coning", "mrad", [0.5, 4.0]), **outputs))
+    assert text_trouble(figure) == ([], [])
+    (ax,) = [ax for ax in figure.axes if ax.get_title("left") == "output.0"]
+    shown = [label for label in ax.get_xticklabels() if label.get_text()]
+    boxes = [label.get_window_extent() for label in shown]
+    assert len(shown) >= 3 and all(one.x1 + 4 < other.x0 for one, other in pairwise(boxes))
+
+
+def test_stable_is_green_in_whatever_order_it_comes(tmp_path):
+    for words in (["unstable", "stable"], ["stable", "unstable"]):
+        answer = grid(("film.coning", "mrad", [0.0, 1.0]), **{"stability.verdict": words})
+        (ax,) = study(tmp_path, "sweep", answer).axes
+        colours = {words[round(line.get_xdata()[0])]: line.get_color() for line in ax.lines}
+        assert colours == {"stable": "#009E73", "unstable": "#D55E00"}
+
+
+def test_without_any_balance_a_load_support_says_so_once(tmp_path):
+    rows = [{"closing.balance_ratio": 0.5}, {"closing.balance_ratio": 1.3}]
+    axis = {"key": "closing.balance_ratio", "unit": "", "si": "1", "values": [0.5, 1.3]}
+    answer = {"keys": [axis["key"]], "axes": [axis], "outputs": [], "output_units": {"leakage": "m^3/s"}, "rows": rows,
+              "verdict": ["Nothing holds the faces apart."]}  # fmt: skip
+    figure = study(tmp_path, "load_support", answer)
+    assert len(figure.axes) == 1 and figure.get_figheight() < 4
+    assert "seal: Does it ride?" in said(figure) and "Nothing holds the faces apart." in said(figure)
+
+
+def test_a_point_that_is_not_confirmed_is_seen_on_every_colour(tmp_path):
+    axes = {"x": {"key": "film.coning", "unit": "rad", "values": [0.0, 1e-3], "here": 1e-3},
+            "y": {"key": "film.clearance", "unit": "m", "values": [1e-6, 2e-6], "here": 1e-6}}  # fmt: skip
+    rates, confirmed = [[-1.0, 1.0], [-1.0, 1.0]], [{"x": 1e-3, "y": 2e-6, "failed": "too fast"}]
+    answer = {"axes": axes, "growth_rate": rates, "tilt_growth_rate": rates, "unconditional": {"limit": None},
+              "confirmed": confirmed}  # fmt: skip
+    ax = study(tmp_path, "stability", answer).axes[0]
+    (mark,) = [line for line in ax.lines if line.get_label() == "not confirmed"]
+    assert mark.get_marker() == "X" and mark.get_markerfacecolor() == "white"
+
+
+def test_onsets_far_apart_are_all_seen(tmp_path):
+    rows = [{"value": 1e-4, "formula": 2.3, "nonlinear": None, "failed": "beyond any small tilt"},
+            {"value": 5e-4, "formula": 0.1, "nonlinear": 0.09},
+            {"value": 2e-3, "formula": 0.043, "nonlinear": 0.05}]  # fmt: skip
+    answer = {"key": "rotor.runout", "formula": 0.1, "nonlinear": 0.09, "over": "film.coning", "curve": rows,
+              "clearance": 1e-5, "units": {"forcing": "rad", "value": "rad"}}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer)
+    must_be_legible(figure)
+    assert panel(figure, "Onset over").get_yscale() == "log"
+
+
+# --- coefficients, steady state ------------------------------------------------------------------------------
+
+
+def test_damping_of_millions_has_short_ticks(tmp_path):
+    full = [[1.21e10, 0.0, 0.0], [0.0, 1.91e7, 2.75e7], [0.0, -2.75e7, 1.91e7]]
+    at = {"tilt_x": 0.0, "tilt_y": 0.0, "clearance": 5e-7, "axial_opening": 0.0, "speed": 9.4, "h_min": 5e-7}
+    answer = {"stiffness": full, "damping": full, "at": at,
+              "tilted": {"stiffness": full, "damping": full, "at": at, "said": "mean tilt"}}  # fmt: skip
+    for name, end in (("speed", 28.0), ("clearance", 1.6e-6), ("tilt", 1e-5)):
+        values = np.linspace(0.1 * end, end, 9)
+        share = (values[0] / values) ** 2
+        answer[f"against_{name}"] = {name: values.tolist(), "stiffness": [(s * np.array(full)).tolist() for s in share],
+                                     "damping": [(s * np.array(full)).tolist() for s in share]}  # fmt: skip
+    figure = study(tmp_path, "coefficients", answer, RPM)
+    must_be_legible(figure)
+    words = words_of(figure)
+    assert any("tilt damping, MN m s/rad" in word for word in words) and not any("e+" in word for word in words)
+    assert not any("e" in label for ax in figure.axes if ax.axison for part in ticks(ax)[0] for label in part)
+
+
+def test_why_a_transient_was_not_waited_for_is_told_clear_of_its_marks(tmp_path):
+    rows = [
+        {"part": part, "shooting": 100, "transient": None, "transient_ends": "the film closes"} for part in (0.5, 0.9)
+    ]
+    orbit = {name: np.sin(np.linspace(0, 6, 9)).tolist() for name in ("relative_tilt_x", "relative_tilt_y", "h_min")}
+    answer = {"orbit": {**orbit, "time": np.linspace(0, 1, 9).tolist()}, "period": 1.0, "multipliers": [[0.1, 0.0]],
+              "near_threshold": rows}  # fmt: skip
+    ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
+    assert text_trouble(ax.figure) == ([], [])
+    box = ax.get_legend().get_window_extent()
+    for line in ax.lines:
+        points = ax.transData.transform(np.column_stack(line.get_data()).astype(float))
+        assert not any(box.contains(*point) for point in points)
+    assert "transient: the film closes" in [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+# --- animation -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("part", [2e-3, 1e-6], ids=["little", "hardly"])
+def test_the_names_of_an_animation_are_on_its_page(tmp_path, part):
+    columns = whirling(samples=400, turns=10)
+    columns["h_min"] = 1.39141e-5 * (1 + part * np.sin(np.arange(400)))
+    figures = []
+    with mock.patch.object(animation, "sheet", lambda *size: figures.append(sheet(*size)) or figures[-1]):
+        animation.animate(write(tmp_path / "seal.h5", columns), tmp_path / "last.png")
+    (figure,) = figures
+    assert text_trouble(figure) == ([], [])
+    line = figure.axes[-1] if figure.axes[-1].get_xlabel() else figure.axes[3]
+    assert all(len(word) <= 7 for word in ticks(line)[0][1])
+
+
+# --- what was not reached --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("contact, label", [(120.0, "whirl touches"), (None, "followed to here")])
+def test_a_whirl_that_was_not_followed_to_contact_does_not_touch(tmp_path, contact, label):
+    growth = {"speed": [600.0, 640.0, 680.0], "eigenvalue": [-1.0, 0.0, 1.0], "time_domain": [-1.0, 0.0, 1.0],
+              "uncertainty": 3 * [1e-3]}  # fmt: skip
+    branch = {"speed": [600.0, 300.0, 130.0], "amplitude": [1e-4, 2e-4, 3e-4], "growth_rate": [1.0, 1.0, 1.0]}
+    rows = [
+        {"speed": speed, "start": "small", "from": 1e-5, "fate": "decays", "whirl": None} for speed in (300.0, 600.0)
+    ]
+    found = {"verdict": "Beyond linear.", "branch": branch, "contact_tilt": 3e-4, "contact_speed": contact,
+             "tipping": [], "directions": rows}  # fmt: skip
+    answer = {"formula": None, "eigenvalue": 640.0, "time_domain": {"value": 640.0}, "growth": growth,
+              "own_speed": 2600.0, "nonlinear": found}  # fmt: skip
+    figure = study(tmp_path, "critical_speed", answer)
+    names = [text.get_text() for ax in figure.axes for text in ax.get_legend().get_texts()]
+    assert label in names and "this scenario 2600 rad/s, not shown" in names
+
+
+def test_a_search_of_one_step_counts_whole_steps(tmp_path):
+    figure = study(tmp_path, "steady_state", {"status": "failed", "reason": "it closes", "defects": [5e-3]})
+    ax = panel(figure, "Newton's method")
+    assert all("." not in word for word in ticks(ax)[0][0])
+    (ax,) = study(tmp_path, "steady_state", {"reason": "a film that stores", "period": None}).axes
+    assert ax.get_title("left") == "Orbit of the relative tilt"
+
+
+def test_a_sweep_of_zeros_has_one_tick(tmp_path):
+    answer = grid(("film.coning", "mrad", [0.0, 1.0]), **{"relative_misalignment.max": [0.0, 0.0]})
+    (ax,) = study(tmp_path, "sweep", answer).axes
+    assert ticks(ax)[0][1] == ["0"]
+
+
+def test_a_transient_that_is_not_over_is_drawn_above_those_that_are(tmp_path):
+    waited = (65, 4776, None)
+    rows = [{"part": part, "shooting": 51, "transient": periods, "transient_ends": ""}
+            for part, periods in zip((0.5, 0.99, 0.995), waited, strict=True)]  # fmt: skip
+    orbit = {name: np.sin(np.linspace(0, 6, 9)).tolist() for name in ("relative_tilt_x", "relative_tilt_y", "h_min")}
+    answer = {"orbit": {**orbit, "time": np.linspace(0, 1, 9).tolist()}, "period": 1.0, "multipliers": [[0.1, 0.0]],
+              "near_threshold": rows}  # fmt: skip
+    ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
+    (cross,) = [line for line in ax.lines if line.get_marker() == "x"]
+    assert cross.get_ydata()[0] > 4776 and 3 <= len(ticks(ax)[0][1]) <= 9
