@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from drawn import drawn, panel, study, text_trouble
+from drawn import curve, drawn, panel, study, text_trouble
 from made_up_run import SUMMARY, drop, whirling, write
 from matplotlib.collections import LineCollection
 
@@ -275,3 +275,22 @@ def test_transmissibility_of_a_turning_stator_and_bars_that_end_at_the_frame(tmp
     assert "Static: turns with the stator" in titles and "Static: fixed in space" not in titles
     bars = [line for ax in figure.axes for line in ax.collections if isinstance(line, LineCollection)]
     assert bars and all(line.get_clip_on() for line in bars)
+
+
+FOLLOWED = {"speed": 100.0, "eccentricity": 1e-4, "radius": 0.025, "most": 5e-3, "runs": [],
+            "guide": {"surface_speed": [5.0, 10.0], "eccentricity": [4e-4, 3e-4], "words": "table 3.2"}}  # fmt: skip
+
+
+def test_a_limit_that_was_not_looked_for_runs_on_along_its_bound(tmp_path):
+    lines = [{"name": "soft", "speed": [10.0, 100.0, 200.0], "eccentricity": [None, None, 4e-3]},
+             {"name": "held", "speed": [10.0, 100.0, 200.0], "eccentricity": [0.0, 0.0, 0.0]}]  # fmt: skip
+    found = [{"curve": 0, "speed": 200.0, "eccentricity": 4e-3}, {"curve": 1, "speed": 10.0, "eccentricity": None}]
+    figure = study(tmp_path, "followability", {**FOLLOWED, "curves": lines, "runs": found})
+    must_be_legible(figure)
+    (ax,) = figure.axes
+    names = ax.get_legend_handles_labels()[1]
+    assert "held: nothing is followed" in names and names.count("limit found by runs") == 1
+    assert curve(ax, "soft")[1] == pytest.approx([5.0, 5.0, 4.0])
+    assert "a fifth of the shaft's radius: no limit is looked for beyond" in [text.get_text() for text in ax.texts]
+    swapped = {**FOLLOWED, "curves": lines[::-1], "runs": [{"curve": 1, "speed": 200.0, "eccentricity": 4e-3}]}
+    assert "limit found by runs" in study(tmp_path, "followability", swapped).axes[0].get_legend_handles_labels()[1]
