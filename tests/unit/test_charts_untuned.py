@@ -294,3 +294,31 @@ def test_a_limit_that_was_not_looked_for_runs_on_along_its_bound(tmp_path):
     assert "a fifth of the shaft's radius: no limit is looked for beyond" in [text.get_text() for text in ax.texts]
     swapped = {**FOLLOWED, "curves": lines[::-1], "runs": [{"curve": 1, "speed": 200.0, "eccentricity": 4e-3}]}
     assert "limit found by runs" in study(tmp_path, "followability", swapped).axes[0].get_legend_handles_labels()[1]
+
+
+def neutral(method, *growths, cost=100.0):
+    """Rows of a method; None: it failed."""
+    return [{"method": method, "accuracy": 0.1**k, "turns": 20, "growth": size, "energy": size,
+             "cost": size and cost * (k + 1)} for k, size in enumerate(growths)]  # fmt: skip
+
+
+def test_methods_without_an_answer_are_named_and_names_lie_beside_the_curves(tmp_path):
+    damping = [*neutral("dop853", None, None), *neutral("rk45", None, None), *neutral("expm", 1e-14, 1e-14, cost=10.0),
+               *neutral("bdf", 1e-6, 1e-8, cost=5000.0)]  # fmt: skip
+    drift = [*neutral("expm", 1e-17, 1e-17, cost=10.0), *neutral("bdf", 1e-4, 1e-9)]
+    answer = {"damping": damping, "drift": drift, "reason": "", "drift_reason": "", "turns": 20, "critical_speed": 10.0,
+              "resolved": {"rate": 1e-7 * 10 / (2 * np.pi)}}  # fmt: skip
+    figure = study(tmp_path, "neutral_stability", answer)
+    must_be_legible(figure)
+    ax = panel(figure, "Growth")
+    crosses = [line for line in ax.lines if line.get_marker() == "x" and len(line.get_xdata())]
+    assert len({line.get_xdata()[0] for line in crosses}) == 4
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "DOP853: no answer" in names and "RK45: no answer" in names
+    inside = {text.get_text(): text.get_window_extent() for text in ax.texts}
+    part = np.linspace(0.0, 1.0, 200)
+    way = ax.transData.transform(np.column_stack([5000.0 * 2**part, 10.0 ** (-6 - 2 * part)]))
+    assert not any(inside["resolved by study critical-speed"].contains(*point) for point in way)
+    alone = study(tmp_path, "neutral_stability", {**answer, "damping": [], "resolved": None, "reason": "no threshold"})
+    must_be_legible(alone)
+    assert panel(alone, "Energy").get_legend() is None and panel(alone, "Growth").get_legend().get_texts()
