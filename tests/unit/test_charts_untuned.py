@@ -322,3 +322,22 @@ def test_methods_without_an_answer_are_named_and_names_lie_beside_the_curves(tmp
     alone = study(tmp_path, "neutral_stability", {**answer, "damping": [], "resolved": None, "reason": "no threshold"})
     must_be_legible(alone)
     assert panel(alone, "Energy").get_legend() is None and panel(alone, "Growth").get_legend().get_texts()
+
+
+def elastic(nets, made=10.0, **point):
+    """An answer over these net wavinesses (µm): made with ten times the root, and a point let go."""
+    curve = {"net": [1e-6 * net for net in nets], "initial": [1e-6 * made * net**0.5 for net in nets],
+             "load_support": [1.0 for _ in nets]}  # fmt: skip
+    points = [{"stable": True, "load_support": 1.0, **point}] if point else []
+    return {"curve": curve, "initial": 1e-6 * made, "points": points}
+
+
+def test_an_elastic_ring_has_its_legend_beside_the_curves_and_its_starts_in_view(tmp_path):
+    way = {"from": 0.95e-6, "time": [0.0, 1e-3, 2e-3], "net": [0.95e-6, 0.9999e-6, 1e-6]}
+    falling = {**elastic([0.1, 1.0, 10.0], net=1e-6, let_go=[way])}
+    falling["curve"]["initial"].reverse()
+    figure = study(tmp_path, "elastic_ring", falling)
+    must_be_legible(figure)
+    ax = next(ax for ax in figure.axes if ax.get_ylabel() == "initial waviness, µm")
+    assert ax.get_legend().get_window_extent().y0 >= ax.get_window_extent().y1
+    assert panel(figure, "Let go").get_ylim()[0] < 0.95
