@@ -341,3 +341,36 @@ def test_an_elastic_ring_has_its_legend_beside_the_curves_and_its_starts_in_view
     ax = next(ax for ax in figure.axes if ax.get_ylabel() == "initial waviness, µm")
     assert ax.get_legend().get_window_extent().y0 >= ax.get_window_extent().y1
     assert panel(figure, "Let go").get_ylim()[0] < 0.95
+
+
+def measured(errors, reasons=(), expected=None):
+    """A method's row over its errors (None: it did not end)."""
+    status = ["ok" if error is not None else "failed" if expected is None else "stopped" for error in errors]
+    walls = [1e-3 * 10**k for k in range(len(errors))]
+    reason = list(reasons) or ["" for _ in errors]
+    return {"error": dict.fromkeys(("end", "over_time", "steady"), errors), "wall": walls, "status": status,
+            "rhs": [1e6 * w for w in walls], "reason": reason, "expected": [expected for _ in errors]}  # fmt: skip
+
+
+def test_wild_errors_of_a_method_stay_in_the_panel_and_reasons_without_their_place(tmp_path):
+    why = "newmark gave up 0.002 s into this segment: Newton does not converge."
+    methods = {"bdf": measured([1e-2, 1e-4, 1e-6, 1e-8]), "midpoint": measured([5e5, 2e4]),
+               "newmark": measured([None, None], [why, why]), "rk45": measured([None], ["stopped"], 1e7)}  # fmt: skip
+    small = dict.fromkeys(("end", "over_time", "steady"), 1e-11)
+    rung = {"label": "radial film, which has a long name", "error": small, "failed": None}
+    answer = {"where": "over_time", "methods": methods, "judge_error": small, "scene": {"turns": 3.0},
+              "models": [{**rung, "wall": 10.0**-k} for k in range(6)],
+              "machine": {"processor": "AMD", "cores": 2, "python": "3", "numpy": "2", "scipy": "1",
+                          "scikit-sundae": "1", "numba": "0"}}  # fmt: skip
+    settings = {"repeats": 1, "tolerances": 4, "loosest": 1e-2, "tightest": 1e-8}
+    asked = {"question": "Does it ride?  It is a seal of nobody.", "overrides": [f"run.turns={k}" for k in range(30)]}
+    figure = study(tmp_path, "work_precision", answer, settings=settings, **asked)
+    assert text_trouble(figure) == ([], []) and "Does it ride?" in said(figure)
+    solvers = "fastest solver of this scene"
+    assert solvers in [text.get_text() for text in panel(figure, "models").get_legend().get_texts()]
+    for ax in figure.axes[:4]:
+        left = ax.get_window_extent().x0
+        assert all(text.get_window_extent().x0 >= left for text in ax.texts)
+        crosses = [x for line in ax.lines if line.get_marker() == "x" for x in line.get_xdata()]
+        assert crosses and max(crosses) <= ax.get_xlim()[0]
+    assert "✕ Newmark: Newton does not converge." in figure.axes[5].texts[0].get_text()
