@@ -374,3 +374,15 @@ def test_wild_errors_of_a_method_stay_in_the_panel_and_reasons_without_their_pla
         crosses = [x for line in ax.lines if line.get_marker() == "x" for x in line.get_xdata()]
         assert crosses and max(crosses) <= ax.get_xlim()[0]
     assert "✕ Newmark: Newton does not converge." in figure.axes[5].texts[0].get_text()
+
+
+def test_accelerations_over_many_decades_are_powers_of_ten_throughout(tmp_path):
+    frequency = np.geomspace(3, 5400, 41)
+    touch = (9.81 * 0.1 * (frequency / 3) ** 2.5).tolist()
+    table = {"frequency": frequency.tolist(), "axial_gain": np.linspace(0, 1, 41).tolist(), "axial_touch": touch,
+             "axial_touch_aligned": touch}  # fmt: skip
+    answer = {"directions": ["axial"], "outer_radius": 0.04, "accelerations": [441.3], "modes": [], "gear_mesh": [],
+              "table": table, "time_domain": []}  # fmt: skip
+    figure = study(tmp_path, "vibration", answer)
+    must_be_legible(figure)
+    assert all(word.startswith("10") for word in ticks(figure.axes[0])[0][1])
