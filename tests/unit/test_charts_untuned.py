@@ -386,3 +386,28 @@ def test_accelerations_over_many_decades_are_powers_of_ten_throughout(tmp_path):
     figure = study(tmp_path, "vibration", answer)
     must_be_legible(figure)
     assert all(word.startswith("10") for word in ticks(figure.axes[0])[0][1])
+
+
+def worn(times, **flat):
+    """An answer of wear at these times (s); columns of the history at these values."""
+    history = {"time": times, **dict.fromkeys(("stator_volume", "rotor_volume", "contact_share"), [0.0] * len(times))}
+    history |= {name: [value] * len(times) for name, value in flat.items()}
+    profile = {"stator": len(times) * [[0.0, 0.0]], "rotor": len(times) * [[0.0, 0.0]],
+               "gap": len(times) * [[1e-7, 2e-7]]}  # fmt: skip
+    return {"history": history, "end": {"said": "it lifts"}, "radius": [0.03, 0.04], "profile": profile,
+            "pv": 2 * [[1e5, 1e5]], "extrapolated": None}  # fmt: skip
+
+
+LIFTED = {"leakage": 1e-9, "friction_power": 1.25, "contact_area_fraction": 0.0, "mean_clearance": 2e-6, "h_min": 1e-6}
+
+
+def test_a_seal_that_never_wears_has_its_gap_and_its_numbers(tmp_path):
+    figure = study(tmp_path, "wear", worn([0.0], **LIFTED))
+    must_be_legible(figure)
+    assert [ax.get_title("left") for ax in figure.axes] == ["Shape of the gap, from its narrowest place"]
+    assert "leakage 3.6 ml/h, friction 1.25 W, film 1 µm where it is thinnest" in " ".join(said(figure))
+
+
+def test_what_does_not_change_over_the_hours_is_below_the_top_of_its_panel(tmp_path):
+    ax = panel(study(tmp_path, "wear", worn([0.0, 3600.0], **LIFTED)), "Friction power")
+    assert ax.get_ylim()[0] == 0.0 and ax.get_ylim()[1] > 1.3
