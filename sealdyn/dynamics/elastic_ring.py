@@ -89,7 +89,8 @@ def state(scene, net):
     arm = 0.5 * (film.inner_radius + film.outer_radius)
     point = OperatingPoint(
         net, abs(initial), -cmath.phase(initial), float(s[FORCE] / carried), interface.clearance,
-        float(s[FLOW_INNER]) * (1.0 if high_inside else -1.0), float((s[TORQUE] + s[CONTACT_TORQUE]) / (carried * arm)),
+        float(s[FLOW_INNER]) * (1.0 if high_inside else -1.0),
+        float(abs(s[TORQUE] + s[CONTACT_TORQUE]) / (carried * arm)),
     )  # fmt: skip
     return point, interface, s, x, initial
 

@@ -219,6 +219,8 @@ def _no_equilibrium(film, opening_force, law, inner, outer, roots):
     rounding = 1e-9 * abs(wide)
     if tight - wide > rounding:
         expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"
+    elif inner == outer:
+        expected = "a difference of the pressures, of which this film would carry more as it closes"
     else:
         side, narrows = ("outer", "above") if outer >= inner else ("inner", "below")
         this = "this one widens" if wide - tight > rounding else "this one carries the same at every clearance"

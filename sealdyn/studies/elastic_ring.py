@@ -115,8 +115,9 @@ def _verdict(answer) -> list[str]:
     points, made = answer["points"], f"{1e6 * answer['initial']:.4g} um of {answer['order']} waves"
     if not points:
         least, most = min(answer["curve"]["initial"]), max(answer["curve"]["initial"])
+        less = f"; if any is left, it is less than the {1e6 * answer['curve']['net'][0]:.4g} um looked at"
         return [f"No operating point of a ring made with {made} among these: they need {1e6 * least:.4g} to "
-                f"{1e6 * most:.4g} um."]  # fmt: skip
+                f"{1e6 * most:.4g} um{less if answer['initial'] < least else ''}."]  # fmt: skip
     left = ", ".join(f"{1e6 * point['net']:.4g} um ({'holds' if point['stable'] else 'does not'})" for point in points)
     said = [f"Of {made} the load leaves {left}."]
     apart = [point for point in points if point["comes_back"] is not None and point["comes_back"] != point["stable"]]

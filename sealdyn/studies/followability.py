@@ -46,8 +46,8 @@ class Settings:
     """At so many speeds of each curve the limit is found by runs, to 1e-4."""
 
 
-units = {"speed": "rad/s", "eccentricity": "m", "radius": "m", "surface_speed": "m/s", "curve": "1", "apart": "1",
-         "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m"}  # fmt: skip
+units = {"speed": "rad/s", "eccentricity": "m", "radius": "m", "most": "m", "surface_speed": "m/s", "curve": "1",
+         "apart": "1", "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m"}  # fmt: skip
 
 
 def run(scenario, settings, tools) -> dict:
@@ -79,6 +79,7 @@ def run(scenario, settings, tools) -> dict:
         "speed": own,
         "eccentricity": scenario.scene.shaft.eccentricity,
         "radius": scenario.scene.shaft.radius,
+        "most": MOST * scenario.scene.shaft.radius,
         "curves": [{"name": name, "speed": speeds.tolist(), "eccentricity": line} for name, line in
                    zip(names, curves, strict=True)],
         "runs": runs,
@@ -112,7 +113,8 @@ def _at(scene, speed, eccentricity=None):
 
 def confirmed(scenes, point) -> dict:
     """The largest eccentricity (m) that runs from the following orbit keep to at one speed, by halving between ones
-    that do and do not, to 1e-4; `apart` from the closed form (relative).  `scenes` as dicts."""
+    that do and do not, to 1e-4; `apart` from the closed form (relative), which is None beyond the radius.  `scenes`
+    as dicts."""
     from pydantic import TypeAdapter
 
     from ..scene.radial import RadialScene
@@ -124,7 +126,7 @@ def confirmed(scenes, point) -> dict:
     at = _at(scene, speed)
     limit = largest_eccentricity(followers_of(at), at.shaft, speed)
     if not 0.0 < limit <= MOST * scene.shaft.radius:
-        return {"eccentricity": None, "closed_form": limit if math.isfinite(limit) else None, "apart": None}
+        return {"eccentricity": None, "closed_form": limit if limit < scene.shaft.radius else None, "apart": None}
     low, high = 0.9 * limit, 1.1 * limit
     for wanted, rides in ((low, True), (high, False)):
         if follows(_at(scene, speed, wanted)) != rides:
@@ -174,7 +176,7 @@ def _verdict(scenario, answer) -> list[str]:
     at, limit = f"At {RPM * speed:.5g} rpm", largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
     if limit == 0.0:
         said = [f"{at} nothing is followed: friction and offset take all of the preload."]
-    elif math.isfinite(limit):
+    elif limit < own.shaft.radius:
         said = [
             f"{at} the shaft is followed up to an eccentricity of {1e3 * limit:.4g} mm; this one has "
             f"{1e3 * answer['eccentricity']:.4g} mm."

@@ -61,9 +61,10 @@ def run(scenario, settings, tools) -> dict:
     speed, why = None, ""
     try:
         speed = exhibit.threshold(linear)
-        why = "" if speed else "no critical speed: nothing is neutral to be kept"
+        why = "" if speed else "without a critical speed no motion is neutral"
     except (SceneError, ValueError, np.linalg.LinAlgError) as error:
-        why = str(error)
+        gas = "a film of gas is not linear, so that its threshold is not known exactly"
+        why = gas if scenario.scene.film.gas else str(error)
     if speed and free_model(linear, speed).unknowns.has_residual_form:
         speed, why = None, "a ring without inertia: most methods have no rates to integrate"
     every = [{"turns": settings.turns, "method": m, "accuracy": a} for m in METHODS for a in settings.accuracies]

@@ -32,6 +32,14 @@ def test_no_point_in_the_range_is_said(tmp_path):
     assert text_trouble(drawn(study_elastic_ring, Path(answer["archive"]), tmp_path / "s.png")) == ([], [])
 
 
+def test_a_ring_that_the_load_levels_is_told_and_turning_back_rubs_no_less(tmp_path):
+    flags = {"net_from": "10 um", "net_to": "20 um", "points": 3}
+    low = [*COARSE, 'stator.waviness=[{order=2, amplitude="1 um"}]', 'shaft.speed="-188 rad/s"']
+    answer = run_study("elastic-ring", read_scenario(FILE, low), tmp_path / "s.h5", flags=flags, workers=1)
+    assert answer["verdict"][0].endswith("if any is left, it is less than the 10 um looked at.")
+    assert all(rubs > 0.0 for rubs in answer["curve"]["friction_coefficient"])
+
+
 def test_a_run_has_the_waves_that_are_left(tmp_path):
     coarse = ["film.reynolds.cells_r=4", "film.reynolds.cells_theta=72", "run.turns=0.2", "run.accuracy=0.1"]
     result = simulate(read_scenario(FILE, coarse), tmp_path / "r.h5")

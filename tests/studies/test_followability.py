@@ -30,6 +30,13 @@ def test_a_curve_for_each_value_of_a_key():
     assert "negative" in found.message
 
 
+def test_a_limit_beyond_the_radius_is_none():
+    slow = sealdyn.read_scenario(RADIAL / "circumferential_reference.toml").with_(shaft__speed="5 rpm")
+    found = sealdyn.study("followability", slow, runs=1, speed="5,6 rpm", workers=1)
+    assert found.verdict[0] == "At 5 rpm any eccentricity is followed."
+    assert found.answer["runs"][0]["closed_form"] is None and found.answer["most"] == 0.2 * found.answer["radius"]
+
+
 @pytest.mark.parametrize("flags, words", [({"speed": "1:2:x rpm"}, "speed"), ({"vary": "lip.nothing=1,2"}, "nothing"),
                                           ({"speed": "0,3000 rpm"}, "a speed of 0"),
                                           ({"runs": -1}, "0 to 50")])  # fmt: skip

@@ -124,3 +124,10 @@ def test_the_default_method_keeps_a_precession_for_ten_thousand_turns(tmp_path):
     # Measured +2e-10 a turn on a stator; an error of 1e-6 of the scale on an amplitude of 0.2 of it: 1e-5 in all.
     assert abs(row["energy"]) * 10_000 < 1e-4 and abs(row["momentum"]) * 10_000 < 1e-4
     assert sealdyn.read_scenario(SCENARIOS / "free_precession.toml").scene.rotor.support.axial_damping == 0
+
+
+def test_a_film_of_gas_is_told_as_such(tmp_path):
+    answer = study("gas_dam_reference", tmp_path, turns=5, accuracies=[1e-3], long=0)
+    assert answer["verdict"][0] == (
+        "No numerical damping measured: a film of gas is not linear, so that its threshold is not known exactly."
+    )

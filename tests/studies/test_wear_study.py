@@ -314,6 +314,18 @@ def _late(path, name) -> float:
 # --- how it ends ----------------------------------------------------------------------------------------
 
 
+def test_nothing_grows_back_and_the_bar_is_full_at_the_end(tmp_path):
+    seen = []
+    answer = run_study("wear", read("run_in", "film.coning=-40 urad"), tmp_path / "s.h5", workers=1,
+                       flags={"duration": "5 min", "nodes": 9}, progress=lambda *now: seen.append(now))  # fmt: skip
+    assert "stator 0 nm to" in answer["verdict"][1] and "-" not in answer["verdict"][1]
+    assert seen[-1] == (1.0, 1.0, "300 s of 300 s")
+    seen.clear()
+    lifted = read("run_in", "film.coning=2 mrad")
+    run_study("wear", lifted, tmp_path / "l.h5", workers=1, progress=lambda *now: seen.append(now))
+    assert seen[-1] == (1.0, 1.0, "0 h of 100 h")
+
+
 def test_a_film_that_carries_everything_does_not_wear(tmp_path):
     answer = run_study("wear", read("run_in", "closing.balance_ratio=0.6", "closing.spring_force=5 N"),
                          tmp_path / "o.h5", workers=1)  # fmt: skip

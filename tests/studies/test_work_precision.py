@@ -133,6 +133,14 @@ def test_a_given_linear_film_has_no_rung_above_it():
     assert [label for label, _ in film_ladder.rungs(scenario("fmr_reference"))][-1] != ladder[0][0]
 
 
+def test_a_film_of_gas_whose_cells_are_not_given_has_them_on_the_ladder():
+    ladder = dict(film_ladder.rungs(scenario("gas_dam_reference")))
+    assert ladder["gas reynolds film, its cells"] == {"film.model": "gas_reynolds"}
+    assert ladder["gas reynolds film, half the cells"]["film.gas_reynolds.cells"]
+    coarse = scenario("lebeck_n3", "film.reynolds={grid_accuracy=0.2}")
+    assert dict(film_ladder.rungs(coarse))["reynolds film, its cells"] == {"film.model": "reynolds"}
+
+
 def test_what_fails_stays_as_a_cross_with_its_reason(tmp_path):
     """A massless ring has no rates; only IDA ends.  Its judge runs on consistent derivatives."""
     answer = studied(tmp_path, "massless_ring", "run.turns=1", methods=["adams", "ida", "midpoint"], models=False)

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from drawn import drawn, panel, study, text_trouble
+from drawn import curve, drawn, panel, study, text_trouble
 from made_up_run import SUMMARY, drop, whirling, write
 from matplotlib.collections import LineCollection
 
@@ -275,3 +275,139 @@ def test_transmissibility_of_a_turning_stator_and_bars_that_end_at_the_frame(tmp
     assert "Static: turns with the stator" in titles and "Static: fixed in space" not in titles
     bars = [line for ax in figure.axes for line in ax.collections if isinstance(line, LineCollection)]
     assert bars and all(line.get_clip_on() for line in bars)
+
+
+FOLLOWED = {"speed": 100.0, "eccentricity": 1e-4, "radius": 0.025, "most": 5e-3, "runs": [],
+            "guide": {"surface_speed": [5.0, 10.0], "eccentricity": [4e-4, 3e-4], "words": "table 3.2"}}  # fmt: skip
+
+
+def test_a_limit_that_was_not_looked_for_runs_on_along_its_bound(tmp_path):
+    lines = [{"name": "soft", "speed": [10.0, 100.0, 200.0], "eccentricity": [None, None, 4e-3]},
+             {"name": "held", "speed": [10.0, 100.0, 200.0], "eccentricity": [0.0, 0.0, 0.0]}]  # fmt: skip
+    found = [{"curve": 0, "speed": 200.0, "eccentricity": 4e-3}, {"curve": 1, "speed": 10.0, "eccentricity": None}]
+    figure = study(tmp_path, "followability", {**FOLLOWED, "curves": lines, "runs": found})
+    must_be_legible(figure)
+    (ax,) = figure.axes
+    names = ax.get_legend_handles_labels()[1]
+    assert "held: nothing is followed" in names and names.count("limit found by runs") == 1
+    assert curve(ax, "soft")[1] == pytest.approx([5.0, 5.0, 4.0])
+    assert "a fifth of the shaft's radius: no limit is looked for beyond" in [text.get_text() for text in ax.texts]
+    swapped = {**FOLLOWED, "curves": lines[::-1], "runs": [{"curve": 1, "speed": 200.0, "eccentricity": 4e-3}]}
+    assert "limit found by runs" in study(tmp_path, "followability", swapped).axes[0].get_legend_handles_labels()[1]
+
+
+def neutral(method, *growths, cost=100.0):
+    """Rows of a method; None: it failed."""
+    return [{"method": method, "accuracy": 0.1**k, "turns": 20, "growth": size, "energy": size,
+             "cost": size and cost * (k + 1)} for k, size in enumerate(growths)]  # fmt: skip
+
+
+def test_methods_without_an_answer_are_named_and_names_lie_beside_the_curves(tmp_path):
+    damping = [*neutral("dop853", None, None), *neutral("rk45", None, None), *neutral("expm", 1e-14, 1e-14, cost=10.0),
+               *neutral("bdf", 1e-6, 1e-8, cost=5000.0)]  # fmt: skip
+    drift = [*neutral("expm", 1e-17, 1e-17, cost=10.0), *neutral("bdf", 1e-4, 1e-9)]
+    answer = {"damping": damping, "drift": drift, "reason": "", "drift_reason": "", "turns": 20, "critical_speed": 10.0,
+              "resolved": {"rate": 1e-7 * 10 / (2 * np.pi)}}  # fmt: skip
+    figure = study(tmp_path, "neutral_stability", answer)
+    must_be_legible(figure)
+    ax = panel(figure, "Growth")
+    crosses = [line for line in ax.lines if line.get_marker() == "x" and len(line.get_xdata())]
+    assert len({line.get_xdata()[0] for line in crosses}) == 4
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "DOP853: no answer" in names and "RK45: no answer" in names
+    inside = {text.get_text(): text.get_window_extent() for text in ax.texts}
+    part = np.linspace(0.0, 1.0, 200)
+    way = ax.transData.transform(np.column_stack([5000.0 * 2**part, 10.0 ** (-6 - 2 * part)]))
+    assert not any(inside["resolved by study critical-speed"].contains(*point) for point in way)
+    alone = study(tmp_path, "neutral_stability", {**answer, "damping": [], "resolved": None, "reason": "no threshold"})
+    must_be_legible(alone)
+    assert panel(alone, "Energy").get_legend() is None and panel(alone, "Growth").get_legend().get_texts()
+
+
+def elastic(nets, made=10.0, **point):
+    """An answer over these net wavinesses (µm): made with ten times the root, and a point let go."""
+    curve = {"net": [1e-6 * net for net in nets], "initial": [1e-6 * made * net**0.5 for net in nets],
+             "load_support": [1.0 for _ in nets]}  # fmt: skip
+    points = [{"stable": True, "load_support": 1.0, **point}] if point else []
+    return {"curve": curve, "initial": 1e-6 * made, "points": points}
+
+
+def test_an_elastic_ring_has_its_legend_beside_the_curves_and_its_starts_in_view(tmp_path):
+    way = {"from": 0.95e-6, "time": [0.0, 1e-3, 2e-3], "net": [0.95e-6, 0.9999e-6, 1e-6]}
+    falling = {**elastic([0.1, 1.0, 10.0], net=1e-6, let_go=[way])}
+    falling["curve"]["initial"].reverse()
+    figure = study(tmp_path, "elastic_ring", falling)
+    must_be_legible(figure)
+    ax = next(ax for ax in figure.axes if ax.get_ylabel() == "initial waviness, µm")
+    assert ax.get_legend().get_window_extent().y0 >= ax.get_window_extent().y1
+    assert panel(figure, "Let go").get_ylim()[0] < 0.95
+
+
+def measured(errors, reasons=(), expected=None):
+    """A method's row over its errors (None: it did not end)."""
+    status = ["ok" if error is not None else "failed" if expected is None else "stopped" for error in errors]
+    walls = [1e-3 * 10**k for k in range(len(errors))]
+    reason = list(reasons) or ["" for _ in errors]
+    return {"error": dict.fromkeys(("end", "over_time", "steady"), errors), "wall": walls, "status": status,
+            "rhs": [1e6 * w for w in walls], "reason": reason, "expected": [expected for _ in errors]}  # fmt: skip
+
+
+def test_wild_errors_of_a_method_stay_in_the_panel_and_reasons_without_their_place(tmp_path):
+    why = "newmark gave up 0.002 s into this segment: Newton does not converge."
+    methods = {"bdf": measured([1e-2, 1e-4, 1e-6, 1e-8]), "midpoint": measured([5e5, 2e4]),
+               "newmark": measured([None, None], [why, why]), "rk45": measured([None], ["stopped"], 1e7)}  # fmt: skip
+    small = dict.fromkeys(("end", "over_time", "steady"), 1e-11)
+    rung = {"label": "radial film, which has a long name", "error": small, "failed": None}
+    answer = {"where": "over_time", "methods": methods, "judge_error": small, "scene": {"turns": 3.0},
+              "models": [{**rung, "wall": 10.0**-k} for k in range(6)],
+              "machine": {"processor": "AMD", "cores": 2, "python": "3", "numpy": "2", "scipy": "1",
+                          "scikit-sundae": "1", "numba": "0"}}  # fmt: skip
+    settings = {"repeats": 1, "tolerances": 4, "loosest": 1e-2, "tightest": 1e-8}
+    asked = {"question": "Does it ride?  It is a seal of nobody.", "overrides": [f"run.turns={k}" for k in range(30)]}
+    figure = study(tmp_path, "work_precision", answer, settings=settings, **asked)
+    assert text_trouble(figure) == ([], []) and "Does it ride?" in said(figure)
+    solvers = "fastest solver of this scene"
+    assert solvers in [text.get_text() for text in panel(figure, "models").get_legend().get_texts()]
+    for ax in figure.axes[:4]:
+        left = ax.get_window_extent().x0
+        assert all(text.get_window_extent().x0 >= left for text in ax.texts)
+        crosses = [x for line in ax.lines if line.get_marker() == "x" for x in line.get_xdata()]
+        assert crosses and max(crosses) <= ax.get_xlim()[0]
+    assert "✕ Newmark: Newton does not converge." in figure.axes[5].texts[0].get_text()
+
+
+def test_accelerations_over_many_decades_are_powers_of_ten_throughout(tmp_path):
+    frequency = np.geomspace(3, 5400, 41)
+    touch = (9.81 * 0.1 * (frequency / 3) ** 2.5).tolist()
+    table = {"frequency": frequency.tolist(), "axial_gain": np.linspace(0, 1, 41).tolist(), "axial_touch": touch,
+             "axial_touch_aligned": touch}  # fmt: skip
+    answer = {"directions": ["axial"], "outer_radius": 0.04, "accelerations": [441.3], "modes": [], "gear_mesh": [],
+              "table": table, "time_domain": []}  # fmt: skip
+    figure = study(tmp_path, "vibration", answer)
+    must_be_legible(figure)
+    assert all(word.startswith("10") for word in ticks(figure.axes[0])[0][1])
+
+
+def worn(times, **flat):
+    """An answer of wear at these times (s); columns of the history at these values."""
+    history = {"time": times, **dict.fromkeys(("stator_volume", "rotor_volume", "contact_share"), [0.0] * len(times))}
+    history |= {name: [value] * len(times) for name, value in flat.items()}
+    profile = {"stator": len(times) * [[0.0, 0.0]], "rotor": len(times) * [[0.0, 0.0]],
+               "gap": len(times) * [[1e-7, 2e-7]]}  # fmt: skip
+    return {"history": history, "end": {"said": "it lifts"}, "radius": [0.03, 0.04], "profile": profile,
+            "pv": 2 * [[1e5, 1e5]], "extrapolated": None}  # fmt: skip
+
+
+LIFTED = {"leakage": 1e-9, "friction_power": 1.25, "contact_area_fraction": 0.0, "mean_clearance": 2e-6, "h_min": 1e-6}
+
+
+def test_a_seal_that_never_wears_has_its_gap_and_its_numbers(tmp_path):
+    figure = study(tmp_path, "wear", worn([0.0], **LIFTED))
+    must_be_legible(figure)
+    assert [ax.get_title("left") for ax in figure.axes] == ["Shape of the gap, from its narrowest place"]
+    assert "leakage 3.6 ml/h, friction 1.25 W, film 1 µm where it is thinnest" in " ".join(said(figure))
+
+
+def test_what_does_not_change_over_the_hours_is_below_the_top_of_its_panel(tmp_path):
+    ax = panel(study(tmp_path, "wear", worn([0.0, 3600.0], **LIFTED)), "Friction power")
+    assert ax.get_ylim()[0] == 0.0 and ax.get_ylim()[1] > 1.3

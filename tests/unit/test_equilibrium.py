@@ -239,3 +239,8 @@ def test_a_force_that_is_no_number_balances_nothing():
     """Of a face a million kilometres wide, say: a warning of Python came before the line that refuses it."""
     found = equilibria(film(), lambda *where: math.nan, 100.0, P_I, P_O)
     assert list(found) == []
+
+
+def test_equal_pressures_are_told_as_such():
+    with pytest.raises(SceneError, match="a difference of the pressures"):
+        started(scene(Closing(0.75, 60.0), clearance=None, inner_pressure=P_O), 1e-3)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...archive import read_study
-from .page import absent, logarithmic, look, save, study_page
+from .page import absent, legend, logarithmic, look, save, study_page
 from .palette import BLACK, CONTACT, FILM, GREEN, GREY, THEORY, VERMILLION
 
 ROOT = {True: (GREEN, "o", "holds"), False: (VERMILLION, "X", "does not hold")}
@@ -33,7 +33,7 @@ def draw(archive_path, out_path):
         logarithmic(ax[panel], "x")
         ax[panel].set(xlabel="net waviness, µm", ylabel=words, xlim=(net[0], net[-1]))
     logarithmic(ax["curve"], "y")
-    ax["curve"].legend(loc="upper left")
+    legend(ax["curve"], "above", ncols=2)
     _released(ax["time"], answer["points"])
     return save(figure, out_path)
 
@@ -46,6 +46,8 @@ def _released(ax, points):
         return
     for point in points:
         ax.axhline(1e6 * point["net"], color=GREY, lw=0.9, ls=":")
+        # A ring that is back at once does not enlarge its last step.
+        ax.update_datalim([(1.0, 1e6 * way["from"]) for way in point["let_go"]], updatex=False)
     for point, way in ways:
         colour = ROOT[point["stable"]][0]
         ax.plot(1e3 * np.array(way["time"][1:]), 1e6 * np.array(way["net"][1:]), color=colour, lw=1.5)

@@ -4,7 +4,7 @@ takes up; modes, gear mesh and accelerations asked at the side."""
 import numpy as np
 
 from ...archive import read_study
-from .page import PAPER, logarithmic, look, number, save, stacked, study_page
+from .page import PAPER, decades, logarithmic, look, number, save, stacked, study_page
 from .palette import BLACK, GREY, PALE, RING, VERMILLION
 
 GRAVITY = 9.80665
@@ -101,12 +101,14 @@ def _asked(ax, answer, frequency):
 
 
 def _decades_only(ax):
-    """Over many decades numbers at their beginnings alone."""
+    """Over many decades numbers at their beginnings alone, large ones as powers of ten."""
     low, high = ax.get_ylim()
     if high > 1e3 * low:
         from matplotlib.ticker import LogLocator
 
         ax.yaxis.set_major_locator(LogLocator(numticks=9))
+        if high >= 1e6:
+            decades(ax.yaxis)
 
 
 def _lines_of_amplitude(ax, frequency, curves):

@@ -12,6 +12,7 @@ from .palette import BLACK, CONTACT, FILM, GREY, LEAK, ORANGE, RING, THICKNESS
 
 # Profiles drawn of one face.
 LINES = 9
+GAP = "Shape of the gap, from its narrowest place"
 
 
 @look()
@@ -23,6 +24,11 @@ def draw(archive_path, out_path):
     if not history["time"]:
         figure, ax = study_page(study, 13.0, 8.6, [["none"]], bold=said)
         absent(ax["none"], "No profile", said)
+        return save(figure, out_path)
+    if len(history["time"]) == 1:
+        # Nothing has a course over the hours.
+        figure, ax = study_page(study, 9.0, 5.0, [["gap"]], below=_numbers(history), bold=said)
+        _gap(ax["gap"], answer)
         return save(figure, out_path)
     unit, factor = _time_unit(history["time"][-1])
     worn = [face for face in ("stator", "rotor") if np.any(answer["profile"][face])] or ["stator"]
@@ -36,6 +42,26 @@ def draw(archive_path, out_path):
         _history(ax[title], factor * np.array(history["time"]), history, title, *panel)
     ax["Worn volume"].set_xlabel(f"time of operation, {unit}")
     return save(figure, out_path)
+
+
+def _numbers(history) -> str:
+    """Leakage, friction and film of the only instant."""
+    leakage, per = _leakage_unit(history)
+    return (f"leakage {per * history['leakage'][0]:.4g} {leakage}, friction {history['friction_power'][0]:.4g} W, "
+            f"film {1e6 * history['h_min'][0]:.4g} µm where it is thinnest")  # fmt: skip
+
+
+def _gap(ax, answer):
+    """The gap as it is, over the radius."""
+    gap = np.array(answer["profile"]["gap"][-1])
+    name, per = _length_unit(np.ptp(gap))
+    ax.plot(1e3 * np.array(answer["radius"]), per * (gap - gap.min()), color=FILM, lw=1.3)
+    ax.margins(x=0.01)
+    ax.set(xlabel="radius, mm", ylabel=f"gap, {name}", title=GAP)
+
+
+def _leakage_unit(history) -> tuple[str, float]:
+    return ("l/h", 3.6e6) if max(history["leakage"]) > 1e4 / 3.6e9 else ("ml/h", 3.6e9)
 
 
 def _time_unit(end) -> tuple[str, float]:
@@ -58,7 +84,7 @@ def _faces(figure, ax, answer, worn, unit, factor):
     gap = np.array(answer["profile"]["gap"])
     depths = {face: np.array(answer["profile"][face]) for face in worn}
     for face, depth in {**depths, "gap": gap - gap.min(axis=1, keepdims=True)}.items():
-        title = "Shape of the gap, from its narrowest place" if face == "gap" else f"{face.capitalize()}: worn off"
+        title = GAP if face == "gap" else f"{face.capitalize()}: worn off"
         name, per = _length_unit(depth.max())
         if face in depths and depth.max() == 0.0:
             absent(ax[face], title, "does not wear")
@@ -99,7 +125,7 @@ def _pressed(ax, answer):
 def _over_time(history, worn) -> dict:
     """Unit and curves (factor, column of the history, colour, label) of every panel over the hours; volumes of the
     faces that are `worn`."""
-    leakage = ("l/h", 3.6e6) if max(history["leakage"]) > 1e4 / 3.6e9 else ("ml/h", 3.6e9)
+    leakage = _leakage_unit(history)
     return {
         "Leakage": (leakage[0], (leakage[1], "leakage", LEAK, "")),
         "Friction power": ("W", (1.0, "friction_power", BLACK, "")),
@@ -116,7 +142,8 @@ def _history(ax, time, history, title, unit, *curves):
     for per, name, colour, label in curves:
         ax.plot(time, per * np.array(history[name]), color=colour, label=label, marker=mark, ms=3)
     if title in ("Leakage", "Friction power"):
-        ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
+        # With room above what hardly changes.
+        ax.set_ylim(min(0.0, ax.get_ylim()[0]), max(1.12 * ax.dataLim.y1, 0.0) or None)
     if title == "Contact" and min(history["contact_share"]) > 0.0 < min(history["contact_area_fraction"]):
         # A few asperities carry the load: far less of the area than of the force.
         ax.set_yscale("log")

@@ -9,9 +9,12 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...archive import read_study
 from ...status import Status
+from ..text import question_of
 from .page import absent, look, save, shortened, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, LOOKS, ORANGE, PALE, PURPLE, SHORT, SKY, VERMILLION
 
+# Errors beyond so many clearances are all as bad.
+MOST = 1e3
 TITLES = {"end": "error at the end", "over_time": "largest error over time", "steady": "error of the steady state"}
 # Marks and colours of the rungs.
 MODELS = ("o", "s", "^", "v", "D", "P", "X")
@@ -24,7 +27,7 @@ def draw(path, out):
     study = read_study(path)
     answer, title = study["answer"], f"How much solver, how much model: {study['name'].replace('_', ' ')}"
     mosaic = [list(TITLES), ["rhs", "models", "said"]]
-    figure, ax = study_page(study, 15.5, 9.6, mosaic, title, study["question"])
+    figure, ax = study_page(study, 15.5, 9.6, mosaic, title, question_of(study["question"]))
     figure.supxlabel(caption(study), x=0.03, ha="left", fontsize=7.5, linespacing=1.35)
     costs = {**{where: (where, "wall") for where in TITLES}, "rhs": (answer["where"], "rhs")}
     ends = {name: precision(ax[name], answer, *cost) for name, cost in costs.items()}
@@ -76,15 +79,15 @@ def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str
 
 
 def _errors(row, where):
-    """Errors, above what a float can show."""
+    """Errors, above what a float can show, and no more than `MOST`."""
     values = np.array(row["error"][where], dtype=float)
-    return np.where(values == 0, 1e-16, values)
+    return np.where(np.isfinite(values), np.clip(values, 1e-16, MOST), values)
 
 
 def limits(ax, answer, where, cost):
     """Errors decrease to the right: precision and work both grow outwards."""
     found = np.concatenate([_errors(row, where) for row in answer["methods"].values()] or [np.empty(0)])
-    found = found[np.isfinite(found) & (found < 1e3)]
+    found = found[np.isfinite(found)]
     low, high = (found.min(), found.max()) if len(found) else (1e-12, 1.0)
     band = (answer["judge_error"] or {}).get(where) or 1e-15
     low = max(min(low, 1e-9), 0.3 * min(band, low) if band < 1e-8 else low, 1e-16)
@@ -111,7 +114,9 @@ def _crosses(ax, answer, where, cost):
             if status in (Status.OK, "slow"):
                 continue
             # Errors fall to the right: the right end is the smaller number.
-            at = max(row["expected"][k], ax.get_xlim()[1]) if status == "stopped" and row["expected"][k] else left
+            at = left
+            if status == "stopped" and row["expected"][k]:
+                at = min(max(row["expected"][k], ax.get_xlim()[1]), left)
             spent = max(factor * row[cost][k], ax.get_ylim()[0])
             ax.plot(at, spent, "x", color=colour, ms=7, mew=1.6, clip_on=False, zorder=5)
 
@@ -152,14 +157,12 @@ def models(ax, answer):
     best = np.minimum.accumulate([w for _, w in edge]) if edge else []
     ax.set(xscale="log", yscale="log")
     if edge:
-        ax.plot([e for e, _ in edge], best, "-", color=GREY, lw=1.2, drawstyle="steps-post")
+        ax.plot([e for e, _ in edge], best, "-", color=GREY, lw=1.2, drawstyle="steps-post",
+                label="fastest solver of this scene")  # fmt: skip
     walls = [1e3 * row["wall"] for row in rows] + list(best)
     errors = [max(row["error"][where], 1e-12) for row in rows] + [e for e, _ in edge]
     _error_axis(ax, max(errors), max(min(errors), 1e-13) / 5)
-    ax.set_ylim(min(walls) * 0.25, max(walls) * 60)
-    if edge:
-        ax.annotate("fastest solver\nof this scene", (edge[0][0], best[0]), fontsize=7, color=GREY, ha="right",
-                    xytext=(-4, 9), textcoords="offset points")  # fmt: skip
+    ax.set_ylim(min(walls) * 0.25, max(walls) * 200)
     for k, row in enumerate(rows):
         words = f"{row['label']}: {row['error'][where]:.1e}, {1e3 * row['wall']:.2g} ms"
         mark, colour = MODELS[k % len(MODELS)], RUNGS[k % len(RUNGS)]
@@ -183,8 +186,8 @@ def said(ax, answer):
     for name, row in answer["methods"].items():
         for status, reason in zip(row["status"], row["reason"], strict=True):
             if status not in (Status.OK, "slow"):
-                # One of each kind; "NAME gave up ... into this leg:" is said by the cross.
-                words = reason.partition("this leg: ")[2] or reason
+                # One of each kind; "NAME gave up ... into this segment:" is said by the cross.
+                words = reason.partition("this segment: ")[2] or reason
                 reasons.setdefault((name, status), shortened(f"✕ {SHORT[name]}: {words}", 72))
     lines += ["", *list(reasons.values())[: max(0, 27 - len(lines))]]
     ax.text(0.0, 0.98, "\n".join(lines), transform=ax.transAxes, fontsize=8, va="top", linespacing=1.3)
@@ -198,7 +201,7 @@ def caption(info) -> str:
     if "back_end" in m:
         libraries += f"; CVODE and IDA: {m['back_end']}"
     overrides = f" with {', '.join(info['overrides'])}" if info["overrides"] else ""
-    return (
+    words = (
         f"Scenario {info['name']}{overrides}, {answer['scene']['turns']:.3g} turns; sealdyn {info['version']}. "
         f"{m['processor']}, {m['cores']} cores (wall time {m.get('busy', 1.0):.2f} of the "
         f"processor's); {libraries}.\n"
@@ -207,3 +210,4 @@ def caption(info) -> str:
         f"{settings['tolerances']} tolerances, {settings['loosest']:.0e} to {settings['tightest']:.0e}; of fixed steps "
         "(step / fastest period)².  ✕: did not end well, or too slow; at the left edge when its error is unknown."
     )
+    return "\n".join(line for part in words.split("\n") for line in wrap(part, 250))

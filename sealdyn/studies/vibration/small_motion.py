@@ -25,6 +25,7 @@ from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced
 from ...scene.waviness import waves_of
+from .._words import speed
 
 # Motion of the housing (z, tilt about x, tilt about y), and which modes it excites.
 SHAPES = {"axial": (1.0, 0.0, 0.0), "angular": (0.0, 1.0, 0.0)}
@@ -50,7 +51,7 @@ class ShakenSeal:
         self.linear, self._at = self.model.linear_scene(), {}
         self.modes = self.linear.modes()
         if verdict(self.modes) != "stable":
-            found = f"{scene.shaft.speed:.5g} rad/s, at which small motion does not die out"
+            found = f"{speed(scene.shaft.speed)}, at which small motion does not die out"
             raise SceneError("shaft.speed", found, "a speed at which the seal is stable (sealdyn study critical-speed)")
         crests, shift = sum(wave.amplitude for wave in waves_of(self.model.scene)), self.model.axial_shift()
         self.gaps = [(r, h + shift - crests) for r, h in self.model.aligned_gaps()]

@@ -262,9 +262,8 @@ def _in_time(answer) -> list[str]:
             if max(ratios) > 1.0
             else "sooner"
         )
-        said[-1] += (
-            f" The nonlinear film touches {min(ratios):.3g} to {max(ratios):.3g} times the linear acceleration: {more}."
-        )
+        ends = dict.fromkeys(f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
+        said[-1] += f" The nonlinear film touches {' to '.join(ends)} times the linear acceleration: {more}."
     untouched = {row["said"] for row in done if row["said"]}
     said += [f"Tones without a touch in time: {reason}." for reason in sorted(untouched)]
     lost = [row["failed"] for row in rows if "failed" in row]

@@ -124,8 +124,10 @@ def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
                 rows.append(_row(worn, average, hats))
                 tools.journal.add(f"step:{len(rows) - 1}", rows[-1])
             going_on = False
-            tools.say(worn.time / settings.duration)
             end = _ended(rows, settings, control)
+            # One that ends early is done all the same.
+            share = 1.0 if end else worn.time / settings.duration
+            tools.say(share, f"{_hours(worn.time)} of {_hours(settings.duration)}")
             if end:
                 return rows, end
     except NoAverage as stop:
@@ -247,7 +249,8 @@ def sentences(answer, settings) -> list[str]:
     lines = [f"{said[0].upper()}{said[1:]}."]
     if not time:
         return lines
-    depths = {face: answer["profile"][face][-1] for face in ("stator", "rotor")}
+    # Rounding is no growth.
+    depths = {face: np.maximum(answer["profile"][face][-1], 0.0) for face in ("stator", "rotor")}
     worn = [f"{face} {_length(min(d))} to {_length(max(d))}" for face, d in depths.items() if max(d) > 0.0]
     told = f"Worn off in {_hours(time[-1])}: {', '.join(worn)}" if worn else "Nothing is worn off"
     if later:

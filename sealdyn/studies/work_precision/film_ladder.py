@@ -55,11 +55,14 @@ def _grids(scenario, name: str) -> list[tuple[str, dict]]:
 
 
 def _cells(name: str, film) -> dict:
-    """Overrides that ask for the cells of a `Film` table."""
+    """Overrides that ask for the cells of a `Film` table; none for those that it has without a word."""
     options = getattr(film, name)
+    if options is None:
+        return {}
     if hasattr(options, "cells"):
         return {f"film.{name}.cells": list(options.cells)}
-    return {f"film.{name}.cells_r": options.cells_r, f"film.{name}.cells_theta": options.cells_theta}
+    cells = {f"film.{name}.cells_r": options.cells_r, f"film.{name}.cells_theta": options.cells_theta}
+    return {key: count for key, count in cells.items() if count is not None}
 
 
 def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> tuple[list[dict], str | None]:

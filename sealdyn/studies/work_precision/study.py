@@ -23,6 +23,7 @@ from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
 from ...solvers.methods import METHODS
 from ...status import Status
+from .._words import plain
 from . import film_ladder
 from .errors import WHERE, errors, observe, worst
 from .ranking import curve, mark_slow_runs, rank_methods, time_at
@@ -299,8 +300,11 @@ def tables(answer) -> list:
 
 def verdict(answer: dict, settings) -> list[str]:
     """Who is fastest, how much film model the scene needs, and how far both can be trusted."""
-    told = [f"to {row['error']:.0e} " + (f"{NAMES[row['method']]} ({row['wall'] * 1e3:.3g} ms)" if row["method"] else
-                                        f"none ({row['why']})") for row in answer["fastest"]]  # fmt: skip
+    told = [
+        f"to {row['error']:.0e} "
+        + (f"{NAMES[row['method']]} ({plain(row['wall'] * 1e3, 3)} ms)" if row["method"] else f"none ({row['why']})")
+        for row in answer["fastest"]
+    ]
     lines = [f"Fastest to an error {film_ladder.WORDS[settings.where]}: {', '.join(told)}."]
     lines += [film_ladder.sentence(answer)] if answer["models"] else []
     beside = answer["beside_reynolds"]
