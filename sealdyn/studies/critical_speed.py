@@ -352,7 +352,8 @@ def nonlinear_sentences(found, threshold) -> list[str]:
         shares, sizes = [at / threshold for at, _ in slow], [1e6 * size for _, size in slow]
         said.append(f"At {_span(shares, '.4f')} of the threshold a whirl of {_span(sizes, '.0f')} urad tips it, by the "
                     "family alone: runs that begin beside it part too slowly to be told apart in time.")  # fmt: skip
-    said += [fates(found["directions"], start) for start in ("small", "large")]
+    if found["directions"]:
+        said += [fates(found["directions"], start) for start in ("small", "large")]
     apart = [abs(row["difference"]) for row in (*found["tipping"], *found["directions"]) if row["difference"]]
     if apart:
         said.append(f"Whirls by continuation and in time agree within {max(apart):.1e} ({len(apart)} compared).")
@@ -367,8 +368,11 @@ def _span(values, form) -> str:
 
 def fates(rows, start) -> str:
     """What became of the small or large whirls, from low to high speed."""
-    rows = [row for row in rows if row["start"] == start and "failed" not in row]
-    parts, last = [], None
+    rows = [row for row in rows if row["start"] == start]
+    failed = [row["failed"] for row in rows if "failed" in row]
+    rows, parts, last = [row for row in rows if "failed" not in row], [], None
+    if not rows:
+        return f"{start.capitalize()} whirls in time: none was followed to its end ({failed[0]})."
     for row in rows:
         if row["fate"] != last:
             parts.append([row["fate"], row["speed"], row["speed"]])

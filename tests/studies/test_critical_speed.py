@@ -10,7 +10,7 @@ from in_process import InProcess
 from oracles import tilt_roots
 from scenes import INERTIA, SUPPORT, fmr, fms
 
-from sealdyn.analysis.whirl import growth_rate, time_domain, tipping_disturbance
+from sealdyn.analysis.whirl import free_model, growth_rate, time_domain, tipping_disturbance
 from sealdyn.analysis.whirl.time_domain import followed
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import critical_speed
@@ -234,3 +234,46 @@ def test_an_unstable_whirl_that_meets_no_contact_is_told_to_where_it_was_followe
     }
     said = " ".join(critical_speed.nonlinear_sentences(found, 640.0))
     assert "no speed" not in said and "followed down to 130 rad/s" in said
+
+
+# Two heavy rings that turn against each other on a thin, stiff film that hardly damps their whirl.
+STIFF_PAIR = """
+[shaft]
+speed = "9000 rpm"
+[film]
+inner_radius = "40 mm"
+outer_radius = "46 mm"
+coning = "0.3 mrad"
+viscosity = "5 mPa*s"
+outer_pressure = "2 bar"
+inner_pressure = "1 bar"
+[closing]
+balance_ratio = 0.76
+spring_force = "20 N"
+[rotor]
+mass = "350 g"
+transverse_inertia = "3e-4 kg*m^2"
+polar_inertia = "5.5e-4 kg*m^2"
+support = { axial_stiffness = "40 N/mm", axial_damping = "3 N*s/m", radius = "42 mm" }
+[stator]
+mass = "300 g"
+transverse_inertia = "2.6e-4 kg*m^2"
+polar_inertia = "5e-4 kg*m^2"
+speed = "-7000 rpm"
+support = { axial_stiffness = "40 N/mm", axial_damping = "3 N*s/m", radius = "42 mm" }
+"""
+
+
+def test_whirls_that_take_a_million_turns_to_go_anywhere_are_not_run():
+    """It took six minutes, each of twelve runs given up after 36 s of Adams' small steps."""
+    scene = parse_scenario(STIFF_PAIR, "pair").scene
+    assert time_domain._method(free_model(scene, 18796.0)) == "bdf"
+    with pytest.raises(ValueError, match="turns to go anywhere"):
+        time_domain.bounded_or_not(scene, 18760.0, "small", None, None)
+
+
+def test_fates_that_are_not_known_say_why():
+    rows = [{"start": "small", "speed": 1.0, "failed": "too many steps"}]
+    assert critical_speed.fates(rows, "small") == (
+        "Small whirls in time: none was followed to its end (too many steps)."
+    )

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from ...dynamics.run_state import RunState
+from ...simulation.method_selection import choose_method
 from ...solvers.contract import Enough, Status, attainable
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
@@ -18,6 +19,8 @@ TIGHTER = 1 / 30
 NEAREST, PATIENCE = 1e-6, 2000
 # Blocks of a few hundred steps that one run may take: a hundred times what a healthy one does.
 MOST_BLOCKS = 2000
+# How many times what a run may last its whirl may take to go anywhere, in a stiff scene, where a run takes a minute.
+SHOWS = 10
 
 
 class TooLong(ValueError):
@@ -63,6 +66,11 @@ def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=m
     outcome = solve(run, method, accuracy, sink)
     t, q, _ = sink.arrays()
     return outcome, t, wave.relative(q.T), run
+
+
+def _method(model) -> str:
+    """Of runs of which the fate is asked, not a rate: film and springs may be stiff."""
+    return choose_method(RunState(model, 1.0))[0]
 
 
 def fitted(t, tilt) -> tuple[float, float]:
@@ -137,11 +145,11 @@ def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1
     if turns > PATIENCE:
         said = f"not bisected in time: runs leave the whirl with {parting:.2g} 1/s, and part after {turns:.2g} turns"
         return {"disturbance": None, "whirl": None, "said": said, "turns": turns}
-    unit = contact_tilt_aligned(model)
+    unit, method = contact_tilt_aligned(model), _method(model)
     low, high, runs = 0.0, 0.985 * unit, {}
 
     def tips(amplitude):
-        outcome, t, tilt, _ = followed(scene, speed, most_turns, "adams", accuracy, amplitude, 0.3 * amplitude)
+        outcome, t, tilt, _ = followed(scene, speed, most_turns, method, accuracy, amplitude, 0.3 * amplitude)
         runs[amplitude] = (t, tilt)
         return outcome.status == Status.COLLAPSED
 
@@ -175,10 +183,13 @@ def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: 
     unit = contact_tilt_aligned(model)
     linear = max(m.value.real for m in model.linear_scene().modes() if m.kind == "tilt")
     frequency_of_turns = pace(model, speed) / (2 * math.pi)
-    turns = min(most, int(9 / abs(linear) * frequency_of_turns) + 50)
+    method, whole = _method(model), int(9 / abs(linear) * frequency_of_turns) + 50
+    if method != "adams" and whole > SHOWS * most:
+        raise TooLong(f"a whirl that grows or decays by {abs(linear):.2g} 1/s takes {whole:.2g} turns to go anywhere")
+    turns = min(most, whole)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit
-    outcome, t, tilt, _ = followed(scene, speed, turns, "adams", accuracy, begin, least)
+    outcome, t, tilt, _ = followed(scene, speed, turns, method, accuracy, begin, least)
     size = np.abs(tilt)
     row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * frequency_of_turns)}
     if outcome.status == Status.COLLAPSED:
