@@ -431,6 +431,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     scenario = _read(file, set)
     if scenario.study:
         _refuse_settings(scenario)
+    _say_compiling(file=sys.stderr)
     size = size_of(scenario)
     if isinstance(scenario.scene, RadialScene):
         return _check_radial(file, scenario, as_json)
@@ -736,6 +737,7 @@ def report(
     for file in files:
         with _reads(file):
             _must_be_archive(file)
+    _say_compiling(file=sys.stderr)
     with _reads(files[0]):
         try:
             review(files, out, title, _rules_of, study_tables, of_film)
@@ -810,6 +812,7 @@ def validate(
     if not set(wanted) <= set(names):
         near = _nearest(wanted[0], names)
         raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
+    _say_compiling(file=sys.stderr)
     with _libraries_on_stderr():
         found = checks(wanted)
     rows = [row for part in found.values() for row in part]

@@ -1,8 +1,13 @@
 """The progress bar: what it says of a run that is done more than once, and of the wait after the last step."""
 
-import pytest
+from pathlib import Path
 
-from sealdyn.cli import _Progress
+import pytest
+from typer.testing import CliRunner
+
+from sealdyn.cli import _Progress, app
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 @pytest.fixture
@@ -27,3 +32,9 @@ def test_a_run_done_again_begins_again(shown):
 def test_a_full_bar_says_what_is_waited_for(shown):
     shown(2.0, 2.0)
     assert shown.bar.tasks[0].fields["words"] == "t = 2 s: summing up"
+
+
+def test_a_check_says_that_it_compiles(monkeypatch):
+    monkeypatch.setattr("sealdyn.kernel_cache.kept_kernels", lambda: [])
+    answer = CliRunner().invoke(app, ["check", str(SCENARIOS / "fms_reference.toml")])
+    assert answer.exit_code == 0 and answer.stderr.startswith("first run on this machine: compiling kernels")
