@@ -319,9 +319,10 @@ def rest_state(scene, clearance, interval=None, mean_spin=None, shift=0.0, pace=
     return s, (length, length / radius, widest * pace, widest / radius * pace)
 
 
-def flow_at_rest(interface, s) -> None:
-    """Loads, flows and friction of film and asperities at a gap state at rest, into it.  Raises SceneError."""
-    film, f = interface.observed
+def flow_at_rest(interface, s, observed=None) -> None:
+    """Loads, flows and friction of film and asperities at a gap state at rest, into it; `observed` film and block in
+    place of the interface's own.  Raises SceneError."""
+    film, f = observed or interface.observed
     film.flow(f, s, *([interface.steady(f, s)] if interface.unknowns is not None else []))
     if interface.contact is not None:
         contact.contact_load_and_friction(interface.contact, f, s)

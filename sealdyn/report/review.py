@@ -11,7 +11,7 @@ from pathlib import Path
 from ..archive import is_study, read_info, read_study
 from ..toml_line import toml_line
 from .radial import is_radial
-from .text import question_of, rows_of, study_lines
+from .text import question_of, rows_of, speed_unit, study_lines
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -72,7 +72,7 @@ def _title(parts: list[dict], seals: list[list[str]]) -> str:
 def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
-    rows = list(rows_of(summary)) if summary else []
+    rows = list(rows_of(summary, speed_unit(info))) if summary else []
     figures = RADIAL_FIGURES if is_radial(info) else FIGURES
     return {
         "kind": "run",

@@ -13,12 +13,14 @@ MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 def lines(scenario, summary: dict) -> list[str]:
     """About a dozen lines: what a seal engineer reads first."""
     message = "" if summary["status"] == Status.OK else summary["message"]
-    return _table(scenario.name, summary["status"], message, rows_of(summary))
+    speeds = speed_unit({"scenario": scenario.text, "overrides": scenario.overrides})
+    return _table(scenario.name, summary["status"], message, rows_of(summary, speeds))
 
 
-def rows_of(summary: dict):
-    """(name, words) of every line of a run, of a face or a radial seal; a line that goes on has no name."""
-    return radial_rows(summary) if "follower" in summary else run_rows(summary)
+def rows_of(summary: dict, speeds=("rad/s", 1.0)):
+    """(name, words) of every line of a run, of a face or a radial seal, `speeds` in the unit of `speed_unit`; a line
+    that goes on has no name."""
+    return radial_rows(summary) if "follower" in summary else run_rows(summary, speeds)
 
 
 def question_of(comment: str) -> str:
@@ -44,8 +46,8 @@ def _table(title, status, message, rows) -> list[str]:
     return [ended, *(f"  {name:<14}{words}" for name, words in rows)]
 
 
-def run_rows(summary):
-    """(name, words) of every line; a line that goes on has no name."""
+def run_rows(summary, speeds):
+    """(name, words) of every line, as `rows_of`."""
     model, film, closing = (summary[k] for k in ("model", "film", "closing"))
     yield "model", (f"{model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
                     f"{summary['counts']['steps']} steps, {summary['counts']['rhs']} evaluations, "
@@ -86,7 +88,7 @@ def run_rows(summary):
             "cavitation",
             f"up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure ({how})",
         )
-    yield "stability", _stability(summary["stability"])
+    yield "stability", _stability(summary["stability"], *speeds)
     if summary["energy_residual"] is not None:
         yield "energy audit", f"residual {summary['energy_residual']:.1e} of the work exchanged"
     if summary.get("certificate"):
@@ -125,7 +127,7 @@ def _contact_rows(contact):
     if not contact["touches"]:
         yield "touch", f"never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"
         return
-    yield "touch", (f"{contact['touches']} contacts, first at t = {_n(contact['first'])} s, deepest "
+    yield "touch", (f"{contact['touches']} contact{'s' * (contact['touches'] > 1)}, first at t = {_n(contact['first'])} s, deepest "
                     f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse "
                     f"{_n(contact['impulse'])} N s{grazing}")  # fmt: skip
     # Archives of earlier versions do not hold the share of the load, nor whether the faces wear.
@@ -158,9 +160,12 @@ def _settled_rows(summary):
     if low.get("steady") is not None:
         share = low["steady"] / low["value"] * low["of_clearance"]
         yield "h_min", f"settled: {_n(low['steady'], MICRO)} um ({_n(share, 100)} % of the clearance)"
-    words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, 6)}, min {_n(tilt['steady_min'], MICRO, 6)}"
+    # Two digits beyond what is accurate, to compare.
+    near = summary["accuracy"] * summary["film"]["clearance"] / low["radius"]
+    digits = min(max(2 + math.floor(math.log10(max(tilt["steady_max"], near) / near)), 3), 6)
+    words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, digits)}, min {_n(tilt['steady_min'], MICRO, digits)}"
     if "relative_max" in form:
-        words += f"; closed form {_n(form['relative_max'], MICRO, 6)}, {_n(form['relative_min'], MICRO, 6)} "
+        words += f"; closed form {_n(form['relative_max'], MICRO, digits)}, {_n(form['relative_min'], MICRO, digits)} "
         # Linear theory knows no friction: a ring on an O-ring lags by more.
         words += f"({form['road']}{', without the O-ring' if summary['secondary_seal'] else ''})"
     yield "misalignment", words
@@ -208,17 +213,22 @@ def _margin_rows(summary):
     yield "contact", words
 
 
-def _stability(stability):
+def _stability(stability, unit, per):
+    def at(*speeds, joined=", "):
+        return f"{joined.join(f'{float(_n(w, per)):.7g}' for w in speeds)} {unit}"
+
     critical, whirl = stability["critical_speed"], stability["whirl_ratio"]
     verdict = stability["verdict"]
-    text = f"{verdict} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
+    text = f"{verdict} (all degrees of freedom, at {at(stability['speed'])})"
     if verdict == "neutral" and stability.get("growth_rate_uncertainty") is not None:
         known = _n(stability["growth_rate_uncertainty"], digits=2)
         text += f", growth rate {_n(stability['growth_rate'])} 1/s, known to +- {known} 1/s only"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
+    # Archives of earlier versions do not hold it.
+    keeps = ", the stator keeping its own speed" if stability.get("stator_speed") else ""
     if critical:
-        text += f", critical speed {_n(critical)} rad/s"
+        text += f", critical speed {at(critical)}{keeps}"
         every = stability.get("thresholds") or [critical]
         tilts = [mode["re"] for mode in stability["modes"] if mode["kind"] == "tilt"]
         if tilts and verdict != "neutral":
@@ -227,16 +237,15 @@ def _stability(stability):
             below = (max(tilts) < 0.0) != bool(turned)
             text += f" (stable {'below' if below else 'above'})"
         if len(every) > 1:
-            text += ", again at " + ", ".join(_n(w) for w in every[1:]) + " rad/s"
+            text += f", again at {at(*every[1:])}"
     elif stability["thresholds"] is None:
         text += ", critical speed not looked for (study campbell)"
     else:
-        text += ", no critical speed"
+        text += f", no critical speed{keeps}"
     if stability.get("speeds_held"):
-        low, high = (_n(w) for w in stability["speeds_held"])
-        text += f" (from {low} to {high} rad/s, where a film holds the closing force)"
+        text += f" (from {at(*stability['speeds_held'], joined=' to ')}, where a film holds the closing force)"
     if stability["resonance_speeds"]:
-        text += ", resonance at " + ", ".join(_n(w) for w in stability["resonance_speeds"]) + " rad/s"
+        text += f", resonance at {at(*stability['resonance_speeds'])}"
     return text
 
 
@@ -373,7 +382,7 @@ def archive_lines(path, info: dict) -> list[str]:
     elif summary:
         low = summary["h_min"]
         rows.append(("h_min", f"{_n(low['value'], MICRO)} um at t = {_n(low['time'])} s"))
-        rows.append(("stability", _stability(summary["stability"])))
+        rows.append(("stability", _stability(summary["stability"], *speed_unit(info))))
     rows += [("event", f"{event['kind']} at t = {_n(event['time'])} s") for event in info.get("events", [])]
     rows.append(("series", ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items())))
     if info["fields"]:

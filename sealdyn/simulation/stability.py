@@ -7,7 +7,7 @@ import numpy as np
 from ..dynamics import modes, whirl_speeds
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.neutral_speeds import neutral_speeds
-from ..scene.rings import ROTOR
+from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 
@@ -19,8 +19,8 @@ STEPS, HALVINGS = 40, 20
 
 
 def stability(model, interval, linear, speeds: bool) -> dict:
-    """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), shaft speed (rad/s)
-    and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
+    """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
+    and of the stator (rad/s), and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
     `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy faces, or over
     pads."""
     found = linear.modes()
@@ -44,6 +44,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         "growth_rate": found[0].value.real if found else None,
         "growth_rate_uncertainty": modes.uncertainty(found) if found else None,
         "speed": speed,
+        "stator_speed": linear.rings[STATOR].spin,
         "modes": [
             {"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction, "uncertainty": m.error}
             for m in found

@@ -329,7 +329,7 @@ def _aligned(segment):
     NaN where there is no flow."""
     model, s = segment.model, _at_rest(segment)
     try:
-        flow_at_rest(model.interface, s)
+        flow_at_rest(model.interface, s, model.observed)
     except SceneError:
         return math.nan, math.nan
     from_high_to_low = -1.0 if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else 1.0

@@ -1,5 +1,6 @@
 """The README's own seal prints what the README says, and its table has every study."""
 
+import math
 import pkgutil
 import re
 from pathlib import Path
@@ -29,9 +30,13 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
         r"friction +([\d.]+) W": found["friction"]["power"],
         r"clearance ([\d.]+) um": found["film"]["clearance"] * 1e6,
         r"closing +([\d.]+) N": found["closing"]["force"],
-        r"critical speed ([\d.e+]+) rad/s \(stable": found["stability"]["critical_speed"],
+        r"critical speed (\d+) rpm \(stable": found["stability"]["critical_speed"] * 30 / math.pi,
     }.items():
         assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
+    # A run that may have the linear film has leakage and friction of the radial one, and so has the seal at its end.
+    assert found["model"]["film"] == "linear"
+    assert found["film"]["leakage"] == pytest.approx(found["leakage"]["mean"], rel=1e-3)
+    assert found["film"]["friction_power"] == pytest.approx(found["friction"]["power"], rel=1e-3)
 
 
 def test_program_of_the_readme_runs_and_prints_what_it_says(tmp_path, monkeypatch, capsys):
