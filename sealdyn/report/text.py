@@ -127,7 +127,8 @@ def _contact_rows(contact):
     if not contact["touches"]:
         yield "touch", f"never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"
         return
-    yield "touch", (f"{contact['touches']} contact{'s' * (contact['touches'] > 1)}, first at t = {_n(contact['first'])} s, deepest "
+    several = "s" if contact["touches"] > 1 else ""
+    yield "touch", (f"{contact['touches']} contact{several}, first at t = {_n(contact['first'])} s, deepest "
                     f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse "
                     f"{_n(contact['impulse'])} N s{grazing}")  # fmt: skip
     # Archives of earlier versions do not hold the share of the load, nor whether the faces wear.

@@ -20,9 +20,9 @@ STEPS, HALVINGS = 40, 20
 
 def stability(model, interval, linear, speeds: bool) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
-    and of the stator (rad/s), and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also `critical_speed`,
-    `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy faces, or over
-    pads."""
+    and of the stator (rad/s), and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also
+    `critical_speed`, `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy
+    faces, or over pads."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     searched = {}
