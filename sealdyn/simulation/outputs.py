@@ -31,6 +31,7 @@ UNITS |= {
 COMMON = (
     "h_min.value",
     "h_min.of_clearance",
+    "film.clearance",
     "relative_misalignment.max",
     "relative_misalignment.steady_max",
     "leakage.mean",
