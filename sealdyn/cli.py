@@ -913,10 +913,9 @@ def study(
 
 
 def _nearest(name: str, names) -> str:
-    import difflib
+    from .scenario.errors import nearest_of
 
-    near = difflib.get_close_matches(name, names, 1)
-    return f'; nearest "{near[0]}"' if near else ""
+    return nearest_of(name, names)
 
 
 def _flags(words: list[str]) -> dict:

@@ -6,6 +6,7 @@ import math
 import re
 import types
 import typing
+from collections.abc import Iterable
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -165,6 +166,12 @@ def without_indices(path: str) -> str:
     return ".".join(part for part in path.split(".") if not part.isdigit())
 
 
+def nearest_of(word: Any, known: Iterable[str], cutoff: float = 0.6) -> str:
+    """The end of a line that refuses a word: "; nearest 'clearance'" of those that are known, or nothing."""
+    near = difflib.get_close_matches(word, known, 1, cutoff) if isinstance(word, str) else []
+    return f"; nearest '{near[0]}'" if near else ""
+
+
 def nearest(kind: type, path: str, key: str) -> str:
     """Where an unknown key belongs: the table that has it, or the nearest spelling here, or elsewhere."""
     every = {table: keys | diameters(keys) for table, keys in tables(kind).items()}
@@ -224,11 +231,12 @@ def _explained(name: str, kind: type, raw: dict, error: dict) -> ScenarioError:
         return ScenarioError(name, key, cause.found, cause.expected + _in_place(key, value, raw))
     expected = _expected_here(path, holds, error)
     words = [w for a in (holds, *typing.get_args(holds)) for w in typing.get_args(a) if isinstance(w, str)]
-    near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
-    near = near or [word for word in words if isinstance(value, str) and value and value.lower() in word]
+    hint = nearest_of(value, words)
+    inside = [word for word in words if isinstance(value, str) and value and value.lower() in word]
+    hint = hint or (f"; nearest '{inside[0]}'" if inside else "")
     if isinstance(value, str) and (percent := PERCENT.fullmatch(value)):
         expected += f", e.g. {float(percent[1]) / 100:.6g}"
-    return ScenarioError(name, key, quoted(value), expected + (f"; nearest '{near[0]}'" if near else ""))
+    return ScenarioError(name, key, quoted(value), expected + hint)
 
 
 def _in_place(key: str, value: Any, raw: dict) -> str:

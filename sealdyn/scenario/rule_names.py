@@ -1,9 +1,10 @@
 """Names of the design rules that a scenario may acknowledge: those of the files in analysis/rules, none of which is
 read for that."""
 
-import difflib
 import pkgutil
 from pathlib import Path
+
+from .errors import nearest_of
 
 FOLDER = Path(__file__).parents[1] / "analysis" / "rules"
 
@@ -33,7 +34,7 @@ def unknown_rules(acknowledged, known=None) -> list[tuple[str, str, str]]:
     known = (known or rule_names()) if acknowledged else []
     return [
         (f"acknowledge.{name}", "an unknown design rule",
-         f"one of {', '.join(known)}; nearest '{difflib.get_close_matches(name, known, 1, 0.0)[0]}'")
+         f"one of {', '.join(known)}{nearest_of(name, known, 0.0)}")
         for name in acknowledged
         if name not in known
     ]  # fmt: skip

@@ -3,7 +3,6 @@ other values."""
 
 import contextlib
 import dataclasses
-import difflib
 import json
 import os
 import re
@@ -22,7 +21,7 @@ from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
-from .errors import ScenarioError
+from .errors import ScenarioError, nearest_of
 from .overrides import as_written, key_and_words, opened, override_of, set_value, value_of, without_arrays
 from .reader import Scenario, given_keys, read_scenario, read_tables, refuse_extremes
 
@@ -44,8 +43,7 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     raw |= {key.replace("-", "_"): value for key, value in _listed(flags, kind).items()}
     for key in raw:
         if key not in known:
-            near = difflib.get_close_matches(key, known, 1)
-            hint = f"; nearest {near[0]}" if near else ""
+            hint = nearest_of(key, known)
             expected = f"one of {', '.join(known)}{hint}" if known else "no settings"
             raise ScenarioError(scenario.name, f"study.{name}.{key}", "an unknown key", expected)
     try:
@@ -229,8 +227,7 @@ def must_be_number(scenario: Scenario, key: str, where: str) -> None:
     except (AttributeError, KeyError, IndexError, TypeError, ValueError):
         odd = True
     if odd or dataclasses.is_dataclass(variants.part(scenario.scene, key)):
-        near = difflib.get_close_matches(key, scenario.given, 1)
-        hint = f'; nearest "{near[0]}"' if near and near != [key] else ""
+        hint = "" if key in scenario.given else nearest_of(key, scenario.given)
         raise ScenarioError(scenario.name, where, quoted(key), f"the key of a number of the scene{hint}")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,13 +38,12 @@ def example(name: str) -> Scenario:
     >>> sealdyn.example("fms_reference").scene.shaft.speed
     1000.0
     """
-    from .errors import ScenarioError
+    from .errors import ScenarioError, nearest_of
     from .reader import read_scenario
 
     names = shipped_paths()
     if name not in names:
-        near = difflib.get_close_matches(name, names, 1)
-        hint = f"; nearest '{near[0]}'" if near else ""
+        hint = nearest_of(name, names)
         raise ScenarioError(name, "", "no such scenario", f"a name of `sealdyn list`{hint}")
     return read_scenario(names[name])
 

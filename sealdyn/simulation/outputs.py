@@ -1,7 +1,6 @@
 """Single numbers of a run's summary by their dotted keys: which there are, and their units."""
 
-import difflib
-
+from ..scenario.errors import nearest_of
 from ..scene.radial import RadialScene
 from .summary import SPEEDS, plain
 
@@ -63,8 +62,7 @@ def output(parts: dict, key: str):
         place = place() if callable(place) else place
         if not isinstance(place, dict) or name not in place:
             known = [*leaves(plain(parts)), *(f"stability.{speeds}" for speeds in SPEEDS)]
-            near = difflib.get_close_matches(key, known, 1, 0.3)
-            raise ValueError(f"the run's summary has no {key}" + (f"; nearest {near[0]}" if near else ""))
+            raise ValueError(f"the run's summary has no {key}{nearest_of(key, known, 0.3)}")
         place = place[name]
     place = plain(place)
     if isinstance(place, dict):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import os
 from collections.abc import Callable, Iterable
@@ -13,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from ..archive import answer_as_dataset
-from ..scenario.errors import ScenarioError, scene_errors_of
+from ..scenario.errors import ScenarioError, nearest_of, scene_errors_of
 from ..scenario.overrides import without_arrays
 from ..scenario.reader import Scenario
 from ..scenario.settings import scenario_of
@@ -90,8 +89,7 @@ def study(
     scenario, name = scenario_of(source), name.replace("_", "-")
     names = study_names()
     if name not in names:
-        near = difflib.get_close_matches(name, names, 1)
-        hint = f'; nearest "{near[0]}"' if near else ""
+        hint = nearest_of(name, names)
         raise ScenarioError(scenario.name, "study", f'"{name}"', f"one of {', '.join(names)}{hint}")
     how = {"workers": workers, "scheduler": scheduler, "results": results, "progress": progress}
     how |= {"leave_out": [without] if isinstance(without, str) else list(without), "flags": without_arrays(settings)}

@@ -1,11 +1,10 @@
 """What a study may be told, and how long it takes: for help, for the JSON schema and for the page of keys."""
 
 import dataclasses
-import difflib
 import json
 from dataclasses import dataclass
 
-from ..scenario.errors import ScenarioError
+from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.reader import ScenarioFile
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
@@ -46,8 +45,7 @@ def refuse_unknown_studies(scenario) -> None:
     names = study_names()
     for name in scenario.study:
         if name.replace("_", "-") not in names:
-            near = difflib.get_close_matches(name.replace("_", "-"), names, 1)
-            expected = f"one of {', '.join(names)}" + (f"; nearest '{near[0]}'" if near else "")
+            expected = f"one of {', '.join(names)}{nearest_of(name.replace('_', '-'), names)}"
             raise ScenarioError(scenario.name, f"study.{name}", "an unknown study", expected)
 
 

@@ -1,6 +1,5 @@
 """Film pressure over the face at a gap state, with its force, moment, centre of pressure and leakage."""
 
-import difflib
 import math
 from dataclasses import dataclass
 
@@ -23,7 +22,7 @@ from ..faces.geometry import (
     REFUSED,
 )
 from ..numerics.crossing import crossing
-from ..scenario.errors import ScenarioError
+from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of
 from ..scene.gas import density_of
 from ..scene.scene import SceneError
@@ -168,8 +167,7 @@ def _place(name: str, at) -> dict[str, float]:
     for part in filter(None, (part.strip() for part in words.split(","))):
         key, equals, value = (word.strip() for word in part.partition("="))
         if key not in PLACES:
-            near = difflib.get_close_matches(key, PLACES, 1)
-            hint = f"; nearest {near[0]}" if near else ""
+            hint = nearest_of(key, PLACES)
             raise ScenarioError(name, "study.pressure.at", quoted(key or part), f"{' or '.join(PLACES)}{hint}")
         if key in place or not (equals and value):
             found = f"{key} twice" if key in place else quoted(part)

@@ -54,7 +54,7 @@ def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
         assert "nearest 'contact-onset'" in refused.err
     (tmp_path / "b.toml").write_text(scene + "\n[study.contact-onset]\nvalue = ['1 urad']\n")
     refused = sealdyn("check", "b.toml", cwd=tmp_path)
-    assert refused.code == 2 and "value: found an unknown key" in refused.err and "nearest values" in refused.err
+    assert refused.code == 2 and "value: found an unknown key" in refused.err and "nearest 'values'" in refused.err
     # A hyphen is as good as an underscore.
     (tmp_path / "c.toml").write_text(scene + "\n[study.work-precision]\nmethods = ['adsms']\n")
     refused = sealdyn("study", "work-precision", "c.toml", cwd=tmp_path)

@@ -46,7 +46,7 @@ def test_what_cannot_be_exported_says_so(tmp_path):
     sealdyn("run", REFERENCE, "--set", "run.turns=1", "--no-plot", "--out", "r.h5", cwd=tmp_path)
     asked = {
         ("e.h5", "--csv"): "one of roots, curve",
-        ("e.h5", "--table", "curv", "--mat", "e.mat"): 'nearest "curve"',
+        ("e.h5", "--table", "curv", "--mat", "e.mat"): "nearest 'curve'",
         ("e.h5", "--mat", "e.txt"): ".mat",
         ("r.h5", "--table", "curve"): "archive of a run",
     }

@@ -34,7 +34,7 @@ def test_nothing_is_overwritten(tmp_path):
     answer = sealdyn("new", "fms", cwd=tmp_path)
     assert answer.code == 2 and "already" in answer.err and (tmp_path / "fms.toml").read_text() == "mine"
     answer = sealdyn("new", "fsm", cwd=tmp_path)
-    assert answer.code == 2 and 'nearest "fms"' in answer.err
+    assert answer.code == 2 and "nearest 'fms'" in answer.err
     assert sealdyn("new", "gas", "--out", "nowhere/a.toml", cwd=tmp_path).code == 2
 
 

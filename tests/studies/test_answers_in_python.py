@@ -100,8 +100,8 @@ def test_any_answer_can_be_shown(answer, along):
 @pytest.mark.parametrize(
     "name, given_settings, told",
     [
-        ("equilibirum", {}, 'nearest "equilibrium"'),
-        ("equilibrium", {"ponts": 3}, "nearest points"),
+        ("equilibirum", {}, "nearest 'equilibrium'"),
+        ("equilibrium", {"ponts": 3}, "nearest 'points'"),
         ("equilibrium", {"points": "many"}, "[study.equilibrium] points"),
         ("sweep", {"vary": "film.clerance=1,2"}, "nearest 'clearance'"),
     ],

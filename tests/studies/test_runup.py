@@ -311,7 +311,7 @@ def test_the_tilt_that_touches_whatever_the_profile():
         ({"key": "closing.spring_force", "end": "5 N"}, ["key", "does not give"]),
         ({"window": 1}, ["window", "equal to 2"]),
         ({"hold": -1}, ["hold", "-1", "equal to 0"]),
-        ({"rate": 1000}, ["unknown key", "nearest rates"]),
+        ({"rate": 1000}, ["unknown key", "nearest 'rates'"]),
         ({"rates": "5 m"}, ["rates", "5 m", "rad/s^2"]),
         ({"rates": "1 foo:2 foo:3"}, ["rates", "1 foo"]),
         ({"rates": "10 foo:20 rpm/s:3"}, ["rates", "units of one kind"]),

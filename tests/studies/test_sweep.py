@@ -83,7 +83,7 @@ def test_critical_and_resonance_speeds_are_found_where_they_are_asked_for(tmp_pa
     # Runout has no part in it.
     for row in sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_speed")["rows"]:
         assert row["stability.critical_speed"] == whole["critical_speed"]
-    with pytest.raises(ScenarioError, match=r"nearest stability\.critical_speed"):
+    with pytest.raises(ScenarioError, match=r"nearest 'stability\.critical_speed"):
         sweep(tmp_path, "rotor.runout=10,20 urad", "stability.critical_sped")
 
 
@@ -101,7 +101,7 @@ def test_an_unknown_key_or_output_is_named(tmp_path):
         with pytest.raises(ScenarioError) as refused:
             sweep(tmp_path, vary)
         assert key in refused.value.key
-    with pytest.raises(ScenarioError, match=r"nearest h_min\.value"):
+    with pytest.raises(ScenarioError, match=r"nearest 'h_min\.value"):
         sweep(tmp_path, "rotor.runout=10,20 urad", "h_min.vlaue")
 
 
@@ -164,7 +164,7 @@ def test_outputs_that_no_run_has_are_refused_before_the_first(tmp_path, monkeypa
     with pytest.raises(ScenarioError) as refused:
         sweep(tmp_path, "rotor.runout=20,40 urad", "h_min.value,leakage,h_min.valeu")
     assert refused.value.key == "study.sweep.outputs" and refused.value.found == "leakage, h_min.valeu"
-    assert "leakage.mean" in refused.value.expected and "nearest h_min.value" in refused.value.expected
+    assert "leakage.mean" in refused.value.expected and "nearest 'h_min.value'" in refused.value.expected
     with pytest.raises(ScenarioError):
         sealdyn.sweep(PATH, {"rotor.runout": [2e-5]}, ["leakage"], workers=1)
     assert not list(tmp_path.iterdir())

@@ -138,7 +138,7 @@ def test_a_bad_entry_is_one_line(tmp_path, words, found, expected):
         ({"samples": 0}, "samples", "0", "16 or 32"),
         ({"seed": -1}, "seed", "-1", ">= 0"),
         ({"margin": -0.1}, "margin", "-0.1", "share"),
-        ({"outputs": "h_min.vlaue"}, "outputs", "h_min.vlaue; nearest h_min.value", "summary"),
+        ({"outputs": "h_min.vlaue"}, "outputs", "h_min.vlaue; nearest 'h_min.value'", "summary"),
         ({"outputs": []}, "outputs", "none", "summary"),
         ({"outputs": "stability.verdict"}, "outputs", "no number", "numbers"),
         ({"correlations": "rotor.runout, rotor.mass = 0.5"}, "correlations", "rotor.mass", "rotor.runout"),
@@ -147,7 +147,7 @@ def test_a_bad_entry_is_one_line(tmp_path, words, found, expected):
         ({"correlations": ["rotor.runout, film.coning = 0.9", "rotor.runout, film.viscosity = 0.9",
                            "film.coning, film.viscosity = -0.9"]},
          "correlations", "contradict", "positive definite"),
-        ({"scater": "x"}, "scater", "unknown key", "nearest scatter"),
+        ({"scater": "x"}, "scater", "unknown key", "nearest 'scatter'"),
     ],
 )  # fmt: skip
 def test_a_bad_setting_is_one_line(tmp_path, settings, key, found, expected):

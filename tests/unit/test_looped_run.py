@@ -172,7 +172,7 @@ def test_a_collapse_is_told_where_only_the_end_is_asked_for(by_itself):
 
 def test_what_there_is_not_is_named(by_itself):
     (row,) = rows("fms_reference", "rotor.runout", ["10 urad"], ["h_min.vlaue"], "run.turns=2")
-    assert "nearest h_min.value" in str(row)
+    assert "nearest 'h_min.value'" in str(row)
 
 
 @pytest.mark.parametrize(

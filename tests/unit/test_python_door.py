@@ -166,7 +166,7 @@ def test_numbers_of_a_run_that_collapses_are_not_handed_out_unasked():
     [
         ({"film.clerance": 1e-5}, "h_min.value", "nearest 'clearance'"),
         ({"rotor.runout": "1 mrad", "stator.misalignment": "1 mrad"}, "h_min.value", "fms_reference"),
-        (SHORT, "h_min.valeu", "nearest h_min.value"),
+        (SHORT, "h_min.valeu", "nearest 'h_min.value'"),
     ],
 )
 def test_what_cannot_be_evaluated_is_told_in_one_line(values, outputs, told):

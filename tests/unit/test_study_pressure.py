@@ -43,7 +43,7 @@ def test_nothing_said_is_the_aligned_equilibrium():
 @pytest.mark.parametrize(
     "at, found, expected",
     [
-        ("clearence=3 um", "clearence", "nearest clearance"),
+        ("clearence=3 um", "clearence", "nearest 'clearance'"),
         ("speed=3", "speed", "clearance or tilt"),
         ("tilt", "tilt", "clearance=5 um, tilt=0.1 mrad"),
         ("tilt=", "tilt=", "clearance=5 um, tilt=0.1 mrad"),

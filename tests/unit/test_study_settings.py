@@ -61,7 +61,7 @@ def test_words_with_commas_of_their_own_stay_whole():
         (rub, "whirl_speeds", "5700 rad/s,, 6000", ["study.rub] whirl_speeds", "speed of rotation"]),
         (failures, "items", "3, many", ["study.failures] items", "many", "integer"]),
         (steady_state, "approach", "0.9, near", ["study.steady_state] approach", "near", "number"]),
-        (rub, "whirl_speds", "1, 2", ["study.rub] whirl_speds", "nearest whirl_speeds"]),
+        (rub, "whirl_speds", "1, 2", ["study.rub] whirl_speds", "nearest 'whirl_speeds'"]),
     ],
 )
 def test_a_bad_entry_is_one_line(module, key, words, told):

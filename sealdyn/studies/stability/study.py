@@ -1,6 +1,5 @@
 """Stability map: growth rate over two scenario values, from eigenvalues; margins; points confirmed in time."""
 
-import difflib
 import math
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,7 +14,7 @@ from ...dynamics import modes
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
-from ...scenario.errors import ScenarioError
+from ...scenario.errors import ScenarioError, nearest_of
 from ...scenario.errors import tables as keys_of_tables
 from ...scenario.reader import ScenarioFile
 from ...scenario.settings import axis, with_values
@@ -111,8 +110,7 @@ def _held_by(scenario, where, key):
     holds = keys_of_tables(ScenarioFile).get(table, {}).get(leaf)
     if holds is None or table in ("run", "study", ""):
         known = [f"{t}.{k}" for t, keys in keys_of_tables(ScenarioFile).items() for k in keys if t not in ("run", "")]
-        near = difflib.get_close_matches(key, [*known, INERTIA_RATIO], 1)
-        hint = f"; nearest {near[0]}" if near else ""
+        hint = nearest_of(key, [*known, INERTIA_RATIO])
         raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
     if ".body." in key:
         raise ScenarioError(scenario.name, where, f'"{key}"', "mass or an inertia, which follow from the body")

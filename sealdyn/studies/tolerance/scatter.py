@@ -1,6 +1,5 @@
 """How scenario keys scatter: distributions as a user writes them, correlations, and scrambled Sobol points of both."""
 
-import difflib
 import re
 import typing
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import norm, qmc, truncnorm, uniform
 
 from ...scenario.diameters import radius_key
-from ...scenario.errors import ScenarioError, diameters, nearest, tables, without_indices
+from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, tables, without_indices
 from ...scene import variants
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quoted
@@ -77,8 +76,7 @@ class _Entry:
 
     def scatter(self) -> Scatter:
         if self.kind not in FORMS:
-            near = difflib.get_close_matches(self.kind, FORMS, 1)
-            hint = f"; nearest '{near[0]}'" if near else ""
+            hint = nearest_of(self.kind, FORMS)
             raise self.wrong(f"the distribution {quoted(self.kind)}", f"one of {', '.join(FORMS)}{hint}")
         self.quantity = self._quantity()
         low, high, centre, sigma = self._numbers()
@@ -207,8 +205,7 @@ def read_correlations(scenario, entries, keys: list[str]) -> np.ndarray | None:
             raise wrong(quoted(words, 90), '"KEY, KEY = NUMBER", e.g. "rotor.runout, stator.misalignment = 0.6"')
         for key in match[1], match[2]:
             if key not in keys:
-                near = difflib.get_close_matches(key, keys, 1)
-                hint = f"; nearest '{near[0]}'" if near else ""
+                hint = nearest_of(key, keys)
                 raise wrong(f"{key} in {quoted(words, 90)}", f"a key that scatters: {', '.join(keys)}{hint}")
         number = NUMBER.fullmatch(match[3])
         value = float(number[1]) if number and not number[2] else np.nan
