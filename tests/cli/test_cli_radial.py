@@ -78,12 +78,8 @@ def test_show_plot_and_what_is_of_face_seals(folder):
     assert sealdyn("show", "x.h5", "--csv", cwd=place).out.splitlines()[0].startswith("time [s],")
     assert sealdyn("plot", "x.h5", "--out", "y.png", cwd=place).code == 0
     assert Image.open(place / "y.png").size[0] > 1000
-    for words in (
-        ("plot", "x.h5", "--kind", "orbit"),
-        ("animate", "x.h5"),
-    ):
-        refused = sealdyn(*words, cwd=place)
-        assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
+    refused = sealdyn("plot", "x.h5", "--kind", "orbit", cwd=place)
+    assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
     for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
         refused = sealdyn("study", study, path, cwd=place)
         assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
