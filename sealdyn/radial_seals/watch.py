@@ -34,9 +34,10 @@ class Watch:
         segment, end = block.segment, block.t[block.end] if block.until is None else block.until
         edges = np.append(block.t[block.begin : block.end], end)
         edges = edges[edges + segment.time >= self.begun - 1e-12 * abs(end)]
-        if len(edges) < 2:
-            return
         widths = np.diff(edges)
+        # A run that goes on from its end has a step of no length, in which nothing can be interpolated.
+        if not widths.sum() > 0.0:
+            return
         taus = np.minimum((edges[:-1, None] + widths[:, None] * PLACES).ravel(), end)
         gaps, _, loads = segment.state(taus, *block.at(taus))
         rides, weights = segment.modes == RIDING, (widths[:, None] * WEIGHTS).ravel()
