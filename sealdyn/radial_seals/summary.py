@@ -69,7 +69,7 @@ def _watched(watch, scene, followers) -> dict:
         "contact_share": float(riding.mean()), "least_contact_share": float(riding.min()),
         "held_share": float(held.mean()),
         "largest_gap": gap or 0.0, "largest_gap_time": gap_time, "largest_gap_angle": angle,
-        "least_load": None if least is None else max(least, 0.0), "least_load_time": least_time,
+        "least_load": least, "least_load_time": least_time,
         "largest_load": most,
         "load": load, "friction_torque": scene.seal.friction_coefficient * scene.shaft.radius * load,
         "leakage_estimate": conductance(scene) * followers.arc * float(watch.cubed.sum()) / time,

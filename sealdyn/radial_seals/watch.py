@@ -49,9 +49,10 @@ class Watch:
         self._see_gap(block, taus, gaps)
         among = np.flatnonzero(rides)
         for name, sign in (("least_load", -1.0), ("largest_load", 1.0)):
-            # At the very end the load may have jumped: that is the next segment's.
-            seen = sign * loads[:-1, among]
-            if seen.size:
+            # At the very end the load may have jumped: that is the next segment's.  Nor does one press that pulls: it
+            # leaves, at the first instant of a run that was broken off there.
+            seen = np.where(loads[:-1, among] < 0.0, -np.inf, sign * loads[:-1, among])
+            if seen.size and seen.max() > -np.inf:
                 at, j = np.unravel_index(seen.argmax(), seen.shape)
                 self._take(name, sign, float(sign * seen[at, j]), segment.time + taus[at], among[j])
 

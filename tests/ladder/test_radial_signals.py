@@ -3,7 +3,9 @@ equations of each, series and fields, what is watched, events, and the lines of 
 
 import math
 import re
+from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +13,8 @@ import pytest
 from sealdyn.archive import FIELD_TIME, column, field, read_info
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.radial_seals import signals
-from sealdyn.radial_seals.closed_form import held_between, largest_eccentricity, needed_preload, said
+from sealdyn.radial_seals.closed_form import fastest, hangs_up, held_between, largest_eccentricity, needed_preload, said
+from sealdyn.radial_seals.contact import Contacts
 from sealdyn.radial_seals.followers import followers_of
 from sealdyn.radial_seals.run_state import RadialRun
 from sealdyn.radial_seals.segments import RadialModel, RadialSegment
@@ -20,6 +23,9 @@ from sealdyn.report.radial import radial_rows
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
 from sealdyn.simulation.simulate import simulate
+from sealdyn.solvers.contract import Transition
+from sealdyn.solvers.integrate import solve
+from sealdyn.solvers.recorder import Recorder
 
 R = 0.025
 TIMES, SPEEDS = (0.0, 0.02, 0.05), (-200.0, 400.0, 500.0)
@@ -148,6 +154,8 @@ def test_series_are_sums_over_the_followers(kind):
     taus = np.array([0.2, 0.6]) * segment.length
     surfaces = np.array([segment.surface(tau) for tau in taus])
     us = surfaces[:, :, 0] + np.where(modes == RIDING, 0.0, rng.uniform(-2e-6, 9e-6, (2, 12)))
+    # One so far inside that its springs pull it out: nothing presses on the shaft all the same.
+    us[:, 1] = -5e-3
     vs = np.where(modes == RIDING, surfaces[:, :, 1], rng.normal(size=(2, 12)) * 0.01)
     found, around = signals.columns(segment, taus, us, vs)
     m, matrix, d, preload, friction = constants(kind)
@@ -191,7 +199,7 @@ WATCHED = """
 # Six segments, held by their flange now and then.
 [shaft]
 radius = 0.025
-speed = 300.0
+speed = {speed}
 eccentricity = 2e-4
 [circumferential]
 mass = 0.06
@@ -205,14 +213,21 @@ viscosity = 0.02
 pressure_difference = 5000.0
 [run]
 turns = 3
-samples_per_turn = 190
+samples_per_turn = {samples}
 """
 
 
-@pytest.fixture(scope="module", params=[0.12, 0.101], ids=["flies", "held"])
+SPEEDING = "{time = [0.0, 0.03, 0.08], value = [60.0, 60.0, 300.0]}"
+
+
+@pytest.fixture(scope="module", params=[(0.12, 300.0), (0.101, 300.0), (0.06, 300.0), (0.12, SPEEDING)],
+                ids=["flies", "turns", "hangs up", "speeds up"])  # fmt: skip
 def watched(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("radial") / "x.h5"
-    found = simulate(parse_scenario(WATCHED.format(tension=request.param), "x"), path)
+    tension, speed = request.param
+    # As many as the archive keeps of what is around the shaft.
+    samples = 110 if speed == SPEEDING else 190
+    found = simulate(parse_scenario(WATCHED.format(tension=tension, speed=speed, samples=samples), "x"), path)
     assert found.status == "ok"
     return path, found.summary
 
@@ -221,7 +236,7 @@ def kept(path):
     """Times (s), gaps, loads, displacements (m, n), and who rides, is held."""
     times, gaps, loads = (field(path, name) for name in (FIELD_TIME, "gap", "follower_load"))
     theta = np.pi / 3 * np.arange(6)
-    us = gaps + 2e-4 * np.cos(theta - 300.0 * times[:, None])
+    us = gaps + 2e-4 * np.cos(theta - column(path, "shaft_angle")[:, None])
     rides = loads > 0
     still = np.zeros_like(rides)
     still[1:] = np.abs(np.diff(us, axis=0)) < 1e-12
@@ -234,11 +249,11 @@ def test_what_is_watched_is_what_the_archive_adds_up_to(watched, part):
     path, summary = watched
     told = summary[part]
     times, gaps, loads, _, rides, held = kept(path)
-    assert len(times) == 571
+    assert len(times) == len(column(path, "time"))
     late = times >= (0.0 if part == "whole" else 0.5 * times[-1])
     shares = rides[late].mean(axis=0)
     assert told["contact_share"] == pytest.approx(shares.mean(), abs=4e-3)
-    assert told["least_contact_share"] == pytest.approx(shares.min(), abs=8e-3) and np.ptp(shares) > 0
+    assert told["least_contact_share"] == pytest.approx(shares.min(), abs=8e-3)
     assert told["held_share"] == pytest.approx(held[late].mean(), abs=4e-3)
     load = loads[late].sum(axis=1).mean()
     assert told["load"] == pytest.approx(load, rel=0.02)
@@ -249,13 +264,18 @@ def test_what_is_watched_is_what_the_archive_adds_up_to(watched, part):
     first = told["largest_gap_time"]
     row = int(np.argmin(np.abs(times - first)))
     which = round(told["largest_gap_angle"] / (math.pi / 3))
+    assert told["largest_gap_angle"] == pytest.approx(which * math.pi / 3, abs=1e-9)
     assert late[max(row, 1)] and gaps[row, which] == pytest.approx(told["largest_gap"], rel=2e-3)
     riding = loads[late][rides[late]]
-    assert riding.max() * 0.999 <= told["largest_load"] <= 1.02 * riding.max()
-    assert 0.0 <= told["least_load"] <= 1.001 * riding.min()
+    if not len(riding):
+        assert told["least_load"] is told["largest_load"] is None
+        return
+    most = riding.max()
+    assert most * 0.999 <= told["largest_load"] <= 1.02 * most
+    assert 0.0 <= told["least_load"] <= riding.min() + 1e-3 * most
     row = int(np.argmin(np.abs(times - told["least_load_time"])))
     near = loads[max(row - 1, 0) : row + 2]
-    assert near[near > 0].min() <= told["least_load"] + 0.02 * riding.max()
+    assert near[near > 0].min() <= told["least_load"] + 0.02 * most
 
 
 def test_events_are_those_of_the_motion(watched):
@@ -310,11 +330,13 @@ def test_lines_of_a_summary_have_its_numbers(watched):
     assert f"theta = {angle:.4g} deg" in told["largest gap"]
     # ml/h of m^3/s.
     assert f"estimate {settled['leakage_estimate'] * 1e6 * 3600:.4g} ml/h" in told["leakage"]
+    stiff = summary | {"follower": summary["follower"] | {"stiffness": 7.5}, "wall_time": 1.0}
+    assert f"stiffness {7.5 / arc:.4g} N/m^2" in dict(radial_rows(stiff))["follower"]
     needed = 0.01 * 2e-4 * 300.0**2 + 0.1
     assert f"a preload of {needed / arc:.4g} N/m at {300 * 30 / math.pi:.5g} rpm" in told["closed form"]
     assert f"{preload / needed:.4g} times that" in told["closed form"]
-    assert f"up to {1e3 * (preload - 0.1) / (0.01 * 300.0**2):.4g} mm" in told["closed form"]
-    assert "hang-up" not in told["closed form"]
+    assert f"up to {1e3 * max(preload - 0.1, 0.0) / (0.01 * 300.0**2):.4g} mm" in told["closed form"]
+    assert ("hang-up" in told["closed form"]) == (preload < 0.1)
     form = summary["closed_form"] | {"hangs_up": True, "margin": None, "largest_eccentricity": None}
     hung = {**summary, "wall_time": 1.0, "closed_form": form}
     words = " ".join(words for _, words in radial_rows(hung))
@@ -325,7 +347,11 @@ def test_lines_of_a_summary_have_its_numbers(watched):
 
 def test_what_leaves_and_does_not_come_back_is_a_loss_too(tmp_path):
     """Warned of by what has left, not by what has landed; and of a shaft that is far off its place."""
-    text = WATCHED.format(tension=0.02).replace("axial_force = 0.6", "axial_force = 60.0").replace("2e-4", "2.6e-3")
+    text = (
+        WATCHED.format(tension=0.02, speed=300.0, samples=72)
+        .replace("axial_force = 0.6", "axial_force = 60.0")
+        .replace("2e-4", "2.6e-3")
+    )
     found = simulate(parse_scenario(text.replace("turns = 3", "turns = 2"), "x"), tmp_path / "x.h5").summary
     none = found | {"contact": found["contact"] | {"land": 0}}
     assert found["contact"]["lift"] and _warnings(none, parse_scenario(text, "x").scene)[0] == found["warnings"][0]
@@ -333,6 +359,65 @@ def test_what_leaves_and_does_not_come_back_is_a_loss_too(tmp_path):
     assert [words.split(":")[0][:18] for words in found["warnings"][:3]] == [
         "contact is lost", "the flange's frict", "the shaft is off b"]  # fmt: skip
     assert found["closed_form"]["hangs_up"] and found["closed_form"]["largest_eccentricity"] == 0.0
+
+
+@pytest.mark.parametrize("when", [0.1, 0.25, 0.7])
+def test_a_run_that_goes_on_amounts_to_the_same(when, tmp_path):
+    """Broken off in its first half, in its second, and while it is done once more: all that is added up."""
+    scenario, looks = parse_scenario(WATCHED.format(tension=0.12, speed=SPEEDING, samples=72), "x"), []
+    whole = simulate(scenario, tmp_path / "whole.h5", stop=lambda: looks.append(0) is not None)
+    # The later looks are those of the sharper run.
+    left = iter(range(int(when * len(looks)), -1, -1))
+    part = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(left, 0) == 0)
+    assert part.status == "interrupted" and (part.summary["settled"]["load"] is None) == (when == 0.1)
+    assert (part.summary["end"]["time"] == part.summary["end"]["asked"]) == (when == 0.7)
+    rest = simulate(scenario, tmp_path / "part.h5", resume=True)
+    for part in ("whole", "settled", "contact"):
+        # Each turn is as the other: which of them has the largest by a hair says nothing.
+        same = {name: value for name, value in whole.summary[part].items() if not name.endswith(("_time", "_angle"))}
+        for name, value in same.items():
+            # The least load is one of places within the steps, which are others.
+            near = 1e-3 * whole.summary["whole"]["largest_load"] if name == "least_load" else 1e-12
+            assert rest.summary[part][name] == pytest.approx(value, rel=1e-4, abs=near), (part, name)
+
+
+def test_the_impulse_is_the_integral_of_the_load():
+    """Of a lip that rides for a third of a turn, to what the equations are exact to."""
+    shaft = RadialShaft(R, 300.0, eccentricity=1e-4)
+    run = RadialRun(RadialModel(RadialScene(shaft, lip=Lip(0.03, 4, 20.0, 5e4)), 1e-5), 0.007)
+    assert solve(run, "dop853", 1e-5, Recorder()).status == "ok"
+    arc, theta = 2 * math.pi * R / 4, np.pi / 2 * np.arange(4)
+    swing = 1e-4 * (5e4 * arc - 0.0075 * 300.0**2)
+    load = 20.0 * arc * 0.007 + swing * (np.sin(theta) - np.sin(theta - 300.0 * 0.007)) / 300.0
+    assert run.extrema.time == pytest.approx(0.007)
+    np.testing.assert_allclose(run.extrema.impulse, load, rtol=1e-8)
+
+
+# --- what a follower does at rest ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("pull, mode, sign", [(0.024, HELD, 0.0), (-0.024, HELD, 0.0), (0.026, FREE, -1.0),
+                                              (-0.026, FREE, 1.0)])  # fmt: skip
+def test_a_follower_at_rest_is_held_or_goes_where_it_is_pulled(pull, mode, sign):
+    """Flange friction of 0.025 N holds both ways; the springs of all others pull with it."""
+    contacts = Contacts(RadialModel(ramped("segments"), 1e-6))
+    _, matrix, _, preload, _ = constants("segments")
+    # The follower itself stands where it should: the others pull.
+    u = np.zeros(12)
+    u[[0, 7]] = 0.5 * (pull - preload) / matrix[3, 0]
+    y = np.concatenate([u, np.full(12, 1e-9), np.zeros(4)])
+    contacts.modes[:] = FREE
+    kind = contacts._stop(3, y)
+    assert (contacts.modes[3], contacts.signs[3]) == (mode, sign) and kind == ("stick" if mode == HELD else "turn")
+    assert y[12 + 3] == 0.0 and contacts.modes[2] == FREE
+    # One that is held slips the same way.
+    if mode == FREE:
+        contacts.modes[:], contacts.signs[:] = HELD, 0.0
+        contacts.begin(segment_at("segments", 0, contacts.modes), 0.0, y)
+        _, second = contacts.guards(SimpleNamespace(at=lambda taus: (u[None], np.zeros((1, 12)))), np.array([0.0]))
+        assert second[0, 3] == pytest.approx(0.025 - abs(pull))
+        made = contacts.make(Transition(0, 0.0, y, (3, False)))
+        assert made.event["kind"] == "slip" and (contacts.modes[3], contacts.signs[3]) == (FREE, sign)
 
 
 def test_closed_forms_in_words_and_at_their_edges():
@@ -357,3 +442,7 @@ def test_closed_forms_in_words_and_at_their_edges():
     assert largest_eccentricity(slack, shaft, 500.0) == 0.0
     low, high = held_between(100.0, 0.01, 0.02, 1e-4)
     assert low == 0.0 and high == pytest.approx(math.sqrt(300.0 / 0.01))
+    held = replace(followers, preload=0.025, friction=0.025)
+    assert hangs_up(held) and not hangs_up(replace(held, preload=0.0250001))
+    # The fastest may be the other way round.
+    assert fastest(replace(shaft, speed=PiecewiseLinear((0.0, 1.0), (-600.0, 400.0)))) == -600.0
