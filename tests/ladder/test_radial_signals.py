@@ -193,6 +193,25 @@ def test_a_run_begins_on_the_shaft():
     assert run.end_time(1, 0.003) == pytest.approx(TIMES[1] + 0.003)
 
 
+def test_what_a_solver_is_told_of_its_pace():
+    """Steps resolve waves of the shaft and vibrations of the sectors, whichever is faster; errors last while a free
+    sector swings."""
+    scene = ramped("lip")
+    scene = replace(scene, lip=replace(scene.lip, mass=0.003))
+    _, matrix, d, _, _ = constants("lip")
+    m = 0.003 / 12
+    natural = math.sqrt(np.linalg.eigvalsh(matrix)[-1] / m)
+    model = RadialModel(scene, 1e-6)
+    assert natural > 3 * 500.0 and model.reference_rate == pytest.approx(natural)
+    slow = RadialModel(replace(scene, lip=replace(scene.lip, mass=30.0)), 1e-6)
+    assert slow.reference_rate == pytest.approx(3 * 500.0)
+    run = RadialRun(model, 1.0)
+    assert 2 * m / d < 1.0
+    assert run.memory == pytest.approx(2 * m / d / model.shortest_period)
+    undamped = RadialRun(RadialModel(replace(scene, lip=replace(scene.lip, loss_factor=0.0)), 1e-6), 1.0)
+    assert undamped.memory == pytest.approx(1.0 / model.shortest_period)
+
+
 # --- what a run amounts to ----------------------------------------------------------------------------
 
 WATCHED = """
