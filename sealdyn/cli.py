@@ -508,8 +508,8 @@ def _of_a_face_seal(file):
     from .report.radial import is_radial
 
     if not is_study(file) and is_radial(read_info(file)):
-        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal: its motion "
-                                   "is in the overview (plot)")  # fmt: skip
+        raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal: its figure "
+                                   "is the overview, its motion in animate")  # fmt: skip
 
 
 @app.command()
@@ -700,7 +700,8 @@ def animate(
     turns: Annotated[float, typer.Option(help="last turns of the shaft (at rest: ms)", min=1e-6)] = 4.0,
     per_turn: Annotated[int, typer.Option(help="pictures of a turn (at rest: of a ms)", min=1)] = 36,
 ):
-    """Show the motion: both rings with enlarged tilts, the film over the face, the orbit, and the time line."""
+    """Show the motion: both rings with enlarged tilts, the film over the face, the orbit, and the time line; of a
+    radial seal the shaft with enlarged runout, its followers, and gap and load around it."""
     from .archive import is_study
     from .report.charts.animation import animate
 
@@ -708,7 +709,6 @@ def animate(
     with _Progress() as bar, _reads(file):
         if is_study(file):
             raise Stop(Status.INVALID, f"{file}: the archive of a study; expected that of a run")
-        _of_a_face_seal(file)
         try:
             animate(file, out, turns, per_turn, progress=bar)
         except ImportError:

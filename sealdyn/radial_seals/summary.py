@@ -69,7 +69,7 @@ def _watched(watch, scene, followers) -> dict:
         "contact_share": float(riding.mean()), "least_contact_share": float(riding.min()),
         "held_share": float(held.mean()),
         "largest_gap": gap or 0.0, "largest_gap_time": gap_time, "largest_gap_angle": angle,
-        "least_load": None if least is None else max(least, 0.0), "least_load_time": least_time,
+        "least_load": least, "least_load_time": least_time,
         "largest_load": most,
         "load": load, "friction_torque": scene.seal.friction_coefficient * scene.shaft.radius * load,
         "leakage_estimate": conductance(scene) * followers.arc * float(watch.cubed.sum()) / time,
@@ -79,11 +79,13 @@ def _watched(watch, scene, followers) -> dict:
 def _warnings(summary, scene) -> list[str]:
     said, whole, settled = [], summary["whole"], summary["settled"]
     if summary["contact"]["lift"]:
-        share = 100.0 * (1.0 - settled["contact_share"])
-        said.append(
-            f"contact is lost: first at t = {summary['contact']['first_lift']:.4g} s; settled, a follower is off the "
-            f"shaft {share:.3g} % of the time, up to {1e6 * whole['largest_gap']:.4g} um"
-        )
+        lost = (f"contact is lost: first at t = {summary['contact']['first_lift']:.4g} s, in the whole run by up to "
+                f"{1e6 * whole['largest_gap']:.4g} um")  # fmt: skip
+        if np.isfinite(settled["contact_share"]):
+            share = 100.0 * (1.0 - settled["contact_share"])
+            lost += (f"; settled, a follower is off the shaft {share:.3g} % of the time, by up to "
+                     f"{1e6 * settled['largest_gap']:.4g} um")  # fmt: skip
+        said.append(lost)
     if summary["closed_form"]["hangs_up"]:
         said.append("the flange's friction is as large as the preload: segments hang up where the shaft leaves them")
     if scene.shaft.offset + sum(a for _, a, _ in scene.shaft.waves) > 0.1 * scene.shaft.radius:

@@ -34,9 +34,10 @@ class Watch:
         segment, end = block.segment, block.t[block.end] if block.until is None else block.until
         edges = np.append(block.t[block.begin : block.end], end)
         edges = edges[edges + segment.time >= self.begun - 1e-12 * abs(end)]
-        if len(edges) < 2:
-            return
         widths = np.diff(edges)
+        # A run that goes on from its end has a step of no length, in which nothing can be interpolated.
+        if not widths.sum() > 0.0:
+            return
         taus = np.minimum((edges[:-1, None] + widths[:, None] * PLACES).ravel(), end)
         gaps, _, loads = segment.state(taus, *block.at(taus))
         rides, weights = segment.modes == RIDING, (widths[:, None] * WEIGHTS).ravel()
@@ -48,9 +49,10 @@ class Watch:
         self._see_gap(block, taus, gaps)
         among = np.flatnonzero(rides)
         for name, sign in (("least_load", -1.0), ("largest_load", 1.0)):
-            # At the very end the load may have jumped: that is the next segment's.
-            seen = sign * loads[:-1, among]
-            if seen.size:
+            # At the very end the load may have jumped: that is the next segment's.  Nor does one press that pulls: it
+            # leaves, at the first instant of a run that was broken off there.
+            seen = np.where(loads[:-1, among] < 0.0, -np.inf, sign * loads[:-1, among])
+            if seen.size and seen.max() > -np.inf:
                 at, j = np.unravel_index(seen.argmax(), seen.shape)
                 self._take(name, sign, float(sign * seen[at, j]), segment.time + taus[at], among[j])
 

@@ -21,21 +21,7 @@ def radial_rows(summary):
     yield from (("", reason) for reason in model["reasons"])
     yield "follower", (f"preload {one['preload'] / arc:.4g} N/m, stiffness {one['stiffness'] / arc:.4g} N/m^2, mass "
                        f"{one['mass'] / arc:.4g} kg/m, flange friction {one['friction']:.4g} N each")  # fmt: skip
-    yield "contact", (f"settled: {100 * settled['contact_share']:.4g} % of the time on the shaft, the worst follower "
-                      f"{100 * settled['least_contact_share']:.4g} %; held by the flange "
-                      f"{100 * settled['held_share']:.4g} %")  # fmt: skip
-    if contact["lift"]:
-        yield "", (f"left the shaft {contact['lift']} times, first at t = {contact['first_lift']:.4g} s; landed "
-                   f"{contact['land']} times, {contact['energy_lost']:.3g} J lost")  # fmt: skip
-    if whole["largest_gap"]:
-        yield "largest gap", (f"{MICRO * whole['largest_gap']:.4g} um at t = {whole['largest_gap_time']:.4g} s, theta "
-                              f"= {DEGREES * whole['largest_gap_angle']:.4g} deg")  # fmt: skip
-    if whole["least_load"] is not None:
-        yield "load", (f"{settled['load']:.4g} N in all; of a follower {whole['least_load']:.4g} to "
-                       f"{whole['largest_load']:.4g} N; friction torque {settled['friction_torque']:.4g} "
-                       "N m")  # fmt: skip
-    yield "leakage", (f"estimate {3.6e9 * settled['leakage_estimate']:.4g} ml/h: laminar flow through the gaps, "
-                      "nothing else")  # fmt: skip
+    yield from _contact_rows(whole, settled, contact)
     margin, needed = form["margin"], form["needed_preload"] / arc
     there = "nothing swings" if margin is None else f"there is {margin:.4g} times that"
     yield "closed form", (f"rides everywhere with a preload of {needed:.4g} N/m at {form['speed'] * RPM:.5g} rpm: "
@@ -49,3 +35,42 @@ def radial_rows(summary):
         yield "accuracy", summary["certificate"]["said"]
     yield from (("WARNING", warning) for warning in summary["warnings"])
     yield "files", ", ".join(filter(None, (summary["archive"], summary.get("figure"))))
+
+
+def _contact_rows(whole, settled, contact):
+    """Contact, gap, load and leakage: what has settled, or of a run that ended before that the whole of it."""
+    part, of = (whole, "whole run") if settled["load"] is None else (settled, "settled")
+    if part is whole:
+        yield "contact", "nothing has settled: the run ended in its first half"
+    if part["load"] is not None:
+        yield (
+            "contact" if part is settled else "",
+            (
+                f"{of}: {100 * part['contact_share']:.4g} % of the time on the shaft, the worst follower "
+                f"{100 * part['least_contact_share']:.4g} %; held by the flange {100 * part['held_share']:.4g} %"
+            ),
+        )
+    if contact["lift"]:
+        yield "", (f"whole run: left the shaft {contact['lift']} times, first at t = {contact['first_lift']:.4g} s; "
+                   f"landed {contact['land']} times, {contact['energy_lost']:.3g} J lost")  # fmt: skip
+    if whole["largest_gap"]:
+        gap, angle = MICRO * whole["largest_gap"], DEGREES * whole["largest_gap_angle"]
+        yield (
+            "largest gap",
+            f"whole run: {gap:.4g} um at t = {whole['largest_gap_time']:.4g} s, theta = {angle:.4g} deg",
+        )
+    if part["load"] is None:
+        return
+    if whole["least_load"] is not None:
+        yield "load", (f"{of}: {part['load']:.4g} N in all, {_of_a_follower(part)}; friction torque "
+                       f"{part['friction_torque']:.4g} N m")  # fmt: skip
+        if _of_a_follower(whole) != _of_a_follower(part):
+            yield "", f"whole run: {_of_a_follower(whole)}"
+    yield "leakage", (f"{of}: estimate {3.6e9 * part['leakage_estimate']:.4g} ml/h: laminar flow through the gaps, "
+                      "nothing else")  # fmt: skip
+
+
+def _of_a_follower(part) -> str:
+    """The least and the largest load of one."""
+    least, most = part["least_load"], part["largest_load"]
+    return "none rides" if least is None else f"of a follower {least:.4g} to {most:.4g} N"

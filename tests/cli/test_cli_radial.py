@@ -1,5 +1,8 @@
 """Radial seals from the command line: run, check, show, plot, go on, the study, and what takes face seals only."""
 
+import copy
+import re
+
 import numpy as np
 import pytest
 from command import SCENARIOS, sealdyn
@@ -8,7 +11,9 @@ from PIL import Image
 
 import sealdyn as package
 from sealdyn import ScenarioError, open_archive
+from sealdyn.radial_seals.summary import _warnings
 from sealdyn.report.charts import followers
+from sealdyn.report.radial import radial_rows
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scenario.rule_names import RADIAL
 from sealdyn.simulation.simulate import simulate
@@ -16,6 +21,8 @@ from sealdyn.simulation.simulate import simulate
 LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
 SHORT = ("--set", "run.turns=2")
 LOST = ("--set", "shaft.eccentricity=0.3 mm")
+# Lines of a summary of what neither settles nor adds up.
+UNSETTLED = ("model", "follower", "closed form", "energy audit", "accuracy", "files", "WARNING")
 
 
 @pytest.fixture(scope="module")
@@ -71,6 +78,44 @@ def test_a_seal_that_loses_contact_says_so(folder):
     assert float(data.largest_gap.max()) <= found["whole"]["largest_gap"] * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("rides", [True, False], ids=["rides", "hangs"])
+def test_what_is_settled_and_what_is_of_the_whole_run_says_so(folder, rides):
+    """No line and no warning gives a number of one half for that of the other, or both without a word."""
+    summary = {**copy.deepcopy(folder[1]), "wall_time": 1.0}
+    values = {
+        "contact_share": 0.31, "least_contact_share": 0.17, "held_share": 0.23, "largest_gap": 41e-6, "least_load": 1.9,
+        "largest_load": 5.3, "load": 7.1, "friction_torque": 0.67, "leakage_estimate": 1.3e-9, "largest_gap_time": 0.29,
+        "largest_gap_angle": 1.1, "least_load_time": 0.43,
+    }  # fmt: skip
+    assert set(values) == set(summary["settled"]) == set(summary["whole"])
+    summary["settled"] = dict(values)
+    summary["whole"] = {name: 1.0625 * value for name, value in values.items()}
+    if not rides:
+        summary["settled"] |= {"least_load": None, "largest_load": None}
+    shown = {"contact_share": 100, "least_contact_share": 100, "held_share": 100, "largest_gap": 1e6,
+             "leakage_estimate": 3.6e9, "largest_gap_angle": 180 / np.pi}  # fmt: skip
+
+    def words_of(part):
+        return {f"{shown.get(name, 1) * value:.4g}" for name, value in summary[part].items() if value is not None}
+
+    numbers = {"settled": words_of("settled"), "whole run": words_of("whole")}
+    numbers["whole run"] |= {str(summary["contact"][name]) for name in ("lift", "land")}
+    scene = read_scenario(SEGMENTS).scene
+    told = [*_warnings(summary, scene)[:1], *(words for name, words in radial_rows(summary) if name not in UNSETTLED)]
+    assert not numbers["settled"] & numbers["whole run"]
+    found = {"settled": set(), "whole run": set()}
+    for line in told:
+        for part, clause in re.findall(r"(settled|whole run)(.*?)(?=settled|whole run|$)", line):
+            there = set(re.findall(r"-?[\d.]+(?:e-?\d+)?", clause))
+            other = numbers["whole run" if part == "settled" else "settled"]
+            assert not there & other, line
+            found[part] |= there & numbers[part]
+        unsaid = set(re.findall(r"-?[\d.]+(?:e-?\d+)?", re.split("settled|whole run", line)[0]))
+        assert not unsaid & (numbers["settled"] | numbers["whole run"]), line
+    assert {"31", "17", "23", "7.1", "0.67", "4.68"} <= found["settled"] and "43.56" in found["whole run"]
+    assert {"2.019", "5.631"} <= found["whole run"] and ({"1.9", "5.3"} <= found["settled"]) == rides
+
+
 def test_show_plot_and_what_is_of_face_seals(folder):
     place, _ = folder
     shown = sealdyn("show", "x.h5", cwd=place)
@@ -78,12 +123,8 @@ def test_show_plot_and_what_is_of_face_seals(folder):
     assert sealdyn("show", "x.h5", "--csv", cwd=place).out.splitlines()[0].startswith("time [s],")
     assert sealdyn("plot", "x.h5", "--out", "y.png", cwd=place).code == 0
     assert Image.open(place / "y.png").size[0] > 1000
-    for words in (
-        ("plot", "x.h5", "--kind", "orbit"),
-        ("animate", "x.h5"),
-    ):
-        refused = sealdyn(*words, cwd=place)
-        assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
+    refused = sealdyn("plot", "x.h5", "--kind", "orbit", cwd=place)
+    assert refused.code == 2 and "radial seal" in refused.err and len(refused.err.splitlines()) == 1, refused.err
     for study, path, words in (("campbell", LIP, "followability"), ("followability", SCENARIOS / "rub.toml", "[lip]")):
         refused = sealdyn("study", study, path, cwd=place)
         assert refused.code == 2 and words in refused.err and len(refused.err.splitlines()) == 1, refused.err
@@ -186,6 +227,21 @@ def test_a_run_goes_on_where_it_was_broken_off(tmp_path):
     assert whole.summary["settled"]["contact_share"] == pytest.approx(
         rest.summary["settled"]["contact_share"], abs=1e-6
     )
+
+
+def test_a_run_that_ends_before_anything_settles(tmp_path):
+    """Its lines, its warnings and its figure say so; no number is none."""
+    scenario, looks = read_scenario(SEGMENTS, ["run.turns=3", "shaft.eccentricity='0.3 mm'"]), iter(range(10_000))
+    found = simulate(scenario, tmp_path / "x.h5", stop=lambda: next(looks) >= 3)
+    assert found.status == "interrupted" and found.summary["settled"]["contact_share"] is None
+    assert found.plot.overview().axes
+    rows = [words for _, words in radial_rows(found.summary)]
+    assert any("whole run" in words and "N in all" in words for words in rows)
+    # Nor of one that ended before its first step.
+    nothing = {name: 0.0 if name == "largest_gap" else None for name in found.summary["whole"]}
+    for words in rows, [words for _, words in radial_rows(found.summary | {"whole": nothing})]:
+        assert any("nothing has settled" in line for line in words)
+        assert not re.search(r"\b(nan|None)\b", " ".join(words))
 
 
 def test_a_run_up_passes_the_limit(tmp_path):

@@ -86,11 +86,13 @@ def test_segments_leave_at_preload_less_friction(friction):
     assert lifts(segments(needed * (1 - 5e-5), friction)) > 0
 
 
-def test_every_short_flight_is_seen():
-    """A hair below the limit every follower leaves once a turn, for microseconds."""
+@pytest.mark.parametrize("hair", [1e-5, 1e-8])
+def test_every_short_flight_is_seen(hair):
+    """A hair below the limit every follower leaves once a turn, for microseconds: between the places at which is
+    looked."""
     scene = lip(1.0, eta=0.2)
     followers = followers_of(scene)
-    scene = lip(needed_preload(followers, scene.shaft, W) / followers.arc * (1 - 1e-5), eta=0.2)
+    scene = lip(needed_preload(followers, scene.shaft, W) / followers.arc * (1 - hair), eta=0.2)
     run, _, _ = ran(scene, 4.0)
     assert run.stick_slip.counts["lift"] == 4 * 12
     assert 0.0 < run.extrema.extremes["largest_gap"][0] < 1e-4 * E
@@ -235,8 +237,9 @@ def one_by_one(times, theta, m, k, d, preload, friction, e=E, w=W):
 @pytest.mark.parametrize(
     "scene",
     [lip(2.5, eta=0.3), lip(1.0, eta=0.0), lip(4.0, 1500.0, eta=0.1), segments(0.05), segments(0.05, 0.01),
-     segments(0.012, 0.01), segments(0.12, 0.1, e=2e-4)],
-    ids=["lip", "undamped lip", "fast lip", "segments", "segments with friction", "nearly hung up", "held a while"],
+     segments(0.012, 0.01), segments(0.12, 0.1, e=2e-4), segments(0.06, 0.1, e=2e-4)],
+    ids=["lip", "undamped lip", "fast lip", "segments", "segments with friction", "nearly hung up", "turning",
+         "hung up"],
 )  # fmt: skip
 def test_the_motion_is_that_of_each_follower_by_itself(scene):
     """Without a coupling each sector is on its own: displacements within 1e-5 of the eccentricity, lifts alike."""

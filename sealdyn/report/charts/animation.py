@@ -1,25 +1,23 @@
 """The motion as a film: both rings, tilts enlarged, the gap over the face, the orbit, and where on the time line."""
 
-import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from matplotlib import colormaps
-from PIL import Image
 
 from ...archive import ArchiveError
+from ..radial import is_radial
+from . import followers_animation
 from .face import annulus, in_the_middle
 from .film import around, thickness
+from .moving import PER_TURN, check_name, moments, now, round_times, write
 from .orbit import contact_circle
-from .page import absent, flatten, header, level, look, sheet
+from .page import absent, flatten, level
 from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
 from .record import Run
 
-# Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
-PER_TURN, PER_SECOND, MOST, SIZE, DPI = 36, 15, 2000, (11.0, 6.2), 80
-# Radii of the face in the map; colours of the map and of the whole picture.
-RADII, STEPS, COLOURS = 5, 24, 255
+# Radii of the face in the map, and its colours.
+RADII, STEPS = 5, 24
 # Height of a ring in the section, as a share of what is drawn.
 THICK = 0.22
 # Share of the gap that enlarged tilts leave open, and what they may lift a ring's edge by, in the thickest film.
@@ -27,89 +25,29 @@ OPEN, LEANING = 0.15, 0.5
 RINGS, TILTED = ("stator", "rotor"), ("relative", "rotor", "stator")
 # Planes among which the section is chosen.
 PLANES = 36
-SUFFIXES = (".gif", ".mp4", ".png")
 
 
 def animate(archive_path, out_path, turns: float = 4.0, per_turn: int = PER_TURN, progress=None) -> Path:
     """Write the last `turns` turns of a run (of a shaft at rest, milliseconds) as a GIF or an MP4 (which needs the
     package imageio-ffmpeg), or the last picture as a PNG.
 
-    `per_turn` pictures of a turn, between samples by straight lines; `progress(done, end, words)`.  Returns the path.
-    **Raises** ArchiveError for a run without a film thickness, ValueError for more than MOST pictures or another kind
-    of file, ImportError where MP4 cannot be made."""
+    `per_turn` pictures of a turn, of a face seal between samples by straight lines, of a radial seal at the nearest
+    instants that are kept; `progress(done, end, words)`.  Returns the path.
+    **Raises** ArchiveError for a run without a film thickness or gap, ValueError for more than moving.MOST pictures or
+    another kind of file, ImportError where MP4 cannot be made."""
     out_path = Path(out_path)
-    if out_path.suffix not in SUFFIXES:
-        raise ValueError(f'"{out_path.name}"; expected a file name ending in {", ".join(SUFFIXES)}')
+    check_name(out_path)
     run = Run(archive_path)
+    if is_radial(run.info):
+        return followers_animation.animate(run, out_path, turns, per_turn, progress)
     if run.clearance is None or not run.has("h_min", "axial_gap_change"):
         raise ArchiveError(f"{archive_path}: holds no film thickness over time")
-    moments = _moments(run, turns, per_turn)
-    if out_path.suffix != ".png" and len(moments) > MOST:
-        raise ValueError(f"{len(moments)} pictures; expected at most {MOST}: fewer --turns or --per-turn")
-    pictures = _pictures(run, moments, out_path.suffix == ".png", progress)
-    fresh = out_path.with_name(f"{out_path.stem}.new{out_path.suffix}")
-    out_path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        (_write_mp4 if out_path.suffix == ".mp4" else _write)(pictures, fresh)
-        os.replace(fresh, out_path)
-    except BaseException:
-        fresh.unlink(missing_ok=True)
-        raise
-    return out_path
+    return write(run, _panels, moments(run, turns, per_turn, out_path), out_path, progress)
 
 
-def _moments(run: Run, turns: float, per_turn: int) -> np.ndarray:
-    """Progress (m,) at which a picture is drawn."""
-    end = run.progress[-1]
-    begin = max(run.progress[0], end - turns)
-    count = max(2, 1 + round((end - begin) * per_turn))
-    return np.linspace(begin, end, count)
-
-
-def _write(pictures: Iterator[Image.Image], path: Path) -> None:
-    """One palette for all, so that only what moves is stored."""
-    few, palette = [], None
-    for picture in pictures:
-        # Not the commonest colours: a mark of a few dots keeps its own.
-        palette = palette or picture.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
-        few.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
-    more = {"save_all": True, "append_images": few[1:], "duration": round(1000 / PER_SECOND), "loop": 0}
-    few[0].save(path, **(more if path.suffix == ".gif" else {}))
-
-
-def _write_mp4(pictures: Iterator[Image.Image], path: Path) -> None:
-    from imageio_ffmpeg import write_frames
-
-    writer = None
-    for picture in pictures:
-        if writer is None:
-            # The codec wants even numbers.
-            width, height = (length - length % 2 for length in picture.size)
-            writer = write_frames(str(path), (width, height), fps=PER_SECOND, macro_block_size=2)
-            writer.send(None)
-        writer.send(np.ascontiguousarray(np.asarray(picture)[:height, :width]))
-    writer.close()
-
-
-def _pictures(run: Run, moments: np.ndarray, still: bool, progress) -> Iterator[Image.Image]:
-    """One after the other, or the last one; nothing but what moves is drawn anew."""
-    with look():
-        figure = sheet(*SIZE)
-        figure.set_dpi(DPI)
-        movers = _panels(figure, run, moments, header(figure, run))
-    moments = moments[-1:] if still else moments
-    for k, moment in enumerate(moments):
-        for move in movers:
-            move(moment)
-        figure.canvas.draw()
-        if progress:
-            progress(k + 1, len(moments), f"picture {k + 1} of {len(moments)}")
-        yield Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
-
-
-def _panels(figure, run: Run, moments: np.ndarray, top: float) -> list:
+def _panels(figure, run: Run, at: np.ndarray, top: float) -> list:
     """Axes and what stands still in them; returns functions of the progress that move the rest."""
-    first = max(0, int(np.searchsorted(run.progress, moments[0])) - 1)
+    first = max(0, int(np.searchsorted(run.progress, at[0])) - 1)
     section = figure.add_axes((0.06, 0.32, 0.31, top - 0.39))
     face = figure.add_axes((0.41, 0.31, 0.24, top - 0.41), projection="polar")
     orbit = figure.add_axes((0.78, 0.32, 0.2, top - 0.39))
@@ -201,10 +139,7 @@ def _enlarged(level, wedge, lean: float) -> float:
     with np.errstate(divide="ignore"):
         room = np.where(wedge < 0, (1.0 - OPEN) * level / -wedge, np.inf).min()
     most = min(room, LEANING * level.max() / lean)
-    if not most >= 2.0:
-        return 1.0
-    decade = 10.0 ** np.floor(np.log10(most))
-    return float(decade * max(step for step in (1, 2, 5) if step * decade <= most * (1 + 1e-9)))
+    return round_times(most)
 
 
 def _closed(across, face, back: float) -> np.ndarray:
@@ -281,13 +216,8 @@ def _line(ax, run: Run, rows: _Rows):
     if run.touch_at or run.touches:
         at = per * run.touch_at
         level(ax, at, "asperities meet", CONTACT, side="left", below=at > 0.5 * sum(ax.get_ylim()))
-    now = ax.axvline(rows.at[0], color=MARK, lw=1.2, clip_on=False)
     # Above it: beside it long numbers would push the name off the page.
     ax.set_title(f"h_min, {unit}", fontsize=8.5, weight="normal", pad=3)
-    ax.set(xlabel=run.progress_label, xlim=(rows.at[0], rows.at[-1]))
+    moves = now(ax, run, rows.at)
     flatten(ax)
-
-    def move(moment):
-        now.set_xdata([moment, moment])
-
-    return move
+    return moves

@@ -56,11 +56,17 @@ def _line(ax, run, name, title, colour) -> float:
 def _load(ax, run) -> None:
     """The least load beside the preload, from which it falls by what a follower's motion takes."""
     top = _line(ax, run, "least_load", "Least load of those that ride", LEAK)
-    if preload := run.summary.get("follower", {}).get("preload"):
+    if preload := preload_level(ax, run):
         top = max(top, preload)
-        ax.axhline(preload, color=THEORY, ls="--", label="preload", zorder=1.5)
         ax.set_ylim(-0.03 * top, 1.25 * top)
         ax.legend(loc="upper right", borderaxespad=0.0)
+
+
+def preload_level(ax, run) -> float | None:
+    """Draws and returns a follower's preload (N), where the archive tells it."""
+    if preload := run.summary.get("follower", {}).get("preload"):
+        ax.axhline(preload, color=THEORY, ls="--", label="preload", zorder=1.5)
+    return preload
 
 
 def _map(ax, run, name, title, colours, turns):
