@@ -391,3 +391,66 @@ def test_a_transient_that_is_not_over_is_drawn_above_those_that_are(tmp_path):
     ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
     (cross,) = [line for line in ax.lines if line.get_marker() == "x"]
     assert cross.get_ydata()[0] > 4776 and 3 <= len(ticks(ax)[0][1]) <= 9
+
+
+# --- sealing number --------------------------------------------------------------------------------------------
+
+
+def ring(ratio, number, support="own", start="closed form", share=0.1):
+    return {"force_ratio": ratio, "status": "film", "start": start, "support": support, "guide": 0.1,
+            "sealing_number": [number, 0.9 * number, 1.1 * number],
+            "ratio": {"mean_film": share**0.5, "least_film": 0.5, "sealing_number": share}}  # fmt: skip
+
+
+def sealing(released, **more):
+    """An answer in which the closed form has 0.6 (q - 1.62)^2 for a sealing number."""
+    line, guide = np.linspace(1.63, 8.0, 60), np.linspace(0, 1, 51)
+    rows = [{"force_ratio": q, "static": {"sealing_number": 0.6 * (q - 1.62) ** 2}} for q in (1.8, 3.0, 8.0)]
+    return {"balance": rows, "published": [{"force_ratio": 2.0, "sealing_number": 1.4}], "released": released,
+            "line": {"force_ratio": line.tolist(), "sealing_number": (0.6 * (line - 1.62) ** 2).tolist()},
+            "foreseen": {"force_ratio": [], "sealing_number": []}, "least_force_ratio": 1.621,
+            "least_attracting_force_ratio": 1.713,
+            "map": {"guide": guide.tolist(), "hang_up_below": (1.27 / (1 - 0.95 * guide)).tolist(),
+                    "straightens_above": (1.62 / (1 - guide / 0.8).clip(1e-3)).tolist(),
+                    "closed_form": {"force_ratio": line.tolist(), "guide": (1 - 1.6 / line).tolist()}},
+            **more}  # fmt: skip
+
+
+def under_legends(figure):
+    """Marks and points of lines in view that lie under the legend of their panel."""
+    figure.draw_without_rendering()
+    found = []
+    for ax in (ax for ax in figure.axes if ax.get_legend()):
+        box = ax.get_legend().get_window_extent()
+        points = [line.get_transform().transform(np.column_stack(line.get_data()).astype(float)) for line in ax.lines]
+        seen = [tuple(point) for rows in points for point in rows if ax.bbox.contains(*point)]
+        found += [point for point in seen if box.contains(*point)]
+    return found
+
+
+@pytest.mark.parametrize("q, number, share", [(1.7, 1.2, 0.015), (3.0, 1e-2, 1e-4), (2.0, 20.0, 50.0)])
+def test_no_mark_of_sealing_numbers_is_under_a_legend(tmp_path, q, number, share):
+    figure = study(tmp_path, "sealing_number", sealing([ring(q, number, share=share)]))
+    assert text_trouble(figure) == ([], []) and under_legends(figure) == []
+    ax = panel(figure, "How far the closed form carries")
+    assert ax.get_ylim()[0] < share < ax.get_ylim()[1]
+
+
+def test_rings_that_only_start_open_have_their_marks_and_ratios(tmp_path):
+    rows = [ring(q, 1.0, support, "open") for q in (1.8, 3.0) for support in ("own", "as the closed form needs")]
+    figure = study(tmp_path, "sealing_number", sealing(rows))
+    assert len(panel(figure, "How far the closed form carries").lines) > 1
+    marks = [line for line in panel(figure, "What a released ring does").lines if line.get_marker() == "o"]
+    assert len(marks) == len(rows)
+
+
+def test_films_at_three_force_ratios_are_three_marks(tmp_path):
+    ax = panel(study(tmp_path, "sealing_number", sealing([ring(3.0, 1.0)])), "Mean film")
+    (films,) = [line for line in ax.lines if line.get_label() == "same balance, actual film"]
+    assert films.get_linestyle() == "None" and films.get_marker() != "None"
+
+
+def test_rings_that_could_not_run_are_told(tmp_path):
+    said_so = "Failed points: 2; the first: a film closed at the start"
+    answer = sealing([ring(3.0, 1.0), {"force_ratio": 8.0, "failed": "closed"}], verdict=["It rides.", "More.", said_so])
+    assert said_so in " ".join(said(study(tmp_path, "sealing_number", answer)))
