@@ -452,5 +452,6 @@ def test_films_at_three_force_ratios_are_three_marks(tmp_path):
 
 def test_rings_that_could_not_run_are_told(tmp_path):
     said_so = "Failed points: 2; the first: a film closed at the start"
-    answer = sealing([ring(3.0, 1.0), {"force_ratio": 8.0, "failed": "closed"}], verdict=["It rides.", "More.", said_so])
-    assert said_so in " ".join(said(study(tmp_path, "sealing_number", answer)))
+    rows = [ring(3.0, 1.0), {"force_ratio": 8.0, "failed": "closed"}]
+    figure = study(tmp_path, "sealing_number", sealing(rows, verdict=["It rides.", "More.", said_so]))
+    assert said_so in " ".join(said(figure))
