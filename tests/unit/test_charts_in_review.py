@@ -455,3 +455,70 @@ def test_rings_that_could_not_run_are_told(tmp_path):
     rows = [ring(3.0, 1.0), {"force_ratio": 8.0, "failed": "closed"}]
     figure = study(tmp_path, "sealing_number", sealing(rows, verdict=["It rides.", "More.", said_so]))
     assert said_so in " ".join(said(figure))
+
+
+# --- run-up ----------------------------------------------------------------------------------------------------
+
+
+def load_ramp(leakage=1e-6, **more):
+    """An answer of a ramp and a step of a pressure, that of the step with a jump at the way back."""
+    way = {"time": [0.0, 1.0, 2.0, 2.5], "film": [1e-5, 9e-6, 8e-6, 8e-6], "tilt": [2e-6, 1e-6, 3e-6, 3e-6]}
+    rows = [{"rate": rate, "h_min": 8e-6, "relative_misalignment": 3e-6, "leakage": leakage, "leakage_least": 0.0,
+             "stages": [0.0, top, 2.5, 3.0], **way, "flow": [leakage, 0.5 * leakage, 0.1 * leakage, end]}
+            for rate, top, end in ((2e8, 2.0, 0.1 * leakage), (None, 0.0, leakage))]  # fmt: skip
+    return {"key": "film.inner_pressure", "begin": 10e5, "end": 4e5, "unit": "Pa", "rate_unit": "Pa/s", "decay": 0.1,
+            "quasi_static": {"h_min": [8e-6, 1e-5], "relative_misalignment": [1e-6, 3e-6],
+                             "leakage": [0.1 * leakage, leakage]}, "rows": rows, **more}  # fmt: skip
+
+
+def test_a_ramp_of_a_pressure_is_read_in_plain_rates_and_ends_before_the_way_back(tmp_path):
+    figure = study(tmp_path, "runup", load_ramp())
+    must_be_legible(figure)
+    names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+    assert "2000 bar/s" in names and "a step" in names
+    ax = panel(figure, "Leakage on the way")
+    assert all(line.get_ydata()[-1] == min(line.get_ydata()) for line in ax.lines)
+    # Nothing that is never below zero has an axis that goes far below it.
+    low, high = panel(figure, "Leakage, l/h").get_ylim()
+    assert -0.06 * high < low < 0
+
+
+@pytest.mark.parametrize("leakage, unit", [(1e-6, "l/h"), (1e-8, "ml/h"), (3e-12, "µl/h")])
+def test_a_leakage_that_ramps_is_read_in_a_unit_of_its_size(tmp_path, leakage, unit):
+    figure = study(tmp_path, "runup", load_ramp(leakage))
+    must_be_legible(figure)
+    assert panel(figure, "Leakage, ").get_title("left").startswith(f"Leakage, {unit}: ")
+    assert panel(figure, "Leakage on the way").get_ylabel() == unit
+
+
+def waterfall_of(order, size=1e-6, speeds=(140.0, 150.0)):
+    orders = np.linspace(-1.5, 2.5, 41)
+    rows = [[1e-6 * np.exp(-200 * (n - 1) ** 2) + size * np.exp(-200 * (n - order) ** 2) for n in orders]] * 2
+    way = {"orders": orders.tolist(), "speed": list(speeds), "amplitude": rows}
+    return {"rate": 10.0, "window": 32, "up": way, "down": way}
+
+
+def speed_ramp(touched=False, **more):
+    way = {"speed": [10.0, 50.0, 100.0], "amplitude": [9e-9, 8e-9, 7e-9], "phase": [0.0, 0.1, 0.2]}
+    rows = [
+        {"rate": rate, "up": way, "down": way, "resolution": 0.05, "speed_in_window": 140.7} for rate in (10.0, 1e3)
+    ]
+    return {"key": "shaft.speed", "begin": 10.0, "end": 200.0, "order": 1.0, "tilting": True, "threshold": None,
+            "whirl": None, "linear": way, "waterfall": None, "touch_rate": None, "disturbance": None, "rows": rows,
+            "curve": {"rate": [10.0, 1e3], "h_min": [8e-7, 8e-7], "relative_misalignment": [9e-9, 5e-8],
+                      "leakage": [1.0, 1.0], "touched": 2 * [touched]}, **more}  # fmt: skip
+
+
+@pytest.mark.parametrize("order, low, high", [(-1.4, -1.5, 2.0), (2.4, -1.0, 2.5), (0.5, -1.0, 2.0)])
+def test_a_waterfall_shows_every_order_that_is_strong(tmp_path, order, low, high):
+    figure = study(tmp_path, "runup", speed_ramp(waterfall=waterfall_of(order)), RPM)
+    ax = panel(figure, "Waterfall, up")
+    assert ax.get_xlim() == pytest.approx((low, high), abs=0.11)
+    assert any("1344 rpm" in text.get_text() or "1340 rpm" in text.get_text() for text in ax.texts)
+
+
+def test_ramps_that_all_touch_have_a_name_for_their_line_alone(tmp_path):
+    figure = study(tmp_path, "runup", speed_ramp(touched=True))
+    ax = panel(figure, "How fast must one pass?")
+    (tilt,) = [line for line in ax.lines if line.get_label() == "largest relative tilt"]
+    assert len(tilt.get_xdata()) == 2
