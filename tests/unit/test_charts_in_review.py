@@ -522,3 +522,46 @@ def test_ramps_that_all_touch_have_a_name_for_their_line_alone(tmp_path):
     ax = panel(figure, "How fast must one pass?")
     (tilt,) = [line for line in ax.lines if line.get_label() == "largest relative tilt"]
     assert len(tilt.get_xdata()) == 2
+
+
+def test_a_film_that_hardly_changes_is_a_flat_line_of_a_ramp(tmp_path):
+    answer = load_ramp()
+    answer["quasi_static"]["h_min"] = [1.19931e-6, 1.19933e-6]
+    for row in answer["rows"]:
+        row |= {"film": [1.1992e-6, 1.1993e-6, 1.1994e-6, 1.1993e-6], "h_min": 1.1992e-6}
+    figure = study(tmp_path, "runup", answer)
+    must_be_legible(figure)
+    for title in ("Thinnest film, ", "Thinnest film on the way"):
+        low, high = panel(figure, title).get_ylim()
+        assert high - low > 0.1 * high
+
+
+@pytest.mark.parametrize("tilt, unit", [(3e-6, "µrad"), (2e-8, "nrad")])
+def test_a_tilt_that_ramps_is_read_in_a_unit_of_its_size(tmp_path, tilt, unit):
+    answer = load_ramp()
+    for row in answer["rows"]:
+        row |= {"tilt": [tilt, 0.8 * tilt, tilt, tilt], "relative_misalignment": tilt}
+    answer["quasi_static"]["relative_misalignment"] = [0.5 * tilt, tilt]
+    figure = study(tmp_path, "runup", answer)
+    assert panel(figure, "Relative tilt, ").get_title("left").startswith(f"Relative tilt, {unit}")
+    assert panel(figure, "Relative tilt on the way").get_ylabel() == unit
+
+
+@pytest.mark.parametrize("shape", [[48.0, 20.0, 6.0], [6.0, 20.0, 48.0], [20.0, 20.0, 20.0]])
+def test_the_names_of_ramps_are_on_no_curve(tmp_path, shape):
+    way = {"speed": np.linspace(10, 200, 40).tolist(), "phase": np.linspace(0, 1, 40).tolist()}
+    way["amplitude"] = (1e-9 * np.interp(way["speed"], [10, 70, 200], shape)).tolist()
+    rows = [{"rate": rate, "up": way, "down": way} for rate in (10.0, 1e3)]
+    figure = study(tmp_path, "runup", speed_ramp(linear=way, rows=rows), RPM)
+    assert under_legends(figure) == [] and text_trouble(figure) == ([], [])
+
+
+def test_names_of_levels_of_growth_are_not_under_the_names_of_the_ramps(tmp_path):
+    gained = np.linspace(0, 450, 30)
+    curves = [3.8 * np.sin(gained / 290), 1.3 * np.sin(gained / 290)]
+    answer = speed_ramp(threshold=150.0, crossing=150.0, touch_tilt=1e-3, tilt_scale=2.5e-4, disturbance=2.5e-7)
+    for row, grown in zip(answer["rows"], curves, strict=True):
+        row["growth"] = {"curve": {"time": (gained / row["rate"]).tolist(), "measured": grown.tolist(),
+                                   "foretold": grown.tolist()}}  # fmt: skip
+    figure = study(tmp_path, "runup", {**answer, "forced_tilt": 0.0, "rate_foretold": None}, RPM)
+    assert text_trouble(figure) == ([], [])

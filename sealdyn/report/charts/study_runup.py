@@ -18,6 +18,8 @@ FLOWS = (("l/h", 3.6e6), ("ml/h", 3.6e9), ("µl/h", 3.6e12))
 DECADES, STRONG = 3.5, 0.02
 # Of the largest: tilts and films over the rate that differ by less are the same at every rate.
 SAME = 0.01
+# Of its value: a film or another series of a ramp that changes by less is drawn as a flat line.
+FLAT = 1e-3
 # What pressures are read in.
 READ = {"Pa": ("bar", 1e-5)}
 
@@ -88,7 +90,7 @@ def _same(answer) -> str:
         return ""
     unit, finer = fitting("µrad", 1e6 * tilt.max())
     return (f"At every rate the largest relative tilt is {1e6 * finer * tilt.max():.4g} {unit} and the thinnest film "
-            f"{1e6 * film.min():.4g} µm, within {100 * SAME:g} %.")  # fmt: skip
+            f"{1e6 * film.min():.4g} µm, within {100 * SAME:g}\u00a0%.")  # fmt: skip
 
 
 def _order(top, below, answer, speeds, per):
@@ -127,7 +129,7 @@ def _order(top, below, answer, speeds, per):
     if at is not None and answer["begin"] < at < answer["end"]:
         upright(top, per * at, "threshold", CONTACT, height=1.02, ha="center", ls=":")
         upright(below, per * at, "", CONTACT, ls=":")
-    legend(top, "lower right", fontsize=7.5, ncols=2)
+    legend(top, "best", fontsize=7.5, ncols=2)
 
 
 def _degrees(phase):
@@ -200,8 +202,7 @@ def _growth(ax, answer, speeds, per):
     upright(ax, top, "back down", lw=0.8)
     ax.set(title=title, xlabel=f"time since the threshold × rate, {speeds}", ylabel="ln of growth", xlim=(0, None),
            ylim=(min(0.0, -0.03 * reach), 1.12 * reach))  # fmt: skip
-    ax.legend(loc="upper left", fontsize=7.5, bbox_to_anchor=(0.0, 0.82), frameon=True, framealpha=0.8,
-              edgecolor="none")  # fmt: skip
+    legend(ax, "best", fontsize=7.5, frameon=True, framealpha=0.8, edgecolor="none")
 
 
 def _curve(ax, answer, speeds, per):
@@ -260,12 +261,16 @@ def _load_ramps(study, answer, title, story):
 
 
 def _loads(answer) -> dict:
-    """LOADS, leakage in a unit of its size."""
+    """LOADS, tilt and leakage in units of their size."""
+    tilts = [row["relative_misalignment"] for _, row in _runs(answer) if row.get("relative_misalignment")]
+    series, title, unit, micro, what = LOADS["relative_misalignment"]
+    unit, finer = fitting(unit, micro * max(tilts, default=0.0))
+    tilt = series, title, unit, micro * finer, what
     flows = [row["leakage"] for _, row in _runs(answer) if row.get("leakage")]
     most = max((abs(flow) for flow in flows), default=0.0)
     unit, factor = next((flow for flow in FLOWS if flow[1] * most >= 0.1), FLOWS[-1] if most else FLOWS[0])
     series, title, _, _, what = LOADS["leakage"]
-    return {**LOADS, "leakage": (series, title, unit, factor, what)}
+    return {**LOADS, "relative_misalignment": tilt, "leakage": (series, title, unit, factor, what)}
 
 
 def _read(answer) -> tuple[str, float]:
@@ -291,7 +296,8 @@ def _over_rate(ax, answer, name, series, title, unit, factor, what):
             ax.plot(at, factor * row["leakage_least"], "o", mfc="white", color=colour, ms=7)
     ax.set(xscale="log", title=f"{title}, {unit}: {what}",
            xlabel=f"ramp rate, {_read(answer)[0]}/s (at the far right: a step)")  # fmt: skip
-    room = 0.25 * max(np.ptp(values), 1e-3 * abs(values).max()) or 1.0
+    largest = abs(values).max()
+    room = (0.25 * np.ptp(values) if np.ptp(values) > FLAT * largest else 0.1 * largest) or 1.0
     # What is never below zero has room for a mark below it.
     ax.set_ylim(max(values.min() - room, -0.04 * values.max() if values.min() >= 0 else -np.inf), values.max() + room)
     legend(ax, "best", fontsize=7.5)
@@ -300,7 +306,7 @@ def _over_rate(ax, answer, name, series, title, unit, factor, what):
 def _in_time(ax, answer, series, title, unit, factor, _):
     """The way there, from where it begins; time logarithmic, since the rates differ by tens."""
     first, (read, per) = 0.03 * answer["decay"], _read(answer)
-    last = first
+    last, seen = first, []
     for colour, row in _runs(answer):
         begin, _, back, _ = row["stages"]
         time, values = np.array(row["time"]) - begin, factor * np.array(row[series])
@@ -308,8 +314,10 @@ def _in_time(ax, answer, series, title, unit, factor, _):
         kept = (time >= first) & (time < (back - begin) * (1 - 1e-12))
         name = "a step" if row["rate"] is None else f"{written(per * row['rate'], 3)} {read}/s"
         ax.plot(time[kept], values[kept], color=colour, lw=1.2, label=name)
-        last = max(last, back - begin)
+        last, seen = max(last, back - begin), [*seen, *values[kept]]
     if last == first:
         return absent(ax, f"{title} on the way", "no run ended")
+    if seen and np.ptp(seen) <= FLAT * np.abs(seen).max():
+        ax.set_ylim(np.mean(seen) + np.array([-0.1, 0.1]) * (np.abs(seen).max() or 1.0))
     ax.set(xscale="log", xlim=(first, last), title=f"{title} on the way to {per * answer['end']:.4g} {read}",
            xlabel="time since the change began, s", ylabel=unit)  # fmt: skip
