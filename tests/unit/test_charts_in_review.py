@@ -12,6 +12,8 @@ from test_charts_untuned import RPM, must_be_legible, said, ticks
 from sealdyn.report.charts import animation
 from sealdyn.report.charts.page import sheet
 from sealdyn.report.charts.study_sweep import axis_label
+from sealdyn.report.text import study_lines
+from sealdyn.studies.rub.study import sentences, tables
 
 SEALS = ("fmr", "fms", "fmsr")
 AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
@@ -565,3 +567,59 @@ def test_names_of_levels_of_growth_are_not_under_the_names_of_the_ramps(tmp_path
                                    "foretold": grown.tolist()}}  # fmt: skip
     figure = study(tmp_path, "runup", {**answer, "forced_tilt": 0.0, "rate_foretold": None}, RPM)
     assert text_trouble(figure) == ([], [])
+
+
+# --- rub -------------------------------------------------------------------------------------------------------
+
+
+def rub(key, unit, values, section=1e-4, **more):
+    rows = [{"value": v, "status": "ok", "direction": way, "class": motion, "contact_share": 0.5, "contact_force": 0.1,
+             "h_min": [1e-7, 1e-7], "exponent": -1.0, "uncertainty": 0.1, "evaluations": 100.0,
+             "section": [[section, 2 * section], [1.01 * section, 2 * section]], "orders": [0.0, 1.0, 2.0],
+             "amplitude": [0.0, section, 0.1 * section]}
+            for way, motion in (("up", "settling"), ("down", "undecided")) for v in values]  # fmt: skip
+    return {"key": key, "touch": 1e-6, "rows": rows, "judge": None, "methods": None, "separation": None, "whirl": None,
+            "units": {"rows/value": unit}} | more  # fmt: skip
+
+
+def test_pure_numbers_of_a_rub_have_no_unit(tmp_path):
+    answer = rub("closing.balance_ratio", "SI", [0.7, 0.8, 0.9])
+    figure = study(tmp_path, "rub", answer)
+    must_be_legible(figure)
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert not any("SI" in word.split() for word in [*titles, *" ".join(words_of(figure)).split()])
+    assert any(title.startswith("0.7: ") for title in titles)
+    assert sentences(answer)[0].startswith("closing.balance_ratio going up: settling to 0.9;")
+    assert "SI" not in study_lines({"verdict": []}, tables(answer))[0]
+
+
+def test_speeds_of_a_rub_have_no_exponent(tmp_path):
+    speeds = [-24000 * np.pi / 30, -20000 * np.pi / 30, -16000 * np.pi / 30]
+    rows = [{"speed": 2 * speed, "fate": "rub", "amplitudes": [1e-5, 1e-4]} for speed in speeds]
+    answer = rub("shaft.speed", "rad/s", speeds, whirl={"critical_speed": 9.0, "rows": rows})
+    figure = study(tmp_path, "rub", answer, RPM)
+    must_be_legible(figure)
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert "−24 000 rpm: settling" in titles
+    names = [text.get_text() for text in panel(figure, "A small whirl").get_legend().get_texts()]
+    assert names[0] == "−48 000 rpm: rub"
+    assert "settling to -16000;" in sentences(answer)[0]
+
+
+@pytest.mark.parametrize("size, unit, shown", [(1e-4, "mrad", 0.1), (2e-6, "µrad", 2.0), (3e-9, "nrad", 3.0)])
+def test_tilts_of_a_rub_are_read_in_a_unit_of_their_size(tmp_path, size, unit, shown):
+    figure = study(tmp_path, "rub", rub("rotor.runout", "rad", [1e-4, 2e-4], section=size))
+    must_be_legible(figure)
+    ax = panel(figure, "0.1 mrad: settling")
+    assert ax.get_xlabel() == f"γ about x, {unit}" and ax.lines[0].get_xdata()[0] == pytest.approx(shown)
+    spectra = [ax for ax in figure.axes if ax.get_title("left") == "Spectrum of the ring"]
+    assert {ax.get_ylabel() for ax in spectra} == {f"tilt, {unit}"}
+
+
+def test_motions_of_a_rub_have_colours_of_their_own_and_its_directions_their_side(tmp_path):
+    figure = study(tmp_path, "rub", rub("rotor.runout", "rad", [1e-4, 2e-4]))
+    must_be_legible(figure)
+    marks = [line for line in panel(figure, "Largest Lyapunov").lines if line.get_label() in ("settling", "undecided")]
+    assert len({line.get_color() for line in marks}) == 2
+    names = {text.get_text() for text in panel(figure, "Smallest film").get_legend().get_texts()}
+    assert names == {"growing (left of its value)", "falling (right)"}
