@@ -11,6 +11,7 @@ from scipy.optimize import fsolve
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
 from sealdyn.closed_form import released_ring as rr
+from sealdyn.dynamics.model import Model
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.rings import Rotor, Stator, Support
@@ -145,6 +146,16 @@ def test_it_hangs_up_where_the_wedge_has_no_arm():
 def test_an_open_ring_closes_only_if_the_spring_overcomes_the_axial_friction(q, status):
     _, told = ran(q, start="open")
     assert told.status == status, told.message
+
+
+@pytest.mark.parametrize("tilt_radius", ["mean", "local"])
+def test_an_open_ring_is_open_all_over_a_wide_face(tilt_radius):
+    wide = replace(RING, face_width=10e-3)
+    scene = replace(SCENE, film=replace(wide.film(), clearance=None, tilt_radius=tilt_radius))
+    made = started(with_force_ratio(scene, 2.0), "open")
+    gap = Model(made, 1e-3).clearance - made.initial.rotor.z
+    reach = wide.mean_radius if tilt_radius == "mean" else scene.film.outer_radius
+    assert 0.0 < gap - reach * made.stator.misalignment < 0.05 * gap
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import campbell, contact_onset, critical_speed, steady_state
+from sealdyn.studies.runup.load_ramp import overshoot, quasi_static
 from sealdyn.studies.runup.plan import planned
 from sealdyn.studies.runup.study import Settings as RunupSettings
 from sealdyn.studies.stability import study as stability
@@ -112,6 +113,14 @@ def test_runup_is_planned_by_the_modes_at_speed():
     model = Model(frozen_at_start(scenario.scene))
     expected = whirl_speeds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
     assert plan["threshold"] == pytest.approx(expected, rel=1e-6) and plan["mode"] is None
+
+
+def test_a_slow_ramp_of_a_pressure_has_the_leakage_at_rest():
+    found = quasi_static(reference(), "film.outer_pressure", 5e5, 3e5)
+    assert all(np.isfinite(found["leakage"])) and found["leakage"][0] > found["leakage"][-1] > 0
+    none = {"h_min": [1e-6, 1.0001e-6], "relative_misalignment": [1e-6, 1e-6], "leakage": [1e-9, 2e-9]}
+    row = {"h_min": 0.9995e-6, "relative_misalignment": 1e-6, "leakage": 2e-9, "leakage_least": 1e-9}
+    assert overshoot(row, none)["h_min"] is None and overshoot(row, none)["leakage"] == 0.0
 
 
 def test_summary_has_modes_and_steady_state_at_their_frequencies():

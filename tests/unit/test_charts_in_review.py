@@ -12,6 +12,8 @@ from test_charts_untuned import RPM, must_be_legible, said, ticks
 from sealdyn.report.charts import animation
 from sealdyn.report.charts.page import sheet
 from sealdyn.report.charts.study_sweep import axis_label
+from sealdyn.report.text import study_lines
+from sealdyn.studies.rub.study import sentences, tables
 
 SEALS = ("fmr", "fms", "fmsr")
 AMPLITUDES, PHASES = ("static", "dynamic", "total"), ("static_phase", "dynamic_phase")
@@ -391,3 +393,233 @@ def test_a_transient_that_is_not_over_is_drawn_above_those_that_are(tmp_path):
     ax = panel(study(tmp_path, "steady_state", answer), "Cost near the threshold")
     (cross,) = [line for line in ax.lines if line.get_marker() == "x"]
     assert cross.get_ydata()[0] > 4776 and 3 <= len(ticks(ax)[0][1]) <= 9
+
+
+# --- sealing number --------------------------------------------------------------------------------------------
+
+
+def ring(ratio, number, support="own", start="closed form", share=0.1):
+    return {"force_ratio": ratio, "status": "film", "start": start, "support": support, "guide": 0.1,
+            "sealing_number": [number, 0.9 * number, 1.1 * number],
+            "ratio": {"mean_film": share**0.5, "least_film": 0.5, "sealing_number": share}}  # fmt: skip
+
+
+def sealing(released, **more):
+    """An answer in which the closed form has 0.6 (q - 1.62)^2 for a sealing number."""
+    line, guide = np.linspace(1.63, 8.0, 60), np.linspace(0, 1, 51)
+    rows = [{"force_ratio": q, "static": {"sealing_number": 0.6 * (q - 1.62) ** 2}} for q in (1.8, 3.0, 8.0)]
+    return {"balance": rows, "published": [{"force_ratio": 2.0, "sealing_number": 1.4}], "released": released,
+            "line": {"force_ratio": line.tolist(), "sealing_number": (0.6 * (line - 1.62) ** 2).tolist()},
+            "foreseen": {"force_ratio": [], "sealing_number": []}, "least_force_ratio": 1.621,
+            "least_attracting_force_ratio": 1.713,
+            "map": {"guide": guide.tolist(), "hang_up_below": (1.27 / (1 - 0.95 * guide)).tolist(),
+                    "straightens_above": (1.62 / (1 - guide / 0.8).clip(1e-3)).tolist(),
+                    "closed_form": {"force_ratio": line.tolist(), "guide": (1 - 1.6 / line).tolist()}},
+            **more}  # fmt: skip
+
+
+def under_legends(figure):
+    """Marks and points of lines in view that lie under the legend of their panel."""
+    figure.draw_without_rendering()
+    found = []
+    for ax in (ax for ax in figure.axes if ax.get_legend()):
+        box = ax.get_legend().get_window_extent()
+        points = [line.get_transform().transform(np.column_stack(line.get_data()).astype(float)) for line in ax.lines]
+        seen = [tuple(point) for rows in points for point in rows if ax.bbox.contains(*point)]
+        found += [point for point in seen if box.contains(*point)]
+    return found
+
+
+@pytest.mark.parametrize("q, number, share", [(1.7, 1.2, 0.015), (3.0, 1e-2, 1e-4), (2.0, 20.0, 50.0)])
+def test_no_mark_of_sealing_numbers_is_under_a_legend(tmp_path, q, number, share):
+    figure = study(tmp_path, "sealing_number", sealing([ring(q, number, share=share)]))
+    assert text_trouble(figure) == ([], []) and under_legends(figure) == []
+    ax = panel(figure, "How far the closed form carries")
+    assert ax.get_ylim()[0] < share < ax.get_ylim()[1]
+
+
+def test_rings_that_only_start_open_have_their_marks_and_ratios(tmp_path):
+    rows = [ring(q, 1.0, support, "open") for q in (1.8, 3.0) for support in ("own", "as the closed form needs")]
+    figure = study(tmp_path, "sealing_number", sealing(rows))
+    assert len(panel(figure, "How far the closed form carries").lines) > 1
+    marks = [line for line in panel(figure, "What a released ring does").lines if line.get_marker() == "o"]
+    assert len(marks) == len(rows)
+
+
+def test_films_at_three_force_ratios_are_three_marks(tmp_path):
+    ax = panel(study(tmp_path, "sealing_number", sealing([ring(3.0, 1.0)])), "Mean film")
+    (films,) = [line for line in ax.lines if line.get_label() == "same balance, actual film"]
+    assert films.get_linestyle() == "None" and films.get_marker() != "None"
+
+
+def test_rings_that_could_not_run_are_told(tmp_path):
+    said_so = "Failed points: 2; the first: a film closed at the start"
+    rows = [ring(3.0, 1.0), {"force_ratio": 8.0, "failed": "closed"}]
+    figure = study(tmp_path, "sealing_number", sealing(rows, verdict=["It rides.", "More.", said_so]))
+    assert said_so in " ".join(said(figure))
+
+
+# --- run-up ----------------------------------------------------------------------------------------------------
+
+
+def load_ramp(leakage=1e-6, **more):
+    """An answer of a ramp and a step of a pressure, that of the step with a jump at the way back."""
+    way = {"time": [0.0, 1.0, 2.0, 2.5], "film": [1e-5, 9e-6, 8e-6, 8e-6], "tilt": [2e-6, 1e-6, 3e-6, 3e-6]}
+    rows = [{"rate": rate, "h_min": 8e-6, "relative_misalignment": 3e-6, "leakage": leakage, "leakage_least": 0.0,
+             "stages": [0.0, top, 2.5, 3.0], **way, "flow": [leakage, 0.5 * leakage, 0.1 * leakage, end]}
+            for rate, top, end in ((2e8, 2.0, 0.1 * leakage), (None, 0.0, leakage))]  # fmt: skip
+    return {"key": "film.inner_pressure", "begin": 10e5, "end": 4e5, "unit": "Pa", "rate_unit": "Pa/s", "decay": 0.1,
+            "quasi_static": {"h_min": [8e-6, 1e-5], "relative_misalignment": [1e-6, 3e-6],
+                             "leakage": [0.1 * leakage, leakage]}, "rows": rows, **more}  # fmt: skip
+
+
+def test_a_ramp_of_a_pressure_is_read_in_plain_rates_and_ends_before_the_way_back(tmp_path):
+    figure = study(tmp_path, "runup", load_ramp())
+    must_be_legible(figure)
+    names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+    assert "2000 bar/s" in names and "a step" in names
+    ax = panel(figure, "Leakage on the way")
+    assert all(line.get_ydata()[-1] == min(line.get_ydata()) for line in ax.lines)
+    # Nothing that is never below zero has an axis that goes far below it.
+    low, high = panel(figure, "Leakage, l/h").get_ylim()
+    assert -0.06 * high < low < 0
+
+
+@pytest.mark.parametrize("leakage, unit", [(1e-6, "l/h"), (1e-8, "ml/h"), (3e-12, "µl/h")])
+def test_a_leakage_that_ramps_is_read_in_a_unit_of_its_size(tmp_path, leakage, unit):
+    figure = study(tmp_path, "runup", load_ramp(leakage))
+    must_be_legible(figure)
+    assert panel(figure, "Leakage, ").get_title("left").startswith(f"Leakage, {unit}: ")
+    assert panel(figure, "Leakage on the way").get_ylabel() == unit
+
+
+def waterfall_of(order, size=1e-6, speeds=(140.0, 150.0)):
+    orders = np.linspace(-1.5, 2.5, 41)
+    rows = [[1e-6 * np.exp(-200 * (n - 1) ** 2) + size * np.exp(-200 * (n - order) ** 2) for n in orders]] * 2
+    way = {"orders": orders.tolist(), "speed": list(speeds), "amplitude": rows}
+    return {"rate": 10.0, "window": 32, "up": way, "down": way}
+
+
+def speed_ramp(touched=False, **more):
+    way = {"speed": [10.0, 50.0, 100.0], "amplitude": [9e-9, 8e-9, 7e-9], "phase": [0.0, 0.1, 0.2]}
+    rows = [
+        {"rate": rate, "up": way, "down": way, "resolution": 0.05, "speed_in_window": 140.7} for rate in (10.0, 1e3)
+    ]
+    return {"key": "shaft.speed", "begin": 10.0, "end": 200.0, "order": 1.0, "tilting": True, "threshold": None,
+            "whirl": None, "linear": way, "waterfall": None, "touch_rate": None, "disturbance": None, "rows": rows,
+            "curve": {"rate": [10.0, 1e3], "h_min": [8e-7, 8e-7], "relative_misalignment": [9e-9, 5e-8],
+                      "leakage": [1.0, 1.0], "touched": 2 * [touched]}, **more}  # fmt: skip
+
+
+@pytest.mark.parametrize("order, low, high", [(-1.4, -1.5, 2.0), (2.4, -1.0, 2.5), (0.5, -1.0, 2.0)])
+def test_a_waterfall_shows_every_order_that_is_strong(tmp_path, order, low, high):
+    figure = study(tmp_path, "runup", speed_ramp(waterfall=waterfall_of(order)), RPM)
+    ax = panel(figure, "Waterfall, up")
+    assert ax.get_xlim() == pytest.approx((low, high), abs=0.11)
+    assert any("1344 rpm" in text.get_text() or "1340 rpm" in text.get_text() for text in ax.texts)
+
+
+def test_ramps_that_all_touch_have_a_name_for_their_line_alone(tmp_path):
+    figure = study(tmp_path, "runup", speed_ramp(touched=True))
+    ax = panel(figure, "How fast must one pass?")
+    (tilt,) = [line for line in ax.lines if line.get_label() == "largest relative tilt"]
+    assert len(tilt.get_xdata()) == 2
+
+
+def test_a_film_that_hardly_changes_is_a_flat_line_of_a_ramp(tmp_path):
+    answer = load_ramp()
+    answer["quasi_static"]["h_min"] = [1.19931e-6, 1.19933e-6]
+    for row in answer["rows"]:
+        row |= {"film": [1.1992e-6, 1.1993e-6, 1.1994e-6, 1.1993e-6], "h_min": 1.1992e-6}
+    figure = study(tmp_path, "runup", answer)
+    must_be_legible(figure)
+    for title in ("Thinnest film, ", "Thinnest film on the way"):
+        low, high = panel(figure, title).get_ylim()
+        assert high - low > 0.1 * high
+
+
+@pytest.mark.parametrize("tilt, unit", [(3e-6, "µrad"), (2e-8, "nrad")])
+def test_a_tilt_that_ramps_is_read_in_a_unit_of_its_size(tmp_path, tilt, unit):
+    answer = load_ramp()
+    for row in answer["rows"]:
+        row |= {"tilt": [tilt, 0.8 * tilt, tilt, tilt], "relative_misalignment": tilt}
+    answer["quasi_static"]["relative_misalignment"] = [0.5 * tilt, tilt]
+    figure = study(tmp_path, "runup", answer)
+    assert panel(figure, "Relative tilt, ").get_title("left").startswith(f"Relative tilt, {unit}")
+    assert panel(figure, "Relative tilt on the way").get_ylabel() == unit
+
+
+@pytest.mark.parametrize("shape", [[48.0, 20.0, 6.0], [6.0, 20.0, 48.0], [20.0, 20.0, 20.0]])
+def test_the_names_of_ramps_are_on_no_curve(tmp_path, shape):
+    way = {"speed": np.linspace(10, 200, 40).tolist(), "phase": np.linspace(0, 1, 40).tolist()}
+    way["amplitude"] = (1e-9 * np.interp(way["speed"], [10, 70, 200], shape)).tolist()
+    rows = [{"rate": rate, "up": way, "down": way} for rate in (10.0, 1e3)]
+    figure = study(tmp_path, "runup", speed_ramp(linear=way, rows=rows), RPM)
+    assert under_legends(figure) == [] and text_trouble(figure) == ([], [])
+
+
+def test_names_of_levels_of_growth_are_not_under_the_names_of_the_ramps(tmp_path):
+    gained = np.linspace(0, 450, 30)
+    curves = [3.8 * np.sin(gained / 290), 1.3 * np.sin(gained / 290)]
+    answer = speed_ramp(threshold=150.0, crossing=150.0, touch_tilt=1e-3, tilt_scale=2.5e-4, disturbance=2.5e-7)
+    for row, grown in zip(answer["rows"], curves, strict=True):
+        row["growth"] = {"curve": {"time": (gained / row["rate"]).tolist(), "measured": grown.tolist(),
+                                   "foretold": grown.tolist()}}  # fmt: skip
+    figure = study(tmp_path, "runup", {**answer, "forced_tilt": 0.0, "rate_foretold": None}, RPM)
+    assert text_trouble(figure) == ([], [])
+
+
+# --- rub -------------------------------------------------------------------------------------------------------
+
+
+def rub(key, unit, values, section=1e-4, **more):
+    rows = [{"value": v, "status": "ok", "direction": way, "class": motion, "contact_share": 0.5, "contact_force": 0.1,
+             "h_min": [1e-7, 1e-7], "exponent": -1.0, "uncertainty": 0.1, "evaluations": 100.0,
+             "section": [[section, 2 * section], [1.01 * section, 2 * section]], "orders": [0.0, 1.0, 2.0],
+             "amplitude": [0.0, section, 0.1 * section]}
+            for way, motion in (("up", "settling"), ("down", "undecided")) for v in values]  # fmt: skip
+    return {"key": key, "touch": 1e-6, "rows": rows, "judge": None, "methods": None, "separation": None, "whirl": None,
+            "units": {"rows/value": unit}} | more  # fmt: skip
+
+
+def test_pure_numbers_of_a_rub_have_no_unit(tmp_path):
+    answer = rub("closing.balance_ratio", "SI", [0.7, 0.8, 0.9])
+    figure = study(tmp_path, "rub", answer)
+    must_be_legible(figure)
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert not any("SI" in word.split() for word in [*titles, *" ".join(words_of(figure)).split()])
+    assert any(title.startswith("0.7: ") for title in titles)
+    assert sentences(answer)[0].startswith("closing.balance_ratio going up: settling to 0.9;")
+    assert "SI" not in study_lines({"verdict": []}, tables(answer))[0]
+
+
+def test_speeds_of_a_rub_have_no_exponent(tmp_path):
+    speeds = [-24000 * np.pi / 30, -20000 * np.pi / 30, -16000 * np.pi / 30]
+    rows = [{"speed": 2 * speed, "fate": "rub", "amplitudes": [1e-5, 1e-4]} for speed in speeds]
+    answer = rub("shaft.speed", "rad/s", speeds, whirl={"critical_speed": 9.0, "rows": rows})
+    figure = study(tmp_path, "rub", answer, RPM)
+    must_be_legible(figure)
+    titles = [ax.get_title("left") for ax in figure.axes]
+    assert "−24 000 rpm: settling" in titles
+    names = [text.get_text() for text in panel(figure, "A small whirl").get_legend().get_texts()]
+    assert names[0] == "−48 000 rpm: rub"
+    assert "settling to -16000;" in sentences(answer)[0]
+
+
+@pytest.mark.parametrize("size, unit, shown", [(1e-4, "mrad", 0.1), (2e-6, "µrad", 2.0), (3e-9, "nrad", 3.0)])
+def test_tilts_of_a_rub_are_read_in_a_unit_of_their_size(tmp_path, size, unit, shown):
+    figure = study(tmp_path, "rub", rub("rotor.runout", "rad", [1e-4, 2e-4], section=size))
+    must_be_legible(figure)
+    ax = panel(figure, "0.1 mrad: settling")
+    assert ax.get_xlabel() == f"γ about x, {unit}" and ax.lines[0].get_xdata()[0] == pytest.approx(shown)
+    spectra = [ax for ax in figure.axes if ax.get_title("left") == "Spectrum of the ring"]
+    assert {ax.get_ylabel() for ax in spectra} == {f"tilt, {unit}"}
+
+
+def test_motions_of_a_rub_have_colours_of_their_own_and_its_directions_their_side(tmp_path):
+    figure = study(tmp_path, "rub", rub("rotor.runout", "rad", [1e-4, 2e-4]))
+    must_be_legible(figure)
+    marks = [line for line in panel(figure, "Largest Lyapunov").lines if line.get_label() in ("settling", "undecided")]
+    assert len({line.get_color() for line in marks}) == 2
+    names = {text.get_text() for text in panel(figure, "Smallest film").get_legend().get_texts()}
+    assert names == {"growing (left of its value)", "falling (right)"}

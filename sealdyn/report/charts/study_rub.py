@@ -6,17 +6,19 @@ import numpy as np
 from ...archive import read_study
 from ...status import Status
 from ..text import speed_unit
-from .page import legend, level, look, save, stacked, study_page
-from .palette import BLACK, BLUE, CONTACT, CYCLE, GREEN, GREY, ORANGE, PURPLE, VERMILLION
+from .page import legend, level, look, save, stacked, study_page, written
+from .palette import BLACK, BLUE, CONTACT, CYCLE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
 from .poincare import frame
-from .record import read_in
+from .record import fitting, read_in
 
 # Names of keys on the axis, and their SI units.
 NAMES = {"rotor.runout": "runout of the rotor", "stator.misalignment": "misalignment of the stator",
          "rotor.misalignment": "misalignment of the rotor", "shaft.speed": "shaft speed"}  # fmt: skip
 UNITS = {**dict.fromkeys(NAMES, "rad"), "shaft.speed": "rad/s"}
-COLOURS = {"chaotic": VERMILLION, "quasi-periodic": PURPLE, "no contact": GREY, "settling": ORANGE, "undecided": ORANGE}
+COLOURS = {"chaotic": VERMILLION, "quasi-periodic": PURPLE, "no contact": GREY, "settling": SKY, "undecided": ORANGE}
 DIRECTION = {"up": (BLUE, "growing"), "down": (ORANGE, "falling")}
+# Tilts (rad) from here on are read in mrad.
+MILLI = 5e-5
 # Values of the key up to which the diagram has large points.
 FEW = 30
 # Points of the diagram shown one by one.
@@ -46,11 +48,12 @@ def draw(archive_path, out_path):
     stacked(ax["diagram"], ax["exponents"])
     _diagram(ax["diagram"], answer, rows, factor)
     _exponents(ax["exponents"], answer, rows, factor)
-    ax["exponents"].set_xlabel(f"{name}, {unit}")
+    ax["exponents"].set_xlabel(f"{name}, {unit}" if unit else name)
     for panel, draws in below.items():
-        draws(ax[panel], answer)
+        draws(ax[panel], answer, *([speed_unit(study)] if draws is _whirl else []))
     for k, row in enumerate(points):
-        _section(ax[f"section {k}"], row, f"{factor * row['value']:.4g} {unit}: {row['class']}")
+        value = " ".join(filter(None, (written(factor * row["value"], 4), unit)))
+        _section(ax[f"section {k}"], row, f"{value}: {row['class']}")
         _spectrum(ax[f"spectrum {k}"], row)
     return save(figure, out_path)
 
@@ -60,6 +63,8 @@ def _named(study, answer) -> tuple[str, str, float]:
     key = answer["key"]
     # Archives of earlier versions do not hold its unit.
     unit = (answer.get("units") or {}).get("rows/value", UNITS.get(key, ""))
+    # What has no unit of its own is a pure number.
+    unit = "" if unit == "SI" else unit
     return NAMES.get(key, key), *read_in(unit, [row["value"] for row in answer["rows"]], speed_unit(study))
 
 
@@ -74,12 +79,14 @@ def _aside(answer, factor) -> dict:
 def _diagram(ax, answer, rows, factor):
     """Smallest film of every turn kept, over the key."""
     aside = _aside(answer, factor)
+    sides = {"up": " (left of its value)", "down": " (right)"} if aside["down"] else {"up": "", "down": ""}
     for direction, (colour, label) in DIRECTION.items():
         mine = [row for row in rows if row["direction"] == direction]
         if mine:
             x = np.concatenate([np.full(len(r["h_min"]), factor * r["value"] + aside[direction]) for r in mine])
             y = 1e6 * np.concatenate([r["h_min"] for r in mine])
-            ax.plot(x, y, ".", ms=3 if len(mine) > FEW else 6, mew=0, color=colour, label=label)
+            ax.plot(x, y, ".", ms=3 if len(mine) > FEW else 6, mew=0, color=colour,
+                    label=label + sides[direction])  # fmt: skip
     level(ax, 1e6 * answer["touch"], "asperities meet", CONTACT)
     lost = [factor * row["value"] for row in answer["rows"] if row["status"] != Status.OK]
     if lost:
@@ -137,9 +144,10 @@ def _averages(ax, answer):
            title="Averages agree" if answer["judge"]["agree"] else "Averages")  # fmt: skip
 
 
-def _whirl(ax, answer):
+def _whirl(ax, answer, speeds):
+    unit, per = speeds
     for k, row in enumerate(row for row in answer["whirl"]["rows"] if "amplitudes" in row):
-        words = f"{row['speed']:.5g} rad/s: {row['fate']}"
+        words = f"{written(per * row['speed'], 5)} {unit}: {row['fate']}"
         ax.semilogy(1e3 * np.array(row["amplitudes"]), color=CYCLE[k % len(CYCLE)], label=words)
     # Room for the names below the curves.
     ax.set(xlabel="turns", ylabel="relative tilt, mrad", title="A small whirl", ylim=(ax.get_ylim()[0] / 30, None))
@@ -159,18 +167,28 @@ def _chosen(rows, answer) -> list[dict]:
     return [rubs[k] for k in ([*picks, len(rubs) - 1] if len(picks) < 3 and len(rubs) - 1 not in picks else picks)]
 
 
+def _tilts(values) -> tuple[np.ndarray, str]:
+    """Tilts (rad) in a unit of their size, and its name."""
+    values = np.array(values)
+    size = float(np.abs(values).max(initial=0.0))
+    unit, finer = ("mrad", 1e-3) if size >= MILLI else fitting("µrad", 1e6 * size)
+    return 1e6 * finer * values, unit
+
+
 def _section(ax, row, title):
     """Tilt of one point, once per turn."""
-    x, y = 1e3 * np.array(row["section"]).T
+    tilts, unit = _tilts(row["section"])
+    x, y = tilts.T
     ax.plot(x, y, ".", ms=4, color=COLOURS.get(row["class"], GREEN))
-    frame(ax, x, y, least=0.05)
-    ax.set(xlabel="γ about x, mrad", ylabel="γ about y, mrad", title=title)
+    frame(ax, x, y, least=min(0.05, 0.5 * np.abs(tilts).max()) if unit == "mrad" else 0.5 * np.abs(tilts).max())
+    ax.set(xlabel=f"γ about x, {unit}", ylabel=f"γ about y, {unit}", title=title)
     ax.locator_params(nbins=4)
 
 
 def _spectrum(ax, row):
-    orders, size = np.array(row["orders"]), 1e3 * np.array(row["amplitude"])
-    ax.semilogy(orders[1:], np.maximum(size[1:], 1e-9), color=COLOURS.get(row["class"], GREEN), lw=0.8)
+    orders, (size, unit) = np.array(row["orders"]), _tilts(row["amplitude"])
     top = size.max()
+    shown = np.maximum(size[1:], 1e-9 * top)
+    ax.semilogy(orders[1:], shown, color=COLOURS.get(row["class"], GREEN), lw=0.8)
     ax.set(xlim=(0, orders[-1]), ylim=(1e-5 * top, 3 * top), xticks=np.arange(0, int(orders[-1]) + 1),
-           xlabel="order of the shaft speed", ylabel="tilt, mrad", title="Spectrum of the ring")  # fmt: skip
+           xlabel="order of the shaft speed", ylabel=f"tilt, {unit}", title="Spectrum of the ring")  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...archive import read_study
 from ..text import speed_unit
-from .page import absent, legend, level, look, number, right_axis, save, stacked, study_page, upright
+from .page import absent, legend, level, look, number, right_axis, save, stacked, study_page, upright, written
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREY, ORANGE, THICKNESS
 from .record import done, fitting
 
@@ -12,10 +12,14 @@ from .record import done, fitting
 LOADS = {"h_min": ("film", "Thinnest film", "µm", 1e6, "smallest"),
          "relative_misalignment": ("tilt", "Relative tilt", "µrad", 1e6, "largest"),
          "leakage": ("flow", "Leakage", "l/h", 3.6e6, "largest (full), smallest (open)")}  # fmt: skip
-# A waterfall shows this many decades below its largest amplitude.
-DECADES = 3.5
+# What leakage is read in, and how many of it make one m^3/s: the first that makes a tenth and more of it.
+FLOWS = (("l/h", 3.6e6), ("ml/h", 3.6e9), ("µl/h", 3.6e12))
+# A waterfall shows this many decades below its largest amplitude, and every order that has this share of it.
+DECADES, STRONG = 3.5, 0.02
 # Of the largest: tilts and films over the rate that differ by less are the same at every rate.
 SAME = 0.01
+# Of its value: a film or another series of a ramp that changes by less is drawn as a flat line.
+FLAT = 1e-3
 # What pressures are read in.
 READ = {"Pa": ("bar", 1e-5)}
 
@@ -86,7 +90,7 @@ def _same(answer) -> str:
         return ""
     unit, finer = fitting("µrad", 1e6 * tilt.max())
     return (f"At every rate the largest relative tilt is {1e6 * finer * tilt.max():.4g} {unit} and the thinnest film "
-            f"{1e6 * film.min():.4g} µm, within {100 * SAME:g} %.")  # fmt: skip
+            f"{1e6 * film.min():.4g} µm, within {100 * SAME:g}\u00a0%.")  # fmt: skip
 
 
 def _order(top, below, answer, speeds, per):
@@ -125,7 +129,7 @@ def _order(top, below, answer, speeds, per):
     if at is not None and answer["begin"] < at < answer["end"]:
         upright(top, per * at, "threshold", CONTACT, height=1.02, ha="center", ls=":")
         upright(below, per * at, "", CONTACT, ls=":")
-    legend(top, "lower right", fontsize=7.5, ncols=2)
+    legend(top, "best", fontsize=7.5, ncols=2)
 
 
 def _degrees(phase):
@@ -155,8 +159,8 @@ def _waterfall(panels, ways, answer, speeds, per):
             ax.plot(whirl[shown] / w[shown], w[shown], color=ORANGE, lw=1.2, ls="--")
         if answer["threshold"] and speed.min() < per * answer["threshold"] < speed.max():
             ax.axhline(per * answer["threshold"], color="white", lw=0.8, ls=":")
-        ax.set(title=way, xlim=(-1.0, 2.0), ylim=(speed.min(), speed.max()), xlabel="order\n")
-        ax.set_xticks([-0.5, 0, 0.5, 1, 1.5], ["−½", "0", "½", "1", "1½"])
+        ax.set_xticks([-1, -0.5, 0, 0.5, 1, 1.5, 2], ["−1", "−½", "0", "½", "1", "1½", "2"])
+        ax.set(title=way, xlim=_strong(fall, ways, largest), ylim=(speed.min(), speed.max()), xlabel="order\n")
         ax.tick_params(labelleft=ax is panels[0])
     panels[0].set(title=f"Waterfall, {ways[0]}", ylabel=f"shaft speed, {speeds}")
     bar = panels[0].figure.colorbar(image, ax=panels, fraction=0.03, pad=0.02)
@@ -164,11 +168,18 @@ def _waterfall(panels, ways, answer, speeds, per):
     row = next(row for row in answer["rows"] if row["rate"] == fall["rate"])
     rate = _rate(per * fall["rate"], speeds)
     words = (f"{rate}; Hann windows of {fall['window']} turns: {row['resolution']:.2g} orders, "
-             f"{per * row['speed_in_window']:.3g} {speeds}")  # fmt: skip
+             f"{written(per * row['speed_in_window'], 3)} {speeds}")  # fmt: skip
     words += "; dashed orange: linear whirl" if answer["whirl"] else ""
     # Wider than its panel, it has the second line of the label below.
     panels[0].annotate(words, (0, 0), (0, -34), "axes fraction", "offset points", fontsize=7.5, color=GREY, va="top",
                        in_layout=False)  # fmt: skip
+
+
+def _strong(fall, ways, largest) -> tuple[float, float]:
+    """From which order to which a waterfall is shown: -1 to 2, and what is strong beyond."""
+    orders = np.array(fall[ways[0]]["orders"])
+    seen = np.max([np.max(fall[way]["amplitude"], axis=0) for way in ways], axis=0) > STRONG * largest
+    return min(-1.0, *orders[seen]), max(2.0, *orders[seen])
 
 
 def _growth(ax, answer, speeds, per):
@@ -191,8 +202,7 @@ def _growth(ax, answer, speeds, per):
     upright(ax, top, "back down", lw=0.8)
     ax.set(title=title, xlabel=f"time since the threshold × rate, {speeds}", ylabel="ln of growth", xlim=(0, None),
            ylim=(min(0.0, -0.03 * reach), 1.12 * reach))  # fmt: skip
-    ax.legend(loc="upper left", fontsize=7.5, bbox_to_anchor=(0.0, 0.82), frameon=True, framealpha=0.8,
-              edgecolor="none")  # fmt: skip
+    legend(ax, "best", fontsize=7.5, frameon=True, framealpha=0.8, edgecolor="none")
 
 
 def _curve(ax, answer, speeds, per):
@@ -206,8 +216,10 @@ def _curve(ax, answer, speeds, per):
     tilt, micro, rates = finer * tilt, 1e6 * finer, f"{speeds}/s".replace("s/s", "s²")
     touched = np.array(curve["touched"], dtype=bool)
     ax.set(xscale="log", yscale="log" if tilt.min() > 0 else "linear")
-    ax.plot(rate, tilt, color=BLUE, lw=1.2)
-    ax.plot(rate[~touched], tilt[~touched], "o", color=BLUE, ms=4.5, label="largest relative tilt")
+    # Where all touch the line has the name.
+    names = ("largest relative tilt", "_") if touched.all() else ("_", "largest relative tilt")
+    ax.plot(rate, tilt, color=BLUE, lw=1.2, label=names[0])
+    ax.plot(rate[~touched], tilt[~touched], "o", color=BLUE, ms=4.5, label=names[1])
     if touched.any():
         ax.plot(rate[touched], tilt[touched], "X", color=CONTACT, ms=6.5, label="touches")
     ax.yaxis.set_minor_formatter(lambda value, _: "")
@@ -238,7 +250,7 @@ def _curve(ax, answer, speeds, per):
 def _load_ramps(study, answer, title, story):
     # An aligned seal has no tilt to show.
     moves = any(row.get("relative_misalignment") for _, row in _runs(answer)) or not _runs(answer)
-    loads = {name: load for name, load in LOADS.items() if moves or name != "relative_misalignment"}
+    loads = {name: load for name, load in _loads(answer).items() if moves or name != "relative_misalignment"}
     mosaic = [[f"{name} over rate" for name in loads], [f"{name} in time" for name in loads]]
     figure, ax = study_page(study, 12.5, 8.6, mosaic, title, story, height_ratios=(6, 5))
     for name, load in loads.items():
@@ -246,6 +258,19 @@ def _load_ramps(study, answer, title, story):
         _in_time(ax[f"{name} in time"], answer, *load)
     legend(ax["h_min in time"], "best", fontsize=7.5)
     return figure
+
+
+def _loads(answer) -> dict:
+    """LOADS, tilt and leakage in units of their size."""
+    tilts = [row["relative_misalignment"] for _, row in _runs(answer) if row.get("relative_misalignment")]
+    series, title, unit, micro, what = LOADS["relative_misalignment"]
+    unit, finer = fitting(unit, micro * max(tilts, default=0.0))
+    tilt = series, title, unit, micro * finer, what
+    flows = [row["leakage"] for _, row in _runs(answer) if row.get("leakage")]
+    most = max((abs(flow) for flow in flows), default=0.0)
+    unit, factor = next((flow for flow in FLOWS if flow[1] * most >= 0.1), FLOWS[-1] if most else FLOWS[0])
+    series, title, _, _, what = LOADS["leakage"]
+    return {**LOADS, "relative_misalignment": tilt, "leakage": (series, title, unit, factor, what)}
 
 
 def _read(answer) -> tuple[str, float]:
@@ -271,23 +296,28 @@ def _over_rate(ax, answer, name, series, title, unit, factor, what):
             ax.plot(at, factor * row["leakage_least"], "o", mfc="white", color=colour, ms=7)
     ax.set(xscale="log", title=f"{title}, {unit}: {what}",
            xlabel=f"ramp rate, {_read(answer)[0]}/s (at the far right: a step)")  # fmt: skip
-    room = 0.25 * max(np.ptp(values), 1e-3 * abs(values).max()) or 1.0
-    ax.set_ylim(values.min() - room, values.max() + room)
+    largest = abs(values).max()
+    room = (0.25 * np.ptp(values) if np.ptp(values) > FLAT * largest else 0.1 * largest) or 1.0
+    # What is never below zero has room for a mark below it.
+    ax.set_ylim(max(values.min() - room, -0.04 * values.max() if values.min() >= 0 else -np.inf), values.max() + room)
     legend(ax, "best", fontsize=7.5)
 
 
 def _in_time(ax, answer, series, title, unit, factor, _):
     """The way there, from where it begins; time logarithmic, since the rates differ by tens."""
     first, (read, per) = 0.03 * answer["decay"], _read(answer)
-    last = first
+    last, seen = first, []
     for colour, row in _runs(answer):
         begin, _, back, _ = row["stages"]
         time, values = np.array(row["time"]) - begin, factor * np.array(row[series])
-        kept = (time >= first) & (time <= back - begin)
-        name = "a step" if row["rate"] is None else f"{per * row['rate']:.3g} {read}/s"
+        # Just before the way back, which a step begins with a jump.
+        kept = (time >= first) & (time < (back - begin) * (1 - 1e-12))
+        name = "a step" if row["rate"] is None else f"{written(per * row['rate'], 3)} {read}/s"
         ax.plot(time[kept], values[kept], color=colour, lw=1.2, label=name)
-        last = max(last, back - begin)
+        last, seen = max(last, back - begin), [*seen, *values[kept]]
     if last == first:
         return absent(ax, f"{title} on the way", "no run ended")
+    if seen and np.ptp(seen) <= FLAT * np.abs(seen).max():
+        ax.set_ylim(np.mean(seen) + np.array([-0.1, 0.1]) * (np.abs(seen).max() or 1.0))
     ax.set(xscale="log", xlim=(first, last), title=f"{title} on the way to {per * answer['end']:.4g} {read}",
            xlabel="time since the change began, s", ylabel=unit)  # fmt: skip

@@ -22,7 +22,9 @@ def draw(archive_path, out_path):
     study = read_study(archive_path)
     answer = study["answer"]
     rows = [{**row, "fate": row["status"] if row["status"] in FATES else "failed"} for row in done(answer["released"])]
-    story = f"{study['name']}: {answer['verdict'][0]}"
+    # What was found, and what could not be run.
+    told = [answer["verdict"][0], *(words for words in answer["verdict"][1:] if words.startswith("Failed"))]
+    story = f"{study['name']}: {' '.join(told)}"
     mosaic = [["numbers", "ratios"], ["numbers", "map"]]
     figure, ax = study_page(study, 13.0, 8.2, mosaic, below=story, width_ratios=(3, 2), height_ratios=(6, 7))
     # What was asked, and always where the closed form has no balance and where it has one.
@@ -46,7 +48,7 @@ def _numbers(ax, answer, rows):
                if r.get("quasi_static", {}).get("status") == "settled"]  # fmt: skip
     for rows_of, mark, label, style in (
         (line, "-", "closed form, Ludwig & Allen", {"color": BLACK, "lw": 1.6, "zorder": 3}),
-        (_columns(held), ":", "same balance, actual film", {"color": ORANGE, "lw": 3.2, "zorder": 2}),
+        (_columns(held), "+", "same balance, actual film", {"color": ORANGE, "ms": 12, "mew": 1.8, "zorder": 5}),
         (answer["foreseen"], "--", "released on its own support, foreseen", {"color": GREEN, "lw": 1.3, "zorder": 2}),
         (_columns(settled), "D", "same balance in time, settled", {"ms": 9, "mec": BLUE, "mew": 1.3, "zorder": 4}),
         (_columns(answer["published"]), "*", "published rows", {"ms": 15, "mec": BLACK, "zorder": 6}),
@@ -62,7 +64,8 @@ def _numbers(ax, answer, rows):
     _zones(ax, answer)
     ax.set(ylabel="sealing number  h0² F_s / (µ U ΔR³)",
            title="Mean film, as the sealing number (bars: least and largest)")  # fmt: skip
-    ax.legend(loc="upper left", bbox_to_anchor=(0.42, 0.4))
+    # Below the panel, where there is nothing to hide.
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=2)
 
 
 def _columns(rows) -> dict:
@@ -106,12 +109,17 @@ def _released(ax, rows):
                         label=label, zorder=5)  # fmt: skip
 
 
+def _first(rows) -> list[dict]:
+    """Of rings that were started in several ways those of the first one."""
+    return [row for row in rows if row["start"] == rows[0]["start"]]
+
+
 def _ratios(ax, rows):
     """Film of the released ring over that of the closed form."""
     for name, words, colour in (("mean_film", "mean film h0", BLUE), ("least_film", "least film", ORANGE),
                                 ("sealing_number", "sealing number", GREEN)):  # fmt: skip
         for own, mark in ((True, "o-"), (False, "o:")):
-            mine = [r for r in rows if r["ratio"] and (r["support"] == OWN) == own and r["start"] == "closed form"]
+            mine = [r for r in _first(rows) if r["ratio"] and (r["support"] == OWN) == own]
             if mine:
                 ax.plot([r["force_ratio"] for r in mine], [r["ratio"][name] for r in mine], mark, color=colour, ms=4,
                         mfc=colour if own else "white", label=words if own else None)  # fmt: skip
@@ -121,8 +129,11 @@ def _ratios(ax, rows):
         )
     level(ax, 1.0, "hollow: with a tilt spring that carries R F_s h1/h0", BLACK, ls="-", lw=0.8, zorder=1)
     ax.set(yscale="log", ylabel="released / closed form", title="How far the closed form carries")
-    ax.set_ylim(top=12)
-    legend(ax, "lower left", title="on its own support", alignment="left", title_fontsize=8)
+    seen = [value for line in ax.lines for value in line.get_ydata()]
+    # Room for the names above the line at one, and above all marks.
+    low, high = 0.6 * min(seen), 1.6 * max(seen)
+    ax.set_ylim(low, max(high * (high / low) ** 0.4, 12.0))
+    legend(ax, "upper left", title="on its own support", alignment="left", title_fontsize=8, ncols=3)
 
 
 def _map(ax, answer, rows, last):
@@ -134,11 +145,10 @@ def _map(ax, answer, rows, last):
     ax.fill_betweenx(guide, straight, 1e3, color=VERMILLION, alpha=0.14, lw=0)
     ax.axhspan(1.0, 2.0, color=PURPLE, alpha=0.16, lw=0)
     ax.plot(need["force_ratio"], need["guide"], color=BLACK, lw=1.6)
-    for row in rows:
-        if row["start"] == "closed form":
-            colour, mark, _ = FATES[row["fate"]]
-            ax.plot(row["force_ratio"], row["guide"], mark, color=colour, ms=6, mec="white", mew=0.6, zorder=4,
-                    clip_on=False)  # fmt: skip
+    for row in _first(rows):
+        colour, mark, _ = FATES[row["fate"]]
+        ax.plot(row["force_ratio"], row["guide"], mark, color=colour, ms=6, mec="white", mew=0.6, zorder=4,
+                clip_on=False)  # fmt: skip
     # Each name in its region, however far it goes to the right.
     inner, outer, film = last**0.75, min(last**0.5, need["force_ratio"][-1]), last**0.9
     middle = 0.5 * sum(np.interp(film, ends, guide) for ends in (hang, straight))

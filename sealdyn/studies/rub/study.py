@@ -21,7 +21,7 @@ from ...scene.variants import part
 from ...simulation.stability import critical_speed
 from ...status import Status
 from ...units import Speed
-from .._words import RPM, quantity, shown_in, speed
+from .._words import RPM, plain, quantity, shown_in, speed
 from .statistics import evaluate_point, touch_level
 
 # Speeds, relative to the critical one, at which a whirl is let go.
@@ -172,7 +172,7 @@ def whirl(scene, point: dict) -> dict:
 def tables(answer) -> list:
     """Points of the diagram, and the whirls let go."""
     unit, factor = _shown(answer)
-    value = (f"{answer['key']}, {unit}", "value", factor)
+    value = (f"{answer['key']}, {unit}" if unit else answer["key"], "value", factor)
     share = (("contact, % of time", "contact_share", 100), ("% of closing force", "contact_force", 100))
     points = (("going", "direction"), value, ("motion", "class"), *share, ("exponent per period", "exponent"),
               ("+-", "uncertainty"), ("evaluations per turn", "evaluations"))  # fmt: skip
@@ -186,7 +186,8 @@ def sentences(answer) -> list[str]:
     unit, factor = _shown(answer)
     ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w], factor) for w in ("up", "down")}
     paths = "; ".join(f"going {way}: {path}" for way, path in ways.items() if path)
-    lines = [f"{answer['key']} ({unit}) {paths}." if paths else "No point of the diagram was reached."]
+    key = f"{answer['key']} ({unit})" if unit else answer["key"]
+    lines = [f"{key} {paths}." if paths else "No point of the diagram was reached."]
     if answer["judge"]:
         lines.append(_foretold(answer, quantity(answer["judge"]["value"], _unit(answer))))
     if answer["whirl"]:
@@ -198,8 +199,9 @@ def sentences(answer) -> list[str]:
 
 
 def _unit(answer) -> str:
-    """SI unit of the key."""
-    return answer.get("units", {}).get("rows/value", "SI")
+    """SI unit of the key, none of a pure number."""
+    unit = answer.get("units", {}).get("rows/value", "")
+    return "" if unit in ("SI", "1") else unit
 
 
 def _shown(answer) -> tuple[str, float]:
@@ -211,7 +213,7 @@ def _classes(rows, factor) -> str:
     """Classes along a path: "no contact to 0.2, period 1 to 0.3, ..."."""
     last = [k + 1 == len(rows) or rows[k + 1]["class"] != row["class"] for k, row in enumerate(rows)]
     return ", ".join(
-        f"{row['class']} to {factor * row['value']:.4g}" for row, ends in zip(rows, last, strict=True) if ends
+        f"{row['class']} to {plain(factor * row['value'], 4)}" for row, ends in zip(rows, last, strict=True) if ends
     )
 
 

@@ -33,6 +33,8 @@ from .ramp_run import RampCycle, told
 
 # Values between both ends at which the quasi-static answer is found; samples of a stage of a trip.
 VALUES, SAMPLES = 25, 150
+# Of a film: a range of less is none.
+FLAT = 1e-3
 
 
 def quasi_static(scenario, key: str, begin: float, end: float) -> dict:
@@ -73,7 +75,7 @@ def _settled(segment) -> tuple[float | None, float | None, float | None]:
     s[DZ] = shift
     set_conditions(s, model.scene, lambda quantity: constant_and_slope(quantity, interval)[0])
     s[MEAN_SPIN], s[SPIN_DIFFERENCE] = spins(model.scene, interval)
-    source.flow(f, s)
+    source.flow(f, s, *([model.interface.steady(f, s)] if model.interface.unknowns is not None else []))
     leakage = -s[FLOW_INNER] if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else s[FLOW_OUTER]
     return float(most), float(min(edge_gaps(model.face, shift - closing, most, s[CONING_CHANGE]))), float(leakage)
 
@@ -170,7 +172,8 @@ def overshoot(row: dict, slow: dict) -> dict:
     low, high = min(slow["h_min"]), max(slow["h_min"])
     tilt = max(slow["relative_misalignment"])
     flow_low, flow_high = min(slow["leakage"]), max(slow["leakage"])
-    film = (low - row["h_min"]) / (high - low) if row["h_min"] is not None and high - low > 1e-6 * high else None
+    # A film that hardly changes has no range to go beyond.
+    film = (low - row["h_min"]) / (high - low) if row["h_min"] is not None and high - low > FLAT * high else None
     flow = max(row["leakage"] - flow_high, flow_low - row["leakage_least"])
     return {
         "h_min": film,

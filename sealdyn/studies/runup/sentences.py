@@ -78,12 +78,12 @@ def load_sentences(answer) -> list[str]:
     begin, end = (quantity(answer[name], answer["unit"]) for name in ("begin", "end"))
     films = [(row["h_min"], row["rate"]) for row in answer["rows"] if row.get("h_min") is not None]
     least, rate = min(films, key=lambda film: film[0], default=(None, None))
-    how = "in a step" if rate is None else f"at {rate:.4g} {answer['rate_unit']}"
+    how = "in a step" if rate is None else f"at {quantity(rate, answer['unit'], 4)}/s"
     film = "no film" if least is None else f"thinnest film {1e6 * least:.4g} um, {how}"
     lines = [f"{key} from {begin} to {end} and back: {film}."]
     ends = ["no gap balances the loads" if slow["h_min"][k] is None else
             f"{1e6 * slow['h_min'][k]:.4g} um, {1e6 * slow['relative_misalignment'][k]:.4g} urad, "
-            f"{slow['leakage'][k] * 3.6e9:.5g} ml/h" for k in (0, -1)]  # fmt: skip
+            f"{quantity(slow['leakage'][k], 'm^3/s')}" for k in (0, -1)]  # fmt: skip
     between = "; between them are values whose loads no gap balances" if None in slow["h_min"][1:-1] else ""
     lines.append(f"Infinitely slowly (film, misalignment, leakage): {ends[0]} at begin, {ends[1]} at end{between}.")
     lines.append(f"Disturbances of the linear seal fall to 1/e within {-1 / slowest:.3g} s." if slowest < 0 else

@@ -18,7 +18,7 @@ from ...scenario.settings import si_unit
 from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
-from .._words import RPM
+from .._words import RPM, shown_in
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
 from .sentences import WAYS, load_sentences, sentences
@@ -220,10 +220,12 @@ def tables(answer) -> list:
                    ("ln of growth", "growth.measured"), ("linear", "growth.with_factor"))  # fmt: skip
         where = (("closest at, rpm", "h_min_speed", RPM), ("going", "h_min_way"))
         return [([_plain(row) for row in answer["rows"]], (*columns, *where, *ends))]
-    columns = ((f"rate, {answer['rate_unit']}", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
+    rates, per = shown_in(answer["unit"], [answer["begin"], answer["end"]])
+    flow, factor = shown_in("m^3/s", [row.get("leakage") for row in answer["rows"]])
+    columns = ((f"rate, {rates}/s", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
                ("misalignment, %", "overshoot.relative_misalignment", 100),
-               ("leakage from, ml/h", "leakage_least", 3.6e9), ("to", "leakage", 3.6e9))  # fmt: skip
-    rows = [{**row, "rate": "a step" if row["rate"] is None else row["rate"]} for row in answer["rows"]]
+               (f"leakage from, {flow}", "leakage_least", factor), ("to", "leakage", factor))  # fmt: skip
+    rows = [{**row, "rate": "a step" if row["rate"] is None else per * row["rate"]} for row in answer["rows"]]
     return [(rows, (*columns, *ends))]
 
 

@@ -164,7 +164,9 @@ def started(scene, start="closed form", factor: float = 1.0) -> Scene:
     ring, clearance = ring_of(scene), Model(scene, 1e-3).clearance
     seat, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
     if start == "open":
-        mean, tilt = APART * ring.mean_radius * seat, 0.0
+        # Where the tilts of the faces reach furthest.
+        reach = ring.mean_radius if scene.film.tilt_radius == "mean" else scene.film.outer_radius
+        mean, tilt = APART * reach * seat, 0.0
     else:
         films = start_film(force_ratio_of(scene), ring) if start == "closed form" else start
         mean, tilt = factor * films[0], seat - factor * films[1] / ring.mean_radius
