@@ -171,7 +171,7 @@ def test_a_sweep_and_numbers_of_runs(folder, tmp_path):
     assert table.attrs["units"]["whole.largest_gap"] == "m"
     many = package.simulate_many(read_scenario(SEGMENTS), [asked, {"run.turns": 2, "shaft.speed": 0}], workers=1)
     assert [*many.status.values] == ["ok", "not possible"]
-    with pytest.raises(ValueError, match=r"nearest 'whole\.largest_gap"):
+    with pytest.raises(package.ScenarioError, match=r"nearest 'whole\.largest_gap"):
         package.evaluate(SEGMENTS, asked, "largest_gap")
 
 

@@ -9,7 +9,7 @@ from drawn import crossed, panel, study, text_trouble
 from made_up_run import whirling, write
 from test_charts_untuned import RPM, must_be_legible, said, ticks
 
-from sealdyn.report.charts import animation
+from sealdyn.report.charts import animation, moving
 from sealdyn.report.charts.page import sheet
 from sealdyn.report.charts.study_sweep import axis_label
 from sealdyn.report.text import study_lines
@@ -341,7 +341,7 @@ def test_the_names_of_an_animation_are_on_its_page(tmp_path, part):
     columns = whirling(samples=400, turns=10)
     columns["h_min"] = 1.39141e-5 * (1 + part * np.sin(np.arange(400)))
     figures = []
-    with mock.patch.object(animation, "sheet", lambda *size: figures.append(sheet(*size)) or figures[-1]):
+    with mock.patch.object(moving, "sheet", lambda *size: figures.append(sheet(*size)) or figures[-1]):
         animation.animate(write(tmp_path / "seal.h5", columns), tmp_path / "last.png")
     (figure,) = figures
     assert text_trouble(figure) == ([], [])
