@@ -237,9 +237,9 @@ def one_by_one(times, theta, m, k, d, preload, friction, e=E, w=W):
 @pytest.mark.parametrize(
     "scene",
     [lip(2.5, eta=0.3), lip(1.0, eta=0.0), lip(4.0, 1500.0, eta=0.1), segments(0.05), segments(0.05, 0.01),
-     segments(0.012, 0.01), segments(0.12, 0.1, e=2e-4), segments(0.06, 0.1, e=2e-4)],
+     segments(0.012, 0.01), segments(0.12, 0.1, e=2e-4), segments(0.06, 0.1, e=2e-4), segments(0.06, 1.0)],
     ids=["lip", "undamped lip", "fast lip", "segments", "segments with friction", "nearly hung up", "turning",
-         "hung up"],
+         "hung up", "hit while held"],
 )  # fmt: skip
 def test_the_motion_is_that_of_each_follower_by_itself(scene):
     """Without a coupling each sector is on its own: displacements within 1e-5 of the eccentricity, lifts alike."""

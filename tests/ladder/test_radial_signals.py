@@ -439,6 +439,19 @@ def test_a_follower_at_rest_is_held_or_goes_where_it_is_pulled(pull, mode, sign)
         assert made.event["kind"] == "slip" and (contacts.modes[3], contacts.signs[3]) == (FREE, sign)
 
 
+def test_of_several_changes_within_a_step_the_first_is_made(monkeypatch):
+    """Whichever follower it is of, and whether it meets the shaft."""
+    contacts, block = Contacts(RadialModel(ramped("lip"), 1e-6)), SimpleNamespace(t=np.array([0.0, 1.0]))
+    block.only = lambda step: block
+    contacts.begin(SimpleNamespace(length=1.0), 0.0, None)
+    for meets, leaves in ((0.3, 0.62), (0.62, 0.3)):
+        at = np.full((2, 12), np.inf)
+        at[0, 9], at[1, 2], at[1, 5] = meets, leaves, 0.9
+        monkeypatch.setattr(contacts, "guards", lambda block, taus, at=at: (at - taus[:, None, None]).swapaxes(0, 1))
+        time, j, touches = contacts._in_step(block, 0)
+        assert time == pytest.approx(0.3, abs=1e-6) and (j, touches) == ((9, True) if meets == 0.3 else (2, False))
+
+
 def test_closed_forms_in_words_and_at_their_edges():
     scene = ramped("segments")
     followers, shaft = followers_of(scene), scene.shaft
