@@ -16,9 +16,14 @@ def lines(scenario, summary: dict) -> list[str]:
     return _table(scenario.name, summary["status"], message, rows_of(summary))
 
 
-def rows_of(summary: dict):
-    """(name, words) of every line of a run, of a face or a radial seal; a line that goes on has no name."""
-    return radial_rows(summary) if "follower" in summary else run_rows(summary)
+# What speeds are told in, and how many of it make one rad/s.
+SI_SPEED = "rad/s", 1.0
+
+
+def rows_of(summary: dict, speeds=SI_SPEED):
+    """(name, words) of every line of a run, of a face or a radial seal, its speeds as in `speeds`; a line that goes on
+    has no name."""
+    return radial_rows(summary) if "follower" in summary else run_rows(summary, speeds)
 
 
 def question_of(comment: str) -> str:
@@ -36,7 +41,7 @@ def speed_unit(info: dict) -> tuple[str, float]:
     """What the speeds of a run or study are read in, "rpm" where its scenario or command line has them so, else
     "rad/s", and how many of it make one rad/s."""
     written = [info.get("scenario") or "", *map(str, info.get("overrides") or [])]
-    return ("rpm", 30 / math.pi) if any(map(RPM.search, written)) else ("rad/s", 1.0)
+    return ("rpm", 30 / math.pi) if any(map(RPM.search, written)) else SI_SPEED
 
 
 def _table(title, status, message, rows) -> list[str]:
@@ -44,7 +49,7 @@ def _table(title, status, message, rows) -> list[str]:
     return [ended, *(f"  {name:<14}{words}" for name, words in rows)]
 
 
-def run_rows(summary):
+def run_rows(summary, speeds=SI_SPEED):
     """(name, words) of every line; a line that goes on has no name."""
     model, film, closing = (summary[k] for k in ("model", "film", "closing"))
     yield "model", (f"{model['film']} film, unknowns {', '.join(model['unknowns'])}; {model['solver']}, "
@@ -86,7 +91,7 @@ def run_rows(summary):
             "cavitation",
             f"up to {_n(film['max_cavitated_fraction'], 100)} % of the face at the floor pressure ({how})",
         )
-    yield "stability", _stability(summary["stability"])
+    yield "stability", _stability(summary["stability"], speeds)
     if summary["energy_residual"] is not None:
         yield "energy audit", f"residual {summary['energy_residual']:.1e} of the work exchanged"
     if summary.get("certificate"):
@@ -208,17 +213,18 @@ def _margin_rows(summary):
     yield "contact", words
 
 
-def _stability(stability):
+def _stability(stability, speeds=SI_SPEED):
+    unit, per = speeds
     critical, whirl = stability["critical_speed"], stability["whirl_ratio"]
     verdict = stability["verdict"]
-    text = f"{verdict} (all degrees of freedom, at {_n(stability['speed'])} rad/s)"
+    text = f"{verdict} (all degrees of freedom, at {_n(stability['speed'], per)} {unit})"
     if verdict == "neutral" and stability.get("growth_rate_uncertainty") is not None:
         known = _n(stability["growth_rate_uncertainty"], digits=2)
         text += f", growth rate {_n(stability['growth_rate'])} 1/s, known to +- {known} 1/s only"
     if whirl is not None:
         text += f", whirl ratio {_n(whirl)}"
     if critical:
-        text += f", critical speed {_n(critical)} rad/s"
+        text += f", critical speed {_n(critical, per)} {unit}"
         every = stability.get("thresholds") or [critical]
         tilts = [mode["re"] for mode in stability["modes"] if mode["kind"] == "tilt"]
         if tilts and verdict != "neutral":
@@ -227,16 +233,16 @@ def _stability(stability):
             below = (max(tilts) < 0.0) != bool(turned)
             text += f" (stable {'below' if below else 'above'})"
         if len(every) > 1:
-            text += ", again at " + ", ".join(_n(w) for w in every[1:]) + " rad/s"
+            text += ", again at " + ", ".join(_n(w, per) for w in every[1:]) + f" {unit}"
     elif stability["thresholds"] is None:
         text += ", critical speed not looked for (study campbell)"
     else:
         text += ", no critical speed"
     if stability.get("speeds_held"):
-        low, high = (_n(w) for w in stability["speeds_held"])
-        text += f" (from {low} to {high} rad/s, where a film holds the closing force)"
+        low, high = (_n(w, per) for w in stability["speeds_held"])
+        text += f" (from {low} to {high} {unit}, where a film holds the closing force)"
     if stability["resonance_speeds"]:
-        text += ", resonance at " + ", ".join(_n(w) for w in stability["resonance_speeds"]) + " rad/s"
+        text += ", resonance at " + ", ".join(_n(w, per) for w in stability["resonance_speeds"]) + f" {unit}"
     return text
 
 
