@@ -93,7 +93,9 @@ def _run(path: Path, rules, validation) -> dict:
         "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
         "warnings": [words for name, words in rows if name == "WARNING"],
         "figures": [(words, chart, _drawn(path, chart)) for chart, words in figures.items()],
-        "rules": [{**rule, "said": told(rule["said"])} for rule in rules(path, info)] if rules else [],
+        "rules": [{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in rules(path, info)]
+        if rules
+        else [],
         "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
         "validation": validation(film) if validation and film else [],
         "verdict": [],

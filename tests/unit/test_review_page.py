@@ -31,10 +31,22 @@ def test_numbers_and_units_of_a_page_are_those_of_print(tmp_path):
     assert told("leaks 6.686e+04 cc/h, 1.02e+07 N/m, 2.398 N/cm^2, 1e-9 m^3/s") == (
         "leaks 66860 cc/h, 1.02e+07 N/m, 2.398 N/cm², 1e-9 m³/s"
     )
-    rule = {"rule": "leakage", "verdict": "fail", "said": "4.322e+04 cc/h", "source": "limit", "command": "run"}
+    rule = {
+        "rule": "leakage",
+        "verdict": "fail",
+        "said": "4.322e+04 cc/h",
+        "source": "limit 5 N/cm^2",
+        "command": "run",
+    }
     words, _ = page(tmp_path, {}, rules=lambda path, info: [{**rule, "reason": ""}])
     body = words[: words.index("Scene in SI units")]
-    assert "43220 cc/h" in body and " um" not in body and "m³/s" in body and not re.search(r"e\+0[1-6]", body)
+    assert (
+        "43220 cc/h" in body
+        and "limit 5 N/cm²" in body
+        and " um" not in body
+        and "m³/s" in body
+        and not re.search(r"e\+0[1-6]", body)
+    )
 
 
 @pytest.mark.parametrize("runout, orbits", [("25 urad", True), (0.0, False)])
