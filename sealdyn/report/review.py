@@ -4,12 +4,14 @@ number of archives, with nothing loaded from elsewhere."""
 import base64
 import importlib
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from ..archive import is_study, read_info, read_study
 from ..toml_line import toml_line
+from .charts.page import printed
 from .radial import is_radial
 from .text import question_of, rows_of, speed_unit, study_lines
 
@@ -22,6 +24,11 @@ FIGURES = {
     "orbit": "Orbits",
 }
 RADIAL_FIGURES = {"overview": "Overview of the run"}
+# Letters of a study's table (px), the width of the page in px at 0.602 of them a letter, and letters of a line beyond
+# which it is wrapped: reasons are long.
+LARGEST, WIDTH, LONGEST = 12.5, 1030.0, 230
+# Numbers of four digits below ten millions that stand with a power of ten.
+POWER = re.compile(r"\b\d(?:\.\d+)?e\+0[1-6]\b")
 
 
 def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None) -> Path:
@@ -72,22 +79,28 @@ def _title(parts: list[dict], seals: list[list[str]]) -> str:
 def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
-    rows = list(rows_of(summary, speed_unit(info))) if summary else []
-    figures = RADIAL_FIGURES if is_radial(info) else FIGURES
+    rows = [(name, told(words)) for name, words in rows_of(summary, speed_unit(info))] if summary else []
+    figures = RADIAL_FIGURES if is_radial(info) else dict(FIGURES)
+    if summary and summary.get("relative_misalignment", {}).get("max") == 0:
+        # Aligned faces have none.
+        figures.pop("orbit", None)
     return {
         "kind": "run",
         "name": info["name"],
         **_asked(info),
         "status": str(info["status"]),
-        "message": info.get("message", ""),
+        "message": told(info.get("message", "")),
         "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
         "warnings": [words for name, words in rows if name == "WARNING"],
         "figures": [(words, chart, _drawn(path, chart)) for chart, words in figures.items()],
-        "rules": rules(path, info) if rules else [],
+        "rules": [{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in rules(path, info)]
+        if rules
+        else [],
         "film": (film := (summary.get("model") or {}).get("film", "") if summary else ""),
         "validation": validation(film) if validation and film else [],
         "verdict": [],
         "table": "",
+        "letters": LARGEST,
         "scene": list(_scene(info["resolved"])),
         "scenario": info["scenario"],
         "made": _made(path, info),
@@ -103,19 +116,33 @@ def _study(path: Path, tables) -> dict:
         "name": study["name"],
         **_asked(study),
         "status": str(answer["status"]),
-        "message": answer.get("message", ""),
+        # The verdict, which stands below.
+        "message": "" if answer["verdict"] else told(answer.get("message", "")),
         "rows": [],
         "warnings": [],
         "figures": [(f"Study {study['study']}", "study", _drawn(path, f"study_{study['study']}"))],
         "rules": [],
         "film": "",
         "validation": [],
-        "verdict": answer["verdict"],
+        "verdict": [told(words) for words in answer["verdict"]],
         "table": "\n".join(lines),
+        "letters": letters(lines),
         "scene": list(_scene(study["resolved"])),
         "scenario": study["scenario"],
         "made": _made(path, study),
     }
+
+
+def letters(lines) -> float:
+    """How large (px) the letters of a table are, so that its rows fit the page."""
+    longest = min(max(map(len, lines), default=1), LONGEST)
+    return min(LARGEST, int(10 * WIDTH / (0.602 * longest)) / 10)
+
+
+def told(words: str) -> str:
+    """Words of a terminal as a page has them: units of print, numbers below ten millions in full."""
+    plain = POWER.sub(lambda found: f"{float(found[0]):.7g}", words)
+    return printed(plain).replace("^3", "³")
 
 
 def _asked(info: dict) -> dict:
