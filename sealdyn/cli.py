@@ -763,8 +763,17 @@ def compare(
     if as_json:
         print(json.dumps(found))
     else:
-        for line in comparison_lines(found):
+        for line in comparison_lines(found, _in_words(one)):
             print(line)
+
+
+def _in_words(file):
+    """What tells a number at a key of the scene of a run, as `comparison_lines` wants it."""
+    from .scenario.settings import with_own_unit
+    from .studies._words import quantity
+
+    scene = _read(file, None).scene
+    return lambda key, value: quantity(value, with_own_unit(scene, {"key": key})["si"].replace("SI", ""), 6)
 
 
 def _rules_of(file, info) -> list[dict]:

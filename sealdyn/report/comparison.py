@@ -7,6 +7,7 @@ import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
 from .radial import is_radial
+from .text import speed_unit
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -38,6 +39,9 @@ FIRST = (
     ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
     ("contact.lift", "lost contacts", 1.0),
 )
+SPEEDS, RPM = ("stability.critical_speed",), 30.0 / math.pi
+# How many times as much is told as such.
+MANY = 4.0
 # Leakage (m^3/s) from which it is told in l/min, as that of gases.
 MUCH, IN_LITRES = 1e-5, ("leakage, l/min", 6e4)
 # Series of which the largest difference is told: of face seals, of radial seals.
@@ -46,7 +50,8 @@ SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
 
 def comparison(one, other) -> dict:
     """`scene` and `summary`, lists of {key, values: [one, other], change (relative, None of what is no number)} of what
-    differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have.
+    differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have;
+    `speeds` the unit in which people read them.
     **Raises** ArchiveError for what is no archive of a run."""
     infos = [_read(path) for path in (one, other)]
     if is_radial(infos[0]) != is_radial(infos[1]):
@@ -56,28 +61,31 @@ def comparison(one, other) -> dict:
     return {
         "names": [str(one), str(other)],
         "status": [str(info["status"]) for info in infos],
+        "speeds": speed_unit(infos[1])[0],
         "scene": _different(*scenes),
         "summary": [row for row in _different(*summaries) if not row["key"].startswith(OWN)],
         "series": list(_series(one, other, infos)),
     }
 
 
-def comparison_lines(found: dict) -> list[str]:
-    """The same for people."""
+def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[str]:
+    """The same for people; `told(key, value)` the words of a number (SI) at a dotted key of a scene."""
     out = [f"A  {found['names'][0]}: {found['status'][0]}", f"B  {found['names'][1]}: {found['status'][1]}"]
     out += [
-        f"  scene         {row['key']}: {_word(row['values'][0])} -> {_word(row['values'][1])}"
+        f"  scene         {row['key']}: "
+        + " -> ".join(told(row["key"], value) if _is_number(value) else _word(value) for value in row["values"])
         for row in found["scene"]
     ]
     out += [] if found["scene"] else ["  scene         the same"]
     rows = {row["key"]: row for row in found["summary"]}
     shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
     for heading, factor, row in shown:
+        if row["key"] in SPEEDS and found.get("speeds", "rad/s") == "rpm":
+            heading, factor = heading.replace("rad/s", "rpm"), RPM
         if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
             heading, factor = IN_LITRES
         words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
-        change = "" if row["change"] is None else f"  ({100 * row['change']:+.3g} %)"
-        out.append(f"  {heading:<28}{words}{change}")
+        out.append(f"  {heading:<28}{words}{_change_words(row['change'])}")
     if not shown:
         out.append("  results       the same")
     for row in found["series"]:
@@ -117,6 +125,18 @@ def _differ(a, b) -> bool:
 
 def _change(a, b) -> float | None:
     return b / a - 1.0 if _is_number(a) and _is_number(b) and a else None
+
+
+def _change_words(change) -> str:
+    """A relative change in words: per cent mean little of what is several times as much, or has turned round."""
+    if change is None:
+        return ""
+    times = 1.0 + change
+    if times <= 0.0:
+        return "  (changes its sign)" if times else "  (to nothing)"
+    if 1.0 / MANY < times < MANY:
+        return f"  ({100 * change:+.3g} %)"
+    return f"  ({times:.3g} times as much)" if times > 1.0 else f"  (a {1.0 / times:.3g}th)"
 
 
 def _is_number(value) -> bool:

@@ -34,7 +34,7 @@ def test_what_differs(folder):
 
 def test_people_read_it(folder):
     lines = sealdyn("compare", "a.h5", "b.h5", cwd=folder).out.splitlines()
-    assert any("stator.misalignment" in line and "5e-05" in line for line in lines)
+    assert any("stator.misalignment" in line and "50 urad" in line for line in lines)
     assert any("misalignment max, urad" in line and "%" in line for line in lines)
 
 
@@ -58,3 +58,15 @@ def test_the_leakage_of_gases_is_told_in_litres_a_minute():
     assert "leakage, l/min" in told and "6 -> 3" in told
     told = " ".join(comparison_lines(found | {"summary": [row | {"values": [1e-8, None], "change": None}]}))
     assert "leakage, ml/h" in told and "36 -> -" in told
+
+
+def test_numbers_of_a_scene_have_units_and_large_changes_no_per_cent(folder):
+    lines = sealdyn("compare", "a.h5", "b.h5", cwd=folder).out.splitlines()
+    assert any("stator.misalignment" in line and line.endswith("-> 50 urad") for line in lines)
+    found = {"names": ["a", "b"], "status": ["ok", "ok"], "scene": [], "series": [], "speeds": "rpm"}
+    row = {"key": "contact_margin", "values": [1.0, -2.0]}
+    for change, words in ((-3.0, "changes its sign"), (-1.0, "to nothing"), (9.0, "(10 times as much)"),
+                          (-0.95, "(a 20th)"), (0.1, "(+10 %)")):  # fmt: skip
+        assert words in comparison_lines(found | {"summary": [row | {"change": change}]})[-1]
+    row = {"key": "stability.critical_speed", "values": [100.0, 200.0], "change": 1.0}
+    assert "critical speed, rpm         954.9 -> 1910" in comparison_lines(found | {"summary": [row]})[-1]
