@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from sealdyn.report.charts.animation import OPEN, _enlarged, _Rows
+from sealdyn.report.charts.animation import OPEN, _enlarged, _panels, _Rows
+from sealdyn.report.charts.moving import stage
 from sealdyn.report.charts.palette import CONTACT, STATUS
 from sealdyn.report.charts.record import Run
 
@@ -93,3 +94,17 @@ def test_bad_input_is_one_line(words, said, folder):
     answer = sealdyn("animate", *words, cwd=folder)
     assert answer.code == 2 and said in answer.err and len(answer.err.strip().splitlines()) == 1
     assert sorted(folder.iterdir()) == before
+
+
+@pytest.mark.parametrize("speed", [1000, -1000])
+def test_the_mark_on_the_rotor_turns_as_the_shaft_does(tmp_path, speed):
+    words = ["--set", "run.turns=0.7", "--set", f"shaft.speed={speed} rad/s", "--no-plot"]
+    assert sealdyn("run", REFERENCE, *words, "--out", "a.h5", cwd=tmp_path).code == 0
+    run = Run(tmp_path / "a.h5")
+    figure, movers = stage(run, _panels, run.progress[[0, -1]])
+    (mark,) = [line for line in figure.axes[1].lines if line.get_marker() == "v"]
+    for row in (0, len(run.progress) // 3, -1):
+        for move in movers:
+            move(run.progress[row])
+        shaft = run.values("shaft_angle")[row]
+        assert np.cos(mark.get_xdata()[0] - shaft) == pytest.approx(1.0, abs=1e-6)

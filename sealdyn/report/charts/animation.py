@@ -167,16 +167,17 @@ def _face(ax, run: Run, rows: _Rows):
     (thinnest,) = ax.plot([], [], "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
     (mark,) = ax.plot([], [], "v", ms=7, color=MARK, clip_on=False)
 
-    # The angle of the shaft, wrapped at 2 pi, is not interpolated: its turns are.
-    start = run.values("shaft_angle", 0, 1)[0] if run.has("shaft_angle") else 0.0
+    # The angle of the shaft, wrapped at 2 pi, is not interpolated: its turns are, in the direction of its speed.
+    start = rows.values("shaft_angle")[0]
+    ways = np.sign(rows.values("shaft_speed"))
+    turned = start + 2 * np.pi * np.concatenate([[0.0], np.cumsum(ways[1:] * np.diff(rows.at))])
 
     def move(moment):
         over = rows.thickness(radius, angle, moment)
         image.set_array((shown[1] * over).ravel())
         at = np.unravel_index(np.argmin(over), over.shape)
         thinnest.set_data([angle[0][at[1]]], [1e3 * radius[at[0]][0]])
-        turned = 2 * np.pi * moment if run.turning else 0.0
-        mark.set_data([start + turned], [1e3 * (outer + 0.06 * (outer - inner))])
+        mark.set_data([np.interp(moment, rows.at, turned)], [1e3 * (outer + 0.06 * (outer - inner))])
 
     return move
 
