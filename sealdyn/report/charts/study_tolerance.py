@@ -10,6 +10,8 @@ from .study_sweep import SHOWN
 
 # Outputs that have a histogram, and keys that have a row.
 MOST, MOST_KEYS = 4, 10
+# Keys that fill the panels of keys.
+FEW = 3
 ALSO = SHOWN | {"Pa": ("bar", 1e-5)}
 BAND = (("5", "95", 0.5), ("25", "75", 1.0))
 LINES = {"1": "1, 99 %", "50": "_", "99": "_"}
@@ -77,7 +79,8 @@ def _histogram(ax, answer, name):
     ax.hist([values[known & touched], values[known & ~touched]], edges, stacked=True, color=[CONTACT, SKY],
             label=["touched" if touched.any() else "_", "_"])  # fmt: skip
     quantiles = answer["quantiles"][name]
-    ax.axvspan(factor * quantiles["5"], factor * quantiles["95"], color=PALE, alpha=0.5, zorder=0, label="5 to 95 %")
+    ax.axvspan(factor * quantiles["5"], factor * quantiles["95"], fc=(PALE, 0.5), ec=GREY, lw=0.6, zorder=0,
+               label="5 to 95 %")  # fmt: skip
     if answer["nominal"][name] is not None:
         nominal = factor * answer["nominal"][name]
         side = "right" if nominal > 0.5 * (edges[0] + edges[-1]) else "left"
@@ -107,6 +110,7 @@ def _shares(ax, answer):
     else:
         return absent(ax, f"What makes {name} scatter", "it does not vary")
     ax.set_yticks(at, [row["key"] for row in rows])
+    ax.set_ylim(-0.5 - _room(rows), len(rows) - 0.5 + _room(rows))
 
 
 def _column(rows, key) -> np.ndarray:
@@ -129,7 +133,13 @@ def _matrix(ax, answer, outputs):
     ax.grid(False)
     ax.set_xticks(range(len(outputs)), [_folded(name) for name in outputs])
     ax.set_yticks(range(len(keys)), len(keys) * [""])
+    ax.set_ylim(len(keys) - 0.5 + _room(keys), -0.5 - _room(keys))
     ax.set_title(title)
+
+
+def _room(keys) -> float:
+    """Rows left free on both sides of few keys, whose bars would else fill the panel."""
+    return max(0.0, 0.5 * (FEW - len(keys)))
 
 
 def _folded(name: str) -> str:
