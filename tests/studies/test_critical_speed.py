@@ -13,6 +13,7 @@ from scenes import INERTIA, SUPPORT, fmr, fms
 from sealdyn.analysis.whirl import free_model, growth_rate, time_domain, tipping_disturbance
 from sealdyn.analysis.whirl.time_domain import followed
 from sealdyn.scenario.reader import parse_scenario
+from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import critical_speed
 from sealdyn.studies._runner import run_study
 
@@ -277,3 +278,38 @@ def test_fates_that_are_not_known_say_why():
     assert critical_speed.fates(rows, "small") == (
         "Small whirls in time: none was followed to its end (too many steps)."
     )
+
+
+# An oil barrier whose fluid's inertia lets no film hold the closing force from 15 806 rpm on.
+BARRIER = """
+[shaft]
+speed = "15000 rpm"
+[film]
+inner_radius = "45 mm"
+outer_radius = "50 mm"
+coning = "1 mrad"
+inertia = true
+viscosity = "20 mPa*s"
+density = "870 kg/m^3"
+outer_pressure = "4 bar"
+inner_pressure = "1 bar"
+[closing]
+balance_ratio = 0.65
+spring_force = "30 N"
+[rotor]
+misalignment = "50 urad"
+body = { inner_radius = "40 mm", outer_radius = "54 mm", length = "25 mm", material = "silicon carbide" }
+support = { axial_stiffness = "50 N/mm", axial_damping = "100 N*s/m", radius = "45 mm" }
+[stator]
+misalignment = "100 urad"
+[run]
+turns = 2
+"""
+
+
+def test_a_run_near_the_last_speed_that_holds_is_a_result():
+    """It was refused after its end, for a speed of the search that the seal was never asked to turn at."""
+    summary = simulate_in_memory(parse_scenario(BARRIER, "barrier"), speeds=True)
+    low, high = summary["stability"]["speeds_held"]
+    assert summary["status"] == "ok" and summary["stability"]["critical_speed"] is None
+    assert low < summary["stability"]["speed"] < high == pytest.approx(1655.2, abs=0.1)

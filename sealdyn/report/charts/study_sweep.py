@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from ...archive import read_study
+from ...status import Status
 from .page import absent, look, number, printed, save, study_page
 from .palette import BLACK, BLUE, CONTACT, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, THICKNESS, YELLOW
 
@@ -14,7 +15,7 @@ SHOWN = {"m": ("µm", 1e6), "rad": ("µrad", 1e6), "m^3/s": ("ml/h", 3.6e9)}
 # Leakage (m^3/s) from which it is shown in l/min, as that of gases; as in the tables of the studies.
 MUCH = 1e-5
 # Words whose colours mean something, in whatever order they come; the colours of others.
-KNOWN = {"stable": GREEN, "ok": GREEN, "unstable": CONTACT, "collapsed": CONTACT, "neutral": ORANGE}
+KNOWN = {"stable": GREEN, Status.OK: GREEN, "unstable": CONTACT, Status.COLLAPSED: CONTACT, "neutral": ORANGE}
 WORDS = (BLUE, PURPLE, SKY, YELLOW, GREY, BLACK)
 MOST = 8
 # Letters from which on a title is small.
