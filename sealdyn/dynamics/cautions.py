@@ -18,6 +18,7 @@ class Concern(StrEnum):
     FLASHING = "flashing"
     HEATING = "heating"
     INERTIA = "inertia of the film"
+    ROUGH_FILM = "rough film"
     THIN_FILM = "thin film"
     TURBULENCE = "turbulence"
     WIDE_DAM = "wide dam"

@@ -82,6 +82,7 @@ def beside_reynolds(run) -> dict | None:
         del parts["moment"]
     off = {part: float(mine / whole - 1.0) for part, (mine, whole) in parts.items() if whole}
     than = "cavities that keep their liquid" if torn else "flow along the circle, too"
+    than += ", between smooth faces" if scene.contact is not None else ""
     told = ", ".join(f"{part} {100 * share:+.2g} %" for part, share in off.items() if abs(share) > FINE)
     said = f"{what}, beside a film with {than} (reynolds): {told or f'the same within {100 * FINE:.2g} %'}"
     return found | off | {"cavitated": [float(s[CAVITATED]), float(other[CAVITATED])], "said": said}

@@ -8,7 +8,9 @@ import numpy as np
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
+from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
+from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
 from .bare_numbers import slips
@@ -23,6 +25,8 @@ GONE = 1e-3 / 3600
 # Films (m) that are thinner than lapped faces are rough, and than a liquid is a continuum; widest clearance (m) of a
 # seal's faces.
 SMOOTH, CONTINUUM, WIDE = 1e-7, 1e-8, 1e-3
+# Share of the leakage that roughness adds, from which it is said.
+LETS_THROUGH = 0.05
 # Mach number from which the inertia of a gas changes its pressure by some 5 %.
 FAST = 0.3
 # Share of the sealed pressure from which the fluid's inertia matters; of a dam's gauge force by which it may be off.
@@ -33,7 +37,14 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
     """Cautions of a run that ended with `outcome`: mean `leakage` (m^3/s), `heat`: its rise (K) if all friction heats
     it, and that friction over the face (W/m^2), thinnest film `h_min` (m), rate of `wear` (m/s)."""
     scene, model = scenario.scene, run.model
-    found = [*_units(scenario, model), *_thin(scene, h_min), *_arm(scene), *_heat(*heat), *_worn(scenario, wear)]
+    found = [
+        *_units(scenario, model),
+        *_thin(scene, h_min),
+        *_rough(model, h_min),
+        *_arm(scene),
+        *_heat(*heat),
+        *_worn(scenario, wear),
+    ]
     found += _flash(run, outcome)
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
@@ -94,6 +105,19 @@ def _thin(scene, h_min):
     else:
         why = f"below the roughness of {rough * 1e9:.4g} nm its pressure is that of smooth faces"
     yield Caution(Concern.THIN_FILM, f"the film thins to {h_min * 1e9:.4g} nm: {why}")
+
+
+def _rough(model, h_min):
+    """Roughness that lets more through than a film between smooth faces does."""
+    scene = model.scene
+    if scene.contact is None or model.interface.name == "reynolds" or not h_min > 0.0:
+        return
+    x = h_min / (HALF_HEIGHT * scene.contact.roughness)
+    more = float(mean_film_cubed(x)) / x**3 - 1.0
+    if more > LETS_THROUGH:
+        how = f"where the film is thinnest rough ones let {100 * more:.0f} % more through"
+        counts = 'film.model = "reynolds" counts them'
+        yield Caution(Concern.ROUGH_FILM, f"leakage is that of smooth faces: {how}, after Christensen; {counts}")
 
 
 def _arm(scene):

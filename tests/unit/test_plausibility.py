@@ -86,6 +86,10 @@ def test_films_of_nanometres():
     rough = [*thin, "contact.roughness=1 um", "contact.compressive_strength=300 MPa"]
     (sentence,) = cautions(*rough, "film.clearance=0.9 um")[Concern.THIN_FILM]
     assert numbers(sentence) == [900, 1000]
+    # The mean cube of heights of 0.5 um rms about 2 um is 1 + 3/16 of the cube of the mean.
+    found = cautions(*thin, "contact.roughness=0.5 um", "contact.compressive_strength=300 MPa", "film.clearance=2 um")
+    (sentence,) = found[Concern.ROUGH_FILM]
+    assert numbers(sentence)[0] == 19 and Concern.ROUGH_FILM not in cautions(*thin, "film.clearance=2 um")
 
 
 def test_the_arm_of_contact():
