@@ -406,14 +406,15 @@ def met(why, *verdict):
 
 def test_the_failures_say_which_seal_comes_to_what_and_why(tmp_path):
     lines = ("This seal comes to 1 of their 5 kinds: stiff squeeze (decay 6516 times the forcing).",
-             "For this scenario the program takes bdf on the radial film; warned: " + 12 * "not isothermal by far, ")  # fmt: skip
+             "For this scenario the program takes bdf on the radial film; warned: " + 12 * "heated by far, ")  # fmt: skip
     figure = study(tmp_path, "failures", met("decay 6516 times the forcing", *lines))
     must_be_legible(figure)
     words = " ".join(said(figure))
     assert "seal: Does it ride?" in words and "stiff squeeze (decay 6516 times the forcing)" in words
     assert lines[1].strip(", ").split("warned")[0] in words and "names in colour" in words
     # Nothing of the seal's lies on the heads of the columns.
-    figure = study(tmp_path, "failures", met("", "This scenario is refused: no clearance."))
+    figure = study(tmp_path, "failures", met("", "This scenario is refused: no clearance."), question="")
+    assert "seal" in said(figure)
     must_be_legible(figure)
     words = " ".join(said(figure))
     assert "This scenario is refused: no clearance." in words and "names in colour" not in words

@@ -21,7 +21,7 @@ def draw(path, out):
     rows, verdict = study["answer"]["rows"], study["answer"]["verdict"]
     figure = sheet(14.5, 2.0 + 0.42 * len(rows))
     met = any(row.get("met") for row in rows)
-    words = [f"{study['name']}: {question_of(study['question'])}", *verdict[1:]]
+    words = [": ".join(filter(None, (study["name"], question_of(study["question"])))), *verdict[1:]]
     words += ["names in colour: where this seal comes to"] * met
     top = heading(figure, "Where methods fail, by how much, and what survives", "\n".join(words))
     # The heading makes the page grow.
@@ -56,7 +56,9 @@ def _line(ax, row, y):
     beside = {"transform": ax.get_yaxis_transform(), "va": "center"}
     place = {"ha": "right", "fontsize": 9, "weight": "bold", "color": VERMILLION if row.get("met") else BLACK}
     ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", **place, **beside)
-    ax.text(-0.012, y - 0.2, shortened(printed(row.get("unit", "")), 62), ha="right", fontsize=7.5, color=GREY, **beside)
+    ax.text(
+        -0.012, y - 0.2, shortened(printed(row.get("unit", "")), 62), ha="right", fontsize=7.5, color=GREY, **beside
+    )
     if "failed" in row:
         ax.text(LEAST, y, f" the exhibit failed: {row['failed']}", color=VERMILLION, va="center")
         return
