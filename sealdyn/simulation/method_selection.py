@@ -26,7 +26,7 @@ def choose_method(run) -> tuple[str, str]:
         return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
     ratio = _fastest_decay(run) * model.shortest_period / (2 * math.pi)
     if ratio > STIFF:
-        return "bdf", f"fastest decay {ratio:.0f} times the fastest forcing: stiff, CVODE BDF"
+        return "bdf", f"fastest decay {float(f'{ratio:.3g}'):g} times the fastest forcing: stiff, CVODE BDF"
     return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
 
 

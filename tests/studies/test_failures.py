@@ -13,7 +13,7 @@ from sealdyn.report.charts import study_failures
 from sealdyn.report.charts.palette import VERMILLION
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.failures.study import chosen_for, exhibit_names, shown, tables
+from sealdyn.studies.failures.study import chosen_for, exhibit_names, place_of, shown, tables
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml"
 KEYS = {"item", "title", "failing", "failing_error", "survivor", "survivor_error", "unit", "default"}
@@ -129,6 +129,21 @@ def met_by(name, overrides) -> set[str]:
 @pytest.mark.parametrize("place", BOUNDS)
 def test_a_seal_is_told_which_places_it_comes_to(place):
     assert place in met_by(*MEET[place])
+
+
+@pytest.mark.parametrize("name", ["lebeck_elastic", "lebeck_n3"])
+def test_a_wavy_seal_is_told_too_and_is_not_called_flat(name, tmp_path):
+    answer = run_study("failures", sealdyn.read_scenario(SCENARIO.with_name(f"{name}.toml")), tmp_path / "f.h5",
+                       flags={"items": [5, 11, 14]}, workers=1)  # fmt: skip
+    assert [row["item"] for row in answer["met"]] == ([11, 14] if name == "lebeck_elastic" else [14])
+
+
+def test_reasons_are_in_words_and_few_digits():
+    flat = sealdyn.read_scenario(SCENARIO, ["film.coning=0"])
+    assert chosen_for(flat, ["degenerate_geometry"])[1] == {"degenerate_geometry": "its faces are parallel"}
+    stiff = sealdyn.read_scenario(SCENARIO.with_name("ludwig_allen.toml"))
+    assert "fastest decay 852000 times the fastest forcing" in chosen_for(stiff, [])[0]["why"]
+    assert place_of("coulomb_friction") == "Coulomb friction" and place_of("long_runs") == "long runs"
 
 
 @pytest.mark.parametrize("name", ["fms_reference", "fmr_reference", "fmsr_both_flexible", "housing_vibration"])

@@ -623,3 +623,37 @@ def test_motions_of_a_rub_have_colours_of_their_own_and_its_directions_their_sid
     assert len({line.get_color() for line in marks}) == 2
     names = {text.get_text() for text in panel(figure, "Smallest film").get_legend().get_texts()}
     assert names == {"growing (left of its value)", "falling (right)"}
+
+
+# --- failures ------------------------------------------------------------------------------------------------
+
+EXHIBIT = {"item": 2, "title": "Stiff squeeze film", "unit": "overlap, um", "failing": "stops at 4.2 um",
+           "failing_error": 1e4, "survivor": "BDF", "survivor_error": 1e-9, "default": "follows M^2"}  # fmt: skip
+
+
+def met(why, *verdict):
+    return {"rows": [{**EXHIBIT, "item": n + 1, "met": why if n == 1 else ""} for n in range(5)],
+            "verdict": ["In each of 5 places a method fails.", *verdict]}  # fmt: skip
+
+
+def test_the_failures_say_which_seal_comes_to_what_and_why(tmp_path):
+    lines = ("This seal comes to 1 of their 5 kinds: stiff squeeze (decay 6516 times the forcing).",
+             "For this scenario the program takes bdf on the radial film; warned: " + 12 * "heated, ")  # fmt: skip
+    figure = study(tmp_path, "failures", met("decay 6516 times the forcing", *lines))
+    must_be_legible(figure)
+    words = " ".join(said(figure))
+    assert "seal: Does it ride?" in words and "stiff squeeze (decay 6516 times the forcing)" in words
+    assert lines[1].strip(", ").split("warned")[0] in words and "names in colour" in words
+    # Nothing of the seal's lies on the heads of the columns.
+    figure = study(tmp_path, "failures", met("", "This scenario is refused: no clearance."), question="")
+    assert "seal" in said(figure)
+    must_be_legible(figure)
+    words = " ".join(said(figure))
+    assert "This scenario is refused: no clearance." in words and "names in colour" not in words
+
+
+def test_the_failures_are_in_the_letters_of_print(tmp_path):
+    figure = study(tmp_path, "failures", met(""))
+    words = words_of(figure)
+    assert "overlap, µm" in words and any("4.2 µm" in text for text in words) and "follows M²" in words
+    assert all("$" not in word for word in [text.get_text() for text in figure.axes[0].get_xticklabels()])

@@ -36,6 +36,7 @@ ROOM, MOST_LINES = 3, 14
 NO_END = "the archive has no end yet; a run that was killed goes on with --continue"
 # As print has it, in place of what a terminal shows.
 PRINT = ((re.compile(r"\bu(m|rad)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"))
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
 
@@ -265,9 +266,13 @@ def logarithmic(ax, axis: str) -> None:
 def decades(axis) -> None:
     """Powers of ten at the decades of a logarithmic axis, in plain letters: mathematical ones take as long to load as
     to draw the rest of the panel."""
-    raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-    axis.set_major_formatter(lambda value, _: "10" + str(round(np.log10(value))).translate(raised))
+    axis.set_major_formatter(lambda value, _: power(round(np.log10(value))))
     axis.set_minor_formatter(NullFormatter())
+
+
+def power(exponent: int) -> str:
+    """A power of ten in plain letters."""
+    return "10" + str(exponent).translate(RAISED)
 
 
 def numbered(axis) -> None:

@@ -4,7 +4,8 @@ import math
 from textwrap import wrap
 
 from ...archive import read_study
-from .page import heading, look, save, sheet, shortened
+from ..text import question_of
+from .page import heading, look, power, printed, save, sheet, shortened
 from .palette import BLACK, BLUE, GREY, PALE, VERMILLION
 
 # Decades drawn; what is smaller, or nothing at all, ends at the left edge.
@@ -16,27 +17,28 @@ NAMES, NUMBERS = 0.235, 0.715
 def draw(path, out):
     """One line of bars per exhibit, its name and unit to the left, in colour where the seal comes to its place,
     what the program does by default to the right."""
-    rows = read_study(path)["answer"]["rows"]
-    height = 1.4 + 0.42 * len(rows)
-    figure = sheet(14.5, height)
+    study = read_study(path)
+    rows, verdict = study["answer"]["rows"], study["answer"]["verdict"]
+    figure = sheet(14.5, 2.0 + 0.42 * len(rows))
     met = any(row.get("met") for row in rows)
-    heading(
-        figure,
-        "Where methods fail, by how much, and what survives",
-        "names in colour: where this seal comes to" if met else "",
-    )
-    bottom = 0.6 / height
-    ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, 1 - 0.78 / height - bottom))
+    words = [": ".join(filter(None, (study["name"], question_of(study["question"])))), *verdict[1:]]
+    words += ["names in colour: where this seal comes to"] * met
+    top = heading(figure, "Where methods fail, by how much, and what survives", "\n".join(words))
+    # The heading makes the page grow.
+    height = figure.get_figheight()
+    bottom, top = 0.6 / height, top - 0.14 / height
+    ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, top - 0.16 / height - bottom))
     for at, row in enumerate(rows):
         _line(ax, row, -at)
-    _frame(figure, ax, len(rows), height)
+    _frame(figure, ax, len(rows), top)
     return save(figure, out)
 
 
-def _frame(figure, ax, count, height):
+def _frame(figure, ax, count, top):
+    """The axis of errors, and at the height `top` (share of the page) what the columns are."""
     ticks = range(-16, 11, 4)
     ax.set(xlim=(LEAST, MOST), ylim=(-count + 0.4, 0.6), yticks=[], xlabel="error or cost, in the unit named")
-    ax.set_xticks(ticks, [f"$10^{{{t}}}$" if t else "1" for t in ticks])
+    ax.set_xticks(ticks, [power(t) if t else "1" for t in ticks])
     ax.grid(axis="y", visible=False)
     ax.spines["left"].set_visible(False)
     for at, words, colour in (
@@ -46,7 +48,7 @@ def _frame(figure, ax, count, height):
         (NUMBERS + 0.012, "by default the program …", BLACK),
     ):
         weight = "normal" if colour == GREY else "bold"
-        figure.text(at, 1 - 0.62 / height, words, color=colour, fontsize=9, weight=weight)
+        figure.text(at, top, words, color=colour, fontsize=9, weight=weight)
 
 
 def _line(ax, row, y):
@@ -54,17 +56,20 @@ def _line(ax, row, y):
     beside = {"transform": ax.get_yaxis_transform(), "va": "center"}
     place = {"ha": "right", "fontsize": 9, "weight": "bold", "color": VERMILLION if row.get("met") else BLACK}
     ax.text(-0.012, y + 0.14, f"{row['item']}  {row['title']}", **place, **beside)
-    ax.text(-0.012, y - 0.2, shortened(row.get("unit", ""), 62), ha="right", fontsize=7.5, color=GREY, **beside)
+    ax.text(
+        -0.012, y - 0.2, shortened(printed(row.get("unit", "")), 62), ha="right", fontsize=7.5, color=GREY, **beside
+    )
     if "failed" in row:
         ax.text(LEAST, y, f" the exhibit failed: {row['failed']}", color=VERMILLION, va="center")
         return
     _bar(ax, y + 0.2, row["failing_error"], row["failing"], VERMILLION)
     _bar(ax, y - 0.2, row["survivor_error"], row["survivor"], BLUE)
-    ax.text(1.023, y, "\n".join(wrap(row["default"], 62)[:2]), fontsize=7.5, linespacing=1.4, **beside)
+    ax.text(1.023, y, "\n".join(wrap(printed(row["default"]), 62)[:2]), fontsize=7.5, linespacing=1.4, **beside)
 
 
 def _bar(ax, y, error, words, colour):
     """A bar to the error with its name and number; a cross where there is no answer."""
+    words = printed(words)
     if error is None:
         ax.barh(y, MOST - LEAST - 0.4, left=LEAST, height=0.34, color=colour, alpha=0.18)
         ax.plot(MOST - 0.4, y, "x", color=colour, ms=6, mew=2, clip_on=False)

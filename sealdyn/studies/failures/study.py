@@ -17,6 +17,7 @@ from . import cases
 
 units = {"failing_error": "the row's unit", "survivor_error": "the row's unit", "item": "1", "items": "1"}
 ALONG = {"rows": ("item",)}
+WITH_WAVES = True
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -45,10 +46,10 @@ def run(scenario, settings, tools) -> dict:
     rows = []
     own, met = chosen_for(scenario, chosen)
     for name, part in zip(chosen, found, strict=True):
-        title = name.replace("_", " ")
+        title = place_of(name)
         shows = part.get("rows") or [{"item": names[name], "title": title, "failed": part["failed"]}]
         rows += [{**row, "met": met.get(name, "")} for row in shows]
-    places = [{"item": names[name], "place": name.replace("_", " "), "met": why} for name, why in met.items() if why]
+    places = [{"item": names[name], "place": place_of(name), "met": why} for name, why in met.items() if why]
     answer = {"rows": rows, "items": sorted({row["item"] for row in rows}), "scenario": own, "met": places}
     if any("failed" in row for row in rows):
         answer["status"] = Status.FAILED
@@ -60,6 +61,11 @@ def exhibit_names() -> dict[str, int]:
     found = [m.name for m in pkgutil.iter_modules(cases.__path__) if not m.name.startswith("_")]
     items = {name: importlib.import_module(f"{cases.__name__}.{name}").ITEM for name in found}
     return dict(sorted(items.items(), key=lambda pair: pair[1]))
+
+
+def place_of(name: str) -> str:
+    """What a place is called within a sentence."""
+    return name.replace("_", " ").replace("coulomb", "Coulomb")
 
 
 def shown(point: dict) -> dict:

@@ -11,6 +11,7 @@ from ....analysis.sources.green_1989 import reference_scene
 from ....closed_form import film_coefficients
 from ....faces.geometry import DZ_RATE, FORCE, GAP_STATE_SIZE, VISCOSITY
 from ....films.radial import film as radial
+from ....scene.waviness import waves_of
 from ._common import integrated, row, run_from
 
 ITEM = 5
@@ -132,9 +133,13 @@ def zero_tilt() -> list[dict]:
 
 
 def meets(scene, run) -> str:
-    """Faces all but parallel."""
+    """Faces all but parallel, and not wavy."""
+    if waves_of(scene):
+        return ""
     gaps = [h for _, h in run.model.aligned_gaps()]
     apart = (max(gaps) - min(gaps)) / run.model.clearance
+    if apart == 0.0:
+        return "its faces are parallel"
     return (
         f"its film is {100 * apart:.2g} % of the clearance thicker at one edge than at the other"
         if apart < FLAT
