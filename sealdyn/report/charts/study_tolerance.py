@@ -1,17 +1,27 @@
 """Tolerance: how the outputs scatter, which keys make them, and how sure the numbers are."""
 
+from textwrap import fill
+
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from ...archive import read_study
-from .page import EVEN, PAPER, absent, legend, look, number, save, study_page, upright
+from ..text import speed_unit
+from .page import EVEN, PAPER, absent, legend, look, number, power, save, study_page, upright
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREY, ORANGE, PALE, SKY
 from .record import fitting
-from .study_sweep import SHOWN
+from .study_sweep import MUCH, SHOWN
 
 # Outputs that have a histogram, and keys that have a row.
 MOST, MOST_KEYS = 4, 10
 # Keys that fill the panels of keys.
 FEW = 3
+# Letters of a title that a third of the page has room for, and beside the names of keys.
+LETTERS, FEWER_LETTERS = 44, 38
+# Steps of ticks.
+STEPS = (1, 2, 2.5, 5, 10)
+# From which on numbers are read in thousands, millions, ...
+LARGE = 1e5
 ALSO = SHOWN | {"Pa": ("bar", 1e-5)}
 BAND = (("5", "95", 0.5), ("25", "75", 1.0))
 LINES = {"1": "1, 99 %", "50": "_", "99": "_"}
@@ -21,7 +31,7 @@ LINES = {"1": "1, 99 %", "50": "_", "99": "_"}
 def draw(path, out):
     """Histograms of at most four outputs; shares of the keys; the first output over its foremost key; convergence."""
     study = read_study(path)
-    answer = study["answer"]
+    answer = {**study["answer"], "speeds": speed_unit(study)}
     outputs = answer["outputs"][:MOST]
     top = [name for name in outputs for _ in range(12 // len(outputs))]
     top += [outputs[-1]] * (12 - len(top))
@@ -29,7 +39,8 @@ def draw(path, out):
     # How the numbers settle is seen from two counts of runs on.
     settles = len(answer["convergence"]["runs"]) > 1
     if settles:
-        mosaic, heights = [*mosaic, 4 * ["quantiles"] + 4 * ["risk"] + 4 * ["totals"]], (4, 5, 4)
+        lower = ["quantiles", "risk", "totals"] if _has_indices(answer) else ["quantiles", "risk"]
+        mosaic, heights = [*mosaic, [name for name in lower for _ in range(12 // len(lower))]], (4, 5, 4)
     said, height = " ".join(answer["verdict"][:2]), 1.5 + 0.65 * sum(heights)
     figure, ax = study_page(study, 14, height, mosaic, below=f"{study['name']}: {said}", height_ratios=heights)
     for name in outputs:
@@ -40,27 +51,43 @@ def draw(path, out):
     if settles:
         _quantiles(ax["quantiles"], answer)
         _risk(ax["risk"], answer)
-        _totals(ax["totals"], answer)
+        if "totals" in ax:
+            _totals(ax["totals"], answer)
     return save(figure, out)
 
 
-def _shown(unit: str) -> tuple[str, float]:
-    """What a quantity of this SI unit is shown in, and the factor."""
-    return ALSO.get(unit, (unit, 1.0))
+def _has_indices(answer) -> bool:
+    """Whether there are indices for any number of samples."""
+    totals = answer["convergence"]["total"].values()
+    return any(np.isfinite(np.array(values, dtype=float)).any() for values in totals)
 
 
-def _key_shown(unit: str, values) -> tuple[str, float]:
+def _shown(unit: str, size: float, speeds) -> tuple[str, float]:
+    """What a quantity of this SI unit and size is shown in, speeds as in `speeds`, and the factor."""
+    if unit == "rad/s":
+        return speeds
+    if unit == "m^3/s" and size >= MUCH:
+        return "l/min", 6e4
+    unit, factor = ALSO.get(unit, (unit, 1.0))
+    if size * factor >= LARGE:
+        thousands = int(np.log10(size * factor) / 3)
+        return f"{power(3 * thousands)} {unit}".strip(), factor / 1e3**thousands
+    finer, more = fitting(unit, size * factor)
+    return finer, more * factor
+
+
+def _key_shown(unit: str, values, speeds) -> tuple[str, float]:
     """The same of a key: angles from a milliradian on in mrad."""
-    return ("mrad", 1e3) if unit == "rad" and np.abs(values).max() >= 1e-3 else _shown(unit)
+    size = np.abs(values).max()
+    return ("mrad", 1e3) if unit == "rad" and size >= 1e-3 else _shown(unit, size, speeds)
 
 
 def _values(answer, name) -> tuple[np.ndarray, str, float]:
     """Values (n,) of an output as shown, the axis label and the factor."""
-    unit, factor = _shown(answer["output_units"][name])
-    values = factor * np.array(answer["samples"]["outputs"][name], dtype=float)
-    unit, finer = fitting(unit, np.abs(values[np.isfinite(values)]).max(initial=0.0))
-    values, factor = finer * values, finer * factor
-    return values, f"{name}, {unit}" if unit else name, factor
+    values = np.array(answer["samples"]["outputs"][name], dtype=float)
+    size = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    unit, factor = _shown(answer["output_units"][name], size, answer["speeds"])
+    return factor * values, f"{name}, {unit}" if unit else name, factor
 
 
 def _histogram(ax, answer, name):
@@ -85,10 +112,12 @@ def _histogram(ax, answer, name):
         nominal = factor * answer["nominal"][name]
         side = "right" if nominal > 0.5 * (edges[0] + edges[-1]) else "left"
         upright(ax, nominal, "as drawn", BLACK, height=0.93, ha=side, ls="--", bbox=PAPER)
-    ax.locator_params(axis="x", nbins=5)
+    ax.xaxis.set_major_locator(MaxNLocator(5, steps=STEPS, min_n_ticks=3))
+    ax.yaxis.set_major_locator(MaxNLocator(6, steps=STEPS, integer=True))
     ax.set(title=name, xlabel=label, ylabel="runs")
     if name == answer["outputs"][-1]:
-        legend(ax, "best")
+        # Its grey patch is on paper, not on the band.
+        legend(ax, "best", frameon=True, facecolor="white", edgecolor="none", framealpha=0.9)
 
 
 def _shares(ax, answer):
@@ -102,15 +131,21 @@ def _shares(ax, answer):
         ax.errorbar(total, at + 0.18, xerr=np.maximum([total - low, high - total], 0), fmt="none", ecolor="black",
                     elinewidth=0.9, capsize=2)  # fmt: skip
         ax.barh(at - 0.18, _column(rows, "first"), 0.36, color=SKY, label="alone")
-        ax.set(title=f"What makes {name} scatter", xlabel="Sobol index: share of the variance")
+        ax.set(title=_title(f"What makes {name} scatter", FEWER_LETTERS), xlabel="Sobol index: share of the variance")
         legend(ax, "lower right")
     elif any(row["rank_correlation"] is not None for row in rows):
         ax.barh(at, _column(rows, "rank_correlation"), 0.5, color=BLUE)
-        ax.set(title=f"What {name} follows", xlabel="rank correlation", xlim=(-1, 1))
+        ax.set(title=_title(f"What {name} follows", FEWER_LETTERS), xlabel="rank correlation", xlim=(-1, 1))
+        ax.set_xticks((-1.0, -0.5, 0.0, 0.5, 1.0))
     else:
-        return absent(ax, f"What makes {name} scatter", "it does not vary")
+        return absent(ax, _title(f"What makes {name} scatter", FEWER_LETTERS), "it does not vary")
     ax.set_yticks(at, [row["key"] for row in rows])
     ax.set_ylim(-0.5 - _room(rows), len(rows) - 0.5 + _room(rows))
+
+
+def _title(words: str, letters: int = LETTERS) -> str:
+    """A title in the lines that its panel has room for."""
+    return fill(words, letters, break_long_words=False)
 
 
 def _column(rows, key) -> np.ndarray:
@@ -153,9 +188,9 @@ def _cloud(ax, answer):
     values, label, _ = _values(answer, name)
     key = answer["tighten"][name][0]["key"]
     if not np.isfinite(values).any():
-        return absent(ax, f"{name} over {key}", "no value in any run")
+        return absent(ax, _title(f"{name} over {key}"), "no value in any run")
     x = np.array(answer["samples"]["keys"][key])
-    unit, factor = _key_shown(answer["scatter"][key]["unit"], x)
+    unit, factor = _key_shown(answer["scatter"][key]["unit"], x, answer["speeds"])
     x = factor * x
     touched = np.array(answer["samples"]["contact"], dtype=float) == 1
     if not touched.all():
@@ -166,7 +201,7 @@ def _cloud(ax, answer):
     if missing.any():
         ax.plot(x[missing], np.full(missing.sum(), 0.02), "x", ms=5, color=ORANGE, label="no value",
                 transform=ax.get_xaxis_transform())  # fmt: skip
-    ax.set(title=f"{name} over {key}", xlabel=f"{key}, {unit}" if unit else key, ylabel=label)
+    ax.set(title=_title(f"{name} over {key}"), xlabel=f"{key}, {unit}" if unit else key, ylabel=label)
     if touched.any() or missing.any():
         legend(ax, "best")
 
@@ -195,7 +230,7 @@ def _risk(ax, answer):
     value, low, high = 100 * np.array(found["probability_of_contact"], dtype=float).T
     runs = np.array(found["runs"])
     ax.fill_between(runs, low, high, color=CONTACT, alpha=0.2, lw=0, label="95 % interval")
-    ax.plot(runs, value, "o-", ms=3.5, color=CONTACT, label="share of the runs")
+    ax.plot(runs, value, "o-", ms=3.5, color=CONTACT, label="share of the runs", clip_on=False)
     _over_runs(ax, runs)
     ax.set(title="Probability of contact", xlabel="runs", ylabel="%")
     ax.set_ylim(bottom=0)
@@ -204,16 +239,14 @@ def _risk(ax, answer):
 
 def _totals(ax, answer):
     """Total indices of the first output over the number of samples."""
-    found, title = answer["convergence"], "Do the indices settle?"
+    found = answer["convergence"]
     columns = {key: np.array(values, dtype=float) for key, values in found["total"].items()}
-    if not any(np.isfinite(values).any() for values in columns.values()):
-        return absent(ax, title, f"no indices: {answer['sobol']['reason'] or 'too few samples have all their runs'}")
     keys = [row["key"] for row in answer["tighten"][found["output"]]]
     for n, key in enumerate(keys):
         colour = CYCLE[n] if n < len(CYCLE) else GREY
         ax.plot(found["samples"], columns[key], "o-", ms=3, color=colour, label=key if n < 5 else "_")
     _over_runs(ax, np.array(found["samples"]))
-    ax.set(title=title, xlabel="samples", ylabel=f"total index of {found['output']}")
+    ax.set(title="Do the indices settle?", xlabel="samples", ylabel=f"total index of {found['output']}")
     ax.set_ylim(bottom=0)
     legend(ax, "best")
 

@@ -59,8 +59,13 @@ def _tighten_sentence(answer, name) -> str:
     words = (f"{begin}; tighten {first['key']} first: its total index is {first['total']:.2f} "
              f"({first['total_low']:.2f} to {first['total_high']:.2f}), half its scatter would leave {halved} of the "
              f"standard deviation, none {removed}")  # fmt: skip
-    more = f"; {' and '.join(rivals)} may matter as much: more samples tell" if rivals else ""
+    more = f"; {listed(rivals)} may matter as much: more samples tell" if rivals else ""
     return f"{words}{more}."
+
+
+def listed(words: list[str]) -> str:
+    """ "a, b and c"."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
 def _spread(answer, name) -> dict:
