@@ -237,3 +237,17 @@ def test_one_ratio_is_told_once():
     row = {"direction": "axial", "frequency": 3.0, "ratio": 2.503, "said": ""}
     (said,) = study._in_time({"time_domain": [row, row], "deviation": 1e-7})
     assert said.endswith("The nonlinear film touches 2.5 times the linear acceleration: later than linear theory says.")
+
+
+@pytest.mark.parametrize(
+    "direction, units",
+    [("both", "m/s^2 axial, rad/s^2 angular"), ("axial", "m/s^2"), ("angular", "rad/s^2")],
+)
+def test_accelerations_have_the_unit_of_their_direction(direction, units, tmp_path):
+    out = tmp_path / "v.h5"
+    scenario = sealdyn.example("housing_vibration")
+    sealdyn.study("vibration", scenario, direction=direction, points=5, runs=1, out=out, workers=1)
+    with sealdyn.open_archive(out) as data:
+        assert {data[f"time_domain.{name}"].attrs["units"] for name in ("touch", "linear_touch")} == {units}
+        assert data["weakest.touch"].attrs["units"] == units and data["gear_mesh.touch"].attrs["units"] == "m/s^2"
+        assert not any(column.attrs.get("units") == "SI" for column in data.variables.values())

@@ -657,3 +657,45 @@ def test_the_failures_are_in_the_letters_of_print(tmp_path):
     words = words_of(figure)
     assert "overlap, µm" in words and any("4.2 µm" in text for text in words) and "follows M²" in words
     assert all("$" not in word for word in [text.get_text() for text in figure.axes[0].get_xticklabels()])
+
+
+# --- vibration -----------------------------------------------------------------------------------------------
+
+
+def shaken(**more):
+    """An answer of an axial vibration whose touch rises with the square of the frequency."""
+    frequency = np.geomspace(3.0, 3000.0, 31)
+    touch = (2.0 * frequency**2).tolist()
+    table = {"frequency": frequency.tolist(), "axial_gain": (1.0 / frequency).tolist(), "axial_touch": touch,
+             "axial_touch_aligned": touch}  # fmt: skip
+    mesh = {"direction": "axial", "frequency": 5400.0, "acceleration": 441.3, "touch": 1e6, "margin": 2e3}
+    return {"directions": ["axial"], "outer_radius": 0.04, "accelerations": [], "modes": [], "gear_mesh": [mesh],
+            "table": table, "time_domain": [], **more}  # fmt: skip
+
+
+def test_a_vibration_says_of_which_seal(tmp_path):
+    figure = study(tmp_path, "vibration", shaken())
+    must_be_legible(figure)
+    assert any(words.startswith("seal: It rides.") for words in said(figure))
+
+
+@pytest.mark.parametrize("frequency, there", [(5400.0, False), (900.0, True)])
+def test_the_key_names_a_gear_mesh_that_is_drawn(tmp_path, frequency, there):
+    mesh = {**shaken()["gear_mesh"][0], "frequency": frequency}
+    figure = study(tmp_path, "vibration", shaken(gear_mesh=[mesh]))
+    names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+    assert ("gear mesh, 45 g" in names) == there
+
+
+def test_what_is_asked_runs_through_no_name(tmp_path):
+    asked = [9.80665 * value for value in (0.01, 0.1, 1.0, 10.0, 100.0)]
+    for seen in ([asked[1], asked[3]], asked):
+        figure = study(tmp_path, "vibration", shaken(accelerations=seen))
+        ax = figure.axes[0]
+        figure.draw_without_rendering()
+        for line in (line for line in ax.lines if len(line.get_xdata()) == 2):
+            y = ax.transData.transform((1.0, line.get_ydata()[0]))[1]
+            boxes = [text.get_window_extent() for text in ax.texts]
+            assert not any(box.y0 < y < box.y1 for box in boxes), line.get_ydata()
+    names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
+    assert "asked: 0.01, 0.1, 1, 10, 100 g" in names and "axial, linear theory" in names

@@ -1,6 +1,8 @@
 """A shaking housing over frequency: the acceleration at which the faces touch, and how much of the motion the gap
 takes up; modes, gear mesh and accelerations asked at the side."""
 
+from textwrap import fill
+
 import numpy as np
 
 from ...archive import read_study
@@ -11,7 +13,9 @@ GRAVITY = 9.80665
 COLOUR, MARK = {"axial": RING["rotor"], "angular": RING["stator"]}, {"axial": "o", "angular": "s"}
 # Curves that lie on each other are seen.
 WIDTH = {"axial": 3.0, "angular": 1.5}
-WORDS = {"axial": "axial", "angular": "angular (outer edge of the face)"}
+WORDS = {"axial": "axial, linear theory", "angular": "angular (outer edge of the face),\nlinear theory"}
+# Letters of a name beside the figure.
+LETTERS = 34
 # Amplitudes of the housing (m) drawn as lines, and their names.
 AMPLITUDES = {1e-7: "0.1 µm", 1e-6: "1 µm", 1e-5: "10 µm", 1e-4: "0.1 mm", 1e-3: "1 mm", 1e-2: "10 mm"}
 
@@ -21,7 +25,7 @@ def draw(archive_path, out_path):
     """Touch above, gain below, the legend and what is known beside them, from a study's archive."""
     study = read_study(archive_path)
     answer, title = study["answer"], "At which vibration do the faces touch?"
-    said = " ".join(answer["verdict"][:2])
+    said = f"{study['name']}: {' '.join(answer['verdict'][:2])}"
     mosaic = [["touch", "key"], ["gain", "numbers"]]
     figure, ax = study_page(study, 11.5, 7.6, mosaic, title, said, height_ratios=(10, 7), width_ratios=(10, 4.4))
     stacked(ax["touch"], ax["gain"])
@@ -32,7 +36,7 @@ def draw(archive_path, out_path):
         gain = factor * np.array(answer["table"][f"{direction}_gain"])
         ax["gain"].plot(frequency, gain, lw=WIDTH[direction], color=COLOUR[direction])
     _times(ax, answer, factor)
-    _asked(ax["touch"], answer, frequency)
+    _asked(ax["touch"], answer)
     for mode in answer["modes"]:
         if frequency[0] < mode.get("frequency", 0.0) < frequency[-1] and mode["damping_ratio"] < 1.0:
             colour = COLOUR["axial" if mode["kind"] == "axial" else "angular"]
@@ -43,7 +47,9 @@ def draw(archive_path, out_path):
     ax["gain"].set(xlim=(frequency[0], frequency[-1]), xlabel="frequency, Hz", ylim=(0.0, None),
                    ylabel=f"gap's motion, {unit} of the housing's")  # fmt: skip
     ax["touch"].set(ylabel="acceleration of the housing at touch, g")
-    _lines_of_amplitude(ax["touch"], frequency, [line for line in ax["touch"].lines if len(line.get_xdata()) > 2])
+    curves = [line.get_data() for line in ax["touch"].lines if len(line.get_xdata()) > 2]
+    curves += [(frequency, np.full(len(frequency), acceleration / GRAVITY)) for acceleration in answer["accelerations"]]
+    _lines_of_amplitude(ax["touch"], frequency, curves)
     _key(ax["key"], answer)
     _numbers(ax["numbers"], answer)
     return save(figure, out_path)
@@ -88,16 +94,19 @@ def _times(ax, answer, factor):
             ax["touch"].plot(row["frequency"], _arm(answer, row["direction"]) * row["touch"], **style)
 
 
-def _asked(ax, answer, frequency):
+def _asked(ax, answer):
     """The accelerations asked, and the gear mesh."""
     for acceleration in answer["accelerations"]:
         ax.axhline(acceleration / GRAVITY, color=VERMILLION, lw=1.0, ls=(0, (2, 2)))
-    mesh = {(row["frequency"], row["acceleration"]) for row in answer["gear_mesh"]}
-    for at, acceleration in mesh:
-        if frequency[0] <= at <= frequency[-1]:
-            ax.plot(
-                at, acceleration / GRAVITY, "*", ms=12, color=VERMILLION, mec=BLACK, mew=0.5, clip_on=False, zorder=6
-            )
+    for at, acceleration in _gear_meshes(answer):
+        ax.plot(at, acceleration / GRAVITY, "*", ms=12, color=VERMILLION, mec=BLACK, mew=0.5, clip_on=False, zorder=6)
+
+
+def _gear_meshes(answer) -> set[tuple[float, float]]:
+    """Frequency and acceleration of the gear meshes in the range."""
+    low, *_, high = answer["table"]["frequency"]
+    found = {(row["frequency"], row["acceleration"]) for row in answer["gear_mesh"]}
+    return {(at, acceleration) for at, acceleration in found if low <= at <= high}
 
 
 def _decades_only(ax):
@@ -112,7 +121,8 @@ def _decades_only(ax):
 
 
 def _lines_of_amplitude(ax, frequency, curves):
-    """Straight lines of equal amplitude of the housing behind the curves, named where they are farthest from those."""
+    """Straight lines of equal amplitude of the housing behind the curves, named where they are farthest from those,
+    each (x, y)."""
     low, high = ax.get_ylim()
     for amplitude, words in AMPLITUDES.items():
         line = (2 * np.pi * frequency) ** 2 * amplitude / GRAVITY
@@ -134,7 +144,7 @@ def _away(x: float, y: float, curves, across: float, up: float) -> float:
     than is needed."""
     near = [0.15]
     for curve in curves:
-        at, values = (np.asarray(v, dtype=float) for v in curve.get_data())
+        at, values = (np.asarray(v, dtype=float) for v in curve)
         good = np.isfinite(values) & (values > 0)
         apart = np.hypot(np.log(at[good] / x) / np.log(across), np.log(values[good] / y) / np.log(up))
         near.append(apart.min(initial=np.inf))
@@ -145,17 +155,18 @@ def _key(ax, answer):
     """What the lines are."""
     ax.axis("off")
     for direction in answer["directions"]:
-        ax.plot([], [], color=COLOUR[direction], lw=WIDTH[direction], label=f"{WORDS[direction]},\nlinear theory")
+        ax.plot([], [], color=COLOUR[direction], lw=WIDTH[direction], label=WORDS[direction])
         if any(row["direction"] == direction and "failed" not in row for row in answer["time_domain"]):
             ax.plot([], [], ls="none", marker=MARK[direction], mfc="white", mec=COLOUR[direction], ms=5,
                     label=f"{direction}, in time, faces aligned")  # fmt: skip
     if _own_matters(answer):
         ax.plot([], [], color=GREY, lw=1.0, ls=(0, (5, 2)), label="without the scene's own\nrunout and misalignment")
-    for acceleration in answer["accelerations"]:
-        ax.plot(
-            [], [], color=VERMILLION, lw=1.0, ls=(0, (2, 2)), label=f"asked: {number(acceleration / GRAVITY, '.4g')} g"
-        )
-    ax.plot([], [], "*", ls="none", ms=12, color=VERMILLION, mec=BLACK, mew=0.5, label="gear mesh, 45 g")
+    if answer["accelerations"]:
+        asked = ", ".join(number(acceleration / GRAVITY, ".4g") for acceleration in answer["accelerations"])
+        words = fill(f"asked: {asked} g", LETTERS)
+        ax.plot([], [], color=VERMILLION, lw=1.0, ls=(0, (2, 2)), label=words)
+    if _gear_meshes(answer):
+        ax.plot([], [], "*", ls="none", ms=12, color=VERMILLION, mec=BLACK, mew=0.5, label="gear mesh, 45 g")
     ax.plot([], [], color=PALE, lw=1.2, label="amplitude of the housing")
     if any("frequency" in mode for mode in answer["modes"]):
         ax.plot([], [], color=GREY, lw=0.8, ls=":", label="natural frequency (below)")

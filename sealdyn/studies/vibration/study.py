@@ -27,13 +27,15 @@ DIRECTIONS = ("axial", "angular")
 GEAR_MESH, GEAR_MESH_ACCELERATION = (5400.0,), 45.0 * g
 # Points about a resonance, in its width.
 NEAR = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
+# Of the accelerations that are those of a direction.
+OF_DIRECTION = {"axial": "m/s^2", "angular": "rad/s^2"}
 ALONG = {"table": ("frequency",), "modes": ("frequency",)}
 units = {"axial_gain": "m/m", "angular_gain": "rad/rad", "axial_per_acceleration": "m/(m/s^2)",
          "angular_per_acceleration": "rad/(rad/s^2)", "axial_touch": "m/s^2", "axial_touch_aligned": "m/s^2",
          "angular_touch": "rad/s^2", "angular_touch_aligned": "rad/s^2", "frequency": "Hz", "damped_frequency": "Hz",
-         "growth_rate": "1/s", "damping_ratio": "1", "gain": "1", "touch": "SI", "acceleration": "m/s^2",
+         "growth_rate": "1/s", "damping_ratio": "1", "gain": "1", "touch": "m/s^2", "acceleration": "m/s^2",
          "lowest": "Hz", "highest": "Hz", "accelerations": "m/s^2", "inside": "1", "margin": "1",
-         "film_left": "m", "deviation": "1", "linear_touch": "SI", "ratio": "1"}  # fmt: skip
+         "film_left": "m", "deviation": "1", "ratio": "1"}  # fmt: skip
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -98,7 +100,15 @@ def run(scenario, settings, tools) -> dict:
     answer["time_domain"] = [{**point, **row} for point, row in zip(points, rows, strict=True)]
     apart = [row["deviation"] for row in answer["time_domain"] if "failed" not in row]
     answer["deviation"] = max(apart, default=None)
+    answer["units"] = dict.fromkeys(("weakest/touch", "time_domain/touch", "linear_touch"), unit_of(directions))
     return answer | {"verdict": _verdict(answer)}
+
+
+def unit_of(directions) -> str:
+    """Unit of an acceleration in one of these directions; of both, each with its name."""
+    if len(directions) == 1:
+        return OF_DIRECTION[directions[0]]
+    return ", ".join(f"{OF_DIRECTION[direction]} {direction}" for direction in directions)
 
 
 def _frequencies(settings, modes) -> np.ndarray:
