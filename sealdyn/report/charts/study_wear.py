@@ -5,13 +5,18 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
+from matplotlib.ticker import NullFormatter
 
 from ...archive import read_study
-from .page import absent, legend, look, save, stacked, study_page
+from .page import PAPER, absent, legend, look, number, save, stacked, study_page
 from .palette import BLACK, CONTACT, FILM, GREY, LEAK, ORANGE, RING, THICKNESS
 
-# Profiles drawn of one face.
-LINES = 9
+# Profiles drawn of one face; width of a curve on which another one may lie.
+LINES, BENEATH = 9, 3.0
+# Of the depth computed: what is extrapolated further is told, not drawn.
+FAR = 6.0
+# Of its thickness: a film that changes by less is a flat line.
+STILL = 0.01
 GAP = "Shape of the gap, from its narrowest place"
 
 
@@ -34,7 +39,9 @@ def draw(archive_path, out_path):
     worn = [face for face in ("stator", "rotor") if np.any(answer["profile"][face])] or ["stator"]
     panels, left = _over_time(history, worn), [[[worn]], ["gap"], ["pressed"]]
     right = [[title] for title in panels]
-    figure, ax = study_page(study, 13.0, 8.6, [[left, right]], bold=said, width_ratios=(4, 3))
+    limits = " ".join(line for line in answer.get("verdict", []) if line.startswith("Mind"))
+    below = f"{study['name']}\n{limits}".strip()
+    figure, ax = study_page(study, 13.0, 8.6, [[left, right]], below=below, bold=said, width_ratios=(4, 3))
     _faces(figure, ax, answer, worn, unit, factor)
     _pressed(ax["pressed"], answer)
     stacked(*(ax[title] for title in panels))
@@ -93,10 +100,7 @@ def _faces(figure, ax, answer, worn, unit, factor):
             ax[face].plot(radius, per * depth[i], color=colour(scale(time[i])), lw=1.3)
         if face in depths:
             if answer["extrapolated"]:
-                later = answer["extrapolated"]
-                label = f"extrapolated to {factor * later['time']:.4g} {unit}, not computed"
-                ax[face].plot(radius, per * np.array(later[face]), color=GREY, lw=1.0, ls=":", label=label)
-                ax[face].legend(loc="best")
+                _extrapolated(ax[face], radius, answer["extrapolated"], face, depth.max(), per)
             ax[face].invert_yaxis()
         ax[face].margins(x=0.01)
         ax[face].set(xlabel="radius, mm", ylabel=f"{'depth' if face in depths else 'gap'}, {name}", title=title)
@@ -104,13 +108,27 @@ def _faces(figure, ax, answer, worn, unit, factor):
     bar.outline.set_visible(False)
 
 
+def _extrapolated(ax, radius, later, face, computed, per):
+    """The depth at the asked duration; where it is far beyond what was `computed`, in words alone."""
+    unit, factor = _time_unit(later["time"])
+    depth = np.array(later[face])
+    words = f"extrapolated to {factor * later['time']:.4g} {unit}"
+    if depth.max() <= FAR * computed:
+        ax.plot(radius, per * depth, color=GREY, lw=1.0, ls=":", label=f"{words}, not computed")
+        ax.legend(loc="best")
+        return
+    name, per = _length_unit(depth.max())
+    ax.text(0.5, 0.04, f"{words}: {per * depth.max():.3g} {name}, not computed", transform=ax.transAxes, color=GREY,
+            fontsize=8, ha="center", va="bottom", bbox=PAPER)  # fmt: skip
+
+
 def _pressed(ax, answer):
     """Contact pressure times sliding speed over the radius, at start and end."""
     radius, pv = 1e3 * np.array(answer["radius"]), np.array(answer["pv"])
     name, per = ("MPa m/s", 1e-6) if pv[-1].max() >= 1e4 else ("kPa m/s", 1e-3)
     last = max(pv[-1].max(), 1e-300)
-    ax.plot(radius, per * pv[0], color=ORANGE, label="start", lw=1.4)
-    ax.plot(radius, per * pv[-1], color=FILM, label="end", lw=1.8)
+    ax.plot(radius, per * pv[0], color=ORANGE, label="start", lw=BENEATH)
+    ax.plot(radius, per * pv[-1], color=FILM, label="end", lw=1.5)
     # A new edge carries far more than the rest: the end must stay visible.
     top = max(min(pv[0].max(), 8 * last), 1.15 * last) if last > 1e-6 * pv[0].max() else pv[0].max()
     if pv[0].max() > top:
@@ -139,14 +157,21 @@ def _over_time(history, worn) -> dict:
 def _history(ax, time, history, title, unit, *curves):
     """One panel over the hours."""
     mark = "." if len(time) <= 80 else ""
-    for per, name, colour, label in curves:
-        ax.plot(time, per * np.array(history[name]), color=colour, label=label, marker=mark, ms=3)
+    for k, (per, name, colour, label) in enumerate(curves):
+        below = title in ("Film", "Worn volume") and len(curves) > 1 and not k
+        ax.plot(time, per * np.array(history[name]), color=colour, label=label, marker=mark, ms=3,
+                lw=BENEATH if below else 1.0)  # fmt: skip
     if title in ("Leakage", "Friction power"):
         # With room above what hardly changes.
         ax.set_ylim(min(0.0, ax.get_ylim()[0]), max(1.12 * ax.dataLim.y1, 0.0) or None)
     if title == "Contact" and min(history["contact_share"]) > 0.0 < min(history["contact_area_fraction"]):
         # A few asperities carry the load: far less of the area than of the force.
         ax.set_yscale("log")
+        ax.yaxis.set_major_formatter(lambda value, _: number(value))
+        ax.yaxis.set_minor_formatter(NullFormatter())
+    low, high = ax.dataLim.intervaly
+    if title == "Film" and high - low < STILL * high:
+        ax.set_ylim((1.0 - 5.0 * STILL) * low, (1.0 + 5.0 * STILL) * high)
     ax.set(ylabel=unit, title=title)
     ax.margins(x=0.01)
     legend(ax, "above", ncols=2)

@@ -163,7 +163,7 @@ def _ended(rows, settings, control) -> dict | None:
     if settings.run_in != "go on" and unevenness(rate) < settings.even:
         said = (
             f"run in after {_hours(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
-            f"{3.6e12 * rate.mean():.3g} nm/h"
+            f"{rate_in_words(rate.mean())}"
         )
         return {"kind": "run-in", "time": time, "said": said}
     return None
@@ -285,6 +285,12 @@ def _limits(answer, settings) -> list[str]:
 
 def _hours(seconds) -> str:
     return f"{seconds / 3600:.4g} h" if seconds >= 360.0 or seconds == 0.0 else f"{seconds:.3g} s"
+
+
+def rate_in_words(rate) -> str:
+    """A depth rate (m/s) in nanometres or micrometres an hour."""
+    hourly = 3600.0 * rate
+    return f"{1e6 * hourly:.3g} um/h" if hourly >= 1e-6 else f"{1e9 * hourly:.3g} nm/h"
 
 
 def _length(metres) -> str:
