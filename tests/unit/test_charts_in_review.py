@@ -5,12 +5,13 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from drawn import crossed, panel, study, text_trouble
-from made_up_run import whirling, write
+from drawn import crossed, drawn, panel, study, text_trouble
+from made_up_run import SUMMARY, whirling, write
 from test_charts_untuned import RPM, must_be_legible, said, ticks
 
-from sealdyn.report.charts import animation, moving
+from sealdyn.report.charts import animation, moving, overview
 from sealdyn.report.charts.page import sheet
+from sealdyn.report.charts.palette import CONTACT
 from sealdyn.report.charts.study_sweep import axis_label
 from sealdyn.report.text import study_lines
 from sealdyn.studies.rub.study import sentences, tables
@@ -699,3 +700,22 @@ def test_what_is_asked_runs_through_no_name(tmp_path):
             assert not any(box.y0 < y < box.y1 for box in boxes), line.get_ydata()
     names = [text.get_text() for ax in figure.axes if ax.get_legend() for text in ax.get_legend().get_texts()]
     assert "asked: 0.01, 0.1, 1, 10, 100 g" in names and "axial, linear theory" in names
+
+
+# --- overview ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("brief", [True, False])
+def test_a_brief_touch_is_marked_where_the_film_is_thinnest(tmp_path, brief):
+    columns = whirling(samples=400)
+    force = np.where(np.arange(400) == 7, 900.0, 0.0 if brief else 500.0)
+    columns |= {"contact_force": force}
+    columns["h_min"] = np.where(np.arange(400) == 7, 1e-7, columns["h_min"])
+    summary = {**SUMMARY, "contact": {"touch_at": 9e-7, "touches": 1}}
+    figure = drawn(overview, write(tmp_path / "seal.h5", columns, summary=summary), tmp_path / "chart.png")
+    ax = panel(figure, "Smallest film thickness")
+    marks = [line for line in ax.lines if line.get_marker() == "o"]
+    assert len(marks) == brief and text_trouble(figure) == ([], [])
+    if brief:
+        assert marks[0].get_ydata()[0] == pytest.approx(0.1) and marks[0].get_color() == CONTACT
+        assert any(text.get_text().startswith("touches at") for text in ax.texts)

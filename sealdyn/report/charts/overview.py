@@ -141,11 +141,28 @@ def film_panel(ax, run: Run, first: int) -> None:
             level(ax, at, name, **found, **style)
             if found["below"] and at < 1.5 * room:
                 ax.set_ylim(bottom=min(ax.get_ylim()[0], at - 1.5 * room))
+    if not first and run.touches:
+        _mark_touch(ax, run, x, h)
     if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         colour = STATUS[run.status]
         ax.plot(x[-1], h[-1], "X", ms=8, color=colour, clip_on=False, zorder=5)
         ax.annotate(run.status, (x[-1], h[-1]), xytext=(-8, -12 if h[-1] > 0.75 * top else 9), color=colour,
                     textcoords="offset points", ha="right", weight="bold", bbox=PAPER)  # fmt: skip
+
+
+def _mark_touch(ax, run: Run, x, h) -> None:
+    """Where the faces touch now and then, when they press hardest: what lasts a moment is not seen in a long run."""
+    when, force, _ = run.drawn("contact_force")
+    most = int(np.nanargmax(force))
+    if not np.nanmean(force) < BRIEF * force[most]:
+        return
+    at = int(np.argmin(np.abs(x - when[most])))
+    ax.plot(x[at], h[at], "o", ms=3.5, color=CONTACT, clip_on=False, zorder=5)
+    unit = run.progress_label.partition(", ")[2] or "turns"
+    # Towards the middle of the panel.
+    side, away = ("right", -6) if x[at] > 0.5 * (x[0] + x[-1]) else ("left", 6)
+    ax.annotate(f"touches at {written(x[at], 3)} {unit}", (x[at], h[at]), xytext=(away, 0), color=CONTACT,
+                textcoords="offset points", ha=side, va="center", fontsize=8, bbox=PAPER)  # fmt: skip
 
 
 def tilt_panel(ax, run: Run, first: int) -> None:
