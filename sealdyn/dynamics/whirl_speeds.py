@@ -10,7 +10,6 @@ from itertools import pairwise
 import numpy as np
 
 from ..numerics.crossing import crossing
-from ..scene.scene import SceneError
 from .characteristic import roots
 from .neutral_speeds import Whirl, mended
 
@@ -21,18 +20,11 @@ BESIDE = 1e-6
 
 
 def one_by_one(at_speed, direction: float = 1.0):
-    """The function `values` of any scene, from an eigenproblem at each speed: `at_speed(w)` gives its LinearScene, or
-    raises SceneError where no film holds, which then has no modes; `direction` -1 of a shaft that turns the other way,
-    at speeds -w."""
-
-    def tilts(speed):
-        try:
-            return [mode for mode in at_speed(speed).modes() if mode.kind == "tilt"]
-        except SceneError:
-            return []
+    """The function `values` of any scene, from an eigenproblem at each speed: `at_speed(w)` gives its LinearScene;
+    `direction` -1 of a shaft that turns the other way, at speeds -w."""
 
     def values(speeds):
-        rows = [tilts(direction * w) for w in speeds]
+        rows = [[mode for mode in at_speed(direction * w).modes() if mode.kind == "tilt"] for w in speeds]
         found = np.full((len(rows), max(map(len, rows), default=0)), np.nan, dtype=complex)
         errors = np.full(found.shape, np.nan)
         against = "backward" if direction > 0.0 else "forward"

@@ -103,12 +103,13 @@ def resonance_speeds(model, interval=None) -> list[float]:
 
 
 def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]:
-    """The part of [low, high] (rad/s, without sign) around the shaft's speed in which an aligned film holds the closing
-    force: inertia and coning that follow the speed leave none far from it."""
+    """The part of [low, high] (rad/s, without sign) in which an aligned film holds the closing force as it does at the
+    shaft's speed: inertia and coning that follow the speed leave none far from it.  Of a range beyond that the last
+    speed towards it that has one, twice."""
     if not moves_with_speed(model.scene.film):
         return low, high
     spin = model.linear_scene(interval).rings[ROTOR].spin
-    direction, own = -1.0 if spin < 0.0 else 1.0, min(max(abs(spin), low), high)
+    direction, own = -1.0 if spin < 0.0 else 1.0, abs(spin) or low
 
     def held(speed):
         try:
@@ -130,7 +131,8 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
             inside, outside = (middle, outside) if held(middle) else (inside, middle)
         return inside
 
-    return last(low), last(high)
+    found = last(low), last(high)
+    return min(found), max(found)
 
 
 def _range(model, interval) -> tuple[float, float]:
