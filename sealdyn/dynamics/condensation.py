@@ -107,9 +107,9 @@ def _harmonics(sectors: int, each: int, kinds: int):
     return csc_array(kron(eye_array(kinds), around))
 
 
-def _away(part, turned) -> float:
-    """The largest element that columns (n, m) have outside of the combinations `turned`."""
-    return abs(part - turned @ (turned.T @ part)).max()
+def _stays(part, turned, size: float = 0.0) -> bool:
+    """Whether columns (n, m), of at least this size, lie in the combinations `turned`."""
+    return abs(part - turned @ (turned.T @ part)).max() <= ALIKE * max(abs(part).max(), size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,13 +177,13 @@ class LinearFilm:
         ch. 3."""
         angles, cells = self.around or (0, 0)
         # What hangs on no rate shows rounding there: over the film's own time it is small beside what hangs on the gap.
-        time = abs(self.by_rate).max() / abs(self.by_x).max()
-        least = abs(self.by_gap).max() * time
-        parts = (self.by_x, 0.0), (self.by_rate, 0.0), (self.by_gap, 0.0), (self.by_gap_rate, least)
+        least = abs(self.by_gap).max() * abs(self.by_rate).max() / abs(self.by_x).max()
         for sectors in (count for count in range(angles, LEAST_SECTORS - 1, -1) if angles % count == 0):
             turned = _harmonics(sectors, angles // sectors * cells, len(self.scales) // (angles * cells))
-            moved = [(part @ turned if part.shape[1] > 3 else part, size) for part, size in parts]
-            if all(_away(part, turned) <= ALIKE * max(abs(part).max(), size) for part, size in moved):
+            pushed = (self.by_gap, 0.0), (self.by_gap_rate, least)
+            if all(_stays(part, turned, size) for part, size in pushed) and all(
+                _stays(matrix @ turned, turned) for matrix in (self.by_x, self.by_rate)
+            ):
                 return turned
         return None
 
