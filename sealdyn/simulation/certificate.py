@@ -9,16 +9,17 @@ in proportion.  Any other run has the cautious tolerance of solvers/contract.py,
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..dynamics.run_state import RunState
 from ..solvers.advance import Advance
 from ..solvers.block import Block
-from ..solvers.contract import Counts, SolverFailure, tolerance_for
+from ..solvers.contract import Cause, Counts, SolverFailure, Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.global_error import GlobalErrorEstimate
+from ..solvers.integrate import Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .cell_error import cell_error
@@ -205,6 +206,24 @@ def _since(times, apart) -> str:
     """From when on two runs were compared, in words: one that was continued is not seen before."""
     seen = np.flatnonzero(~np.isnan(apart))
     return "" if not len(seen) or seen[0] == 0 else f" from {times[seen[0]]:.4g} s on"
+
+
+def without(asked: float, why: str) -> dict:
+    """The certificate of a run that has none, and why, as part of its summary."""
+    none = dict.fromkeys(("estimated", "solver", "model", "met", "horizon"))
+    return {"asked": asked, **none, "said": f"no certificate: {why}"}
+
+
+def ended(status: Status) -> str:
+    """How a run ended that has none, in words."""
+    return f"the run {'was ' if status == Status.INTERRUPTED else ''}{status}"
+
+
+def interrupted(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
+    """The certificate and the outcome of a run that was interrupted while it was measured."""
+    cause = Cause.INTERRUPTED
+    outcome = replace(outcome, status=Status.INTERRUPTED, cause=cause, message=str(cause))
+    return without(asked, "interrupted while the run was done once more"), outcome
 
 
 def _so_many(error: float | None, wanted: float) -> str:

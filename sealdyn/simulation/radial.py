@@ -3,7 +3,6 @@
 import json
 import math
 import time as clock
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,9 +14,10 @@ from ..radial_seals.run_state import RadialRun
 from ..radial_seals.segments import RadialModel
 from ..radial_seals.summary import summary_of
 from ..scene.scene import SceneError
-from ..solvers.contract import Cause, Status, tolerance_for
+from ..solvers.contract import Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
+from .certificate import ended, interrupted, without
 from .result import Result
 from .second_run import SHARPER, Nothing, sharper
 from .sinks import ArchiveSink, Tally
@@ -177,9 +177,9 @@ class Apart:
 
 def _certificate(run, method, outcome, seen, progress, stop):
     """Twice what the run and a sharper one differ by, as part of the summary, and the outcome."""
-    none = {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None, "met": None, "horizon": None}
+    asked = run.model.accuracy
     if outcome.status != Status.OK:
-        return {**none, "said": f"no certificate: the run {outcome.status}"}, outcome
+        return without(asked, ended(outcome.status)), outcome
     # Sharper steps and sharper events: how long a step may be and what counts as contact follow from the accuracy.
     model = RadialModel(run.model.scene, max(run.model.accuracy / SHARPER, SHARPEST))
     again = RadialRun(model, run.duration)
@@ -187,12 +187,9 @@ def _certificate(run, method, outcome, seen, progress, stop):
     how, tolerance = sharper(method, outcome.tolerance, run)
     second = solve(again, how, model.accuracy, Nothing(again, progress, stop), tolerance=tolerance, seen=other)
     if second.status == Status.INTERRUPTED:
-        said = "no certificate: interrupted while the run was done once more"
-        return {**none, "said": said}, replace(outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED,
-                                               message=str(Cause.INTERRUPTED))  # fmt: skip
+        return interrupted(asked, outcome)
     if second.status != Status.OK:
-        said = f"no certificate: a sharper run {second.status} ({second.message})"
-        return {**none, "met": False, "said": said}, outcome
+        return without(asked, f"a sharper run {second.status} ({second.message})") | {"met": False}, outcome
     n = run.model.followers.count
     loads = np.nanmax(np.abs(other.columns[:, n:]), initial=0.0) or 1.0
     scales = np.concatenate([np.full(n, run.model.length), np.full(n, loads)])
@@ -200,8 +197,9 @@ def _certificate(run, method, outcome, seen, progress, stop):
     # A load jumps where a follower lands: beside a jump two runs differ by all of it.
     error = 2.0 * float(np.quantile(apart, 0.99)) if len(apart) else 0.0
     # Errors between the steps are not followed below this.
-    error = max(error, LEAST_TOLD * run.model.accuracy)
-    met = error <= run.model.accuracy
+    error = max(error, LEAST_TOLD * asked)
+    met = error <= asked
     how = f"twice the difference from a sharper run, at 99 % of {COMPARED} instants"
-    said = f"asked {run.model.accuracy:.0e}, estimated {error:.1e} ({how})" + ("" if met else "; NOT met")
-    return {**none, "estimated": error, "solver": error, "met": met, "said": said}, outcome
+    said = f"asked {asked:.0e}, estimated {error:.1e} ({how})" + ("" if met else "; NOT met")
+    return {"asked": asked, "estimated": error, "solver": error, "model": None, "met": met, "horizon": None,
+            "said": said}, outcome  # fmt: skip

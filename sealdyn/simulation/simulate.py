@@ -25,12 +25,12 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..solvers.contract import Cause, Counts, Enough, Status, attainable
+from ..solvers.contract import Counts, Enough, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import Outcome, solve
 from .attempts import Try, judged, next_try
 from .bare_numbers import slips
-from .certificate import TrialRun, certify, choose_tolerance
+from .certificate import TrialRun, certify, choose_tolerance, ended, interrupted, without
 from .film_selection import select_film
 from .method_selection import check_method, choose_method
 from .result import Result
@@ -169,20 +169,16 @@ def certificate(run, method, outcome, errors, by_model, seen, progress=None, sto
     """How wrong the run is estimated to be (simulation/certificate.py), as part of the summary: `asked`, `estimated`,
     `solver`, `model` (relative errors, None where not estimated), `met`, `horizon` (s) and `said`, a sentence; and the
     outcome, interrupted if the measuring was."""
-    none = {"asked": run.model.accuracy, "estimated": None, "solver": None, "model": None, "met": None, "horizon": None}
+    asked = run.model.accuracy
     if outcome.status != Status.OK:
-        was = "was " if outcome.status == Status.INTERRUPTED else ""
-        return {**none, "said": f"no certificate: the run {was}{outcome.status}"}, outcome
+        return without(asked, ended(outcome.status)), outcome
     measured = cells = None
     if seen:
         try:
             how = {"method": method, "tolerance": outcome.tolerance}
             apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
         except Enough:
-            said = "no certificate: interrupted while the run was done once more"
-            return {**none, "said": said}, replace(
-                outcome, status=Status.INTERRUPTED, cause=Cause.INTERRUPTED, message=str(Cause.INTERRUPTED)
-            )
+            return interrupted(asked, outcome)
         measured = None if apart is None else (seen.times, apart)
     found = certify(run, method, outcome.tolerance, errors, by_model, measured, cells)
     beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
