@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -16,6 +17,9 @@ from ..status import Status
 from .batch import refuse_outputs, run_many
 from .result import Result
 from .simulate import simulate
+
+# Scenarios and outputs whose outputs are known to be there.
+REMEMBERED = 64
 
 
 class RunEnded(Exception):
@@ -34,6 +38,26 @@ class RunEnded(Exception):
 
     def __str__(self):
         return f"{self.name}: {self.status}: {self.message}"
+
+
+class _Asked:
+    """Runs of a scenario with other values at the same keys, as what is remembered of them."""
+
+    def __init__(self, scenario: Scenario, values: dict[str, Any]):
+        self.scenario, self.values = scenario, values
+        self.words = repr(scenario.scene), *values
+
+    def __eq__(self, other):
+        return self.words == other.words
+
+    def __hash__(self):
+        return hash(self.words)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _refuse_outputs(asked: _Asked, outputs: tuple[str, ...]) -> None:
+    """`refuse_outputs`, once for all that an optimiser asks."""
+    refuse_outputs(asked.scenario, [asked.values], outputs, "outputs")
 
 
 def run(
@@ -82,7 +106,7 @@ def evaluate(
     {'h_min.value': 8.2...e-06, 'status': 'ok'}
     """
     scenario, outputs = scenario_of(source), [outputs] if isinstance(outputs, str) else list(outputs)
-    refuse_outputs(scenario, [dict(values)], outputs, "outputs")
+    _refuse_outputs(_Asked(scenario, dict(values)), tuple(outputs))
     (row,) = run_many(scenario, [{"set": dict(values), "outputs": outputs}])
     if isinstance(row, Exception):
         with scene_errors_of(scenario.name):
