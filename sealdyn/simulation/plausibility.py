@@ -116,8 +116,9 @@ def _rough(model, h_min):
     more = float(mean_film_cubed(x)) / x**3 - 1.0
     if more > LETS_THROUGH:
         how = f"where the film is thinnest rough ones let {100 * more:.0f} % more through"
-        counts = 'film.model = "reynolds" counts them'
-        yield Caution(Concern.ROUGH_FILM, f"leakage is that of smooth faces: {how}, after Christensen; {counts}")
+        # That of a liquid.
+        counts = "" if scene.film.gas else '; film.model = "reynolds" counts them'
+        yield Caution(Concern.ROUGH_FILM, f"leakage is that of smooth faces: {how}, after Christensen{counts}")
 
 
 def _arm(scene):
