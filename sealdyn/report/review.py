@@ -142,7 +142,7 @@ def letters(lines) -> float:
 def told(words: str) -> str:
     """Words of a terminal as a page has them: units of print, numbers below ten millions in full."""
     plain = POWER.sub(lambda found: f"{float(found[0]):.7g}", words)
-    return printed(plain).replace("^3", "³")
+    return printed(plain)
 
 
 def _asked(info: dict) -> dict:

@@ -35,7 +35,12 @@ ROOM, MOST_LINES = 3, 14
 # Of an archive that is being written, or whose run was killed.
 NO_END = "the archive has no end yet; a run that was killed goes on with --continue"
 # As print has it, in place of what a terminal shows.
-PRINT = ((re.compile(r"\bu(m|rad)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"))
+PRINT = (
+    (re.compile(r"\bu(m|rad)\b"), r"µ\1"),
+    (re.compile(r" deg\b"), "°"),
+    (re.compile(r"\^2\b"), "²"),
+    (re.compile(r"\^3\b"), "³"),
+)
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
