@@ -39,11 +39,10 @@ FIRST = (
     ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
     ("contact.lift", "lost contacts", 1.0),
 )
-SPEEDS, RPM = ("stability.critical_speed",), 30.0 / math.pi
 # How many times as much is told as such.
 MANY = 4.0
-# Leakage (m^3/s) from which it is told in l/min, as that of gases.
-MUCH, IN_LITRES = 1e-5, ("leakage, l/min", 6e4)
+# Leakage (m^3/s) from which it is told in l/min, as that of gases; a speed where people wrote it so.
+MUCH, IN_LITRES, IN_RPM = 1e-5, ("leakage, l/min", 6e4), ("critical speed, rpm", 30.0 / math.pi)
 # Series of which the largest difference is told: of face seals, of radial seals.
 SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
 
@@ -80,8 +79,8 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
     rows = {row["key"]: row for row in found["summary"]}
     shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
     for heading, factor, row in shown:
-        if row["key"] in SPEEDS and found.get("speeds", "rad/s") == "rpm":
-            heading, factor = heading.replace("rad/s", "rpm"), RPM
+        if row["key"] == "stability.critical_speed" and found.get("speeds") == "rpm":
+            heading, factor = IN_RPM
         if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
             heading, factor = IN_LITRES
         words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
