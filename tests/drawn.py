@@ -5,6 +5,7 @@ from importlib import import_module
 from unittest import mock
 
 import numpy as np
+from PIL import Image
 
 from sealdyn.archive import write_study
 
@@ -20,8 +21,6 @@ def drawn(chart, archive, out, written=True):
     with mock.patch.object(chart, "save", keep):
         assert chart.draw(archive, out) == out
     if written:
-        from PIL import Image
-
         with Image.open(out) as picture:
             assert picture.format == "PNG" and round(picture.info["dpi"][0]) == 150
         assert list(out.parent.glob("*.new")) == []
@@ -115,3 +114,9 @@ def crossed(ax):
             if inside.any() and middle > 2:
                 found.append(text.get_text())
     return found
+
+
+def frames(path) -> tuple[list[np.ndarray], int]:
+    """Every picture of a GIF, and how often it is shown (0: for ever)."""
+    with Image.open(path) as film:
+        return [np.asarray(film.convert("RGB")) for k in range(film.n_frames) if not film.seek(k)], film.info["loop"]

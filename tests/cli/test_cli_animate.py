@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 from command import REFERENCE, sealdyn
+from drawn import frames
 from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
@@ -29,10 +30,8 @@ def folder(tmp_path_factory):
 def test_pictures_of_a_stretch(folder):
     answer = sealdyn("animate", "a.h5", "--turns", 2, "--per-turn", PER_TURN, cwd=folder)
     assert answer.code == 0 and answer.out.strip() == "a.gif"
-    with Image.open(folder / "a.gif") as film:
-        pictures = [np.asarray(film.convert("RGB")) for k in range(film.n_frames) if not film.seek(k)]
-        assert film.info["loop"] == 0
-    assert len(pictures) == 2 * PER_TURN + 1
+    pictures, loop = frames(folder / "a.gif")
+    assert loop == 0 and len(pictures) == 2 * PER_TURN + 1
     # Something moves in each of them.
     assert all((one != other).any() for one, other in itertools.pairwise(pictures))
 

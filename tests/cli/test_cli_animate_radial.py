@@ -2,11 +2,12 @@
 
 import itertools
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from command import SCENARIOS, sealdyn
-from drawn import panel, text_trouble
+from drawn import frames, panel, text_trouble
 from PIL import Image
 
 from sealdyn.archive import FIELD_TIME, column, field
@@ -35,8 +36,9 @@ def run(path, out, *values):
 
 def staged(found, turns=2.0, per_turn=PER_TURN):
     """Figure, what moves it, and the progress of its pictures."""
-    at = Around(found).nearest(moments(found, turns, per_turn, found.path))
-    return *stage(found, panels, at), at
+    around = Around(found)
+    at = around.nearest(moments(found, turns, per_turn, found.path))
+    return *stage(found, partial(panels, around), at), at
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +53,8 @@ def folder(tmp_path_factory):
 def test_pictures_of_a_stretch(folder):
     answer = sealdyn("animate", "a.h5", "--turns", 2, "--per-turn", PER_TURN, cwd=folder)
     assert answer.code == 0 and answer.out.strip() == "a.gif"
-    with Image.open(folder / "a.gif") as film:
-        pictures = [np.asarray(film.convert("RGB")) for k in range(film.n_frames) if not film.seek(k)]
-        assert film.info["loop"] == 0
-    assert len(pictures) == 2 * PER_TURN + 1
+    pictures, loop = frames(folder / "a.gif")
+    assert loop == 0 and len(pictures) == 2 * PER_TURN + 1
     assert all((one != other).any() for one, other in itertools.pairwise(pictures))
 
 

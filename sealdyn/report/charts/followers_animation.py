@@ -1,6 +1,7 @@
 """The motion of a radial seal: the shaft in cross-section, runout enlarged, its followers, gap and load around it, and
 where on the time line."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +27,9 @@ def animate(run: Run, out_path: Path, turns: float, per_turn: int, progress=None
     """As animation.animate, of an opened archive of a radial seal."""
     if not run.has("least_load", "shaft_angle") or not run.info["grid"].get(FIELD_TIME, 0):
         raise ArchiveError(f"{run.path}: holds no gap around the shaft over time")
-    at = Around(run).nearest(moments(run, turns, per_turn, out_path))
-    return write(run, panels, at, out_path, progress)
+    around = Around(run)
+    at = around.nearest(moments(run, turns, per_turn, out_path))
+    return write(run, partial(panels, around), at, out_path, progress)
 
 
 class Around:
@@ -70,9 +72,8 @@ class Around:
         return float(max(shaft, *(np.abs(self.displacement(moment)).max() for moment in at)))
 
 
-def panels(figure, run: Run, at: np.ndarray, top: float) -> list:
+def panels(around: Around, figure, run: Run, at: np.ndarray, top: float) -> list:
     """Axes and what stands still in them; returns functions of the progress that move the rest."""
-    around = Around(run)
     section = figure.add_axes((0.036, 0.075, 0.46, top - 0.15))
     ax = {"line": figure.add_axes((0.565, 0.095, 0.41, 0.15))}
     lost = bool(around.values("gap", at).max() > 0.0)
