@@ -44,8 +44,8 @@ def draw(archive_path, out_path):
     figure, ax = study_page(study, 11.5, 2.6 + 0.415 * sum(heights), mosaic, title, height_ratios=heights)
     speeds, rpm = speed_unit(study)
     sweeps = [answer[f"against_{name}"] for name in shown]
-    per, unit = _stiffness_unit(sweeps)
-    units = [_unit_of(sweeps, "damping", (1, 2), PREFIX), _unit_of(sweeps, "stiffness", (0,), AXIAL)]
+    per, unit = _unit_of(sweeps, "stiffness", [(i, j) for _, i, j, *_ in TILT], LARGE)
+    units = [_unit_of(sweeps, "damping", ((1, 1), (2, 2)), PREFIX), _unit_of(sweeps, "stiffness", ((0, 0),), AXIAL)]
     for name, (words, scale, label) in shown.items():
         sweep, above, below = answer[f"against_{name}"], ax[f"K {name}"], ax[f"D {name}"]
         stacked(above, below)
@@ -89,7 +89,7 @@ def _map(ax, found):
     places = list(np.ndindex(*(len(found[name]) for name in others)))
     shown = sorted({round(k) for k in np.linspace(0, len(places) - 1, MOST_LINES)})
     tilts = np.array(found["stiffness"], dtype=float)[..., 1:, 1:]
-    per, unit = _large(np.nanmax(np.abs(tilts), initial=0.0))
+    per, unit = _fitting(np.nanmax(np.abs(tilts), initial=0.0), LARGE)
     for nth, (colour, place) in enumerate(zip(CYCLE, [places[k] for k in shown], strict=False)):
         # Lines that lie on each other are seen.
         style = {"color": colour, "lw": 3.6 - 0.5 * nth, "ms": 3}
@@ -116,22 +116,15 @@ def _entries(sweep, name, i, j):
     return np.array([np.nan if m is None else m[i][j] for m in sweep[name]], dtype=float)
 
 
-def _stiffness_unit(sweeps) -> tuple[float, str]:
-    """How many of the unit of tilt stiffnesses make one N m/rad, and its name, by the largest of them."""
-    every = [np.abs(_entries(sweep, "stiffness", i, j)) for sweep in sweeps for _, i, j, *_ in TILT]
-    return _large(np.nanmax(np.concatenate([*every, [0.0]])))
-
-
-def _large(largest: float) -> tuple[float, str]:
-    """The same of the largest one."""
-    return next((per, unit) for least, per, unit in LARGE if largest >= least)
-
-
-def _unit_of(sweeps, matrix: str, entries, units) -> tuple[float, str]:
-    """How many of the unit of these entries of a diagonal make one in SI, and its name in `units`, by their largest."""
-    every = [np.abs(_entries(sweep, matrix, i, i)) for sweep in sweeps for i in entries]
-    largest = np.nanmax(np.concatenate([*every, [0.0]]))
+def _fitting(largest: float, units) -> tuple[float, str]:
+    """How many of the unit of such a number make one in SI, and its name, of `units` with the least number of each."""
     return next((per, name) for least, per, name in units if largest >= least)
+
+
+def _unit_of(sweeps, matrix: str, places, units) -> tuple[float, str]:
+    """The same of the elements of a matrix at some places (i, j)."""
+    every = [np.abs(_entries(sweep, matrix, *place)) for sweep in sweeps for place in places]
+    return _fitting(np.nanmax(np.concatenate([*every, [0.0]])), units)
 
 
 def _stiffness(ax, sweep, x, title, per):
