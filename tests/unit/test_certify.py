@@ -321,7 +321,7 @@ def test_what_to_try_fits_the_scene(method, advice):
 
 
 def test_a_run_done_before_it_is_continued_says_that_nothing_measures_it(tmp_path):
-    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "massless_ring.toml", ["run.turns=5"])
+    scenario = read_scenario(Path(__file__).parents[2] / "scenarios" / "massless_ring.toml", ["run.turns=30"])
     reached = [0.0]
     again = []
 
