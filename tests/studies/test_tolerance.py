@@ -22,7 +22,7 @@ from sealdyn.studies._runner import run_study, study_tables
 from sealdyn.studies.tolerance import study
 from sealdyn.studies.tolerance.estimates import probability, sobol, sobol_intervals
 from sealdyn.studies.tolerance.scatter import SCRAMBLES, points, read_correlations, read_scatter
-from sealdyn.studies.tolerance.verdict import _tighten_sentence
+from sealdyn.studies.tolerance.verdict import _tighten_sentence, sentences
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 LINEAR = ["run.turns=2", 'run.start="steady"', "film.model=linear", "stator.misalignment=0"]
@@ -557,3 +557,21 @@ def test_an_output_that_hardly_scatters_is_said_to(tmp_path):
     }
     said = _tighten_sentence(answer, "h_min.value")
     assert said.startswith("h_min.value hardly scatters: 2.389 um within 0.004 %") and "--outputs" in said
+
+
+def test_indices_of_few_samples_are_said_to_be_rough():
+    """First indices above the total stood there without a word, and "0 of 128 runs" beside 512 that were run."""
+    row = {"total_low": 0.3, "total_high": 0.9, "halved": 0.8, "removed": 0.6, "rank_correlation": 0.7}
+    rows = [row | {"key": "film.coning", "first": 0.81, "total": 0.62}, row | {"key": "b", "first": 0.3, "total": 0.29}]
+    answer = {
+        "quantiles": {"h_min.value": dict(zip(("5", "50", "95"), (1e-6, 2e-6, 3e-6), strict=True))},
+        "output_units": {"h_min.value": "m"},
+        "moments": {"h_min.value": {"count": 128}},
+        "runs": {"distribution": 128, "asked": 512, "unstable": 0, "closed_at_start": 0, "ends": {"ok": 512}},
+        "tighten": {"h_min.value": rows},
+        "outputs": ["h_min.value"],
+        "probability_of_contact": probability(np.zeros(128), np.arange(128) % 2),
+    }
+    touch, tighten = sentences(answer, 512 * [{"status": "ok"}])
+    assert "0 of 128 runs" in touch and "the other 384 runs repeat these" in touch
+    assert "as that of film.coning is here" in tighten and " b " not in tighten.partition("cannot be above")[2]

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...dynamics.interface import rest_state
 from ...dynamics.intervals import largest_value
-from ...faces.geometry import FLOW_INNER, FLOW_OUTER
+from ...faces.contact import contact_load_and_friction
+from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, SPIN_DIFFERENCE
 from ...numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ...scene.application import Application
 from ...scene.scene import Scene
@@ -83,6 +84,17 @@ class Seal:
         """Film thickness (m) of the aligned faces at the mean radius, at the start."""
         radii, gaps = zip(*self.model.aligned_gaps(), strict=True)
         return float(np.interp(0.5 * self.mean_diameter, radii, gaps))
+
+    @property
+    def asperity_heat(self) -> float:
+        """Friction (W) of the asperities at the highest sliding speed, of what they carry at the start."""
+        interface = self.model.interface
+        if interface.contact is None:
+            return 0.0
+        s = rest_state(self.model.scene, self.model.clearance, self.model.start)[0]
+        s[SPIN_DIFFERENCE] = 2 * self.sliding_speed / self.mean_diameter
+        contact_load_and_friction(interface.contact, self.model.observed[1], s)
+        return float(s[CONTACT_TORQUE] * s[SPIN_DIFFERENCE])
 
     @property
     def leakage(self) -> float:

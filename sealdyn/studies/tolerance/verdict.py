@@ -5,6 +5,8 @@ from .._words import shown_in
 
 # Share of its median that the spread of an output has at least, for a tolerance to matter to it.
 LITTLE = 1e-3
+# By how much an estimated first index may be above the total, before it says that neither is settled.
+ROUGHLY = 0.05
 
 
 def sentences(answer, rows) -> list[str]:
@@ -25,6 +27,9 @@ def _contact_sentence(answer) -> str:
     share = f"{100 * risk['value']:.3g} %" if risk["count"] else "None"
     words = (f"{share} of the seals touch ({risk['count']} of {risk['runs']} runs; 95 % interval "
              f"{100 * risk['low']:.3g} to {100 * risk['high']:.3g} %)")  # fmt: skip
+    if answer["runs"]["asked"] > answer["runs"]["distribution"]:
+        others = answer["runs"]["asked"] - answer["runs"]["distribution"]
+        words += f"; the other {others} runs repeat these with one key changed, for the indices"
     closed = answer["runs"]["closed_at_start"]
     # The linear steady state that a run may begin with touches before the film, which lifts the faces, would.
     words += f"; {closed} of them before anything moves (contact-onset follows the film further)" if closed else ""
@@ -60,6 +65,10 @@ def _tighten_sentence(answer, name) -> str:
              f"({first['total_low']:.2f} to {first['total_high']:.2f}), half its scatter would leave {halved} of the "
              f"standard deviation, none {removed}")  # fmt: skip
     more = f"; {listed(rivals)} may matter as much: more samples tell" if rivals else ""
+    unsettled = [row["key"] for row in (first, *others) if row["first"] - row["total"] > ROUGHLY]
+    if unsettled:
+        more += (f"; a first index cannot be above the total, as that of {listed(unsettled)} is here: so few samples "
+                 "give indices to some tenths only")  # fmt: skip
     return f"{words}{more}."
 
 
