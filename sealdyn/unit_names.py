@@ -101,11 +101,11 @@ COMMON = {
 # A unit is names, one-digit powers, squares of brackets, * / ( ) and blanks: nothing that could be made to compute for
 # long.
 UNIT = re.compile(r"(?:[a-zA-Z_]++(?:(?:\^|\*\*) ?[+-]?\d(?!\d))?|1(?= */)|\)(?:\^|\*\*) ?2(?!\d)|[*/() ])+")
-# As engineers also write them: "mPa.s" and "lbf-in" for products, "kg/m3" for powers.
+# As engineers also write them: "mPa.s" and "lbf-in" for products, "kg/m3" for powers, "/Pa".
 PRODUCT = re.compile(r"(?<=[a-zA-Z\d)]) ?[.-] ?(?=[a-zA-Z(])")
 POWER = re.compile(r"(?<=[a-zA-Z])([2-9])(?!\d)")
 # Either of J/(kg*K) and J/kg*K.
-UNCLEAR = re.compile(r"/[^()*/]*[.-] ?[a-zA-Z]")
+UNCLEAR = re.compile(r"/ *[^()*/ ]+ *[. -] *[a-zA-Z]")
 
 
 @cache
@@ -139,6 +139,7 @@ def _by_pint(text: str) -> tuple[frozenset, Decimal]:
     if len(text) > 60 or UNCLEAR.search(text):
         raise ValueError(text)
     text = POWER.sub(r"^\1", PRODUCT.sub("*", text))
+    text = f"1{text}" if text.startswith("/") else text
     if not UNIT.fullmatch(text):
         raise ValueError(text)
     registry = _registry()

@@ -91,6 +91,9 @@ def read(kind, value):
         ("SpecificHeat", "2 kJ/kgK", 2000.0),
         ("ConingPerKelvin", "1 urad/degF", 1.8e-6),
         ("Speed", "50 rps", 100 * math.pi),
+        ("WearCoefficient", "1e-16 /Pa", 1e-16),
+        ("WearCoefficient", "1e-7 mm3/(N m)", 1e-16),
+        ("Speed", "10 rev / min", math.pi / 3),
     ],
 )
 def test_strings_with_units(kind, text, si):
@@ -119,6 +122,8 @@ def test_bare_numbers_are_si():
         ("Length", "10 micrometre s", "expected a length"),
         ("Pressure", "5 Bar", "nearest 'bar'"),
         ("SpecificHeat", "4.18 kJ/kg.K", "J/(kg*K)"),
+        ("WearCoefficient", "1e-7 mm^3/N m", "unclear: which part divides, brackets say"),
+        ("WearCoefficient", "1e-16 //Pa", "is no unit"),
         ("Temperature", "20 (degC)", "another zero"),
         ("Temperature", "20 kdegC", "another zero"),
         ("Pressure", "-2 barg", ">= 0"),
