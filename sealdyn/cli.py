@@ -1014,6 +1014,10 @@ def _run(as_json: bool):
         _tell_interrupted(as_json)
         sys.exit(INTERRUPTED)
     except Exception as error:
+        if interruption.asked:
+            # A library that was being loaded has made another error of the KeyboardInterrupt, as pydantic does.
+            _tell_interrupted(as_json)
+            sys.exit(INTERRUPTED)
         # A misused command line: the parser's own errors can say what they mean in one line.
         if not hasattr(error, "format_message"):
             raise

@@ -189,6 +189,20 @@ def test_an_interruption_at_any_moment_of_loading(tmp_path):
         assert lines == [answer.found["message"]], moment
 
 
+def test_a_library_that_makes_another_error_of_an_interruption():
+    """Pydantic, broken off while it builds a schema, raised an error of its own, which came out as a traceback."""
+    asked = (
+        "import os, signal, sys\nfrom sealdyn import cli\n"
+        "def app(**_):\n"
+        "    try:\n        os.kill(os.getpid(), signal.SIGINT)\n        [None for _ in range(10**6)]\n"
+        "    except KeyboardInterrupt:\n        raise ValueError('no schema') from None\n"
+        "cli.app = app\nsys.argv = ['sealdyn', 'check', '--json']\ncli.main()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 130 and "Traceback" not in done.stderr
+    assert json.loads(done.stdout)["status"] == "interrupted"
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_in_the_last_moments_changes_nothing(number):
     """It ended a study that was complete by the signal itself."""
