@@ -203,6 +203,37 @@ def test_a_film_that_stores_answers_at_the_frequency_of_the_motion():
         assert gain == pytest.approx(abs(drive / (support + k + 1j * w * d - inertia)), rel=1e-6)
 
 
+STIFF = ("shaft.speed=12000 rpm", "film.clearance=1.5 um", "film.coning=1 mrad", "film.viscosity=20 mPa*s",
+         "rotor.support.axial_stiffness=5e4", "rotor.support.axial_damping=100")  # fmt: skip
+
+
+def test_a_run_is_not_more_accurate_than_rounding_knows_the_housing():
+    """Such a film moves by 1e-5 of the housing; asked for 1e-8 of the clearance for 300 periods, a stiff solver followed
+    the rounding of the phase for six minutes."""
+    seal = ShakenSeal(scenario("fmr", *STIFF).scene)
+    period = 2 * math.pi * 36.0
+    rounding = 2.0**-52 * 2 * math.pi * 300 * 10.0 / period**2 / seal.model.clearance
+    assert in_time._accuracy(seal, "axial", 36.0, 10.0, 300) == pytest.approx(in_time.ABOVE_ROUNDING * rounding)
+    assert in_time._accuracy(seal, "axial", 3600.0, 10.0, 3) == in_time.ACCURACY
+    arm = seal.model.scene.film.outer_radius
+    assert in_time._accuracy(seal, "angular", 36.0, 10.0 / arm, 300) == pytest.approx(in_time.ABOVE_ROUNDING * rounding)
+
+
+def test_what_takes_too_long_in_time_is_given_up(monkeypatch):
+    point, scene = {"direction": "axial", "frequency": 30.0}, scenario("fms").scene
+    monkeypatch.setattr(in_time, "MOST_WORK", 2000)
+    assert "not reached with 2000 steps" in in_time.measured(scene, point)["said"]
+    monkeypatch.setattr(in_time, "MOST_SMALL", 100)
+    with pytest.raises(ValueError, match="more than 100 steps"):
+        in_time.measured(scene, point)
+
+
+def test_a_housing_that_tilts_far_is_not_followed(monkeypatch):
+    monkeypatch.setattr(in_time, "TILTED", 1e-9)
+    row = in_time.measured(scenario("fms").scene, {"direction": "angular", "frequency": 30.0})
+    assert row["touch"] is None and "tilts by more than" in row["said"] and row["deviation"] < 1e-4
+
+
 def test_what_cannot_be_asked_is_refused():
     with pytest.raises(SceneError, match=r"85944 rpm\), at which small motion does not die out"):
         answer("fms", "shaft.speed=9000")

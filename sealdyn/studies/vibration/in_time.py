@@ -10,7 +10,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...faces.geometry import DZ, GX, GY
 from ...simulation.method_selection import choose_method
-from ...solvers.contract import Status
+from ...solvers.contract import MANY, Enough, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
 from .small_motion import ShakenSeal, sizes
@@ -20,13 +20,31 @@ from .small_motion import ShakenSeal, sizes
 SMALL, LEFT, LEFT_OF_STEP, PER_PERIOD = 2e-3, 1e-6, 1e-3, 64
 # Accuracy of small motion, of films that store, which cost a hundred times more, and on the way to touch.
 ACCURACY, STORED, ROUGHLY = 1e-8, 1e-6, 1e-5
+# Accuracy over the share of the clearance to which rounding knows where the housing is: a stiff solver that is asked
+# for more follows the rounding, in steps a hundred times too small.
+ABOVE_ROUNDING = 1e4
 # The way to touch, in the linear one: where it begins, first and last step (factors), where it ends.
 BEGIN, STEP, LAST, MOST = 0.5, 1.25, 1.01, 10.0
-# Acceleration (m/s^2) of linear touch, of angular vibration at the outer edge, beyond which nobody shakes a seal; and
-# right-hand sides that a tone may cost.
-BEYOND, MOST_WORK = 1000.0 * g, 300_000
+# Acceleration (m/s^2) of linear touch, of angular vibration at the outer edge, beyond which nobody shakes a seal;
+# tilt (rad) of the housing beyond which tilts are not small; steps that a tone's small motion and its way to touch may
+# cost.
+BEYOND, TILTED, MOST_SMALL, MOST_WORK = 1000.0 * g, 0.1, 2_000_000, 500_000
 # Periods that a transient may take, and how often it may take more than expected.
 LONGEST, AGAIN = 1000, 4
+
+
+class Bounded(Recorder):
+    """A Recorder that ends its run after `most` steps."""
+
+    def __init__(self, most: int, interval: float | None = None):
+        super().__init__(interval)
+        self.left = most
+
+    def state(self, segment, tau, y):
+        """Raises Enough where the steps are used up, by the least that the solver hands over at a time."""
+        self.left -= MANY
+        if self.left < 0:
+            raise Enough
 
 
 def measured(scene, point: dict) -> dict:
@@ -50,6 +68,8 @@ def measured(scene, point: dict) -> dict:
         return row | {"said": "a film that stores is not followed to touch"}
     if linear * (seal.model.scene.film.outer_radius if direction == "angular" else 1.0) > BEYOND:
         return row | {"said": f"beyond {BEYOND / g:g} g touch is not looked for in time"}
+    if direction == "angular" and linear > TILTED * (2 * math.pi * frequency) ** 2:
+        return row | {"said": f"a housing that tilts by more than {TILTED:g} rad is not followed to touch in time"}
     periods = math.ceil(-math.log(LEFT_OF_STEP) * frequency / decay) + 2
     ratio, said = _touch(seal, direction, frequency, linear, periods)
     return row | {"touch": None if ratio is None else ratio * linear, "ratio": ratio, "said": said}
@@ -58,12 +78,14 @@ def measured(scene, point: dict) -> dict:
 def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods) -> np.ndarray:
     """Complex amplitude (3,) of the gap per unit motion of the housing in the last period of a run, which begins with
     half the motion that linear theory foretells."""
-    period, accuracy = 1.0 / frequency, STORED if seal.model.interface.stores else ACCURACY
+    period, accuracy = 1.0 / frequency, _accuracy(seal, direction, frequency, acceleration, periods)
     run = RunState(Model(seal.shaken(direction, frequency, acceleration), accuracy), periods * period)
     with_housing = _carried(seal, run.model, direction, frequency, acceleration)
     run.y0 = 0.5 * (run.steady_start() + with_housing)
-    recorder = Recorder(period / PER_PERIOD)
+    recorder = Bounded(MOST_SMALL, period / PER_PERIOD)
     outcome = solve(run, choose_method(run)[0], accuracy, recorder)
+    if outcome.status == Status.INTERRUPTED:
+        raise ValueError(f"small motion takes more than {MOST_SMALL} steps")
     if outcome.status != Status.OK:
         raise ValueError(outcome.message)
     times, q, rates = (part[-PER_PERIOD:] for part in recorder.arrays())
@@ -76,16 +98,30 @@ def _small_motion(seal: ShakenSeal, direction, frequency, acceleration, periods)
     return 2.0 * (turned @ gaps) / PER_PERIOD / (-acceleration / (2 * math.pi * frequency) ** 2)
 
 
+def _accuracy(seal: ShakenSeal, direction, frequency, acceleration, periods) -> float:
+    """Accuracy of small motion that the run can have."""
+    if seal.model.interface.stores:
+        return STORED
+    # The phase after so many periods is known to its rounding.
+    arm = seal.model.scene.film.outer_radius if direction == "angular" else 1.0
+    phase, displacement = 2 * math.pi * periods, arm * acceleration / (2 * math.pi * frequency) ** 2
+    rounding = np.finfo(float).eps * phase * displacement / seal.model.clearance
+    return min(max(ACCURACY, ABOVE_ROUNDING * rounding), ROUGHLY)
+
+
 def _touch(seal: ShakenSeal, direction, frequency, linear, periods) -> tuple[float | None, str]:
     """The acceleration at which the faces touch in the motion that repeats, over that of linear theory, or None; and
     why, if there is none.  Acceleration grows in steps, ever smaller ones where the film closes; each run begins where
     the one before ended, so that no transient of its own closes it."""
     ratio, step, good, y, work = BEGIN, STEP, 0.0, None, 0
     while ratio <= MOST:
-        end, cost = _run(seal, direction, frequency, (good * linear, ratio * linear), periods, y)
+        try:
+            end, cost = _run(seal, direction, frequency, (good * linear, ratio * linear), periods, y, MOST_WORK - work)
+        except SolverFailure:
+            return None, f"the solver gave up at {ratio:.3g} times the linear acceleration, without a touch"
         work += cost
         if work > MOST_WORK:
-            return None, f"touch was not reached with {MOST_WORK} right-hand sides"
+            return None, f"touch was not reached with {MOST_WORK} steps"
         if end is not None:
             good, y = ratio, end
         elif y is None:
@@ -111,9 +147,9 @@ def _carried(seal: ShakenSeal, model, direction, frequency, acceleration) -> np.
     return y
 
 
-def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y) -> tuple[np.ndarray | None, int]:
+def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y, most) -> tuple[np.ndarray | None, int]:
     """Unknowns (size,) at the end of a run whose last two periods are alike, None if the faces touch in them or the
-    film closes; and the right-hand sides it cost.  It begins with the gap of `y`, the end of a run at the first of two
+    film closes; and the steps it cost, given up beyond `most`.  It begins with the gap of `y`, the end of a run at the first of two
     `accelerations`, or, without, with what linear theory foretells, and is shaken with the second."""
     before, acceleration = accelerations
     model, period = Model(seal.shaken(direction, frequency, acceleration), ROUGHLY), 1.0 / frequency
@@ -125,12 +161,12 @@ def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y) -> t
         run.y0 = run.steady_start() if y is None else y
         end = run.duration
         run.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
-        outcome = solve(run, choose_method(run)[0], ROUGHLY, Recorder())
-        cost += outcome.counts.rhs
-        if outcome.status == Status.COLLAPSED:
+        outcome = solve(run, choose_method(run)[0], ROUGHLY, Bounded(most - cost))
+        cost += outcome.counts.steps
+        if outcome.status == Status.COLLAPSED or cost > most:
             return None, cost
         if outcome.status != Status.OK:
-            raise ValueError(outcome.message)
+            raise SolverFailure(outcome.message)
         last, one_before = run.extrema.records[1:, H]
         y = outcome.y.copy()
         y[run.segment(0).works] = 0.0

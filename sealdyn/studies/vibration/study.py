@@ -274,8 +274,8 @@ def _in_time(answer) -> list[str]:
         )
         ends = dict.fromkeys(f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
         said[-1] += f" The nonlinear film touches {' to '.join(ends)} times the linear acceleration: {more}."
-    untouched = {row["said"] for row in done if row["said"]}
-    said += [f"Tones without a touch in time: {reason}." for reason in sorted(untouched)]
+    untouched = sorted({row["said"] for row in done if row["said"]})
+    said += [f"Tones without a touch in time: {'; '.join(untouched)}."] if untouched else []
     lost = [row["failed"] for row in rows if "failed" in row]
     if lost:
         said.append(f"{len(lost)} tones failed in time, e.g. {lost[0]}")
