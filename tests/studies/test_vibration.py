@@ -208,8 +208,8 @@ STIFF = ("shaft.speed=12000 rpm", "film.clearance=1.5 um", "film.coning=1 mrad",
 
 
 def test_a_run_is_not_more_accurate_than_rounding_knows_the_housing():
-    """Such a film moves by 1e-5 of the housing; asked for 1e-8 of the clearance for 300 periods, a stiff solver followed
-    the rounding of the phase for six minutes."""
+    """Such a film moves by 1e-5 of the housing; asked for 1e-8 of the clearance for 300 periods, a stiff solver
+    followed the rounding of the phase for six minutes."""
     seal = ShakenSeal(scenario("fmr", *STIFF).scene)
     period = 2 * math.pi * 36.0
     rounding = 2.0**-52 * 2 * math.pi * 300 * 10.0 / period**2 / seal.model.clearance

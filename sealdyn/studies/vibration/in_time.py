@@ -149,8 +149,8 @@ def _carried(seal: ShakenSeal, model, direction, frequency, acceleration) -> np.
 
 def _run(seal: ShakenSeal, direction, frequency, accelerations, periods, y, most) -> tuple[np.ndarray | None, int]:
     """Unknowns (size,) at the end of a run whose last two periods are alike, None if the faces touch in them or the
-    film closes; and the steps it cost, given up beyond `most`.  It begins with the gap of `y`, the end of a run at the first of two
-    `accelerations`, or, without, with what linear theory foretells, and is shaken with the second."""
+    film closes; and the steps it cost, given up beyond `most`.  It begins with the gap of `y`, the end of a run at the
+    first of two `accelerations`, or, without, with what linear theory foretells, and is shaken with the second."""
     before, acceleration = accelerations
     model, period = Model(seal.shaken(direction, frequency, acceleration), ROUGHLY), 1.0 / frequency
     if y is not None:
