@@ -162,9 +162,14 @@ def _settled_rows(summary):
         share = low["steady"] / low["value"] * low["of_clearance"]
         yield "h_min", f"settled: {_n(low['steady'], MICRO)} um ({_n(share, 100)} % of the clearance)"
     # Two digits beyond what is accurate, to compare.
-    near = summary["accuracy"] * summary["film"]["clearance"] / low["radius"]
+    near = tilt_resolved(summary)
     digits = min(max(2 + math.floor(math.log10(max(tilt["steady_max"], near) / near)), 3), 6)
-    words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, digits)}, min {_n(tilt['steady_min'], MICRO, digits)}"
+    if 0.0 < tilt["steady_max"] < near:
+        words = f"settled: below {_n(near, MICRO, 3)} urad, less than the accuracy asked resolves"
+    else:
+        words = "settled, urad: max {}, min {}".format(
+            *(_resolved(tilt[name], near, digits) for name in ("steady_max", "steady_min"))
+        )
     if "relative_max" in form:
         words += f"; closed form {_n(form['relative_max'], MICRO, digits)}, {_n(form['relative_min'], MICRO, digits)} "
         # Linear theory knows no friction: a ring on an O-ring lags by more.
@@ -185,9 +190,25 @@ def _whole_run_rows(summary):
                       f"{_n(low['time'])} s, theta = {_n(low['theta'], DEGREES)} deg, r = "
                       f"{_n(low['radius'], MILLI)} mm")  # fmt: skip
     if tilt["max"] is not None:
+        near = tilt_resolved(summary)
+        if 0.0 < tilt["max"] < near:
+            yield second, f"{'misalignment ' if settled else ''}below {_n(near, MICRO, 3)} urad"
+            return
         words = "misalignment, urad" if settled else "urad"
-        yield second, (f"{words}: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
-                       f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
+        most, least, mean = (_resolved(tilt[name], near) for name in ("max", "min", "mean"))
+        yield second, f"{words}: max {most}, min {least}, mean {mean}"
+
+
+def tilt_resolved(summary) -> float:
+    """Relative misalignment (rad) below which a run's accuracy tells nothing; 0 of a run without a thinnest film."""
+    clearance, radius = summary["film"]["clearance"], summary["h_min"]["radius"]
+    return summary["accuracy"] * clearance / radius if clearance and radius else 0.0
+
+
+def _resolved(tilt, near, digits=4) -> str:
+    """A tilt (rad) in urad; what is no more than the accuracy, `near` (rad), as that."""
+    below = tilt is not None and 0.0 < tilt < near
+    return f"below {_n(near, MICRO, 3)}" if below else _n(tilt, MICRO, digits)
 
 
 def _all_is_settled(summary) -> bool:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import sealdyn
+from sealdyn.archive import column, read_info
 from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import overview
 from sealdyn.report.text import lines
@@ -44,6 +45,25 @@ def test_the_settled_motion_is_part_of_the_run(key, value):
     tilt, h_min = summary["relative_misalignment"], summary["h_min"]
     assert tilt["min"] <= tilt["steady_min"] <= tilt["steady_max"] <= tilt["max"]
     assert h_min["value"] <= h_min["steady"]
+
+
+def test_extremes_enclose_the_samples_that_are_kept(tmp_path):
+    """Also those beside which nothing better was worth locating; and the event is the summary's thinnest film."""
+    still = ["stator.misalignment='0.1 urad'", "rotor.runout='1 nrad'", "run.turns=12", "run.accuracy=1e-2"]
+    result = sealdyn.simulate(read_scenario(SEAL, [*still, "film.model='radial'"]), tmp_path / "still.h5")
+    low, tilt = result.summary["h_min"], result.summary["relative_misalignment"]
+    time, films, tilts = (column(result.archive, name) for name in ("time", "h_min", "relative_misalignment"))
+    assert low["value"] <= films.min() and tilt["min"] <= tilts.min() < tilts.max() <= tilt["max"]
+    # The last period is one turn.
+    last = time >= time[-1] * (1 - 1 / 12 + 1e-9)
+    assert low["steady"] <= films[last].min()
+    assert tilt["steady_min"] <= tilts[last].min() < tilts[last].max() <= tilt["steady_max"]
+    (event,) = read_info(result.archive)["events"]
+    assert (event["time"], event["value"]) == (low["time"], low["value"])
+    # A tilt is told where the accuracy resolves it: a hundredth of the clearance over the radius.
+    low["radius"], tilt["steady_max"], tilt["max"] = 1e-2, 9e-6, 9e-6
+    said = [words for name, words in printed(read_scenario(SEAL), result.summary) if "below" in words]
+    assert said[0].startswith("settled: below 10 urad, less than") and said[1] == "misalignment below 10 urad"
 
 
 @pytest.mark.parametrize("film", ["linear", "radial"])
