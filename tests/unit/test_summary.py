@@ -89,6 +89,17 @@ def printed(scenario, summary):
     return [[line[:16].strip(), line[16:]] for line in lines(scenario, whole)[1:]]
 
 
+def test_a_contact_that_lasts_all_the_run_is_told_as_that():
+    scenario = read_scenario(SEAL, ["run.turns=1"])
+    summary = simulate_in_memory(scenario, speeds=True)
+    numbers = ("depth", "impulse", "share_of_closing", "wear_rate", "max_pressure", "max_area_fraction", "gap_error")
+    contact = dict.fromkeys(numbers, 0.1) | {"touches": 1, "grazing": 0, "first": 0.0, "force": {"max": 1.0}}
+    end = summary["end"]["time"]
+    for longest, words in ((end, "in contact all the time, deepest"), (0.9 * end, "1 contact, first at t = 0 s")):
+        rows = dict(printed(scenario, {**summary, "contact": contact | {"longest": longest}}))
+        assert rows["touch"].startswith(words)
+
+
 def test_the_settled_part_comes_first_and_the_transient_by_its_name():
     scenario = read_scenario(SEAL, ["run.turns=12", "run.start='rest'", "run.accuracy=1e-4"])
     summary = simulate_in_memory(scenario, speeds=True)
