@@ -39,6 +39,17 @@ def speed(w: float, digits: int = 5) -> str:
     return f"{plain(w, digits)} rad/s ({plain(w * RPM, digits)} rpm)"
 
 
+def wear(rate: float) -> str:
+    """A depth rate of wear (m/s) in words, in the unit that a run tells it in."""
+    return f"{3.6e9 * rate:.4g} um/h"
+
+
+def wearing(coefficients: dict[str, float]) -> str:
+    """Which faces wear, of the wear coefficients of each by its name."""
+    faces = [face for face, coefficient in coefficients.items() if coefficient]
+    return f"the {faces[0]}" if len(faces) == 1 else "both faces together"
+
+
 def no_film_beyond(held) -> str:
     """Up to which speed a film holds the closing force, of `speeds_held` (rad/s), None where that is every speed."""
     return f" up to {speed(held[1])}, beyond which no film holds the closing force" if held else ""
