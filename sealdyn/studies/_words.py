@@ -3,6 +3,8 @@
 import math
 
 RPM, HERTZ = 30 / math.pi, 0.5 / math.pi
+# Depth rates of wear (m/s) are told in this unit and factor.
+WEAR = ("um/h", 3.6e9)
 # What a SI unit is shown in: units and factors from the size (SI) on at which they begin, the smallest first.
 SHOWN = {
     "m": ((0.0, "um", 1e6), (1e-3, "mm", 1e3)),
@@ -41,7 +43,8 @@ def speed(w: float, digits: int = 5) -> str:
 
 def wear(rate: float) -> str:
     """A depth rate of wear (m/s) in words, in the unit that a run tells it in."""
-    return f"{3.6e9 * rate:.4g} um/h"
+    unit, factor = WEAR
+    return f"{factor * rate:.4g} {unit}"
 
 
 def wearing(coefficients: dict[str, float]) -> str:
