@@ -11,8 +11,9 @@ from ._words import plain
 WIGGLE, OFF = 0.01, 0.03
 # A power law is looked for in so many points at least, over such a ratio of the key and such a one of the output.
 FEW, WIDE, MOVED = 4, 1.5, 1.05
-# From how many times as much on no per cent are told; what changes by less than STILL of itself stays.
-MANY, STILL = 2.0, 1e-9
+# From how many times as much on no per cent are told; what changes by less than STILL of itself hardly does, and what by
+# less than SAME by rounding.
+MANY, STILL, SAME = 2.0, 1e-3, 1e-9
 
 
 def trend(name: str, key: str, unit: str, points, shown=("", 1.0)) -> str:
@@ -24,9 +25,11 @@ def trend(name: str, key: str, unit: str, points, shown=("", 1.0)) -> str:
         return ""
     x, y = (np.array(part, float) for part in zip(*points, strict=True))
     own = f" {shown[0]}" if shown[0] not in ("", "1") else ""
-    reach = np.ptp(y)
-    if reach <= STILL * np.max(np.abs(y)):
+    reach, size = np.ptp(y), np.max(np.abs(y))
+    if reach <= SAME * size:
         return f"{name} stays at {plain(y[0], 4)}{own}."
+    if reach <= STILL * size:
+        return f"{name} hardly changes: {plain(y[0], 4)}{own}, within {100 * reach / size:.2g} %."
     steps = np.diff(y) * np.sign(y[-1] - y[0])
     if -np.sum(steps[steps < 0.0]) > WIGGLE * reach or y[0] == y[-1]:
         ends = [f"{plain(y[k], 4)}{own}, at {x[k]:.4g} {unit or ''}".rstrip() for k in (np.argmin(y), np.argmax(y))]

@@ -17,7 +17,7 @@ from ..simulation.batch import first_ready, refuse_outputs, run_many
 from ..simulation.outputs import common, unit_of
 from ..status import Status
 from ._trends import trend
-from ._words import WEAR, quantity, shown_in
+from ._words import WEAR, plain, quantity, shown_in
 
 WITH_WAVES = True
 # Of radial seals as of face seals.
@@ -27,7 +27,7 @@ LEAST, ROW = 2e-3, 500
 # Changes over a grid of fewer of the accuracy's errors than this may be errors.
 NEAR = 5.0
 # Values of the key in the table.
-COLUMNS = 8
+COLUMNS = 10
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -132,7 +132,7 @@ def tables(answer) -> list:
     names = [*answer["outputs"], *(["status"] if any(_end(row) != Status.OK for row in rows) else [])]
     lines = [_line(answer, name, [rows[k] for k in few]) for name in names]
     unit, part = along["unit"], f" ({len(few)} of {len(rows)})" if len(few) < len(rows) else ""
-    values = [row if isinstance(row, str) else f"{row:.4g}" for row in (rows[k][along["key"]] for k in few)]
+    values = [value if isinstance(value, str) else plain(value, 4) for value in (rows[k][along["key"]] for k in few)]
     heading = f"{along['key']}{f', {unit}' if unit else ''}{part}"
     columns = [(value, str(k)) for k, value in enumerate(values)]
     return [(lines, ((heading, "output"), ("unit", "unit"), *columns))]
