@@ -11,8 +11,8 @@ from ._words import plain
 WIGGLE, OFF = 0.01, 0.03
 # A power law is looked for in so many points at least, over such a ratio of the key and such a one of the output.
 FEW, WIDE, MOVED = 4, 1.5, 1.05
-# From how many times as much on no per cent are told; what changes by less than STILL of itself hardly does, and what by
-# less than SAME by rounding.
+# From how many times as much on no per cent are told.  What changes by less than STILL of itself hardly does, by less
+# than SAME it is rounding.
 MANY, STILL, SAME = 2.0, 1e-3, 1e-9
 
 
