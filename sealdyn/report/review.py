@@ -40,6 +40,9 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
     path.  **Raises** ArchiveError for what is no archive."""
     from jinja2 import Environment, StrictUndefined
 
+    # A place that cannot be is found out before anything is drawn.
+    out_path = Path(out_path)
+    out_path.parent.mkdir(parents=True, exist_ok=True)
     parts, paths = [], [Path(path) for path in archives]
     for path in paths:
         if progress:
@@ -52,8 +55,6 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         title=title or _title(parts, seals), parts=parts, seals=seals if len(seals) > 1 else []
     )
-    out_path = Path(out_path)
-    out_path.parent.mkdir(parents=True, exist_ok=True)
     fresh = out_path.with_name(out_path.name + ".new")
     try:
         fresh.write_text(words, encoding="utf-8")
