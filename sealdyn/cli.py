@@ -588,7 +588,7 @@ def show(
             raise Stop(Status.INVALID, f"--table: found {table!r}; expected nothing, {file} is the archive of a run")
         info = read_info(file)
         if mat is not None:
-            _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])})
+            _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])}, "series of the run")
         elif csv:
             for row in csv_rows(info, lambda name, rows: column(file, name, rows)):
                 print(row)
@@ -610,10 +610,11 @@ def _show_study(file, csv, mat, as_json, table):
     answer = study["answer"]
     if mat is not None:
         # MATLAB has no points in names, and no units.
-        columns = _table_of(file, study, table)
-        _write_mat(mat, {name.split(" [")[0].replace(".", "_"): values for name, values in columns.items()})
+        name, columns = _table_of(file, study, table)
+        plain = {key.split(" [")[0].replace(".", "_"): values for key, values in columns.items()}
+        _write_mat(mat, plain, f"columns of the table {name}, units as --csv has them")
     elif csv or table is not None:
-        for line in csv_lines(_table_of(file, study, table)):
+        for line in csv_lines(_table_of(file, study, table)[1]):
             print(line)
     elif as_json:
         print(json.dumps(answer))
@@ -623,30 +624,31 @@ def _show_study(file, csv, mat, as_json, table):
             print(line)
 
 
-def _table_of(file, study, name) -> dict:
-    """The columns of a table of a study: the one that is asked for, or that there is, or that is meant for others."""
+def _table_of(file, study, name) -> tuple[str, dict]:
+    """Name and columns of a table of a study: the one asked for, or that there is, or that is meant for others."""
     from .archive import answer_tables
 
     tables = answer_tables(study)
     if name is None and isinstance(study["answer"].get("table"), dict):
         name = "table"
     if name is None and len(tables) == 1:
-        return next(iter(tables.values()))
+        return next(iter(tables.items()))
     if name in tables:
-        return tables[name]
+        return name, tables[name]
     found = "nothing" if name is None else f'"{name}"'
     expected = f"one of {', '.join(tables)}{_nearest(name or '', tables)}" if tables else "nothing, it has no table"
     raise Stop(Status.INVALID, f"{file}: --table: found {found}; expected {expected}")
 
 
-def _write_mat(path, columns):
-    """Columns of numbers into a MATLAB file."""
+def _write_mat(path, columns, words):
+    """Columns of numbers into a MATLAB file; `words` say what they are."""
     from scipy.io import savemat
 
     try:
         savemat(path, columns, oned_as="column")
     except OSError as error:
         raise Stop(Status.INVALID, f"{path}: cannot be written ({error.strerror})") from None
+    print(f"{path}: {len(columns)} {words}, {len(next(iter(columns.values())))} rows")
 
 
 @app.command()
@@ -738,9 +740,9 @@ def report(
         with _reads(file):
             _must_be_archive(file)
     _say_compiling(file=sys.stderr)
-    with _reads(files[0]):
+    with _Progress() as bar, _reads(files[0]):
         try:
-            review(files, out, title, _rules_of, study_tables, of_film)
+            review(files, out, title, _rules_of, study_tables, of_film, progress=bar)
         except OSError as error:
             raise _not_written(error, out, "the archives are whole") from None
     print(out)

@@ -49,6 +49,21 @@ def empty_records() -> np.ndarray:
     return records
 
 
+def merged(one, other) -> np.ndarray:
+    """Records (..., RECORD) of two looks at the same windows: of each measure what is further out, its time and
+    place."""
+    further = {
+        (H, H_TAU, H_THETA, H_RADIUS, H_LEG): other[..., H] < one[..., H],
+        (MOST, MOST_TAU, MOST_LEG): other[..., MOST] > one[..., MOST],
+        (LEAST, LEAST_TAU, LEAST_LEG): other[..., LEAST] < one[..., LEAST],
+    }
+    found = one.copy()
+    for slots, better in further.items():
+        for slot in slots:
+            found[..., slot] = np.where(better, other[..., slot], one[..., slot])
+    return found
+
+
 def scan_pace(face, imposed: float, fastest: float, spins) -> float:
     """Pace (rad/s) of the scan: of the `imposed` motion (rad/s), or of waves that pass each other or the tilt, if
     faster.
@@ -329,15 +344,16 @@ def watched_level(model) -> float:
 
 class ExtremaTracker:
     """An observer of the gap: `records` (WINDOWS, RECORD) of extremes in the `windows` [[from, to], ...] (s): the whole
-    run of `duration` (s), its last forcing period and the one before.  `reach` (m,) bounds the film of each step last
-    seen from below (m).
+    run of `duration` (s), its last forcing period and the one before; `seen`, those of the samples that are kept.
+    `reach` (m,) bounds the film of each step last seen from below (m).
 
     A film that reaches its floor ends the run, with a sentence that knows whether it began on the steady response
     (`steady`).
     """
 
     def __init__(self, model, duration: float):
-        self.model, self.records, self.steady = model, empty_records(), False
+        self.model, self.steady = model, False
+        self.records, self.seen = empty_records(), empty_records()
         self.windows = [[0.0, duration], [duration, duration], [duration, duration]]
         self.segment = self.reach = None
 
@@ -360,13 +376,40 @@ class ExtremaTracker:
         )  # fmt: skip
         return Stop(fallen, self._cause(), self._collapse_message(fallen)) if fallen >= 0 else None
 
+    def see(self, at):
+        """Take in samples that are kept, `Samples` of dynamics/signals.py: beside an improvement that is not worth
+        locating they may lie beyond the records."""
+        index, times, low, tilt = at.segment.index, at.segment.time + at.taus, at.low, np.abs(at.tilt)
+        for window, (begin, end) in enumerate(self.windows):
+            inside = np.flatnonzero((begin <= times) & (times <= end))
+            if begin == end or not len(inside):
+                continue
+            h = inside[low[inside, 0].argmin()]
+            most, least = inside[tilt[inside].argmax()], inside[tilt[inside].argmin()]
+            one = empty_records()[0]
+            one[[H, H_TAU, H_LEG]] = low[h, 0], at.taus[h], index
+            one[[H_THETA, H_RADIUS]] = low[h, 1:]
+            one[[MOST, MOST_TAU, MOST_LEG]] = tilt[most], at.taus[most], index
+            one[[LEAST, LEAST_TAU, LEAST_LEG]] = tilt[least], at.taus[least], index
+            self.seen[window] = merged(self.seen[window], one)
+
+    def extremes(self) -> np.ndarray:
+        """The records (WINDOWS, RECORD), such that each window encloses the samples that are kept of it, and the whole
+        run its last periods."""
+        found = merged(self.records[:], self.seen)
+        for part in found[1:]:
+            found[0] = merged(found[0], part)
+        return found
+
     def state(self) -> np.ndarray:
-        """What a continued run needs: the records, flat (WINDOWS RECORD,)."""
-        return self.records.ravel()
+        """What a continued run needs: the records and those of the samples, flat (2 WINDOWS RECORD,)."""
+        return np.concatenate([self.records.ravel(), self.seen.ravel()])
 
     def restore(self, state):
-        """Go on from `state`."""
-        self.records[:] = np.array(state, dtype=float).reshape(self.records.shape)
+        """Go on from `state`; that of earlier versions knows no samples."""
+        kept = np.array(state, dtype=float).reshape(-1, *self.records.shape)
+        self.records[:] = kept[0]
+        self.seen[:] = kept[1] if len(kept) > 1 else empty_records()
 
     def _cause(self) -> Cause:
         return Cause.FILM_COLLAPSED if self.model.contact is None else Cause.ASPERITIES_CRUSHED

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
 from .radial import is_radial
-from .text import speed_unit
+from .text import speed_unit, tilt_resolved
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -29,6 +29,9 @@ FIRST = (
     ("stability.critical_speed", "critical speed, rad/s", 1.0),
     ("contact_margin", "margin to contact", 1.0),
     ("contact.touches", "contacts", 1.0),
+    ("contact.share_of_closing", "contact, % of closing", 100.0),
+    ("contact.force.mean", "contact force, N", 1.0),
+    ("contact.force.max", "contact force max, N", 1.0),
     ("contact.wear_rate", "wear rate, um/h", 3.6e9),
     ("settled.contact_share", "on the shaft, %", 100.0),
     ("whole.largest_gap", "largest gap, um", 1e6),
@@ -43,14 +46,18 @@ FIRST = (
 MANY = 4.0
 # Leakage (m^3/s) from which it is told in l/min, as that of gases; a speed where people wrote it so.
 MUCH, IN_LITRES, IN_RPM = 1e-5, ("leakage, l/min", 6e4), ("critical speed, rpm", 30.0 / math.pi)
-# Series of which the largest difference is told: of face seals, of radial seals.
-SERIES = ("h_min", "relative_misalignment", "largest_gap", "load")
+# Series of which the largest difference is told: of face seals, of radial seals; the unit people read them in.
+SERIES = {"h_min": ("um", 1e6), "relative_misalignment": ("urad", 1e6), "largest_gap": ("um", 1e6), "load": ("N", 1.0)}
+# What the accuracy of a run is the error of: films, angles between the faces.
+FILMS, TILTS = ("h_min", "h_min.value", "h_min.steady"), "relative_misalignment"
+UNRESOLVED = "no change that the accuracy resolves"
 
 
 def comparison(one, other) -> dict:
     """`scene` and `summary`, lists of {key, values: [one, other], change (relative, None of what is no number)} of what
     differs, and `series`, {name, unit, most} with the largest difference (SI) at the instants that both runs have;
-    `speeds` the unit in which people read them.
+    `speeds` the unit in which people read them.  Films and tilts have `resolved`, below what size (SI) the accuracy of
+    each run tells nothing.
     **Raises** ArchiveError for what is no archive of a run."""
     infos = [_read(path) for path in (one, other)]
     if is_radial(infos[0]) != is_radial(infos[1]):
@@ -62,8 +69,12 @@ def comparison(one, other) -> dict:
         "status": [str(info["status"]) for info in infos],
         "speeds": speed_unit(infos[1])[0],
         "scene": _different(*scenes),
-        "summary": [row for row in _different(*summaries) if not row["key"].startswith(OWN)],
-        "series": list(_series(one, other, infos)),
+        "summary": [
+            {**row, **_resolution(row["key"], infos)}
+            for row in _different(*summaries)
+            if not row["key"].startswith(OWN)
+        ],
+        "series": [{**row, **_resolution(row["name"], infos)} for row in _series(one, other, infos)],
     }
 
 
@@ -83,13 +94,47 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
             heading, factor = IN_RPM
         if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
             heading, factor = IN_LITRES
-        words = " -> ".join("-" if value is None else f"{factor * value:.4g}" for value in row["values"])
-        out.append(f"  {heading:<28}{words}{_change_words(row['change'])}")
+        words = " -> ".join(_told(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True))
+        out.append(f"  {heading:<28}{words}{_change_of(row)}")
     if not shown:
         out.append("  results       the same")
     for row in found["series"]:
-        out.append(f"  at the same instants {row['name']} differs by up to {row['most']:.3g} {row['unit']}")
+        unit, factor = SERIES.get(row["name"], (row["unit"], 1.0))
+        most = f"differs by up to {factor * row['most']:.3g} {unit}"
+        if 0.0 < row["most"] <= sum(_nears(row)):
+            most = f"has {UNRESOLVED} ({factor * sum(_nears(row)):.3g} {unit})"
+        out.append(f"  at the same instants {row['name']} {most}")
     return out
+
+
+def _resolution(key, infos) -> dict:
+    """`resolved` (SI) of a film or a tilt at this key, in each run."""
+    summaries = [info["summary"] for info in infos]
+    if key in FILMS:
+        return {"resolved": [summary["accuracy"] * summary["film"]["clearance"] for summary in summaries]}
+    if key.startswith(TILTS) and not key.endswith("_said"):
+        return {"resolved": [tilt_resolved(summary) for summary in summaries]}
+    return {}
+
+
+def _nears(row) -> list[float]:
+    """The same of a row, 0 of what the accuracy is no error of."""
+    return row.get("resolved", [0.0, 0.0])
+
+
+def _told(value, factor, near) -> str:
+    """A number (SI), or that it is below what is resolved."""
+    if value is None:
+        return "-"
+    return f"below {factor * near:.3g}" if 0.0 < abs(value) < near else f"{factor * value:.4g}"
+
+
+def _change_of(row) -> str:
+    """What has become of a number, in words."""
+    one, other = row["values"]
+    if None not in (one, other) and abs(other - one) <= sum(_nears(row)):
+        return f"  ({UNRESOLVED})"
+    return _change_words(row["change"])
 
 
 def _read(path) -> dict:

@@ -31,23 +31,30 @@ LARGEST, WIDTH, LONGEST = 12.5, 1030.0, 230
 POWER = re.compile(r"\b\d(?:\.\d+)?e\+0[1-6]\b")
 
 
-def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None) -> Path:
+def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None, progress=None) -> Path:
     """Write the page of some archives (paths) of runs and studies.
 
     `rules(path, info)` gives the rows of the design rules of a run (`findings` of analysis/design_rules.py),
     `tables(name, answer)` those of a study (`study_tables` of studies), `validation(film)` the sources that a film was
-    held against (`of_film` of analysis/validation.py).  Returns the path.  **Raises** ArchiveError for
-    what is no archive."""
+    held against (`of_film` of analysis/validation.py); `progress(done, archives, words)` is told of each.  Returns the
+    path.  **Raises** ArchiveError for what is no archive."""
     from jinja2 import Environment, StrictUndefined
 
-    parts = [_study(path, tables) if is_study(path) else _run(path, rules, validation) for path in map(Path, archives)]
+    # A place that cannot be is found out before anything is drawn.
+    out_path = Path(out_path)
+    out_path.parent.mkdir(parents=True, exist_ok=True)
+    parts, paths = [], [Path(path) for path in archives]
+    for path in paths:
+        if progress:
+            progress(len(parts), len(paths), f"{path.name} ({len(parts) + 1} of {len(paths)})")
+        parts.append(_study(path, tables) if is_study(path) else _run(path, rules, validation))
+    if progress:
+        progress(len(paths), len(paths), "writing the page")
     seals = _seals(parts)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         title=title or _title(parts, seals), parts=parts, seals=seals if len(seals) > 1 else []
     )
-    out_path = Path(out_path)
-    out_path.parent.mkdir(parents=True, exist_ok=True)
     fresh = out_path.with_name(out_path.name + ".new")
     try:
         fresh.write_text(words, encoding="utf-8")

@@ -78,7 +78,7 @@ def run_rows(summary, speeds):
     yield "closing", (f"{_n(closing['force'])} N (balance ratio {_n(closing['balance_ratio'])}, spring "
                       f"{_n(closing['spring_force'])} N, duty {_n(closing['duty'], 1e-5)} bar)")  # fmt: skip
     if summary["contact"]:
-        yield from _contact_rows(summary["contact"])
+        yield from _contact_rows(summary["contact"], summary["end"]["time"])
     if summary["secondary_seal"]:
         yield from _seal_rows(summary["secondary_seal"])
     if film["max_cavitated_fraction"]:
@@ -121,15 +121,19 @@ def _friction(friction, area) -> str:
     return f"{words}{flux}" + ("" if rise is None else f": more than the leakage can carry (over {CARRIED:.0f} K)")
 
 
-def _contact_rows(contact):
+def _contact_rows(contact, end):
+    """What the faces did where they touched, in a run up to `end` (s)."""
     grazing = f"; {contact['grazing']} grazing within {_n(contact['gap_error'], MICRO)} um, undecided"
     grazing = grazing if contact["grazing"] else ""
     if not contact["touches"]:
         yield "touch", f"never (asperities meet at {_n(contact['touch_at'], MICRO)} um){grazing}"
         return
     several = "s" if contact["touches"] > 1 else ""
-    yield "touch", (f"{contact['touches']} contact{several}, first at t = {_n(contact['first'])} s, deepest "
-                    f"{_n(contact['depth'], MICRO)} um, longest {_n(contact['longest'])} s, impulse "
+    when, longest = f"{contact['touches']} contact{several}, first at t = {_n(contact['first'])} s", contact["longest"]
+    lasts = f"longest {_n(longest)} s, "
+    if contact["first"] == 0.0 and longest >= end:
+        when, lasts = "in contact all the time", ""
+    yield "touch", (f"{when}, deepest {_n(contact['depth'], MICRO)} um, {lasts}impulse "
                     f"{_n(contact['impulse'])} N s{grazing}")  # fmt: skip
     # Archives of earlier versions do not hold the share of the load, nor whether the faces wear.
     load = contact.get("share_of_load")
@@ -162,9 +166,14 @@ def _settled_rows(summary):
         share = low["steady"] / low["value"] * low["of_clearance"]
         yield "h_min", f"settled: {_n(low['steady'], MICRO)} um ({_n(share, 100)} % of the clearance)"
     # Two digits beyond what is accurate, to compare.
-    near = summary["accuracy"] * summary["film"]["clearance"] / low["radius"]
+    near = tilt_resolved(summary)
     digits = min(max(2 + math.floor(math.log10(max(tilt["steady_max"], near) / near)), 3), 6)
-    words = f"settled, urad: max {_n(tilt['steady_max'], MICRO, digits)}, min {_n(tilt['steady_min'], MICRO, digits)}"
+    if 0.0 < tilt["steady_max"] < near:
+        words = f"settled: below {_n(near, MICRO, 3)} urad, less than the accuracy asked resolves"
+    else:
+        words = "settled, urad: max {}, min {}".format(
+            *(_resolved(tilt[name], near, digits) for name in ("steady_max", "steady_min"))
+        )
     if "relative_max" in form:
         words += f"; closed form {_n(form['relative_max'], MICRO, digits)}, {_n(form['relative_min'], MICRO, digits)} "
         # Linear theory knows no friction: a ring on an O-ring lags by more.
@@ -185,9 +194,25 @@ def _whole_run_rows(summary):
                       f"{_n(low['time'])} s, theta = {_n(low['theta'], DEGREES)} deg, r = "
                       f"{_n(low['radius'], MILLI)} mm")  # fmt: skip
     if tilt["max"] is not None:
+        near = tilt_resolved(summary)
+        if 0.0 < tilt["max"] < near:
+            yield second, f"{'misalignment ' if settled else ''}below {_n(near, MICRO, 3)} urad"
+            return
         words = "misalignment, urad" if settled else "urad"
-        yield second, (f"{words}: max {_n(tilt['max'], MICRO)}, min {_n(tilt['min'], MICRO)}, mean "
-                       f"{_n(tilt['mean'], MICRO)}")  # fmt: skip
+        most, least, mean = (_resolved(tilt[name], near) for name in ("max", "min", "mean"))
+        yield second, f"{words}: max {most}, min {least}, mean {mean}"
+
+
+def tilt_resolved(summary) -> float:
+    """Relative misalignment (rad) below which a run's accuracy tells nothing; 0 of a run without a thinnest film."""
+    clearance, radius = summary["film"]["clearance"], summary["h_min"]["radius"]
+    return summary["accuracy"] * clearance / radius if clearance and radius else 0.0
+
+
+def _resolved(tilt, near, digits=4) -> str:
+    """A tilt (rad) in urad; what is no more than the accuracy, `near` (rad), as that."""
+    below = tilt is not None and 0.0 < tilt < near
+    return f"below {_n(near, MICRO, 3)}" if below else _n(tilt, MICRO, digits)
 
 
 def _all_is_settled(summary) -> bool:
@@ -384,12 +409,21 @@ def archive_lines(path, info: dict) -> list[str]:
         low = summary["h_min"]
         rows.append(("h_min", f"{_n(low['value'], MICRO)} um at t = {_n(low['time'])} s"))
         rows.append(("stability", _stability(summary["stability"], *speed_unit(info))))
-    rows += [("event", f"{event['kind']} at t = {_n(event['time'])} s") for event in info.get("events", [])]
+    rows += [("event", _event(event)) for event in info.get("events", [])]
     rows.append(("series", ", ".join(f"{n} [{s.units}]" for n, s in info["series"].items())))
     if info["fields"]:
         over = " x ".join(f"{count} {name}" for name, count in info["grid"].items())
         rows.append(("fields", ", ".join(f"{n} [{s.units}]" for n, s in info["fields"].items()) + f": {over}"))
     return _table(path, info["status"], info.get("message"), rows)
+
+
+def _event(event) -> str:
+    """What happened and when; of a contact also how long."""
+    when = f"{event['kind']} at t = {_n(event['time'])} s"
+    if event["kind"] != "contact" or event.get("lift_off") is None:
+        return when
+    lasts = event["lift_off"] - event["time"]
+    return f"{when}, to the end" if math.isnan(lasts) else f"{when}, for {_n(lasts)} s"
 
 
 def csv_rows(info: dict, column, block: int = 4096):

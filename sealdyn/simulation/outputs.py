@@ -5,15 +5,23 @@ from ..scene.radial import RadialScene
 from .summary import SPEEDS, plain
 
 UNITS = {
-    "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "relative_misalignment": "rad",
-    "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h", "friction.torque": "N m",
-    "friction.power": "W", "friction.max_power": "W", "stability.critical_speed": "rad/s", "film.clearance": "m",
-    "film.leakage": "m^3/s", "film.friction_power": "W", "stability.growth_rate": "1/s", "film.axial_stiffness": "N/m",
+    "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "h_min.steady": "m",
+    "relative_misalignment": "rad", "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h",
+    "leakage.mean_kg_per_h": "kg/h", "leakage.conditions.temperature": "K", "leakage.conditions.pressure": "Pa",
+    "friction.torque": "N m", "friction.power": "W", "friction.max_power": "W", "friction.temperature_rise": "K",
+    "film.clearance": "m", "film.leakage": "m^3/s", "film.friction_power": "W", "film.axial_stiffness": "N/m",
     "film.tilt_stiffness": "N m/rad", "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad",
-    "closing.force": "N", "contact.first_lift": "s", "contact.energy_lost": "J", "follower.mass": "kg",
-    "follower.stiffness": "N/m", "follower.damping": "N s/m", "follower.preload": "N", "follower.friction": "N",
-    "follower.arc": "m", "closed_form.speed": "rad/s", "closed_form.needed_preload": "N",
-    "closed_form.largest_eccentricity": "m",
+    "film.cross_stiffness": "N m/rad", "closing.force": "N", "closing.spring_force": "N", "closing.duty": "Pa",
+    "closing.face_area": "m^2", "contact.gap_error": "m", "contact.touch_at": "m", "contact.first": "s",
+    "contact.lowest": "m", "contact.depth": "m", "contact.longest": "s", "contact.impulse": "N s",
+    "contact.force": "N", "contact.torque": "N m", "contact.max_pressure": "Pa", "contact.wear_rate": "m/s",
+    "contact.first_lift": "s", "contact.energy_lost": "J", "stability.critical_speed": "rad/s",
+    "stability.growth_rate": "1/s", "stability.growth_rate_uncertainty": "1/s", "stability.speed": "rad/s",
+    "stability.stator_speed": "rad/s", "closed_form.relative_max": "rad", "closed_form.relative_min": "rad",
+    "closed_form.axial_closing": "m", "closed_form.formula_max": "rad", "closed_form.formula_min": "rad",
+    "closed_form.speed": "rad/s", "closed_form.needed_preload": "N", "closed_form.largest_eccentricity": "m",
+    "end.time": "s", "end.asked": "s", "follower.mass": "kg", "follower.stiffness": "N/m", "follower.damping": "N s/m",
+    "follower.preload": "N", "follower.friction": "N", "follower.arc": "m",
 }  # fmt: skip
 # Of the whole run of a radial seal, and of its second half.
 UNITS |= {
@@ -95,5 +103,5 @@ def with_speeds(keys) -> bool:
 
 
 def unit_of(key: str) -> str:
-    """SI unit of the value at a dotted key; empty without one."""
-    return UNITS.get(key) or UNITS.get(key.partition(".")[0]) or ""
+    """SI unit of the value at a dotted key, or of all below the one above it; empty without one."""
+    return UNITS.get(key) or UNITS.get(key.rpartition(".")[0]) or ""

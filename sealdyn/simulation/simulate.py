@@ -352,7 +352,7 @@ def _meta(scenario, method) -> dict:
 
 
 def _events(run, outcome) -> list[dict]:
-    record = run.extrema.records[0]
+    record = run.extrema.extremes()[0]
     events = []
     if math.isfinite(record[H]):
         at = run.end_time(int(record[H_LEG]), record[H_TAU])

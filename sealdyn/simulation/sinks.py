@@ -97,6 +97,7 @@ class ArchiveSink:
         """Signals at segment times (m,) (s) from displacements and rates (m, n) and the film's unknowns, kept until the
         next flush."""
         at = samples(segment, taus, q, q_rate, x)
+        self.run.extrema.see(at)
         columns = series_of(at)
         self.tally.add(columns)
         if fields_of(segment.model):

@@ -53,7 +53,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
-    whole = cache(lambda: _whole(run.extrema.records))
+    whole = cache(lambda: run.extrema.extremes()[0])
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
     return {
@@ -110,16 +110,6 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     }
 
 
-def _whole(records) -> np.ndarray:
-    """The record of the whole run.  In each window an improvement that is small beside the accuracy is not located, so
-    what the last periods have found may lie beyond that of the run, of which they are a part."""
-    whole = records[0].copy()
-    thinnest = records[np.argmin(records[:, H])]
-    whole[[H, H_TAU, H_THETA, H_RADIUS, H_LEG]] = thinnest[[H, H_TAU, H_THETA, H_RADIUS, H_LEG]]
-    whole[MOST], whole[LEAST] = records[:, MOST].max(), records[:, LEAST].min()
-    return whole
-
-
 def _state(run, outcome) -> dict:
     """Displacements and rates by name, at the end."""
     places = _state_places(run.model.unknowns)
@@ -162,7 +152,7 @@ def _steady(run, outcome, period, begun_well):
 
     if outcome.status not in (Status.OK, Status.INACCURATE):
         return none(f"no steady state: the run {outcome.status}")
-    last, before = run.extrema.records[1], run.extrema.records[2]
+    _, last, before = run.extrema.extremes()
     if not math.isfinite(last[MOST]) or not math.isfinite(before[MOST]):
         if period is None:
             return none("no steady state: forcing frequencies are incommensurate or change with time")
@@ -190,7 +180,7 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
     leakage = _leakage(model, tally)["mean"]
     heat = _temperature_rise(model, tally), tally.mean("friction_power") / model.closing.area
     wear = 0.0 if model.contact is None else tally.mean("wear_rate")
-    low = _whole(run.extrema.records)[H]
+    low = run.extrema.extremes()[0, H]
     lost = missing_energy(outcome.energy_residual, model.accuracy)
     energy = [Caution(Concern.ENERGY, lost)] if lost else []
     found = cautions(scenario, run, outcome, leakage, heat, low, wear)

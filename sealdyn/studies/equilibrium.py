@@ -25,7 +25,7 @@ from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..units import Length
-from ._words import shown_in
+from ._words import shown_in, wear, wearing
 
 WITH_WAVES = True
 # Relative error of the film's integrals.
@@ -119,7 +119,7 @@ def run(scenario, settings, tools) -> dict:
             "stiffness": stiffness.tolist(),
         },
     }
-    return answer | {"verdict": _verdict(answer)}
+    return answer | {"verdict": _verdict(answer, wearing(_wears(scene)))}
 
 
 def kept_waves(scene):
@@ -174,17 +174,21 @@ def _wear(scene, s, radius) -> dict:
     day.
     **Valid** travelling waves that pass every place as a whole number of them, slowly against the shaft, and while what
     is worn is small against the roughness; the highest at the mean `radius` (m)."""
-    k = [getattr(scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES] if scene.contact else []
-    if not any(k):
+    wears = _wears(scene)
+    if not any(wears.values()):
         return {}
-    found = {"wear_rate": float(s[WEAR])}
-    own = k[RING_NAMES.index("stator")]
+    found, own = {"wear_rate": float(s[WEAR])}, wears["stator"]
     if scene.stator.waviness and not scene.rotor.waviness and own:
         found["stator_wear"] = {
             "standing": float(own * s[CONTACT_PRESSURE] * abs(s[SPIN_DIFFERENCE]) * radius),
-            "travelling": float(own / sum(k) * s[WEAR]),
+            "travelling": float(own / sum(wears.values()) * s[WEAR]),
         }
     return found
+
+
+def _wears(scene) -> dict[str, float]:
+    """Wear coefficient (1/Pa) of each face by its name; none without contact."""
+    return {face: getattr(scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES} if scene.contact else {}
 
 
 def _held(root, excess, friction) -> list:
@@ -239,7 +243,8 @@ def tables(answer) -> list:
     return [(answer["roots"], columns)]
 
 
-def _verdict(answer) -> list[str]:
+def _verdict(answer, faces) -> list[str]:
+    """In words; `faces` that wear."""
     (low, high), roots, support = answer["range"], answer["roots"], answer["support_stiffness"]
     stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
     opening = "Film with asperities" if any(answer["curve"]["contact_force"]) else "Film"
@@ -261,9 +266,9 @@ def _verdict(answer) -> list[str]:
             words += "" if share is None else f", {100 * (1 - share):.4g} % {ABOVE}; the film carries the rest"
             said.append(f"{words}.")
         if "wear_rate" in root:
-            said.append(f"There both faces wear off {_rate(root['wear_rate'])} on average.")
+            said.append(f"There {wear(root['wear_rate'])} wear off {faces} on average.")
         if "stator_wear" in root:
-            standing, even = (_rate(root["stator_wear"][key]) for key in ("standing", "travelling"))
+            standing, even = (wear(root["stator_wear"][key]) for key in ("standing", "travelling"))
             said.append(f"The stator's crests wear {standing} while its waves stand; if these travel slowly around the "
                         f"ring, by whole waves, it wears {even} everywhere: evenly.")  # fmt: skip
         if "held" in root:
@@ -277,11 +282,6 @@ def _verdict(answer) -> list[str]:
     elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
         said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
     return said
-
-
-def _rate(rate) -> str:
-    """A depth rate (m/s) in words."""
-    return f"{3.6e12 * rate:.4g} nm/h"
 
 
 def _um(clearance) -> str:

@@ -70,3 +70,25 @@ def test_numbers_of_a_scene_have_units_and_large_changes_no_per_cent(folder):
         assert words in comparison_lines(found | {"summary": [row | {"change": change}]})[-1]
     row = {"key": "stability.critical_speed", "values": [100.0, 200.0], "change": 1.0}
     assert "critical speed, rpm         954.9 -> 1910" in comparison_lines(found | {"summary": [row]})[-1]
+
+
+def test_what_the_accuracy_does_not_resolve_is_no_change():
+    """Noise below it has no per cent, films and tilts at the same instants neither."""
+    found = {"names": ["a", "b"], "status": ["ok", "ok"], "scene": []}
+    tilt = {"key": "relative_misalignment.max", "values": [3.2e-10, 3.5e-10], "change": 0.1, "resolved": [1e-9, 1e-9]}
+    film = {"key": "h_min.value", "values": [1e-6, 1.1e-6], "change": 0.1, "resolved": [1e-9, 1e-9]}
+    series = [{"name": "h_min", "unit": "m", "most": 1e-7, "resolved": [1e-9, 1e-9]},
+              {"name": "relative_misalignment", "unit": "rad", "most": 4e-11, "resolved": [1e-9, 1e-9]}]  # fmt: skip
+    thin, small, *same = comparison_lines(found | {"summary": [tilt, film], "series": series})[-4:]
+    assert thin.endswith("1 -> 1.1  (+10 %)")
+    assert small.endswith("below 0.001 -> below 0.001  (no change that the accuracy resolves)")
+    assert same[0].endswith("h_min differs by up to 0.1 um")
+    assert same[1].endswith("relative_misalignment has no change that the accuracy resolves (0.002 urad)")
+
+
+def test_the_resolution_is_that_of_each_run(folder):
+    found = sealdyn("compare", "a.h5", "b.h5", "--json", cwd=folder).found
+    summary = read_info(folder / "a.h5")["summary"]
+    (film,) = [row for row in found["summary"] if row["key"] == "h_min.value"]
+    assert film["resolved"][0] == summary["accuracy"] * summary["film"]["clearance"]
+    assert not any("resolved" in row for row in found["summary"] if row["key"] == "friction.power")

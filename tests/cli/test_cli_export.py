@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 
 import numpy as np
 import pytest
@@ -35,7 +36,8 @@ def test_coefficients_over_speed_and_frequency(tmp_path):
 
 def test_a_run_for_matlab(tmp_path):
     sealdyn("run", REFERENCE, "--set", "run.turns=2", "--no-plot", "--out", "x.h5", cwd=tmp_path)
-    assert sealdyn("show", "x.h5", "--mat", "x.mat", cwd=tmp_path).code == 0
+    done = sealdyn("show", "x.h5", "--mat", "x.mat", cwd=tmp_path)
+    assert done.code == 0 and re.fullmatch(r"x\.mat: \d+ series of the run, \d+ rows", done.out.strip())
     found = loadmat(tmp_path / "x.mat")
     for name in ("time", "h_min", "mass_flow_outer"):
         assert np.array_equal(found[name][:, 0], column(tmp_path / "x.h5", name))
@@ -54,5 +56,6 @@ def test_what_cannot_be_exported_says_so(tmp_path):
         done = sealdyn("show", *words, cwd=tmp_path)
         assert done.code == 2 and hint in done.err and len(done.err.splitlines()) == 1
     assert not (tmp_path / "e.mat").exists()
-    assert sealdyn("show", "e.h5", "--table", "curve", "--mat", "e.mat", cwd=tmp_path).code == 0
+    done = sealdyn("show", "e.h5", "--table", "curve", "--mat", "e.mat", cwd=tmp_path)
+    assert done.code == 0 and "columns of the table curve" in done.out and done.out.endswith("241 rows\n")
     assert loadmat(tmp_path / "e.mat")["opening_force"].shape == (241, 1)

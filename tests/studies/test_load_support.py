@@ -38,6 +38,14 @@ def test_plane_faces_carry_what_the_pressure_does(tmp_path):
     assert load_support.ABOVE in answer["verdict"][0]
 
 
+def test_a_course_of_a_tenth_is_no_constant():
+    axes = [{"key": "closing.spring_force", "values": [40.0, 80.0], "unit": "N"}]
+    shares = [{"load_support": 0.6114, "leakage": 2.171e-10}, {"load_support": 0.564, "leakage": 2.17e-10}]
+    rows = [{"closing.spring_force": value, **row} for value, row in zip((40.0, 80.0), shares, strict=True)]
+    said = load_support.sentences({"axes": axes, "rows": rows})
+    assert said[0].endswith("61.14 % at 40 N, 56.4 % at 80 N.") and said[1].endswith("(nearly constant).")
+
+
 def test_waves_over_rough_faces(tmp_path):
     """Chapter 3: rough faces leave the waves no load, cavities and film support grow as they get smoother.  Its
     roughness is three rms heights of one face: 0.64 um are 0.3017 um here, 0.3 um 0.1414 um, 0.75 um 0.3536 um."""

@@ -1,11 +1,8 @@
 """The figure of a wear study: what is extrapolated far away, curves that lie on each other, changes that are none."""
 
-import numpy as np
 import pytest
 from drawn import panel, study
 from test_charts_untuned import LIFTED, must_be_legible, said, ticks, worn
-
-from sealdyn.studies.wear.study import rate_in_words
 
 HOURS = [0.0, 3600.0, 7200.0]
 
@@ -55,8 +52,3 @@ def test_what_a_wear_does_not_hold_for_is_in_its_figure(tmp_path):
     figure = study(tmp_path, "wear", touching(verdict=["Run in.", "Worn off.", "Mind: fewer than 4 radii touch."]))
     must_be_legible(figure)
     assert any("Mind: fewer than 4 radii touch." in words for words in said(figure))
-
-
-def test_rates_are_told_in_fitting_units():
-    found = [rate_in_words(rate / 3600.0) for rate in np.array([3.18e-7, 1.82e-6])]
-    assert found == ["318 nm/h", "1.82 um/h"]

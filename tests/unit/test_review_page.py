@@ -58,7 +58,9 @@ def test_aligned_faces_have_no_figure_of_orbits(tmp_path, runout, orbits):
 def test_a_page_says_the_answer_of_a_study_once(tmp_path):
     scenario = sealdyn.example("fms_reference")
     answer = sealdyn.run_study("equilibrium", scenario, str(tmp_path / "s.h5"), flags={"points": 5}, workers=1)
-    words = words_of(review([tmp_path / "s.h5"], tmp_path / "page.html"))
+    seen = []
+    words = words_of(review([tmp_path / "s.h5"], tmp_path / "page.html", progress=lambda *now: seen.append(now)))
+    assert seen == [(0, 1, "s.h5 (1 of 1)"), (1, 1, "writing the page")]
     assert words.count(told(answer["verdict"][0])) == 1
 
 

@@ -1,11 +1,12 @@
 """A study's printed answer: verdict, and tables whose numbers are those of the answer."""
 
 import importlib
+import math
 import re
 
 import pytest
 
-from sealdyn.report.text import MOST_ROWS, question_of, study_lines
+from sealdyn.report.text import MOST_ROWS, archive_lines, question_of, study_lines
 from sealdyn.studies import study_names
 from sealdyn.studies._runner import study_module
 
@@ -59,3 +60,12 @@ def test_every_study_has_a_chart(name):
 )
 def test_a_comment_without_a_question_gets_no_mark(comment, question):
     assert question_of(comment) == question
+
+
+def test_a_contact_is_listed_with_how_long_it_lasts():
+    touches = [(0.0, 0.25), (0.5, math.nan)]
+    events = [{"kind": "contact", "time": touched, "lift_off": lifted} for touched, lifted in touches]
+    events.append({"kind": "film_minimum", "time": 0.75})
+    info = {"created": "", "rows": 1, "status": "ok", "message": "", "events": events, "series": {}, "fields": {}}
+    said = [line.split(maxsplit=1)[1] for line in archive_lines("a.h5", info) if line.strip().startswith("event")]
+    assert said == ["contact at t = 0 s, for 0.25 s", "contact at t = 0.5 s, to the end", "film_minimum at t = 0.75 s"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import sealdyn
+from sealdyn.archive import column, read_info
 from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import overview
 from sealdyn.report.text import lines
@@ -46,6 +47,25 @@ def test_the_settled_motion_is_part_of_the_run(key, value):
     assert h_min["value"] <= h_min["steady"]
 
 
+def test_extremes_enclose_the_samples_that_are_kept(tmp_path):
+    """Also those beside which nothing better was worth locating; and the event is the summary's thinnest film."""
+    still = ["stator.misalignment='0.1 urad'", "rotor.runout='1 nrad'", "run.turns=12", "run.accuracy=1e-2"]
+    result = sealdyn.simulate(read_scenario(SEAL, [*still, "film.model='radial'"]), tmp_path / "still.h5")
+    low, tilt = result.summary["h_min"], result.summary["relative_misalignment"]
+    time, films, tilts = (column(result.archive, name) for name in ("time", "h_min", "relative_misalignment"))
+    assert low["value"] <= films.min() and tilt["min"] <= tilts.min() < tilts.max() <= tilt["max"]
+    # The last period is one turn.
+    last = time >= time[-1] * (1 - 1 / 12 + 1e-9)
+    assert low["steady"] <= films[last].min()
+    assert tilt["steady_min"] <= tilts[last].min() < tilts[last].max() <= tilt["steady_max"]
+    (event,) = read_info(result.archive)["events"]
+    assert (event["time"], event["value"]) == (low["time"], low["value"])
+    # A tilt is told where the accuracy resolves it: a hundredth of the clearance over the radius.
+    low["radius"], tilt["steady_max"], tilt["max"] = 1e-2, 9e-6, 9e-6
+    said = [words for name, words in printed(read_scenario(SEAL), result.summary) if "below" in words]
+    assert said[0].startswith("settled: below 10 urad, less than") and said[1] == "misalignment below 10 urad"
+
+
 @pytest.mark.parametrize("film", ["linear", "radial"])
 def test_leakage_runs_from_high_to_low_pressure_also_where_they_turn(film):
     """Pressures that change sides halfway: as much leaks after it as before."""
@@ -67,6 +87,17 @@ def printed(scenario, summary):
     """[name, words] of the lines for a person; a line that goes on has no name."""
     whole = {**summary, "archive": "x.h5", "figure": None}
     return [[line[:16].strip(), line[16:]] for line in lines(scenario, whole)[1:]]
+
+
+def test_a_contact_that_lasts_all_the_run_is_told_as_that():
+    scenario = read_scenario(SEAL, ["run.turns=1"])
+    summary = simulate_in_memory(scenario, speeds=True)
+    numbers = ("depth", "impulse", "share_of_closing", "wear_rate", "max_pressure", "max_area_fraction", "gap_error")
+    contact = dict.fromkeys(numbers, 0.1) | {"touches": 1, "grazing": 0, "first": 0.0, "force": {"max": 1.0}}
+    end = summary["end"]["time"]
+    for longest, words in ((end, "in contact all the time, deepest"), (0.9 * end, "1 contact, first at t = 0 s")):
+        rows = dict(printed(scenario, {**summary, "contact": contact | {"longest": longest}}))
+        assert rows["touch"].startswith(words)
 
 
 def test_the_settled_part_comes_first_and_the_transient_by_its_name():

@@ -5,10 +5,11 @@ import math
 import pytest
 
 from sealdyn.report.text import study_lines
-from sealdyn.studies._words import frequencies, quantity, shown_in, speed
+from sealdyn.studies._words import frequencies, quantity, shown_in, speed, wear, wearing
 from sealdyn.studies.runup.sentences import load_sentences
 from sealdyn.studies.runup.study import tables as runup_tables
 from sealdyn.studies.tolerance.verdict import _contact_sentence
+from sealdyn.studies.wear import study as wear_study
 
 
 @pytest.mark.parametrize(
@@ -68,3 +69,16 @@ def test_ramps_of_a_pressure_are_told_in_bar_and_flows_of_gas_in_litres():
     heading, *rows = study_lines({"verdict": []}, runup_tables(answer))
     assert "rate, bar/s" in heading and "leakage from, l/min" in heading
     assert rows[0].split()[0] == "20" and "24" in rows[0].split() and "a step" in rows[1]
+
+
+def test_wear_has_one_unit_and_names_who_wears():
+    assert wear(3.18e-7 / 3600) == "0.318 um/h" and wear(1.82e-6 / 3600) == "1.82 um/h"
+    assert wearing({"stator": 1e-16, "rotor": 0.0}) == "the stator"
+    profile = {"stator": [[1e-7, 2e-7]], "rotor": [[0.0, 0.0]]}
+    answer = {"end": {"kind": "run-in", "said": "run in"}, "history": {"time": [360.0], "wear_rate": [1e-10]},
+              "profile": profile, "coefficients": [1e-16, 0.0], "extrapolated": None, "steps": 1, "not_settled": 0,
+              "coarse": 0, "radius": [1, 2], "tilt_over_roughness": 0.0, "unstable": False}  # fmt: skip
+    said = wear_study.sentences(answer, wear_study.Settings())[1]
+    assert "not computed, 100 h come to 36.16 um of the stator (see" in said
+    later = answer | {"extrapolated": {"time": 3600.0, "stator": [1e-6, 2e-6], "rotor": [0.0, 0.0]}}
+    assert wear_study.sentences(later, wear_study.Settings())[1].endswith("to 1 h: stator 2 um.")

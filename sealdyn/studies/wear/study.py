@@ -15,6 +15,7 @@ from ...scenario.errors import ScenarioError
 from ...scene.coning import coned
 from ...status import Status
 from ...units import Time
+from .._words import wear, wearing
 from .averages import ShortRunAverages
 from .rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
 
@@ -159,11 +160,11 @@ def _ended(rows, settings, control) -> dict | None:
         what = "the film carries the whole load: no contact" if lift_off else "contact has faded to nothing"
         return {"kind": "lift-off", "time": time, "said": f"{what} {when}, and nothing wears any more"}
     if left <= 0.0:
-        return {"kind": "duration", "time": time, "said": f"worn for the asked {_hours(time)}"}
+        return {"kind": "duration", "time": time, "said": f"worn for {_hours(time)}"}
     if settings.run_in != "go on" and unevenness(rate) < settings.even:
         said = (
             f"run in after {_hours(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
-            f"{rate_in_words(rate.mean())}"
+            f"{wear(rate.mean())}"
         )
         return {"kind": "run-in", "time": time, "said": said}
     return None
@@ -251,16 +252,17 @@ def sentences(answer, settings) -> list[str]:
         return lines
     # Rounding is no growth.
     depths = {face: np.maximum(answer["profile"][face][-1], 0.0) for face in ("stator", "rotor")}
+    coefficients = dict(zip(depths, answer["coefficients"], strict=True))
     worn = [f"{face} {_length(min(d))} to {_length(max(d))}" for face, d in depths.items() if max(d) > 0.0]
     told = f"Worn off in {_hours(time[-1])}: {', '.join(worn)}" if worn else "Nothing is worn off"
     if later:
-        told += (f"; extrapolated at the last rates, not computed, to {_hours(later['time'])}: stator "
-                 f"{_length(max(later['stator']))}, rotor {_length(max(later['rotor']))}")  # fmt: skip
+        deep = ", ".join(f"{face} {_length(max(later[face]))}" for face, k in coefficients.items() if k)
+        told += f"; extrapolated at the last rates, not computed, to {_hours(later['time'])}: {deep}"
     elif answer["end"]["kind"] == "run-in":
         total = max(map(sum, zip(*depths.values(), strict=True)))
         total += answer["history"]["wear_rate"][-1] * (settings.duration - time[-1])
-        told += (f"; at the rate that is left, not computed, the asked {_hours(settings.duration)} come to "
-                 f"{_length(total)} of both faces together (see --run-in extrapolate)")  # fmt: skip
+        told += (f"; at the rate that is left, not computed, {_hours(settings.duration)} come to {_length(total)} "
+                 f"of {wearing(coefficients)} (see --run-in extrapolate)")  # fmt: skip
     limits = _limits(answer, settings)
     return [*lines, f"{told}.", *([f"Mind: {'; '.join(limits)}."] if limits else [])]
 
@@ -285,12 +287,6 @@ def _limits(answer, settings) -> list[str]:
 
 def _hours(seconds) -> str:
     return f"{seconds / 3600:.4g} h" if seconds >= 360.0 or seconds == 0.0 else f"{seconds:.3g} s"
-
-
-def rate_in_words(rate) -> str:
-    """A depth rate (m/s) in nanometres or micrometres an hour."""
-    hourly = 3600.0 * rate
-    return f"{1e6 * hourly:.3g} um/h" if hourly >= 1e-6 else f"{1e9 * hourly:.3g} nm/h"
 
 
 def _length(metres) -> str:
