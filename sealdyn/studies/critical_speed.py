@@ -31,7 +31,7 @@ from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.method_selection import choose_method
-from ..simulation.stability import critical_speed, held_speeds, natural_frequency, speeds_held
+from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
 from ._words import no_film_beyond, plain
 from ._words import speed as speed_words
@@ -53,8 +53,6 @@ NARROW = 2e-5
 TRIED = (0.3, 1.0, 3.0, 10.0)
 # Of an eigenvalue's growth rate what the runs in time may be away from it besides their own uncertainty.
 ALIKE = 1e-3
-# Speed (m/s) of the outer edge of a face beyond which nothing is run in time: rings burst at some hundreds.
-FASTEST = 1000.0
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
