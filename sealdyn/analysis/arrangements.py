@@ -6,6 +6,7 @@ import numpy as np
 
 from .. import closed_form as cf
 from ..dynamics import modes
+from ..dynamics.equilibrium import axial_shift
 from ..dynamics.model import Model
 from ..scene.excitation import Housing
 from ..scene.rings import ROTOR, STATOR
@@ -29,6 +30,10 @@ class Arrangement:
     def linear(self, speed: float) -> modes.LinearScene:
         """The LinearScene at a shaft speed (rad/s)."""
         return self.model.linear_scene(speed=float(speed))
+
+    def clearance(self, speed: float) -> float:
+        """Clearance (m) at which the film holds the closing force at a shaft speed (rad/s)."""
+        return self.model.clearance + axial_shift(self.model, self.model.start, float(speed))[0]
 
     def relative_tilts(self, speed: float) -> tuple[complex, complex]:
         """Static and dynamic relative tilt (stator minus rotor) per unit forcing (rad/rad), each in its frame, by

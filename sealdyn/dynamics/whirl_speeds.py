@@ -17,6 +17,8 @@ from .neutral_speeds import Whirl, mended
 STILL = 1e-9
 # How near, as a share, a known neutral speed is looked at from both sides.
 BESIDE = 1e-6
+# Halvings of a step of the speed over which a mode begins or ceases to go forward: it may hide a resonance of another.
+HALVINGS = 8
 
 
 def one_by_one(at_speed, direction: float = 1.0):
@@ -89,6 +91,13 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
 
     speeds = np.geomspace(low, high, points)
     each, rates = distances(speeds)
+    for _ in range(HALVINGS):
+        at = 1 + np.flatnonzero(np.diff(np.sum(np.isfinite(each), axis=1)))
+        if not len(at):
+            break
+        between = np.sqrt(speeds[at - 1] * speeds[at])
+        each, rates = (_with_rows(rows, at, more) for rows, more in zip((each, rates), distances(between), strict=True))
+        speeds = np.insert(speeds, at, between)
     counts = np.sum(np.isfinite(each), axis=1)
     # As many forward modes at both ends: the same ones.
     brackets = (each[:-1] * each[1:] < 0) & (counts[:-1] == counts[1:])[:, None]
@@ -101,6 +110,13 @@ def resonance_speeds(values, low: float, high: float, points: int = 120, whirl: 
         # NaN: the mode stops oscillating inside the bracket, no crossing.
         found += [at] if np.isfinite(at) else []
     return found
+
+
+def _with_rows(rows, at, more) -> np.ndarray:
+    """`rows` with `more` before the places `at`, NaN where either is narrower."""
+    width = max(rows.shape[1], more.shape[1])
+    rows, more = (np.pad(a, ((0, 0), (0, width - a.shape[1])), constant_values=np.nan) for a in (rows, more))
+    return np.insert(rows, at, more, axis=0)
 
 
 def _mended(whirl, rate, a, b, share) -> float | None:

@@ -253,7 +253,10 @@ def _stability(stability, unit, per):
         text += f", whirl ratio {_n(whirl)}"
     # Archives of earlier versions do not hold it.
     keeps = ", the stator keeping its own speed" if stability.get("stator_speed") else ""
-    if critical:
+    fastest = stability.get("fastest") or math.inf
+    if critical and critical > fastest:
+        text += f", no critical speed up to {at(fastest)}, faster than any such face turns{keeps}"
+    elif critical:
         text += f", critical speed {at(critical)}{keeps}"
         every = stability.get("thresholds") or [critical]
         tilts = [mode["re"] for mode in stability["modes"] if mode["kind"] == "tilt"]
@@ -262,16 +265,16 @@ def _stability(stability, unit, per):
             turned = sum(w < abs(stability["speed"]) for w in every) % 2
             below = (max(tilts) < 0.0) != bool(turned)
             text += f" (stable {'below' if below else 'above'})"
-        if len(every) > 1:
-            text += f", again at {at(*every[1:])}"
+        if again := [w for w in every[1:] if w <= fastest]:
+            text += f", again at {at(*again)}"
     elif stability["thresholds"] is None:
         text += ", critical speed not looked for (study campbell)"
     else:
         text += f", no critical speed{keeps}"
     if stability.get("speeds_held"):
         text += f" (from {at(*stability['speeds_held'], joined=' to ')}, where a film holds the closing force)"
-    if stability["resonance_speeds"]:
-        text += f", resonance at {at(*stability['resonance_speeds'])}"
+    if met := [w for w in stability["resonance_speeds"] or () if w <= fastest]:
+        text += f", resonance of a tilt at {at(*met)} (all modes: study campbell)"
     return text
 
 

@@ -11,6 +11,8 @@ from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 
+# Speed (m/s) of the outer edge of a face beyond which there is none: rings burst at some hundreds.
+FASTEST = 1000.0
 # How far below the least and above the largest of the shaft's speed and the natural frequency thresholds are looked
 # for, and by how many speeds, where they are not known beforehand; and where they are, to see that none was missed.
 AROUND, POINTS, POINTS_KNOWN = 1e3, 160, 32
@@ -20,9 +22,9 @@ STEPS, HALVINGS = 40, 20
 
 def stability(model, interval, linear, speeds: bool) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
-    and of the stator (rad/s), and all modes of the scene `linear`, linearised at the interval's start; if `speeds` also
-    `critical_speed`, `thresholds` and `resonance_speeds`, None where it takes too long: a film that stores between wavy
-    faces, or over pads."""
+    and of the stator (rad/s), `fastest` that any shaft turns such a face (rad/s), and all modes of the scene `linear`,
+    linearised at the interval's start; if `speeds` also `critical_speed`, `thresholds` and `resonance_speeds`, None
+    where it takes too long: a film that stores between wavy faces, or over pads."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
     searched = {}
@@ -45,6 +47,7 @@ def stability(model, interval, linear, speeds: bool) -> dict:
         "growth_rate_uncertainty": modes.uncertainty(found) if found else None,
         "speed": speed,
         "stator_speed": linear.rings[STATOR].spin,
+        "fastest": FASTEST / model.scene.film.outer_radius,
         "modes": [
             {"re": m.value.real, "im": m.value.imag, "kind": m.kind, "direction": m.direction, "uncertainty": m.error}
             for m in found

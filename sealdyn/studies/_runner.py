@@ -51,20 +51,21 @@ def study_module(name: str):
 class StudyContext:
     """What a study is handed: a crew for its points, and progress.  Points are kept in `results` where there is such a
     folder, else in the `journal`, like anything else of an interrupted study; `failures` are the reasons of points that
-    failed."""
+    failed; `name` of the study."""
 
     journal: Checkpoint
     crew: object
     progress: object
     results: Results | None = None
     failures: list[str] = field(default_factory=list)
+    name: str = ""
 
     def map(self, function, points: list, what: str = "points") -> list[dict]:
         """Rows of `function(point)` for JSON-able points, in their order; `{"failed": reason}` for one that failed."""
+        if not points:
+            return []
         store = self.results or self.journal
-        rows = evaluate(
-            function, points, store, self.crew, lambda n, m: self.say(n / max(m, 1), f"{what}: {n} of {m}"), what
-        )
+        rows = evaluate(function, points, store, self.crew, lambda n, m: self.say(n / m, f"{what}: {n} of {m}"), what)
         self.failures += [row["failed"] for row in rows if "failed" in row]
         return rows
 
@@ -78,10 +79,10 @@ class StudyContext:
         progress."""
         return replace(self, crew=processes(1), results=None, progress=None)
 
-    def say(self, fraction: float, words: str = "working"):
-        """Report progress, a share of the whole, and what is being done."""
+    def say(self, fraction: float, words: str = ""):
+        """Report progress, a share of the whole, and what is being done (else the study's name)."""
         if self.progress:
-            self.progress(fraction, 1.0, words)
+            self.progress(fraction, 1.0, words or self.name)
 
 
 def run_study(
@@ -126,7 +127,7 @@ def run_study(
         journal = Checkpoint(journal_of(out), identity)
         kept = _folder(results) if results else None
         with _crew(workers, scheduler) as crew:
-            tools = StudyContext(journal, crew, progress, kept)
+            tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
             answer = module.run(studied, settings, tools)
         verdict, failures = list(answer["verdict"]), tools.failures
         # Unless the study has told it itself.

@@ -64,6 +64,7 @@ def run(scenario, settings, tools) -> dict:
     begin = model.linear_scene(speed=float(speeds[0]))
     values, shapes = follow(pencil, speeds, tools.say, begin.reach)
     values = sharpened(values, [model.linear_scene(speed=float(w)).modes() for w in speeds])
+    tools.say(1.0)
     count = len(begin.mass)
     modes = described(values, shapes[:, :, :count], speeds)
     more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
@@ -291,15 +292,25 @@ def _verdict(answer) -> list[str]:
             said.append(f"Mode {point['mode']} loses or regains its damping at {speed_words(point['speed'])}{ratio}.")
         else:
             said.append(f"Mode {point['mode']} changes its direction of whirl at {speed_words(point['speed'])}.")
-    synchronous = [c for c in answer["crossings"] if c["line"] == 1.0]
-    for c in synchronous:
-        said.append(f"Mode {c['mode']} meets once per turn at {speed_words(c['speed'])}.")
-    if not synchronous:
-        said.append("No mode meets once per turn in this range.")
+    said += _met(answer["crossings"], answer["lines"])
     for c in answer["stator_crossings"]:
         said.append(f"Mode {c['mode']} meets the stator's own speed at a shaft speed of {speed_words(c['speed'])}.")
     if turning and not answer["stator_crossings"]:
         said.append("No mode meets the stator's own speed in this range.")
+    return said
+
+
+def _met(crossings, lines) -> list[str]:
+    """Where modes meet the order lines: a sentence for each mode and line, and of once per turn if there is none."""
+    said = []
+    for line in lines:
+        name = {1.0: "once per turn", 0.5: "half the shaft speed"}.get(line, f"{line:g} times the shaft speed")
+        here = [c for c in crossings if c["line"] == line]
+        for mode in dict.fromkeys(c["mode"] for c in here):
+            at = " and ".join(speed_words(c["speed"]) for c in here if c["mode"] == mode)
+            said.append(f"Mode {mode} meets {name} at {at}.")
+        if line == 1.0 and not here:
+            said.append(f"No mode meets {name} in this range.")
     return said
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 from .. import closed_form
 from ..analysis.whirl import (
+    TOO_SLOW,
     bounded_or_not,
     branch,
     contact_tilt_aligned,
@@ -30,7 +31,7 @@ from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.method_selection import choose_method
-from ..simulation.stability import critical_speed, held_speeds, natural_frequency, speeds_held
+from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
 from ._words import no_film_beyond, plain
 from ._words import speed as speed_words
@@ -39,7 +40,7 @@ REFUSES = ("secondary-seal",)
 ALONG = {"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
          "nonlinear/directions": ("speed",)}  # fmt: skip
 units = dict.fromkeys(("speed", "frequency", "bracket"), "rad/s") | dict.fromkeys(("opening", "h_min"), "m")
-units |= dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate"), "1/s")
+units |= dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate", "rate"), "1/s")
 units |= dict.fromkeys(
     ("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"), "rad"
 )
@@ -48,8 +49,10 @@ units |= dict.fromkeys(("difference", "turns"), "1")
 # Speeds, relative to the eigenvalues' threshold, at which a disturbance is let grow or decay.
 SHARES = (0.95, 0.98, 0.998, 1.002, 1.02, 1.05)
 NARROW = 2e-5
-# Speed (m/s) of the outer edge of a face beyond which nothing is run in time: rings burst at some hundreds.
-FASTEST = 1000.0
+# Without a threshold: speeds, in parts of a tenth of the fastest, at which it is seen that there is none.
+TRIED = (0.3, 1.0, 3.0, 10.0)
+# Of an eigenvalue's growth rate what the runs in time may be away from it besides their own uncertainty.
+ALIKE = 1e-3
 
 
 # A scenario (and flags) with which the default settings take so much processor time (s) on one core.
@@ -133,12 +136,11 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     """Bracketing of the threshold by growth and decay; without a threshold, decay at a few speeds."""
     fastest = FASTEST / scene.film.outer_radius
     if eigenvalue is None:
-        tried = [factor * min(pace, fastest / 10.0) for factor in (0.3, 1.0, 3.0, 10.0)]
+        tried = [factor * min(pace, fastest / 10.0) for factor in TRIED]
         # Slow shafts on stiff films: nothing here is as close to its threshold as Adams' small damping would matter.
         if how["method"] == "adams":
             how = {**how, "method": choose_method(RunState(free_model(scene, tried[0]), 1.0))[0]}
-        low, high = held_speeds(model, model.start, min(tried), max(tried))
-        speeds = [min(max(speed, low), high) for speed in tried]
+        speeds = _within_held(model, tried)
         rows = tools.map(partial(growth, scene), [{**how, "speed": w} for w in speeds], "growth")
         signs = {row["rate"] > 0 for row in rows if "failed" not in row and row["decided"]}
         said = "a disturbance grows at some of the speeds tried"
@@ -146,7 +148,7 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
             said = f"a disturbance {'grows' if True in signs else 'dies out'} at every speed tried"
         elif not signs:
             said = _unmeasured(rows) or "neither growth nor decay beyond the method's own"
-        if max(tried) <= high and pace > fastest / 10.0:
+        if speeds == tried and pace > fastest / 10.0:
             said += f", up to {FASTEST:g} m/s at the outer radius"
         found = {"value": None, "uncertainty": None, "reason": said}
         # That there is none is not confirmed: growth here and decay there, or neither.
@@ -181,6 +183,17 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
     return {"time_domain": found, "growth": columns(rows, speeds)}
 
 
+def _within_held(model, tried: list[float]) -> list[float]:
+    """The speeds `tried` (rad/s, rising) where a film holds the closing force at each; else such a row up to the last
+    speed at which one does, none of them twice."""
+    low, high = held_speeds(model, model.start, tried[0], tried[-1])
+    if (low, high) == (tried[0], tried[-1]):
+        return tried
+    tried = [factor * high / TRIED[-1] for factor in TRIED]
+    low, high = held_speeds(model, model.start, tried[0], high)
+    return sorted({min(max(speed, low), high) for speed in tried})
+
+
 def _unmeasured(rows) -> str:
     """Why no row has a growth rate; "" if one has."""
     return rows[0]["failed"] if all("failed" in row for row in rows) else ""
@@ -200,6 +213,22 @@ def line_crossing(a, b) -> tuple[float, float]:
     (low, p), (high, q) = a, b
     slope = (q["rate"] - p["rate"]) / (high - low)
     return float(low - p["rate"] / slope), float(max(p["uncertainty"], q["uncertainty"]) / slope)
+
+
+def roads_apart(growth) -> str:
+    """A sentence where growth in time is another than the eigenvalues have it, by more than three times its
+    uncertainty: of the speed at which they are farthest apart; "" where they agree."""
+    names, far = ("speed", "eigenvalue", "time_domain", "uncertainty"), []
+    for speed, linear, rate, doubt in zip(*(growth[name] for name in names), strict=True):
+        if None not in (linear, rate, doubt) and abs(rate - linear) > 3.0 * doubt + ALIKE * abs(linear):
+            far.append((abs(rate - linear) / (doubt or 1e-300), speed, linear, rate, doubt))
+    if not far:
+        return ""
+    _, speed, linear, rate, doubt = max(far)
+    return (
+        f"Eigenvalues and runs in time disagree at {len(far)} of {len(growth['speed'])} speeds, most at "
+        f"{speed_words(speed)}: growth rate {linear:.3g} 1/s by eigenvalues, {rate:.3g} +- {doubt:.1g} 1/s in time."
+    )
 
 
 def columns(rows, speeds) -> dict:
@@ -301,7 +330,7 @@ def sentences(answer) -> list[str]:
     """The verdict."""
     said, eigen, time = [], answer["eigenvalue"], answer["time_domain"]
     if eigen is None:
-        why = answer["formula_reason"] or "eigenvalues cross at no speed"
+        why = "eigenvalues cross at no speed" + (f" ({reason})" if (reason := answer["formula_reason"]) else "")
         said.append(f"No critical speed{no_film_beyond(answer['speeds_held'])}: {why}; in time {time['reason']}.")
     else:
         formula = answer["formula"]
@@ -319,6 +348,7 @@ def sentences(answer) -> list[str]:
             f"growth of its own there ({time['against_eigenvalue']:.1g} 1/s away from the eigenvalues); the smallest "
             f"growth rate that decides a verdict is {closest:.2g} 1/s."
         )
+    said += filter(None, [roads_apart(answer["growth"])])
     if answer["nonlinear"]:
         said.append(answer["nonlinear"]["verdict"])
     return said
@@ -370,12 +400,19 @@ def fates(rows, start) -> str:
     """What became of the small or large whirls, from low to high speed."""
     rows = [row for row in rows if row["start"] == start]
     failed = [row["failed"] for row in rows if "failed" in row]
-    rows, parts, last = [row for row in rows if "failed" not in row], [], None
+    slow = [row for row in rows if row.get("fate") == TOO_SLOW]
+    rows, parts, last = [row for row in rows if "failed" not in row and row not in slow], [], None
+    whirls = f"{start.capitalize()} whirls in time"
+    left = ""
+    if slow:
+        # Nothing failed: where they go the sign of their growth rate says.
+        ways = [f"{'grows' if row['rate'] > 0 else 'dies out'} at {speed_words(row['speed'])}" for row in slow]
+        left = f"too slow to be followed ({slow[0]['said']}), by eigenvalues a small one {', '.join(ways)}"
     if not rows:
-        return f"{start.capitalize()} whirls in time: none was followed to its end ({failed[0]})."
+        return f"{whirls}: {left or f'none was followed to its end ({failed[0]})'}."
     for row in rows:
         if row["fate"] != last:
             parts.append([row["fate"], row["speed"], row["speed"]])
         parts[-1][2], last = row["speed"], row["fate"]
     words = [f"{what} at {speed_words(a)}" + (f" to {speed_words(b)}" if b > a else "") for what, a, b in parts]
-    return f"{start.capitalize()} whirls in time: {', '.join(words)}."
+    return f"{whirls}: {', '.join(words)}{f'; {left}' if left else ''}."

@@ -122,6 +122,10 @@ def test_order_lines_meet_modes_where_they_say():
         mode = found["modes"][crossing["mode"] - 1]
         at = np.interp(crossing["speed"], found["speed"], mode["frequency"])
         assert at == pytest.approx(crossing["line"] * crossing["speed"], rel=2e-3)
+    # Each is told, not those of once per turn alone.
+    told = " ".join(line for line in found["verdict"] if " meets " in line)
+    assert {crossing["line"] for crossing in found["crossings"]} > {1.0}
+    assert all(f"{crossing['speed']:.5g} rad/s (" in told for crossing in found["crossings"])
 
 
 COUNTER = ["stator.speed=-800 rad/s"]

@@ -144,7 +144,7 @@ inertia = true
 def test_speeds_at_which_no_film_holds_the_seal_are_none_without_whirl(tmp_path):
     """It was said that a disturbance dies out up to 1000 m/s, where there is no film from 82 m/s on."""
     scenario = parse_scenario(CLOSED_BY_INERTIA, "closed")
-    answer = run_study("critical-speed", scenario, tmp_path / "out.h5", workers=1)
+    answer = run_study("critical-speed", scenario, tmp_path / "out.h5", flags={"turns": 20}, workers=1)
     first = answer["verdict"][0]
     assert answer["eigenvalue"] is None and answer["speeds_held"][1] == pytest.approx(1636.5, abs=0.1)
     assert first.startswith("No critical speed up to 1636.5 rad/s (15627 rpm), beyond which no film holds the closing")
@@ -269,8 +269,12 @@ def test_whirls_that_take_a_million_turns_to_go_anywhere_are_not_run():
     """It took six minutes, each of twelve runs given up after 36 s of Adams' small steps."""
     scene = parse_scenario(STIFF_PAIR, "pair").scene
     assert time_domain._method(free_model(scene, 18796.0)) == "bdf"
-    with pytest.raises(ValueError, match="turns to go anywhere"):
-        time_domain.bounded_or_not(scene, 18760.0, "small", None, None)
+    row = {"speed": 18760.0, "start": "small", **time_domain.bounded_or_not(scene, 18760.0, "small", None, None)}
+    assert row["turns"] > time_domain.SHOWS * 8000 and row["whirl"] is None
+    # Nothing has failed, and what becomes of it is told.
+    said = critical_speed.fates([row, {"speed": 19000.0, "start": "small", "fate": "contact"}], "small")
+    assert said.startswith("Small whirls in time: contact at 19000 rad/s") and "turns to go anywhere" in said
+    assert f"by eigenvalues a small one {'grows' if row['rate'] > 0 else 'dies out'} at 18760 rad/s" in said
 
 
 def test_fates_that_are_not_known_say_why():
@@ -305,6 +309,25 @@ misalignment = "100 urad"
 [run]
 turns = 2
 """
+
+
+def test_growth_in_time_is_that_of_the_gap_at_its_speed(tmp_path):
+    """The runs began at the gap of the scenario's own speed, and had nineteen times the decay while it closed."""
+    scenario = parse_scenario(BARRIER.replace("15000", "12000"), "barrier")
+    answer = run_study("critical-speed", scenario, tmp_path / "out.h5", flags={"turns": 20}, workers=1)
+    growth = answer["growth"]
+    assert growth["speed"][-1] == pytest.approx(1655.1, abs=0.1) and len(set(growth["speed"])) == 4
+    assert growth["time_domain"] == pytest.approx(growth["eigenvalue"], rel=1e-3)
+    assert "disagree" not in " ".join(answer["verdict"]) and answer["status"] == "ok"
+
+
+def test_roads_that_disagree_are_told():
+    growth = {"speed": [600.0, 1655.0, 1700.0], "eigenvalue": [-3.0, -0.0887, -1.0]}
+    growth |= {"time_domain": [-2.9, -1.69, None], "uncertainty": [0.3, 0.24, None]}
+    said = critical_speed.roads_apart(growth)
+    assert "disagree at 1 of 3 speeds" in said and "1655 rad/s" in said
+    assert "-0.0887 1/s by eigenvalues, -1.69 +- 0.2 1/s in time" in said
+    assert critical_speed.roads_apart({**growth, "time_domain": [-2.9, -0.08, None]}) == ""
 
 
 def test_a_run_near_the_last_speed_that_holds_is_a_result():

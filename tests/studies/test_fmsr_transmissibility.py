@@ -43,6 +43,21 @@ def test_greens_conjecture_and_where_it_fails(greens):
     assert [s["seal"] for s in greens["best"]["static"]] == ["fmsr"]
 
 
+def test_the_critical_misalignment_of_two_floating_rings_is_the_smaller(greens):
+    """It was that of the stator's alone, the kinder one; and no key was named."""
+    rows = {row["quantity"]: row["formula"] for row in greens["table"]}
+    static, dynamic = (rows[f"{kind}_transmissibility"]["fmsr"] for kind in ("static", "dynamic"))
+    # Faces of parallel edges' clearance C touch at the tilt C / r_o times this.
+    stator = rows["critical_misalignment"]["fmr"] * rows["static_transmissibility"]["fmr"]
+    touch = stator + rows["dynamic_transmissibility"]["fmr"]
+    sizes = {"stator": (touch - dynamic) / static, "rotor": (touch - static) / dynamic}
+    assert rows["critical_misalignment"]["fmsr"] == pytest.approx(min(sizes.values()), rel=1e-9)
+    ring, other = sorted(sizes, key=sizes.get)
+    assert f"FMSR {ring}.misalignment {min(sizes.values()):.5g} beside {other}.misalignment 1" in greens["critical"]
+    assert "FMR stator.misalignment" in greens["critical"] and "FMS rotor.runout" in greens["critical"]
+    assert greens["critical"] in greens["verdict"]
+
+
 def test_lines_and_points_in_time_are_the_rings_in_turning_axes(greens):
     """Measured: amplitudes 2e-8 apart, phases 4e-6 deg."""
     assert greens["roads_apart"] < 1e-12 and greens["phases_apart"] < 1e-9

@@ -222,3 +222,44 @@ def test_rings_that_are_neutral_at_rest_have_no_end_of_stability_there():
 def test_the_film_is_told_at_the_speed_in_both_units():
     found = answer(points=5, time_points=0)
     assert f"in tilt at {speed(found['own_speed'])}" in found["film"]
+
+
+# An oil barrier whose fluid's inertia lets no film hold the closing force from 15 803 rpm on.
+BARRIER = """
+shaft.speed = "12000 rpm"
+closing = { balance_ratio = 0.65, spring_force = "30 N" }
+[film]
+inner_radius = "45 mm"
+outer_radius = "50 mm"
+coning = "1 mrad"
+inertia = true
+viscosity = "20 mPa*s"
+density = "870 kg/m^3"
+outer_pressure = "4 bar"
+inner_pressure = "1 bar"
+[rotor]
+body = { inner_radius = "40 mm", outer_radius = "54 mm", length = "25 mm", material = "silicon carbide" }
+support = { axial_stiffness = "50 N/mm", axial_damping = "100 N*s/m", radius = "45 mm" }
+"""
+
+
+def test_speeds_end_where_no_film_holds_and_a_gap_that_moves_has_its_points_in_time():
+    """The default range was refused, and every point in time failed for a linear film that nobody had asked for."""
+    scenario = parse_scenario(BARRIER, "barrier")
+    found = transmissibility.run(scenario, Settings(points=5, time_points=1), InProcess())
+    told, top = " ".join(found["verdict"]), found["speed"][-1]
+    assert top == pytest.approx(found["speeds_held"][1]) and 1600 < top < 1660 < 3 * found["own_speed"]
+    assert f"up to {speed(top)}, beyond which no film holds the closing force" in told
+    done = [row for row in found["time_domain"] if "failed" not in row]
+    assert {row["speed"] for row in done} >= {found["own_speed"]}
+    seals = transmissibility.seals_of(scenario.scene)
+    for row in done:
+        _, _, total = seals[row["seal"]].algebra(row["speed"])
+        # A hundred thousandths of it, beside the distance of two runs.
+        assert row["total"] == pytest.approx(total, rel=1e-3, abs=10 * row["error"]["total"])
+    assert "film.model" not in told
+    # The formula of the critical speed knows one gap, and had one where there is none.
+    (critical,) = [row for row in found["table"] if row["quantity"] == "critical_speed"]
+    assert set(critical["formula"].values()) == {None} == {critical[seal] for seal in ("fmr", "fms", "fmsr")}
+    # Linear theory touches at some radians.
+    assert "rad: beyond any small tilt, no limit)" in found["critical"]

@@ -95,10 +95,10 @@ def test_the_table_of_a_transmissibility_tells_its_speed_clear_of_its_columns(tm
     figure = study(tmp_path, "transmissibility", transmitted(2e-4, table=rows, own_speed=900.59), RPM)
     must_be_legible(figure)
     words = words_of(figure)
-    assert "At 8600 rpm (Green's Table 1)" in words and "none" not in words
+    assert "At 8600 rpm" in words and "in the form of Green (1989), Table 1" in words and "none" not in words
     texts = {text.get_text(): text for ax in figure.axes for text in ax.texts}
     figure.draw_without_rendering()
-    heads = [texts[name].get_window_extent() for name in ("At 8600 rpm (Green's Table 1)", "FMR")]
+    heads = [texts[name].get_window_extent() for name in ("in the form of Green (1989), Table 1", "formula")]
     assert heads[0].x1 + 20 < heads[1].x0
 
 

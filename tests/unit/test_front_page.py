@@ -30,7 +30,7 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
         r"friction +([\d.]+) W": found["friction"]["power"],
         r"clearance ([\d.]+) um": found["film"]["clearance"] * 1e6,
         r"closing +([\d.]+) N": found["closing"]["force"],
-        r"critical speed (\d+) rpm \(stable": found["stability"]["critical_speed"] * 30 / math.pi,
+        r"critical speed up to (\d+) rpm": found["stability"]["fastest"] * 30 / math.pi,
     }.items():
         assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
     # A run that may have the linear film has leakage and friction of the radial one, and so has the seal at its end.

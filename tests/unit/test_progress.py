@@ -6,6 +6,8 @@ import pytest
 from typer.testing import CliRunner
 
 from sealdyn.cli import _Progress, app
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.studies._runner import StudyContext, run_study
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
@@ -32,6 +34,16 @@ def test_a_run_done_again_begins_again(shown):
 def test_a_full_bar_says_what_is_waited_for(shown):
     shown(2.0, 2.0)
     assert shown.bar.tasks[0].fields["words"] == "t = 2 s: summing up"
+
+
+def test_a_study_says_its_name_and_no_points_that_there_are_none(tmp_path):
+    seen = []
+    scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=linear"])
+    run_study("campbell", scenario, tmp_path / "c.h5", flags={"points": 11}, progress=lambda *now: seen.append(now))
+    assert {words for _, _, words in seen} == {"campbell"} and seen[-1][0] == 1.0
+    tools = StudyContext(None, None, lambda *now: seen.append(now))
+    count = len(seen)
+    assert tools.map(len, [], "cost") == [] and len(seen) == count
 
 
 def test_a_check_says_that_it_compiles(monkeypatch):

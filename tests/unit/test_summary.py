@@ -209,3 +209,22 @@ def test_beside_the_means_of_a_run_stands_the_aligned_seal_at_its_end(name, chan
     if film["exit_mach"] is not None:
         before = sealdyn.evaluate(scenario, {"film.inner_pressure": "14 bar"}, "film.exit_mach")["film.exit_mach"]
         assert film["exit_mach"] < 0.9 * before
+
+
+def test_a_critical_speed_of_no_seal_is_none():
+    """Stiff films of a fraction of a micrometre had theirs at millions of rpm."""
+    scenario = read_scenario(SEAL, ["run.turns=2", "shaft.speed='9000 rpm'"])
+    summary = simulate_in_memory(scenario, speeds=True) | {"wall_time": 1.0}
+    found = summary["stability"]
+    assert found["fastest"] == pytest.approx(1000.0 / 0.040)
+
+    def words(**changes):
+        told = {**summary, "stability": {**found, **changes}}
+        return dict(printed(scenario, told))["stability"], dict(overview._numbers(told, ("rpm", 9.549)))
+
+    here, sheet = words(resonance_speeds=[100.0, 1e6])
+    assert "critical speed 53370 rpm (stable below)" in here and "critical speed" in sheet
+    assert here.endswith("resonance of a tilt at 954.9 rpm (all modes: study campbell)")
+    here, sheet = words(critical_speed=7e5, thresholds=[7e5, 8e5])
+    assert "no critical speed up to 238700 rpm, faster than any such face turns" in here and "again" not in here
+    assert "critical speed" not in sheet

@@ -9,7 +9,7 @@ import pytest
 from scenes import SUPPORT, film, fmr, fms, fmsr, ring
 from scipy.optimize import brentq
 
-from sealdyn.dynamics import linearisation, modes
+from sealdyn.dynamics import linearisation, modes, whirl_speeds
 from sealdyn.dynamics.model import Model
 from sealdyn.numerics.crossing import crossing
 from sealdyn.scene.film import Coefficients
@@ -149,6 +149,16 @@ def test_massless_and_undamped_has_no_state_to_go_by():
     light = Stator(**ring(mass=0.0, support=held) | dict(transverse_inertia=0.0, polar_inertia=0.0))
     model = Model(replace(fms(film=film("linear", coefficients=nothing)), stator=light))
     assert stability.thresholds(model) == [] and stability.critical_speed(model) is None
+
+
+def test_a_mode_that_turns_round_hides_no_resonance_of_another():
+    """Within one step of the search a second mode begins to go forward, so that neighbours have other modes."""
+
+    def values(speeds):
+        w = np.asarray(speeds)
+        return np.stack([-1.0 + 1j * (50.0 + 0.5 * w), -1.0 + 1j * (w - 103.0)], axis=1), np.zeros((len(w), 2))
+
+    assert whirl_speeds.resonance_speeds(values, 1.0, 1e4) == pytest.approx([100.0])
 
 
 def test_crossing_of_hard_functions():

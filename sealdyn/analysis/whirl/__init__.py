@@ -2,9 +2,10 @@
 (time_domain.py)."""
 
 from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped
-from .time_domain import bounded_or_not, followed, growth_rate, linear_growth, tipping_disturbance
+from .time_domain import TOO_SLOW, bounded_or_not, followed, growth_rate, linear_growth, tipping_disturbance
 
 __all__ = [
+    "TOO_SLOW",
     "RotatingWave",
     "Whirl",
     "bounded_or_not",

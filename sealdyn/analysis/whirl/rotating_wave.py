@@ -15,9 +15,10 @@ from scipy.optimize import brentq, root
 
 from ...dynamics import equations
 from ...dynamics.imposed_motion import ROTOR_SPEED
+from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...faces.geometry import smallest_gap
-from ...scene.variants import unforced
+from ...scene.variants import frozen_at_start, unforced
 
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
 # A solution's residual, relative to the scales of force; central-difference step of the linearisation.
@@ -41,8 +42,15 @@ class Whirl:
 
 
 def free_model(scene, speed: float, accuracy: float = 1e-8) -> Model:
-    """Model of the unforced scene at a speed (rad/s), its film evaluated to `accuracy`."""
-    return Model(unforced(scene, speed), accuracy)
+    """Model of the unforced scene at a speed (rad/s), its film evaluated to `accuracy`, displacements counted from
+    where the film holds the closing force: a gap that moves with the speed has moved."""
+    scene = unforced(scene, speed)
+    model = Model(scene, accuracy)
+    shift = model.axial_shift() if moves_with_speed(scene.film) else 0.0
+    if shift == 0.0:
+        return model
+    # What holds the film there, the supports' share in it.
+    return Model(frozen_at_start(scene, clearance=model.clearance + shift), accuracy)
 
 
 class RotatingWave:

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from ...scene.variants import unforced
 from ...status import Status
 from ..poincare_map import PIECE, PeriodMap
 from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped
@@ -25,7 +24,7 @@ def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> di
     model = free_model(scene, speed)
     unit, wave = contact_tilt_aligned(model), RotatingWave(model)
     frequency, shape = least_damped(model, speed)
-    period_map = PeriodMap(unforced(scene, speed), accuracy)
+    period_map = PeriodMap(model.scene, accuracy)
     x = wave.state(SMALL * unit * shape, frequency)[: period_map.size]
     row = {"speed": float(speed), "fate": "unsettled", "first_contact": None, "from": SMALL * unit}
     done, before, sizes = 0, None, []

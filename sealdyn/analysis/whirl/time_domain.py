@@ -19,8 +19,9 @@ TIGHTER = 1 / 30
 NEAREST, PATIENCE = 1e-6, 2000
 # Blocks of a few hundred steps that one run may take: a hundred times what a healthy one does.
 MOST_BLOCKS = 2000
-# How many times what a run may last its whirl may take to go anywhere, in a stiff scene, where a run takes a minute.
-SHOWS = 10
+# How many times what a run may last its whirl may take to go anywhere, in a stiff scene, where a run takes a minute;
+# and the fate of a whirl that takes longer.
+SHOWS, TOO_SLOW = 10, "too slow"
 
 
 class TooLong(ValueError):
@@ -176,6 +177,7 @@ def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1
 def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000) -> dict:
     """What becomes of a whirl at a speed (rad/s): `fate` "decays", "bounded" (with its amplitude `whirl` and `drift`,
     rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` run (as `pace` counts them).
+    TOO_SLOW: not run, as a small one with its growth `rate` (1/s) goes nowhere in these `turns`, which is `said`.
 
     `start` "small" (a tenth of contact) or "large" (displacements `shape` (n,), turning at `frequency`, rad/s).
     """
@@ -185,7 +187,15 @@ def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: 
     frequency_of_turns = pace(model, speed) / (2 * math.pi)
     method, whole = _method(model), int(9 / abs(linear) * frequency_of_turns) + 50
     if method != "adams" and whole > SHOWS * most:
-        raise TooLong(f"a whirl that grows or decays by {abs(linear):.2g} 1/s takes {whole:.2g} turns to go anywhere")
+        said = f"a whirl that grows or decays by {abs(linear):.2g} 1/s takes {whole:.2g} turns to go anywhere"
+        return {
+            "fate": TOO_SLOW,
+            "from": None,
+            "whirl": None,
+            "turns": float(whole),
+            "rate": float(linear),
+            "said": said,
+        }
     turns = min(most, whole)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit

@@ -277,6 +277,9 @@ def _numbers(summary: dict, speed: tuple[str, float], litres: str = ""):
         if name == "film stiffness" and summary.get("contact"):
             name = "film and asperities"
         values = [_value(summary, key) for key, *_ in parts]
+        if name == "critical speed" and (values[0] or 0.0) > (_value(summary, "stability.fastest") or np.inf):
+            # Of no seal.
+            continue
         # Faces of no wear coefficient say nothing of wear.
         if all(value is None for value in values) or (name == "wear rate" and values == [0.0]):
             continue

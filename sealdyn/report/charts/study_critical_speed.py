@@ -54,7 +54,9 @@ def linear(ax, answer, shown):
         why = next(filter(None, growth.get("failed") or []), "no growth rate was found")
         return absent(ax, title, why)
     ax.axhline(0, color=BLACK, lw=0.8)
-    ax.plot(speed, eigen, color=ORANGE, lw=1.6, label="eigenvalues")
+    # Speeds tried far apart are no curve.
+    near = answer["eigenvalue"] is not None
+    ax.plot(speed, eigen, "-" if near else "D", ms=4.5, color=ORANGE, lw=1.6, label="eigenvalues")
     if np.isfinite(rates).any():
         ax.errorbar(speed, rates, yerr=uncertain, fmt="o", ms=5, mfc="none", color=BLUE, capsize=3,
                     label="in time (bar: uncertainty)")  # fmt: skip

@@ -46,8 +46,8 @@ def draw(archive_path, out_path):
     if speed_unit(study)[0] == "rpm":
         answer = {**answer, "unit": "rpm"}
     mosaic = [list(TITLES), ["static phase", "dynamic phase", "legend"]] + ([3 * ["table"]] if answer["table"] else [])
-    heights = (9, 8, 6)[: len(mosaic)]
-    figure, ax = study_page(study, 11.5, 10.4 if answer["table"] else 8.0, mosaic, title, height_ratios=heights)
+    heights = (9, 8, 7)[: len(mosaic)]
+    figure, ax = study_page(study, 11.5, 10.8 if answer["table"] else 8.0, mosaic, title, height_ratios=heights)
     for quantity in ("static", "dynamic"):
         stacked(ax[quantity], ax[f"{quantity} phase"])
         _phases(ax[f"{quantity} phase"], answer, f"{quantity}_phase")
@@ -179,28 +179,32 @@ def _table(ax, answer):
     """The arrangements, as Green's Table 1."""
     ax.axis("off")
     by_formula, unit = answer["formula_holds"], answer["unit"]
-    # Archives of earlier versions do not hold the speed.
+    # Archives of earlier versions hold neither the speed nor whether the gap moves with it.
     own = answer.get("own_speed")
     own = f"{(RPM if unit == 'rpm' else 1.0) * own:.5g} {unit}" if own else "its own speed"
     roads = {"formula": "formula", "linear_algebra": "lin. algebra", "time_domain": "in time"}
-    heads = [f"At {own} (Green's Table 1)"]
+    heads = [f"At {own}"]
     for seal in COLOUR:
         heads += [seal.upper(), "", ""]
-    below = ("", *(len(COLOUR) * list(roads.values())))
+    below = ("in the form of Green (1989), Table 1", *(len(COLOUR) * list(roads.values())))
     columns = (0.0, *(0.28 + 0.25 * i + 0.08 * j for i in range(len(COLOUR)) for j in range(len(roads))))
     lines = [heads, below]
     for row in answer["table"]:
         speed = row["quantity"] == "critical_speed"
         factor = RPM if speed and unit == "rpm" else 1.0
-        cells = [_cell(row, seal, road, by_formula, factor) for seal in COLOUR for road in roads]
+        formula = by_formula and not (speed and answer.get("gap_moves"))
+        cells = [_cell(row, seal, road, formula, factor) for seal in COLOUR for road in roads]
         lines.append((WORDS[row["quantity"]] + (f", {unit}" if speed else ""), *cells))
     for i, cells in enumerate(lines):
-        y = 1 - i / (len(lines) - 0.5)
+        y = 1 - i / (len(lines) + 1.6)
         for x, words in zip(columns, cells, strict=True):
             weight = "bold" if i == 0 else "normal"
             ax.text(x, y, words, va="top", fontsize=8.5, weight=weight, color=GREY if i == 1 else BLACK)
         if i >= 1:
-            ax.axhline(y - 0.118, color=PALE, lw=0.5)
+            ax.axhline(y - 0.088, color=PALE, lw=0.5)
+    # What its rows do not say.
+    words = "\n".join(wrap(answer.get("critical", ""), 165))
+    ax.text(0, 0, words, va="bottom", fontsize=8, color=GREY, linespacing=1.3)
     ax.set(xlim=(0, 1), ylim=(0, 1))
 
 

@@ -58,7 +58,7 @@ def measured(scene, point: dict) -> dict:
 def _amplitude(seal: Arrangement, speed: float) -> float:
     """Forcing (rad) that leaves the film open."""
     film, change = seal.scene.film, coning_change(seal.scene, float, speed)
-    thinnest = min(h for _, h in aligned_gaps(film, film.clearance, change))
+    thinnest = min(h for _, h in aligned_gaps(film, seal.clearance(speed), change))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
 
@@ -74,7 +74,8 @@ def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
     scene = frozen_at_start(seal.scene, speed)
     return replace(
         scene,
-        film=replace(scene.film, model="linear", coefficients=own),
+        # Inertia has moved the gap, and is in the coefficients.
+        film=replace(scene.film, model="linear", coefficients=own, inertia=False, clearance=seal.clearance(speed)),
         contact=None,
         stator=replace(scene.stator, misalignment=amplitude, misalignment_direction=0.0),
         rotor=replace(scene.rotor, misalignment=amplitude, runout=amplitude, misalignment_phase=0.0, runout_phase=0.0),

@@ -19,12 +19,15 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ...analysis.arrangements import SEALS, Arrangement, seals_of
+from ...dynamics.linearisation import moves_with_speed
 from ...scene.variants import arrangement, frozen_at_start
+from ...simulation.stability import held_speeds
 from ...units import Speed
+from .._words import no_film_beyond
 from .._words import speed as speed_words
 from .curves import PHASES, QUANTITIES, curves, phases_apart
 from .in_time import measured
-from .table import film_words, groups, table
+from .table import critical_words, film_words, groups, table
 
 PHASE = (
     "Phase: how far the tilt of the ring that carries the forcing, relative to its partner, stands behind that forcing "
@@ -60,7 +63,7 @@ class Settings:
     speed_from: Speed = 0.0
     """Lowest speed."""
     speed_to: Speed | None = None
-    """Highest speed; without it three times the scenario's."""
+    """Highest speed; without it three times the scenario's, no more than a film holds."""
     points: int = 301
     """Number of speeds."""
     unit: Literal["rad/s", "rpm"] = "rad/s"
@@ -78,12 +81,17 @@ def run(scenario, settings, tools) -> dict:
     is best where, the table and Green's groups."""
     seals = seals_of(scenario.scene)
     own_speed = abs(frozen_at_start(scenario.scene).shaft.speed)
-    top = settings.speed_to if settings.speed_to is not None else 3 * own_speed or 3000.0
+    top, held = settings.speed_to, None
+    if top is None:
+        asked = 3 * own_speed or 3000.0
+        top = min(held_speeds(seal.model, seal.model.start, 1e-3 * asked, asked)[1] for seal in seals.values())
+        held = [settings.speed_from, top] if top < asked else None
     speeds = np.linspace(settings.speed_from, top, max(2, settings.points))
     by_formula = all(seal.formula_holds(w) for seal in seals.values() for w in (speeds[-1], 0.5 * speeds[-1]))
     answer = {"speed": speeds.tolist(), "unit": settings.unit, "arrangement": arrangement(scenario.scene)}
     answer["stator_speed"] = frozen_at_start(scenario.scene).stator.speed
-    answer["own_speed"], answer["phase"] = own_speed, PHASE
+    answer["own_speed"], answer["phase"], answer["speeds_held"] = own_speed, PHASE, held
+    answer["gap_moves"] = moves_with_speed(scenario.scene.film)
     for name, seal in seals.items():
         algebra = curves(speeds, np.array([seal.relative_tilts(w) for w in speeds]).T)
         answer[name] = dict(algebra)
@@ -110,6 +118,7 @@ def run(scenario, settings, tools) -> dict:
     answer["film"] = film_words(seals, own_speed)
     answer["groups"] = groups(seals, own_speed)
     answer["table"] = table(seals, own_speed, by_formula, answer["time_domain"]) if own_speed else []
+    answer["critical"] = critical_words(seals, own_speed, answer["table"]) if own_speed else ""
     return answer | {"verdict": _verdict(answer, own_speed)}
 
 
@@ -221,6 +230,8 @@ def _verdict(answer: dict, own_speed: float) -> list[str]:
         said.append("Both rings float: FMR and FMS are this scene with the other ring held rigid.")
     else:
         said.append("FMSR is this scene with the same ring and support on the other side too.")
+    if answer["speeds_held"]:
+        said.append(f"Speeds{no_film_beyond(answer['speeds_held'])}.")
     carried = "turns with it" if answer["stator_speed"] else "fixed in space"
     static = f"static of the stator's ({carried})"
     said.append(f"Relative tilt per unit tilt: {static}, dynamic of what turns with the shaft, total of both.")
@@ -233,6 +244,7 @@ def _verdict(answer: dict, own_speed: float) -> list[str]:
         name = row["quantity"].replace("_", " ").replace("misalignment", "misalignment (total, per unit tilts)")
         numbers = ", ".join(f"{s.upper()} {row[s]:.4g}" for s in SEALS)
         said.append(f"At {speed_words(own_speed)} {name}: {numbers}.")
+    said += filter(None, [answer["critical"]])
     for name in SEALS:
         ends = answer["stability_ends"][name]
         if ends:

@@ -4,12 +4,15 @@ import numpy as np
 
 from ... import closed_form as cf
 from ...analysis.arrangements import SEALS, Arrangement, tilting
+from ...dynamics.linearisation import moves_with_speed
 from ...scene.coning import coned, coning_change
 from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps
 from ...scene.gas import viscosity_of
 from ...simulation.stability import critical_speed
+from .._words import plain
 from .._words import speed as speed_words
+from ..contact_onset import SMALL_TILT
 from .curves import QUANTITIES
 
 NAMES = {
@@ -29,30 +32,72 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
         roads["time_domain"][name] = [row.get(q) for q in QUANTITIES]
     for road, both in roads.items():
         for name, values in both.items():
-            values.append(_critical_misalignment(seals[name], speed, values))
+            values.append(
+                min(filter(_known, critical_misalignments(seals[name], speed, values).values()), default=None)
+            )
             values.append(_critical_speed(seals[name], road, by_formula))
     kinds = [*((n, "1") for n in NAMES.values()), ("critical_misalignment", "C/r_o"), ("critical_speed", "rad/s")]
-    best = "formula" if by_formula else "linear_algebra"
+
+    def best(quantity, name):
+        # A formula of the critical speed knows one gap only.
+        moves = quantity == "critical_speed" and moves_with_speed(seals[name].scene.film)
+        return "formula" if by_formula and not moves else "linear_algebra"
+
     return [
-        {"quantity": quantity, "unit": unit, **{name: roads[best][name][i] for name in SEALS}}
+        {"quantity": quantity, "unit": unit, **{name: roads[best(quantity, name)][name][i] for name in SEALS}}
         | {road: {name: both[name][i] for name in SEALS} for road, both in roads.items()}
         for i, (quantity, unit) in enumerate(kinds)
     ]
 
 
-def _critical_misalignment(seal: Arrangement, speed: float, values) -> float | None:
-    """Partner's misalignment (FMSR: the stator's) at first touch, of the asperities of rough faces, in units of C/r_o,
-    with a unit own misalignment (FMSR: of the rotor); None for faces that touch when aligned."""
-    if values[0] is None:
-        return None
+# Keys of the misalignments that one arrangement has: what is static, what is dynamic; and of which a critical size is
+# told, that of the rigid partner, of two floating rings both.
+KEYS = {
+    "fmr": ("stator.misalignment", "rotor.misalignment"),
+    "fms": ("stator.misalignment", "rotor.runout"),
+    "fmsr": ("stator.misalignment", "rotor.misalignment"),
+}
+PARTNERS = {"fmr": ("stator.misalignment",), "fms": ("rotor.runout",), "fmsr": KEYS["fmsr"]}
+
+
+def critical_misalignments(seal: Arrangement, speed: float, values) -> dict[str, float | None]:
+    """By its key, the misalignment of each of PARTNERS at first touch, of the asperities of rough faces, in units of
+    C/r_o, the other key of KEYS being one such unit; from static and dynamic transmissibility, the first two of
+    `values`; None for faces that touch when aligned."""
     film, rough = seal.scene.film, touch_height(seal.scene)
     change = coning_change(seal.scene, float, speed)
     touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance, change))
-    if touch <= 0.0:
-        return None
-    own, forcing = (values[0], values[1]) if seal.name == "fms" else (values[1], values[0])
-    found = cf.critical_forcing(touch * film.outer_radius / film.clearance, own, forcing)
-    return float(found) if np.isfinite(found) else None
+    found = {}
+    for key in PARTNERS[seal.name]:
+        forcing, own = (values[0], values[1]) if key == KEYS[seal.name][0] else (values[1], values[0])
+        if values[0] is None or touch <= 0.0:
+            found[key] = None
+            continue
+        size = float(cf.critical_forcing(touch * film.outer_radius / film.clearance, own, forcing))
+        found[key] = size if np.isfinite(size) else None
+    return found
+
+
+def critical_words(seals: dict[str, Arrangement], speed: float, rows: list[dict]) -> str:
+    """Of which keys the critical misalignments of the `table` are, in a sentence."""
+    row, said = {row["quantity"]: row for row in rows}, []
+    for name, seal in seals.items():
+        values = [row[NAMES[q]][name] for q in QUANTITIES]
+        known = {k: v for k, v in critical_misalignments(seal, speed, values).items() if _known(v)}
+        if not known:
+            said.append(f"{name.upper()} none")
+            continue
+        key, film = min(known, key=known.get), seal.scene.film
+        (other,) = (k for k in KEYS[name] if k != key)
+        tilt = known[key] * film.clearance / film.outer_radius
+        beyond = f" ({tilt:.2g} rad: beyond any small tilt, no limit)" if tilt > SMALL_TILT else ""
+        smaller = ", the smaller of its two" if len(known) > 1 else ""
+        said.append(f"{name.upper()} {key} {plain(known[key])} beside {other} 1{beyond}{smaller}")
+    return f"Critical misalignment, at first touch, in C/r_o: {'; '.join(said)}."
+
+
+def _known(value) -> bool:
+    return value is not None
 
 
 def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | None:
@@ -60,7 +105,7 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
         return None
     if road == "linear_algebra":
         return critical_speed(seal.model)
-    if seal.name == "fmsr":
+    if seal.name == "fmsr" or moves_with_speed(seal.scene.film):
         return None
     numbers = seal.tilt_numbers(1.0)
     numbers.pop("speed")
