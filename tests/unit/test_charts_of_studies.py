@@ -72,6 +72,25 @@ def test_a_seal_that_does_not_lift_has_no_panel_of_it(tmp_path):
     assert len(study(tmp_path, "contact_onset", lifting).axes) == 2
 
 
+@pytest.mark.parametrize("own, unit, per", [("100 urad", "µrad", 1e6), (1e-4, "mrad", 1e3)])
+def test_an_onset_far_beyond_the_seal_is_seen_beside_it(tmp_path, own, unit, per):
+    answer = {**ONSET, "formula": 2.5, "nonlinear": None, "clearance": 1.5e-6, "times_own": 2.5e4, "beyond_tilt": 0.05,
+              "failed": "beyond any small tilt"}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer, f"[rotor]\nrunout = {own!r}\n")
+    (ax,) = figure.axes
+    assert ax.get_xlabel() == f"rotor.runout, {unit}" and f" the scenario's own, {per * 1e-4:.4g} {unit} " in [
+        text.get_text() for text in ax.texts
+    ]
+    place = ax.transAxes.inverted().transform(ax.transData.transform([(per * x, 0.0) for x in (1e-4, 0.05, 2.5)]))[:, 0]
+    assert 0.05 < place[0] < place[1] - 0.2 < place[2] - 0.4 < 0.6 and text_trouble(figure) == ([], [])
+
+
+def test_a_small_onset_is_read_in_microradians(tmp_path):
+    path = {"forcing": [1e-4, 2e-4], "h_min": [5e-6, 0.0], "axial": [0.0, 0.0]}
+    answer = {**CLOSES, "formula": 2e-4, "nonlinear": 2e-4, "path": path}
+    assert study(tmp_path, "contact_onset", answer).axes[0].get_xlabel() == "rotor.runout, µrad"
+
+
 def test_an_onset_over_a_key_is_read_in_its_unit(tmp_path):
     rows = [{"value": v, "formula": 2e-3, "nonlinear": 2e-3} for v in (5e-6, 8e-6)]
     answer = {**CLOSES, "over": "film.clearance", "curve": rows, "units": {"forcing": "rad", "value": "m"}}
