@@ -11,7 +11,7 @@ from test_charts_untuned import RPM, must_be_legible, said, ticks
 
 from sealdyn.report.charts import animation, moving, overview
 from sealdyn.report.charts.page import sheet
-from sealdyn.report.charts.palette import CONTACT
+from sealdyn.report.charts.palette import CONTACT, CYCLE
 from sealdyn.report.charts.study_sweep import axis_label
 from sealdyn.report.text import study_lines
 from sealdyn.studies.rub.study import sentences, tables
@@ -183,6 +183,25 @@ def test_modes_above_a_campbell_diagram_are_named(tmp_path):
     figure = study(tmp_path, "campbell", answer)
     must_be_legible(figure)
     assert "above: mode 2" in words_of(figure)
+
+
+def test_modes_that_lie_on_each_other_are_both_seen(tmp_path):
+    answer = whirls([0.3, 0.3, 0.3], ["It whirls."])
+    (mode,) = answer["modes"]
+    still = {**mode, "kind": "axial", "frequency": 3 * [0.0], "log_decrement": 3 * [None], "directions": 3 * ["none"]}
+    apart = {**mode, "frequency": [100.0, 150.0, 200.0], "log_decrement": [0.1, 0.2, 0.1]}
+    answer["modes"] = [mode, apart, dict(mode), still]
+    figure = study(tmp_path, "campbell", answer)
+    must_be_legible(figure)
+    for title in ("Whirl frequency", "Damping"):
+        lines = [line for line in panel(figure, title).lines if len(line.get_xdata()) == 3]
+        first, other, second = (
+            next(line.get_linewidth() for line in lines if line.get_color() == colour) for colour in CYCLE[:3]
+        )
+        assert first > second + 1.0 and other == second
+    # What does not oscillate is told, not drawn on the axis.
+    assert figure.axes[0].get_title("left") == "Whirl frequency (mode 4 does not oscillate)"
+    assert len([line for line in panel(figure, "Whirl frequency").lines if not np.any(line.get_ydata())]) == 0
 
 
 def test_units_of_a_heading_are_printed(tmp_path):

@@ -50,7 +50,7 @@ def _unit(study, speeds) -> tuple[str, float]:
     unit = (answer.get("units") or {}).get("forcing", "rad")
     if unit != "rad":
         return read_in(unit, [], speeds)
-    words = "\n".join([study["scenario"], *map(str, study["overrides"])])
+    words = "\n".join([study["scenario"], *map(str, study.get("overrides") or [])])
     key = re.escape(answer["key"].split(".")[-1])
     fine = re.search(rf"\b{key}\s*=[^#\n]*\burad\b", words) if not answer.get("path") else None
     return ("µrad", 1e6) if fine or 0 < (answer["nonlinear"] or answer["formula"] or 1.0) < 1e-3 else ("mrad", 1e3)
