@@ -149,6 +149,23 @@ def test_marks_and_words_of_a_map_are_whole(tmp_path):
     assert word.get_position()[1] == pytest.approx(1.0)
 
 
+def test_the_star_of_the_scenario_lies_on_no_frame(tmp_path):
+    axes = {
+        "x": {"key": "shaft.speed", "unit": "rad/s", "values": np.geomspace(100, 1e4, 41).tolist(), "here": 1e4},
+        "y": {"key": "inertia_ratio", "unit": "1", "values": np.linspace(0.5, 4, 41).tolist(), "here": 0.51},
+    }
+    rates = np.linspace(-1, 1, 41**2).reshape(41, 41).tolist()
+    answer = {"axes": axes, "growth_rate": rates, "tilt_growth_rate": rates, "unconditional": {"limit": None},
+              "confirmed": []}  # fmt: skip
+    ax = study(tmp_path, "stability", answer).axes[0]
+    (star,) = [line for line in ax.lines if line.get_label() == "this scenario"]
+    (at,), room = ax.transData.transform(np.column_stack(star.get_data())), ax.get_window_extent()
+    half = 0.5 * star.get_markersize() / 72 * ax.figure.dpi
+    assert min(at[0] - room.x0, room.x1 - at[0], at[1] - room.y0, room.y1 - at[1]) > half
+    # The rest of the map is where it was.
+    assert ax.get_xlim()[0] < 100 and ax.get_xlim()[1] < 1.3e4 and ax.get_ylim()[0] > 0.35 and ax.get_ylim()[1] < 4.1
+
+
 def test_amplitudes_of_a_housing_are_named_where_no_curve_runs(tmp_path):
     frequency = np.geomspace(3, 5400, 41)
     touch = 0.07 * (frequency / 3) ** 1.6
