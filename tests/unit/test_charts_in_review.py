@@ -57,6 +57,9 @@ def test_small_transmissibilities_are_read_in_small_units(tmp_path, size, unit, 
     assert all("e" not in label for words in ticks(ax)[0] for label in words)
     # Marks and bars of the time domain with the curves.
     assert any(np.allclose(line.get_ydata(), 0.9 * shown) for line in ax.lines if len(line.get_ydata()) == 1)
+    words = [text.get_text() for other in figure.axes if other.get_legend() for text in other.get_legend().get_texts()]
+    per = f"{unit} of forcing" if unit else "per unit forcing"
+    assert any(word.startswith(f"time domain (error bars up to\n{shown / 100:.1g} {per}, ") for word in words)
     (bar,) = ax.containers
     assert np.ptp(bar[2][0].get_segments()[0][:, 1]) == pytest.approx(0.02 * shown)
 
