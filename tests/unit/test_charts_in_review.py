@@ -682,6 +682,15 @@ def test_the_failures_are_in_the_letters_of_print(tmp_path):
     assert all("$" not in word for word in [text.get_text() for text in figure.axes[0].get_xticklabels()])
 
 
+@pytest.mark.parametrize("error, letters", [(1e-3, 40), (1e-3, 72), (1e-12, 10), (1e-12, 50)])
+def test_words_of_a_failure_lie_in_their_bar_or_beside_it(tmp_path, error, letters):
+    row = {**EXHIBIT, "failing_error": error, "failing": "m" * (letters // 2) + "i" * (letters // 2), "unit": "1"}
+    ax = study(tmp_path, "failures", {"rows": [row], "verdict": ["One place."]}).axes[0]
+    (words,) = [text for text in ax.texts if "mmm" in text.get_text()]
+    box, end = words.get_window_extent(), ax.transData.transform((np.log10(error), 0.0))[0]
+    assert box.x1 < end or box.x0 > end
+
+
 # --- vibration -----------------------------------------------------------------------------------------------
 
 
