@@ -51,6 +51,7 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
     if progress:
         progress(len(paths), len(paths), "writing the page")
     seals = _seals(parts)
+    _said_once(parts)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     words = page.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         title=title or _title(parts, seals), parts=parts, seals=seals if len(seals) > 1 else []
@@ -73,9 +74,32 @@ def _seals(parts: list[dict]) -> list[list[str]]:
     """Parts by their scenes: of each scene that is another than those before it, what its parts are."""
     found = {}
     for part in parts:
-        scene = tuple((key, value) for key, value in part["scene"] if not key.startswith(ASKED))
-        found.setdefault(scene, []).append(f"{part['name']}, {part['kind']} ({dict(part['made'])['archive']})")
+        found.setdefault(_seal_of(part), []).append(f"{part['name']}, {part['kind']} ({dict(part['made'])['archive']})")
     return [*found.values()]
+
+
+def _seal_of(part: dict) -> tuple[tuple[str, str], ...]:
+    """Of the scene of a part what is its seal."""
+    return tuple((key, value) for key, value in part["scene"] if not key.startswith(ASKED))
+
+
+def _said_once(parts: list[dict]) -> None:
+    """What parts have in common only the first of them says; `as_in` of the others has its number, by what is common:
+    the question, the drawing, rules, validation, the scene."""
+    first = {}
+    for number, part in enumerate(parts, 1):
+        drawn = "sketch" in [chart for _, chart, _ in part["figures"]]
+        common = {
+            "asked": (part["question"], part["more"]),
+            "sketch": drawn and _seal_of(part),
+            "rules": part["rules"],
+            "film": part["film"],
+            "scene": (part["scene"], part["scenario"]),
+        }
+        said_by = {what: first.setdefault((what, repr(said)), number) for what, said in common.items()}
+        part["as_in"] = {what: common[what] and where < number and where for what, where in said_by.items()}
+        if part["as_in"]["sketch"]:
+            part["figures"] = [figure for figure in part["figures"] if figure[1] != "sketch"]
 
 
 def _title(parts: list[dict], seals: list[list[str]]) -> str:

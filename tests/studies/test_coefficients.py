@@ -14,6 +14,7 @@ from sealdyn import read_scenario, run_study
 from sealdyn.closed_form import radial_film_coefficients
 from sealdyn.dynamics.model import Model
 from sealdyn.report.charts import study_coefficients
+from sealdyn.report.text import study_lines
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.studies.coefficients import study as coefficients
@@ -145,6 +146,13 @@ def test_a_point_of_the_map_is_the_study_at_that_speed_and_coning():
     for name in ("stiffness", "damping"):
         assert found[name][2][0][1] == alone[name]
     assert found["clearance"][2][0][1] == alone["at"]["clearance"]
+
+
+def test_its_printed_table_is_in_the_units_of_what_was_asked():
+    found = balanced(speed="6000:12000 rpm:2", frequency="0, 2 kHz")
+    _, head, *rows = study_lines({"verdict": [""]}, coefficients.tables(found))
+    assert head.split("  ")[2:4] == ["speed, rpm", "frequency, Hz"]
+    assert [row.split()[:2] for row in rows] == [[w, f] for w in ("6000", "12000") for f in ("0", "2000")]
 
 
 def test_the_map_over_coning_is_the_closed_form_at_the_clearance_of_the_closing_force():

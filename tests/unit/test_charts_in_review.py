@@ -11,7 +11,7 @@ from test_charts_untuned import RPM, must_be_legible, said, ticks
 
 from sealdyn.report.charts import animation, moving, overview
 from sealdyn.report.charts.page import sheet
-from sealdyn.report.charts.palette import CONTACT
+from sealdyn.report.charts.palette import CONTACT, CYCLE
 from sealdyn.report.charts.study_sweep import axis_label
 from sealdyn.report.text import study_lines
 from sealdyn.studies.rub.study import sentences, tables
@@ -57,6 +57,9 @@ def test_small_transmissibilities_are_read_in_small_units(tmp_path, size, unit, 
     assert all("e" not in label for words in ticks(ax)[0] for label in words)
     # Marks and bars of the time domain with the curves.
     assert any(np.allclose(line.get_ydata(), 0.9 * shown) for line in ax.lines if len(line.get_ydata()) == 1)
+    words = [text.get_text() for other in figure.axes if other.get_legend() for text in other.get_legend().get_texts()]
+    per = f"{unit} of forcing" if unit else "per unit forcing"
+    assert any(word.startswith(f"time domain (error bars up to\n{shown / 100:.1g} {per}, ") for word in words)
     (bar,) = ax.containers
     assert np.ptp(bar[2][0].get_segments()[0][:, 1]) == pytest.approx(0.02 * shown)
 
@@ -183,6 +186,25 @@ def test_modes_above_a_campbell_diagram_are_named(tmp_path):
     figure = study(tmp_path, "campbell", answer)
     must_be_legible(figure)
     assert "above: mode 2" in words_of(figure)
+
+
+def test_modes_that_lie_on_each_other_are_both_seen(tmp_path):
+    answer = whirls([0.3, 0.3, 0.3], ["It whirls."])
+    (mode,) = answer["modes"]
+    still = {**mode, "kind": "axial", "frequency": 3 * [0.0], "log_decrement": 3 * [None], "directions": 3 * ["none"]}
+    apart = {**mode, "frequency": [100.0, 150.0, 200.0], "log_decrement": [0.1, 0.2, 0.1]}
+    answer["modes"] = [mode, apart, dict(mode), still]
+    figure = study(tmp_path, "campbell", answer)
+    must_be_legible(figure)
+    for title in ("Whirl frequency", "Damping"):
+        lines = [line for line in panel(figure, title).lines if len(line.get_xdata()) == 3]
+        first, other, second = (
+            next(line.get_linewidth() for line in lines if line.get_color() == colour) for colour in CYCLE[:3]
+        )
+        assert first > second + 1.0 and other == second
+    # What does not oscillate is told, not drawn on the axis.
+    assert figure.axes[0].get_title("left") == "Whirl frequency (mode 4 does not oscillate)"
+    assert all(np.any(line.get_ydata()) for line in figure.axes[0].lines if len(line.get_xdata()))
 
 
 def test_units_of_a_heading_are_printed(tmp_path):
@@ -658,6 +680,15 @@ def test_the_failures_are_in_the_letters_of_print(tmp_path):
     words = words_of(figure)
     assert "overlap, µm" in words and any("4.2 µm" in text for text in words) and "follows M²" in words
     assert all("$" not in word for word in [text.get_text() for text in figure.axes[0].get_xticklabels()])
+
+
+@pytest.mark.parametrize("error, letters", [(1e-3, 40), (1e-3, 72), (1e-12, 10), (1e-12, 50)])
+def test_words_of_a_failure_lie_in_their_bar_or_beside_it(tmp_path, error, letters):
+    row = {**EXHIBIT, "failing_error": error, "failing": "m" * (letters // 2) + "i" * (letters // 2), "unit": "1"}
+    ax = study(tmp_path, "failures", {"rows": [row], "verdict": ["One place."]}).axes[0]
+    (words,) = [text for text in ax.texts if "mmm" in text.get_text()]
+    box, end = words.get_window_extent(), ax.transData.transform((np.log10(error), 0.0))[0]
+    assert box.x1 < end or box.x0 > end
 
 
 # --- vibration -----------------------------------------------------------------------------------------------

@@ -261,7 +261,19 @@ def test_a_ring_under_another_is_seen(tmp_path):
     columns |= {f"stator_tilt_{axis}": columns[f"rotor_tilt_{axis}"] for axis in "xy"}
     figure = drawn(orbit, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
     rings = {line.get_label(): line for line in panel(figure, "Tilt of each ring").lines}
-    assert rings["stator"].get_linewidth() > 2 * rings["rotor"].get_linewidth()
+    assert rings["stator"].get_linewidth() > 3.5 * rings["rotor"].get_linewidth()
+
+
+def test_two_rings_that_stand_still_in_one_place_are_both_seen(tmp_path):
+    columns = whirling(samples=800)
+    columns |= {f"{ring}_tilt_{axis}": np.full(800, 1e-4) for ring in ("stator", "rotor") for axis in "xy"}
+    figure = drawn(orbit, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png", written=False)
+    ax = panel(figure, "Tilt of each ring")
+    dots, (stator, rotor) = (
+        [line.get_markersize() for line in ax.lines if line.get_marker() == mark] for mark in ("o", "s")
+    )
+    assert stator > rotor + 2 and rotor > max(dots) + 2
+    assert not any(text.get_text().startswith("whole run: to") for text in ax.get_legend().get_texts())
 
 
 SUPPORT = {"axial_stiffness": 3e4, "radius": None, "tilt_stiffness": 11.0}

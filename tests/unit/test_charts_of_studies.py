@@ -37,6 +37,8 @@ def test_a_logarithmic_axis_has_three_numbers(low, high):
     numbered(ax.xaxis)
     shown = numbers(ax.xaxis)
     assert len(shown) >= 3 and len(set(shown)) == len(shown)
+    # Mathematical letters ask for fonts that are not on every list.
+    assert not any("$" in words for words in shown)
 
 
 def test_values_of_keys_are_read_in_the_units_of_engineers():
@@ -68,6 +70,25 @@ def test_a_seal_that_does_not_lift_has_no_panel_of_it(tmp_path):
     assert titles(study(tmp_path, "contact_onset", CLOSES)) == ["Smallest film thickness"]
     lifting = {**CLOSES, "path": {**PATH, "axial": [1e-7, 2e-7]}}
     assert len(study(tmp_path, "contact_onset", lifting).axes) == 2
+
+
+@pytest.mark.parametrize("own, unit, per", [("100 urad", "µrad", 1e6), (1e-4, "mrad", 1e3)])
+def test_an_onset_far_beyond_the_seal_is_seen_beside_it(tmp_path, own, unit, per):
+    answer = {**ONSET, "formula": 2.5, "nonlinear": None, "clearance": 1.5e-6, "times_own": 2.5e4, "beyond_tilt": 0.05,
+              "failed": "beyond any small tilt"}  # fmt: skip
+    figure = study(tmp_path, "contact_onset", answer, f"[rotor]\nrunout = {own!r}\n")
+    (ax,) = figure.axes
+    assert ax.get_xlabel() == f"rotor.runout, {unit}" and f" the scenario's own, {per * 1e-4:.4g} {unit} " in [
+        text.get_text() for text in ax.texts
+    ]
+    place = ax.transAxes.inverted().transform(ax.transData.transform([(per * x, 0.0) for x in (1e-4, 0.05, 2.5)]))[:, 0]
+    assert 0.05 < place[0] < place[1] - 0.2 < place[2] - 0.4 < 0.6 and text_trouble(figure) == ([], [])
+
+
+def test_a_small_onset_is_read_in_microradians(tmp_path):
+    path = {"forcing": [1e-4, 2e-4], "h_min": [5e-6, 0.0], "axial": [0.0, 0.0]}
+    answer = {**CLOSES, "formula": 2e-4, "nonlinear": 2e-4, "path": path}
+    assert study(tmp_path, "contact_onset", answer).axes[0].get_xlabel() == "rotor.runout, µrad"
 
 
 def test_an_onset_over_a_key_is_read_in_its_unit(tmp_path):
@@ -126,6 +147,23 @@ def test_marks_and_words_of_a_map_are_whole(tmp_path):
     # The word of a narrow region does not lie at its end.
     (word,) = [text for text in ax.texts if text.get_text() == "unstable"]
     assert word.get_position()[1] == pytest.approx(1.0)
+
+
+def test_the_star_of_the_scenario_lies_on_no_frame(tmp_path):
+    axes = {
+        "x": {"key": "shaft.speed", "unit": "rad/s", "values": np.geomspace(100, 1e4, 41).tolist(), "here": 1e4},
+        "y": {"key": "inertia_ratio", "unit": "1", "values": np.linspace(0.5, 4, 41).tolist(), "here": 0.51},
+    }
+    rates = np.linspace(-1, 1, 41**2).reshape(41, 41).tolist()
+    answer = {"axes": axes, "growth_rate": rates, "tilt_growth_rate": rates, "unconditional": {"limit": None},
+              "confirmed": []}  # fmt: skip
+    ax = study(tmp_path, "stability", answer).axes[0]
+    (star,) = [line for line in ax.lines if line.get_label() == "this scenario"]
+    (at,), room = ax.transData.transform(np.column_stack(star.get_data())), ax.get_window_extent()
+    half = 0.5 * star.get_markersize() / 72 * ax.figure.dpi
+    assert min(at[0] - room.x0, room.x1 - at[0], at[1] - room.y0, room.y1 - at[1]) > half
+    # The rest of the map is where it was.
+    assert ax.get_xlim()[0] < 100 and ax.get_xlim()[1] < 1.3e4 and ax.get_ylim()[0] > 0.35 and ax.get_ylim()[1] < 4.1
 
 
 def test_amplitudes_of_a_housing_are_named_where_no_curve_runs(tmp_path):
@@ -227,10 +265,35 @@ def test_the_names_of_stiffnesses_lie_on_no_title(tmp_path):
     assert not any("e−7" in text.get_text() for ax in figure.axes for text in ax.texts)
 
 
-def test_a_film_without_damping_says_so(tmp_path):
+def words_below_title(figure):
+    return [text.get_text() for text in figure.texts]
+
+
+def test_what_is_zero_is_named_and_not_drawn(tmp_path):
     figure = coefficients(tmp_path, 0.0)
-    (ax,) = [ax for ax in figure.axes if ax.get_ylabel().startswith("tilt damping")]
-    assert numbers(ax.yaxis) == ["none"]
+    assert "Not drawn, zero: Kxy, Kyx, tilt damping." in words_below_title(figure)
+    assert not any(ax.get_ylabel().startswith("tilt damping") for ax in figure.axes)
+    legend = [text.get_text() for text in panel(figure, "Over speed").get_legend().get_texts()]
+    assert legend == ["Kxx", "Kyy"]
+    (ax,) = [ax for ax in figure.axes if ax.get_ylabel() == "axial stiffness, N/µm"]
+    assert len(ax.lines) == 1 and text_trouble(figure) == ([], [])
+
+
+def test_a_stiffness_that_cannot_be_told_from_zero_is_named_with_its_size(tmp_path):
+    k = [[1e7, 0.0, 0.0], [0.0, 2e4, 1e7], [0.0, -1e7, 2e4]]
+    sweeps = {f"against_{x}": {x: [1.0, 2.0], "stiffness": 2 * [k], "damping": 2 * [k]}
+              for x in ("speed", "clearance", "tilt")}  # fmt: skip
+    found = {"speed": [1.0], "frequency": [0.0, 1.0], "clearance": [[1e-5, 1e-5]], "stiffness": [2 * [k]],
+             "damping": [np.zeros((2, 3, 3)).tolist()]}  # fmt: skip
+    figure = coefficients(tmp_path, 3.6, map=found, **sweeps)
+    assert "Not drawn, under 1 % of the others: Kxx, Kyy (at most 20 kN m/rad)." in words_below_title(figure)
+    assert titles(figure).count("Tilt K, kN m/rad") == titles(figure).count("Cross K, MN m/rad") == 1
+    assert not any(title.startswith("Tilt D") for title in titles(figure))
+
+
+def test_the_figure_of_coefficients_says_at_which_clearance(tmp_path):
+    words = " ".join(words_below_title(coefficients(tmp_path, 3.6)))
+    assert "Clearance over speed: held at 10 µm, the balance at 100 rad/s; over tilt: the faces open" in words
 
 
 def test_a_table_of_tiny_transmissibilities_keeps_its_columns(tmp_path):

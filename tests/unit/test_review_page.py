@@ -7,6 +7,7 @@ import pytest
 
 import sealdyn
 from sealdyn.report.review import letters, review, told
+from sealdyn.report.text import question_of
 
 
 def words_of(path):
@@ -62,6 +63,22 @@ def test_a_page_says_the_answer_of_a_study_once(tmp_path):
     words = words_of(review([tmp_path / "s.h5"], tmp_path / "page.html", progress=lambda *now: seen.append(now)))
     assert seen == [(0, 1, "s.h5 (1 of 1)"), (1, 1, "writing the page")]
     assert words.count(told(answer["verdict"][0])) == 1
+
+
+def test_a_page_of_one_scene_says_once_what_its_parts_share(tmp_path):
+    scenario = sealdyn.example("fms_reference")
+    quick = {"run.turns": 1, "run.samples_per_turn": 16}
+    for name, changes in (("a", {}), ("b", {}), ("c", {"film.clearance": "9 um"})):
+        sealdyn.run(scenario, {**quick, **changes}, out=tmp_path / f"{name}.h5")
+    sealdyn.run_study("equilibrium", scenario, str(tmp_path / "s.h5"), flags={"points": 5}, workers=1)
+    rules = [{"rule": "heat", "verdict": "pass", "said": "cold", "source": "-", "reason": "", "command": "run"}]
+    page = review([tmp_path / f"{n}.h5" for n in "abcs"], tmp_path / "page.html", rules=lambda path, info: rules)
+    html, words = page.read_text("utf-8"), words_of(page)
+    assert html.count('class="sketch"') == 2 and html.count("<summary>Scenario as written") == 3
+    assert words.count("What the line accuracy") == 1 and words.count("Validation of the film") == 3
+    assert words.count("No published numbers were held") == 1 and html.count("<td>cold</td>") == 1
+    assert html.count(f"<h2>{question_of(scenario.question)}</h2>") == 1 and "equilibrium (s.h5)</h2>" in html
+    assert html.count('All as in <a href="#part1">fms_reference, run</a>.') == 5
 
 
 @pytest.mark.parametrize("longest, size", [(80, 12.5), (200, 8.5), (600, 7.4)])

@@ -40,14 +40,15 @@ def panel(ax, run: Run, tilts=None, title: str = "Orbit of the relative tilt", t
         return absent(ax, title, "faces aligned throughout")
     drawn = 0.0
     for (prefix, colour, label), outer in zip(tilts, hulls, strict=True):
-        if first > 0:
-            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=once(ax, f"whole run: to {written(whole, 3)} {unit}"))
         x, y = (per * run.values(f"{prefix}_{axis}", first) for axis in "xy")
-        # A ring that follows the other closely lies upon it, one that stands still is a point.
+        still = max(np.ptp(x), np.ptp(y)) < STILL * whole
+        if first > 0 and not (still and max(np.ptp(outer[0]), np.ptp(outer[1])) < STILL * whole):
+            ax.fill(*outer, color=colour, alpha=0.12, lw=0, label=once(ax, f"whole run: to {written(whole, 3)} {unit}"))
+        # A ring that follows the other closely lies upon it, one that stands still is a point; dots of turns upon both.
         under = len(tilts) > 1 and prefix == tilts[0][0]
-        width, mark = (2.6, 5) if under else (0.9, 2)
+        width, mark = (4.0, 10) if under else (1.0, 6.5)
         ax.plot(x, y, color=colour, lw=width, label=label or window(run, first))
-        if max(np.ptp(x), np.ptp(y)) < STILL * whole:
+        if still:
             ax.plot(x[-1], y[-1], "s", ms=mark, color=colour)
         mark_turns(ax, run, first, x, y)
         drawn = max(drawn, np.hypot(x, y).max())

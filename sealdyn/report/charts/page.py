@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, LogFormatter, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
 from ...status import Status
@@ -281,7 +281,8 @@ def power(exponent: int) -> str:
 
 
 def numbered(axis) -> None:
-    """A logarithmic axis on which fewer than three numbers would be seen gets plain ones closer together."""
+    """A logarithmic axis on which fewer than three numbers would be seen gets plain ones closer together; powers of
+    ten are in plain letters."""
     low, high = sorted(axis.get_view_interval())
     if axis.get_scale() != "log" or isinstance(axis.get_major_locator(), FixedLocator) or not 0 < low < high:
         return
@@ -293,7 +294,9 @@ def numbered(axis) -> None:
             axis.set_major_formatter(lambda value, _: number(value))
             axis.set_minor_formatter(NullFormatter())
         if sum(low <= at <= high for at in axis.get_majorticklocs()) >= 3:
-            return
+            break
+    if isinstance(axis.get_major_formatter(), LogFormatter):
+        decades(axis)
 
 
 def number(value: float, form: str = "g") -> str:

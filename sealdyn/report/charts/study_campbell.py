@@ -18,6 +18,9 @@ TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 3, 10, 30, 100, 300, 1000)
 MOST_DECREMENT = 1000.0
 # Share of the panel from which the unstable side has room for its name.
 NAMED = 0.06
+# Width of a curve, and what it has more for each later one that lies on it, so that both are seen: closer than NEAR of
+# the panel over more than PART of the speeds.
+LINE, WIDER, NEAR, PART = 1.8, 2.4, 0.005, 0.25
 # A line of the verdict that describes a mode.
 ONE_MODE = re.compile(r"Mode \d+ \(")
 
@@ -48,17 +51,21 @@ def _frequencies(ax, answer, speed, factor):
     modes = answer["modes"]
     curves = [factor * np.array(m["frequency"]) for m in modes]
     top = min(1.08 * max((values.max() for values in curves), default=1.0), 1.25 * speed[-1])
-    for k, (mode, values) in enumerate(zip(modes, curves, strict=True)):
-        ax.plot([], [], color=CYCLE[k % len(CYCLE)], lw=1.8, label=f"mode {k + 1}, {mode['kind']}")
-        _by_direction(ax, speed, values, mode["directions"], k)
-    seen = {direction for mode in modes for direction in mode["directions"]}
+    # What oscillates at no speed would lie on the axis.
+    moving = [k for k, values in enumerate(curves) if values.any()]
+    for k, width in zip(moving, widths([curves[k] for k in moving], top), strict=True):
+        ax.plot([], [], color=CYCLE[k % len(CYCLE)], lw=width, label=f"mode {k + 1}, {modes[k]['kind']}")
+        _by_direction(ax, speed, curves[k], modes[k]["directions"], k, width)
+    seen = {direction for k in moving for direction in modes[k]["directions"]}
     for dashes, label in (DASHES[name] for name in DASHES if name in seen):
-        ax.plot([], [], color=GREY, lw=1.8, ls=dashes, label=label)
+        ax.plot([], [], color=GREY, lw=LINE, ls=dashes, label=label)
     unit = "cycles per minute" if answer["unit"] == "rpm" else "rad/s"
-    ax.set(ylim=(0, top), ylabel=f"whirl frequency, {unit}", title="Whirl frequency")
-    hidden = [str(k) for k, values in enumerate(curves, 1) if values.min() > top]
+    still = [k + 1 for k in range(len(modes)) if k not in moving]
+    title = "Whirl frequency" + (f" ({_modes(still)} do{'es' * (len(still) == 1)} not oscillate)" if still else "")
+    ax.set(ylim=(0, top), ylabel=f"whirl frequency, {unit}", title=title)
+    hidden = [k + 1 for k, values in enumerate(curves) if values.min() > top]
     if hidden:
-        words = f"above: mode{'s' * (len(hidden) > 1)} {', '.join(hidden)}"
+        words = f"above: {_modes(hidden)}"
         ax.text(0.02, 0.98, words, transform=ax.transAxes, va="top", fontsize=8, color=GREY, bbox=PAPER, zorder=5)
     named = [factor * np.array([c["speed"], c["frequency"]]) for c in answer["crossings"]]
     for order in answer["lines"]:
@@ -76,6 +83,10 @@ def _frequencies(ax, answer, speed, factor):
                     label=once(ax, "meets it"))  # fmt: skip
     if speed[0] < factor * answer["own_speed"] < speed[-1]:
         ax.axvline(factor * answer["own_speed"], color=GREY, lw=0.8, ls=":", label="this scenario")
+
+
+def _modes(numbers: list[int]) -> str:
+    return f"mode{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
 
 
 def _name_line(ax, order, speed, top, curves, points, others):
@@ -97,7 +108,17 @@ def _name_line(ax, order, speed, top, curves, points, others):
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})  # fmt: skip
 
 
-def _by_direction(ax, speed, values, directions, mode):
+def widths(curves, height: float) -> list[float]:
+    """The width of each curve of a panel (`height` in the same unit): wider under those that lie on it."""
+
+    def on(one, other):
+        known = np.isfinite(one) & np.isfinite(other)
+        return known.any() and np.mean(np.abs(one - other)[known] < NEAR * height) > PART
+
+    return [LINE + WIDER * sum(on(one, other) for other in curves[k + 1 :]) for k, one in enumerate(curves)]
+
+
+def _by_direction(ax, speed, values, directions, mode, width):
     """One mode, its dashes telling the direction of whirl; segments share their ends."""
     colour, start = CYCLE[mode % len(CYCLE)], 0
     for k in range(1, len(directions) + 1):
@@ -105,17 +126,19 @@ def _by_direction(ax, speed, values, directions, mode):
             part = slice(start, min(k + 1, len(directions)))
             # Dashes over lines, so that two modes of one frequency are both seen.
             above = 2.0 if directions[start] == "forward" else 2.5
-            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]][0], lw=1.8, zorder=above)
+            ax.plot(speed[part], values[part], color=colour, ls=DASHES[directions[start]][0], lw=width, zorder=above)
             start = k
 
 
 def _decrements(ax, answer, speed, factor):
     shown = [np.array(mode["log_decrement"], dtype=float) for mode in answer["modes"]]
-    for k, (mode, values) in enumerate(zip(answer["modes"], shown, strict=True)):
-        _by_direction(ax, speed, np.minimum(values, MOST_DECREMENT), mode["directions"], k)
     every = np.concatenate([*shown, [0.0]])
     lowest, highest = np.nanmin(every), min(np.nanmax(every), MOST_DECREMENT)
     highest = highest if highest > 0.0 or lowest < 0.0 else 1.0
+    capped = [np.minimum(values, MOST_DECREMENT) for values in shown]
+    scaled, height = [np.arcsinh(values) for values in capped], np.arcsinh(highest) - np.arcsinh(lowest)
+    for k, (mode, width) in enumerate(zip(answer["modes"], widths(scaled, height), strict=True)):
+        _by_direction(ax, speed, capped[k], mode["directions"], k, width)
     # Linear near zero, where stability is decided; logarithmic above, where a mode dies within a cycle.
     ax.set_yscale("asinh", linear_width=1.0)
     ax.set_yticks(_ticks(lowest, highest))
@@ -128,10 +151,10 @@ def _decrements(ax, answer, speed, factor):
         # Room for the threshold's number below zero.
         bottom = min(bottom, -np.sinh(0.09 * np.arcsinh(highest)))
     ax.axhspan(bottom, 0.0, color=VERMILLION, alpha=0.08, lw=0)
-    capped = f" (beyond {MOST_DECREMENT:g}: drawn there)" if np.nanmax(every) > MOST_DECREMENT else ""
+    beyond = f" (beyond {MOST_DECREMENT:g}: drawn there)" if np.nanmax(every) > MOST_DECREMENT else ""
     ax.set(
         ylim=(bottom, 1.05 * highest if highest > 0.0 else -0.15 * bottom),
-        ylabel=f"logarithmic decrement{capped}",
+        ylabel=f"logarithmic decrement{beyond}",
         title="Damping",
     )
     for at in thresholds:

@@ -6,8 +6,8 @@ import numpy as np
 
 from ...archive import read_study
 from ..text import speed_unit
-from .page import absent, logarithmic, look, printed, save, study_page, upright
-from .palette import BLUE, CONTACT, FILM, PURPLE, THEORY, TILT
+from .page import PAPER, absent, logarithmic, look, number, printed, save, study_page, upright
+from .palette import BLUE, CONTACT, FILM, GREY, PALE, PURPLE, THEORY, TILT
 from .record import read_in
 
 # Onsets further apart than this are seen on a logarithmic axis only.
@@ -35,12 +35,25 @@ def draw(archive_path, out_path):
     figure, ax = study_page(study, *size, mosaic, title, bold=bold)
     # Archives of earlier versions do not hold the key's unit.
     speeds = speed_unit(study)
-    unit = read_in((answer.get("units") or {}).get("forcing", "rad"), [], speeds)
+    unit = _unit(study, speeds)
     for name, draws in panels.items():
         draws(ax[name], answer, *unit, speeds)
     if not panels:
         absent(ax["nothing"], "Smallest film thickness", _why(answer))
     return save(figure, out_path)
+
+
+def _unit(study, speeds) -> tuple[str, float]:
+    """What the key is read in and how many of it make one of its SI unit; a tilt as the verdict has its onset, or as it
+    was written where no orbit was followed."""
+    answer = study["answer"]
+    unit = (answer.get("units") or {}).get("forcing", "rad")
+    if unit != "rad":
+        return read_in(unit, [], speeds)
+    words = "\n".join([study["scenario"], *map(str, study.get("overrides") or [])])
+    key = re.escape(answer["key"].split(".")[-1])
+    fine = re.search(rf"\b{key}\s*=[^#\n]*\burad\b", words) if not answer.get("path") else None
+    return ("µrad", 1e6) if fine or 0 < (answer["nonlinear"] or answer["formula"] or 1.0) < 1e-3 else ("mrad", 1e3)
 
 
 def _why(answer):
@@ -79,16 +92,34 @@ def _film(ax, answer, unit, per, _):
     if linear:
         forcing, h_min = per * np.array(linear["forcing"]), 1e6 * np.array(linear["h_min"])
     else:
-        forcing, h_min = [0, per * answer["formula"]], [1e6 * answer["clearance"], touch]
+        share = np.r_[0.0, np.geomspace(1e-6, 1.0, 241)]
+        forcing, h_min = per * answer["formula"] * share, 1e6 * answer["clearance"] * (1.0 - share) + touch * share
     ax.plot(forcing, h_min, "--", color=THEORY, label="linear theory")
     ax.axhline(touch, color=CONTACT, lw=1.2, label="asperities meet" if touch else "touch")
     own = linear["own"] if linear else answer.get("times_own") and answer["formula"] / answer["times_own"]
+    far = not linear and not answer.get("path") and _far(ax, answer, own, per)
     if own:
-        upright(ax, per * own, "the scenario's own", BLUE, height=0.4, ls=":")
+        words = "the scenario's own" + (f", {number(per * own, '.4g')} {unit}" if far else "")
+        upright(ax, per * own, words, BLUE, height=0.4, ls=":")
     ax.set(title="Smallest film thickness", xlabel=f"{answer['key']}, {unit}", ylabel="h_min, µm")
     # Beside the curves where they fall, above them where they do not.
     ax.set_ylim(top=1.3 * ax.get_ylim()[1])
     ax.legend(loc="upper right")
+
+
+def _far(ax, answer, own: float | None, per: float) -> bool:
+    """Whether linear theory sees touch so far beyond the scene's `own` that both are seen on a logarithmic axis only,
+    which the panel then has, with what is no small tilt on it."""
+    onset, beyond = answer["formula"], answer.get("beyond_tilt")
+    first = own or (1e-3 * beyond if beyond else onset)
+    if onset <= APART * first:
+        return False
+    ax.set(xscale="log", xlim=(0.3 * per * first, 2.0 * per * onset))
+    if beyond:
+        ax.axvspan(per * beyond, 2.0 * per * onset, color=PALE, alpha=0.5, lw=0, zorder=0.5)
+        words = f" no small tilt: beyond {beyond:g} rad"
+        ax.text(per * beyond, 0.1, words, transform=ax.get_xaxis_transform(), color=GREY, fontsize=8, bbox=PAPER)
+    return True
 
 
 def _opening(ax, answer, unit, per, _):

@@ -28,9 +28,9 @@ def draw(path, out):
     height = figure.get_figheight()
     bottom, top = 0.6 / height, top - 0.14 / height
     ax = figure.add_axes((NAMES, bottom, NUMBERS - NAMES, top - 0.16 / height - bottom))
+    _frame(figure, ax, len(rows), top)
     for at, row in enumerate(rows):
         _line(ax, row, -at)
-    _frame(figure, ax, len(rows), top)
     return save(figure, out)
 
 
@@ -78,7 +78,8 @@ def _bar(ax, y, error, words, colour):
     end = max(math.log10(error), LEAST + 0.25) if error > 0 else LEAST + 0.25
     ax.barh(y, end - LEAST, left=LEAST, height=0.34, color=colour, alpha=0.4)
     ax.plot([end, end], [y - 0.17, y + 0.17], color=colour, lw=2)
-    number = f"{error:.2g}" if error > 0 else "none"
-    # Inside a long bar, else beside it.
-    at = LEAST + 0.2 if end - LEAST > 13.5 else end + 0.25
-    ax.text(at, y, f"{number}  {words}", fontsize=7.5, va="center", color=BLACK)
+    words = f"{error:.2g}  {words}" if error > 0 else f"none  {words}"
+    # Inside a bar that is long enough, else beside it.
+    told = ax.text(LEAST + 0.2, y, words, fontsize=7.5, va="center", color=BLACK)
+    if ax.transData.inverted().transform(told.get_window_extent())[1, 0] > end - 0.1:
+        told.set_x(end + 0.25)

@@ -14,6 +14,8 @@ from .record import read_in
 WORDS = {"inertia_ratio": "inertia ratio c = I/J (transverse over polar)", "shaft.speed": "shaft speed"}
 COLOURS = "PuOr_r"
 FEW = 6
+# Share of the map's width and height that keeps the star clear of the frame.
+CLEAR = 0.025
 
 
 @look()
@@ -119,6 +121,7 @@ def _marks(ax, answer, per_x, per_y):
     if all(a["here"] is not None and min(a["values"]) <= a["here"] <= max(a["values"]) for a in (x, y)):
         ax.plot(x["here"] * per_x, y["here"] * per_y, "*", ms=15, mfc=YELLOW, mec=BLACK, clip_on=False, zorder=5,
                 label="this scenario")  # fmt: skip
+        _make_room(ax, x["here"] * per_x, y["here"] * per_y)
     for point in answer["confirmed"]:
         mark, words, edge, width = "X", "not confirmed", VERMILLION, 1.5
         if "failed" not in point:
@@ -126,6 +129,19 @@ def _marks(ax, answer, per_x, per_y):
             mark, words = ("^", "grows in the time domain") if grows else ("v", "decays in the time domain")
         ax.plot(point["x"] * per_x, point["y"] * per_y, mark, ms=9, mfc="white", mec=edge, mew=width, zorder=5,
                 clip_on=False, label=once(ax, words))  # fmt: skip
+
+
+def _make_room(ax, x, y):
+    """White room beyond the map where a star at (x, y) would lie on its frame."""
+    for axis, at, span, limit in ((ax.xaxis, x, ax.axvspan, ax.set_xlim), (ax.yaxis, y, ax.axhspan, ax.set_ylim)):
+        ends, scale = axis.get_view_interval(), axis.get_transform()
+        low, high = scale.transform(ends)
+        share = (scale.transform([at])[0] - low) / (high - low)
+        for end, edge, free, way in ((0, low, share, -1), (1, high, 1.0 - share, 1)):
+            if free < CLEAR:
+                beyond = scale.inverted().transform([edge + way * (CLEAR - free) * (high - low)])[0]
+                span(*sorted((ends[end], beyond)), color="white", lw=0, zorder=0.5)
+                limit(*sorted((ends[1 - end], beyond)))
 
 
 def _shown(axis, speeds: str, per: float) -> tuple[float, str]:

@@ -58,7 +58,7 @@ def draw(archive_path, out_path):
         ax[name].set_xlabel(f"shaft speed, {answer['unit']}")
     ax["static"].set_ylabel(f"relative misalignment{unit}")
     ax["static phase"].set_ylabel("phase behind the forcing, deg")
-    _legend(ax["legend"], answer, per)
+    _legend(ax["legend"], answer, unit, per)
     if answer["table"]:
         _table(ax["table"], answer)
     return save(figure, out_path)
@@ -153,8 +153,8 @@ def _none(answer) -> str:
     return "alike at every speed" if damped else "no steady state at any speed"
 
 
-def _legend(ax, answer, per: float):
-    """What the lines are, how far the time domain is from them, and what a phase is."""
+def _legend(ax, answer, unit: str, per: float):
+    """What the lines are, how far the time domain is from them, in the unit of the axes, and what a phase is."""
     ax.axis("off")
     road = "formula" if answer["formula_holds"] else "linear algebra"
     for seal, colour in COLOUR.items():
@@ -165,7 +165,8 @@ def _legend(ax, answer, per: float):
     if errors:
         apart = per * max(error[name] for error in errors for name in TITLES)
         turned = max(error[name] for error in errors for name in ("static_phase", "dynamic_phase"))
-        label = f"time domain (error bars up to\n{_short(apart, 1)} and {_short(turned, 1)} deg)"
+        size = f"{_short(apart, 1)} {unit.removeprefix(', ').strip()}"
+        label = f"time domain (error bars up to\n{size}, {_short(turned, 1)} deg)"
         ax.plot([], [], "o", color=GREY, mfc="white", label=label)
     if not all(all(answer[seal]["stable"]) for seal in COLOUR):
         ax.plot([], [], color=GREY, lw=1, ls=":", label="no steady state: not damped")

@@ -15,7 +15,7 @@ from ...scene.variants import frozen_at_start
 from ...scene.waviness import waves_of
 from ...simulation.steady_tilt import steady_tilt
 from ...units import Angle, Length, Speed
-from .._words import frequencies
+from .._words import HERTZ, RPM, frequencies
 from .._words import speed as speed_words
 from .matrices import ORDER, State, gap_state, matrices, opened
 from .table import columns, lines, mapped
@@ -196,7 +196,7 @@ def _against_tilt(model, settings) -> dict:
 
 def tables(answer) -> list:
     """The map, point by point."""
-    heads = (("coning, mrad", "coning", 1e3), ("speed, rad/s", "speed"), ("frequency, rad/s", "frequency"),
+    heads = (("coning, mrad", "coning", 1e3), ("speed, rpm", "speed", RPM), ("frequency, Hz", "frequency", HERTZ),
              ("clearance, um", "clearance", 1e6), ("axial k, N/m", "k_axial_axial"), ("d, N s/m", "d_axial_axial"),
              ("tilt k, N m/rad", "k_tilt_x_tilt_x"), ("cross k, N m/rad", "k_tilt_x_tilt_y"),
              ("d, N m s/rad", "d_tilt_x_tilt_x"))  # fmt: skip
