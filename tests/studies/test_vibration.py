@@ -219,6 +219,13 @@ def test_a_run_is_not_more_accurate_than_rounding_knows_the_housing():
     assert in_time._accuracy(seal, "angular", 36.0, 10.0 / arm, 300) == pytest.approx(in_time.ABOVE_ROUNDING * rounding)
 
 
+def test_a_long_wait_is_told_and_how_to_leave_it_out(monkeypatch):
+    monkeypatch.setattr(study, "measured", lambda scene, point: {"deviation": 0.0, "ratio": None, "said": ""})
+    tools = InProcess()
+    found = study.run(scenario("fms"), Settings(points=7, runs=2, direction="axial"), tools)
+    assert tools.told.startswith(f"vibration: {len(found['time_domain'])} tones") and "--runs 0" in tools.told
+
+
 def test_what_takes_too_long_in_time_is_given_up(monkeypatch):
     point, scene = {"direction": "axial", "frequency": 30.0}, scenario("fms").scene
     monkeypatch.setattr(in_time, "MOST_WORK", 2000)
