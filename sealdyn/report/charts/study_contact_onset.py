@@ -50,8 +50,10 @@ def _unit(study, speeds) -> tuple[str, float]:
     unit = (answer.get("units") or {}).get("forcing", "rad")
     if unit != "rad":
         return read_in(unit, [], speeds)
-    words = "\n".join([study["scenario"], *map(str, study.get("overrides") or [])])
     key = re.escape(answer["key"].split(".")[-1])
+    # What the command line says stands in place of the scenario's.
+    overrides = [words for words in map(str, study.get("overrides") or []) if words.startswith(answer["key"])]
+    words = overrides[-1] if overrides else study["scenario"]
     fine = re.search(rf"\b{key}\s*=[^#\n]*\burad\b", words) if not answer.get("path") else None
     return ("µrad", 1e6) if fine or 0 < (answer["nonlinear"] or answer["formula"] or 1.0) < 1e-3 else ("mrad", 1e3)
 
