@@ -54,7 +54,10 @@ def test_speeds_of_a_table_have_no_exponent():
 
 def test_shares_of_seals_up_to_all_of_them():
     risk = {"value": 1.0, "count": 32, "runs": 32, "low": 0.888, "high": 1.0}
-    answer = {"probability_of_contact": risk, "runs": {"unstable": 0, "closed_at_start": 0}}
+    answer = {
+        "probability_of_contact": risk,
+        "runs": {"unstable": 0, "closed_at_start": 0, "asked": 32, "distribution": 32},
+    }
     assert "88.8 to 100 %" in _contact_sentence(answer)
 
 
