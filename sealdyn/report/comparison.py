@@ -50,7 +50,7 @@ MUCH, IN_LITRES, IN_RPM = 1e-5, ("leakage, l/min", 6e4), ("critical speed, rpm",
 SERIES = {"h_min": ("um", 1e6), "relative_misalignment": ("urad", 1e6), "largest_gap": ("um", 1e6), "load": ("N", 1.0)}
 # What the accuracy of a run is the error of: films, angles between the faces.
 FILMS, TILTS = ("h_min", "h_min.value", "h_min.steady"), "relative_misalignment"
-UNRESOLVED = "no change that the accuracy resolves"
+UNRESOLVED, ALIKE, BELOW = "no change that the accuracy resolves", "  (the same to four digits)", "below "
 
 
 def comparison(one, other) -> dict:
@@ -94,8 +94,9 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
             heading, factor = IN_RPM
         if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
             heading, factor = IN_LITRES
-        words = " -> ".join(_told(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True))
-        out.append(f"  {heading:<28}{words}{_change_of(row)}")
+        words = [_told(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True)]
+        alike = words[0] == words[1] and not words[0].startswith(BELOW)
+        out.append(f"  {heading:<28}{' -> '.join(words)}{ALIKE if alike else _change_of(row)}")
     if not shown:
         out.append("  results       the same")
     for row in found["series"]:
@@ -126,7 +127,7 @@ def _told(value, factor, near) -> str:
     """A number (SI), or that it is below what is resolved."""
     if value is None:
         return "-"
-    return f"below {factor * near:.3g}" if 0.0 < abs(value) < near else f"{factor * value:.4g}"
+    return f"{BELOW}{factor * near:.3g}" if 0.0 < abs(value) < near else f"{factor * value:.4g}"
 
 
 def _change_of(row) -> str:

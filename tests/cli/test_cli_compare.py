@@ -72,6 +72,12 @@ def test_numbers_of_a_scene_have_units_and_large_changes_no_per_cent(folder):
     assert "critical speed, rpm         954.9 -> 1910" in comparison_lines(found | {"summary": [row]})[-1]
 
 
+def test_what_the_digits_do_not_show_has_no_per_cent():
+    found = {"names": ["a", "b"], "status": ["ok", "ok"], "scene": [], "series": []}
+    row = {"key": "stability.whirl_ratio", "values": [0.5, 0.5 + 2e-8], "change": 4e-8}
+    assert comparison_lines(found | {"summary": [row]})[-1].endswith("0.5 -> 0.5  (the same to four digits)")
+
+
 def test_what_the_accuracy_does_not_resolve_is_no_change():
     """Noise below it has no per cent, films and tilts at the same instants neither."""
     found = {"names": ["a", "b"], "status": ["ok", "ok"], "scene": []}
