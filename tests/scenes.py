@@ -21,6 +21,32 @@ INERTIA, MISALIGNMENT = 8e-4, 25e-6
 TILT_SCALE = CLEARANCE / R_O
 SUPPORT = Support(axial_stiffness=5e5, axial_damping=300.0, radius=0.04)
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
+# A scenario: an oil barrier whose fluid's inertia lets no film hold the closing force from 15 803 rpm on (the FMR seal
+# from 15 806).
+BARRIER = """
+[shaft]
+speed = "12000 rpm"
+[film]
+inner_radius = "45 mm"
+outer_radius = "50 mm"
+coning = "1 mrad"
+inertia = true
+viscosity = "20 mPa*s"
+density = "870 kg/m^3"
+outer_pressure = "4 bar"
+inner_pressure = "1 bar"
+[closing]
+balance_ratio = 0.65
+spring_force = "30 N"
+[rotor]
+misalignment = "50 urad"
+body = { inner_radius = "40 mm", outer_radius = "54 mm", length = "25 mm", material = "silicon carbide" }
+support = { axial_stiffness = "50 N/mm", axial_damping = "100 N*s/m", radius = "45 mm" }
+[stator]
+misalignment = "100 urad"
+[run]
+turns = 2
+"""
 
 
 def film(model="radial", **changes):

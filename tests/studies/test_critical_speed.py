@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from in_process import InProcess
 from oracles import tilt_roots
-from scenes import INERTIA, SUPPORT, fmr, fms
+from scenes import BARRIER, INERTIA, SUPPORT, fmr, fms
 
 from sealdyn.analysis.whirl import free_model, growth_rate, time_domain, tipping_disturbance
 from sealdyn.analysis.whirl.time_domain import followed
@@ -284,36 +284,9 @@ def test_fates_that_are_not_known_say_why():
     )
 
 
-# An oil barrier whose fluid's inertia lets no film hold the closing force from 15 806 rpm on.
-BARRIER = """
-[shaft]
-speed = "15000 rpm"
-[film]
-inner_radius = "45 mm"
-outer_radius = "50 mm"
-coning = "1 mrad"
-inertia = true
-viscosity = "20 mPa*s"
-density = "870 kg/m^3"
-outer_pressure = "4 bar"
-inner_pressure = "1 bar"
-[closing]
-balance_ratio = 0.65
-spring_force = "30 N"
-[rotor]
-misalignment = "50 urad"
-body = { inner_radius = "40 mm", outer_radius = "54 mm", length = "25 mm", material = "silicon carbide" }
-support = { axial_stiffness = "50 N/mm", axial_damping = "100 N*s/m", radius = "45 mm" }
-[stator]
-misalignment = "100 urad"
-[run]
-turns = 2
-"""
-
-
 def test_growth_in_time_is_that_of_the_gap_at_its_speed(tmp_path):
     """The runs began at the gap of the scenario's own speed, and had nineteen times the decay while it closed."""
-    scenario = parse_scenario(BARRIER.replace("15000", "12000"), "barrier")
+    scenario = parse_scenario(BARRIER, "barrier")
     answer = run_study("critical-speed", scenario, tmp_path / "out.h5", flags={"turns": 20}, workers=1)
     growth = answer["growth"]
     assert growth["speed"][-1] == pytest.approx(1655.1, abs=0.1) and len(set(growth["speed"])) == 4
@@ -332,7 +305,7 @@ def test_roads_that_disagree_are_told():
 
 def test_a_run_near_the_last_speed_that_holds_is_a_result():
     """It was refused after its end, for a speed of the search that the seal was never asked to turn at."""
-    summary = simulate_in_memory(parse_scenario(BARRIER, "barrier"), speeds=True)
+    summary = simulate_in_memory(parse_scenario(BARRIER.replace("12000", "15000"), "barrier"), speeds=True)
     low, high = summary["stability"]["speeds_held"]
     assert summary["status"] == "ok" and summary["stability"]["critical_speed"] is None
     assert low < summary["stability"]["speed"] < high == pytest.approx(1655.1, abs=0.1)

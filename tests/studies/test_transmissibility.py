@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from in_process import InProcess
-from scenes import started
+from scenes import BARRIER, started
 from scipy.optimize import brentq
 
 from sealdyn import read_scenario
@@ -222,25 +222,6 @@ def test_rings_that_are_neutral_at_rest_have_no_end_of_stability_there():
 def test_the_film_is_told_at_the_speed_in_both_units():
     found = answer(points=5, time_points=0)
     assert f"in tilt at {speed(found['own_speed'])}" in found["film"]
-
-
-# An oil barrier whose fluid's inertia lets no film hold the closing force from 15 803 rpm on.
-BARRIER = """
-shaft.speed = "12000 rpm"
-closing = { balance_ratio = 0.65, spring_force = "30 N" }
-[film]
-inner_radius = "45 mm"
-outer_radius = "50 mm"
-coning = "1 mrad"
-inertia = true
-viscosity = "20 mPa*s"
-density = "870 kg/m^3"
-outer_pressure = "4 bar"
-inner_pressure = "1 bar"
-[rotor]
-body = { inner_radius = "40 mm", outer_radius = "54 mm", length = "25 mm", material = "silicon carbide" }
-support = { axial_stiffness = "50 N/mm", axial_damping = "100 N*s/m", radius = "45 mm" }
-"""
 
 
 def test_speeds_end_where_no_film_holds_and_a_gap_that_moves_has_its_points_in_time():
