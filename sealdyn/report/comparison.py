@@ -7,7 +7,7 @@ import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
 from .radial import is_radial
-from .text import speed_unit, tilt_resolved
+from .text import BELOW, if_resolved, speed_unit, tilt_resolved
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
@@ -50,7 +50,7 @@ MUCH, IN_LITRES, IN_RPM = 1e-5, ("leakage, l/min", 6e4), ("critical speed, rpm",
 SERIES = {"h_min": ("um", 1e6), "relative_misalignment": ("urad", 1e6), "largest_gap": ("um", 1e6), "load": ("N", 1.0)}
 # What the accuracy of a run is the error of: films, angles between the faces.
 FILMS, TILTS = ("h_min", "h_min.value", "h_min.steady"), "relative_misalignment"
-UNRESOLVED, ALIKE, BELOW = "no change that the accuracy resolves", "  (the same to four digits)", "below "
+UNRESOLVED, ALIKE = "no change that the accuracy resolves", "  (the same to four digits)"
 
 
 def comparison(one, other) -> dict:
@@ -94,7 +94,7 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
             heading, factor = IN_RPM
         if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
             heading, factor = IN_LITRES
-        words = [_told(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True)]
+        words = [if_resolved(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True)]
         alike = words[0] == words[1] and not words[0].startswith(BELOW)
         out.append(f"  {heading:<28}{' -> '.join(words)}{ALIKE if alike else _change_of(row)}")
     if not shown:
@@ -121,13 +121,6 @@ def _resolution(key, infos) -> dict:
 def _nears(row) -> list[float]:
     """The same of a row, 0 of what the accuracy is no error of."""
     return row.get("resolved", [0.0, 0.0])
-
-
-def _told(value, factor, near) -> str:
-    """A number (SI), or that it is below what is resolved."""
-    if value is None:
-        return "-"
-    return f"{BELOW}{factor * near:.3g}" if 0.0 < abs(value) < near else f"{factor * value:.4g}"
 
 
 def _change_of(row) -> str:

@@ -107,6 +107,8 @@ def _another(end, mean) -> bool:
     return end is not None and mean is not None and abs(end - mean) > ELSEWHERE * max(abs(end), abs(mean))
 
 
+# How a number below what the accuracy resolves begins.
+BELOW = "below "
 # Rise (K) beyond which a leakage cannot carry the heat, whatever the liquid: it would boil, or be no lubricant.
 CARRIED = 100.0
 
@@ -169,10 +171,10 @@ def _settled_rows(summary):
     near = tilt_resolved(summary)
     digits = min(max(2 + math.floor(math.log10(max(tilt["steady_max"], near) / near)), 3), 6)
     if 0.0 < tilt["steady_max"] < near:
-        words = f"settled: below {_n(near, MICRO, 3)} urad, less than the accuracy asked resolves"
+        words = f"settled: {if_resolved(tilt['steady_max'], MICRO, near)} urad, less than the accuracy asked resolves"
     else:
         words = "settled, urad: max {}, min {}".format(
-            *(_resolved(tilt[name], near, digits) for name in ("steady_max", "steady_min"))
+            *(if_resolved(tilt[name], MICRO, near, digits) for name in ("steady_max", "steady_min"))
         )
     if "relative_max" in form:
         words += f"; closed form {_n(form['relative_max'], MICRO, digits)}, {_n(form['relative_min'], MICRO, digits)} "
@@ -196,10 +198,10 @@ def _whole_run_rows(summary):
     if tilt["max"] is not None:
         near = tilt_resolved(summary)
         if 0.0 < tilt["max"] < near:
-            yield second, f"{'misalignment ' if settled else ''}below {_n(near, MICRO, 3)} urad"
+            yield second, f"{'misalignment ' if settled else ''}{if_resolved(tilt['max'], MICRO, near)} urad"
             return
         words = "misalignment, urad" if settled else "urad"
-        most, least, mean = (_resolved(tilt[name], near) for name in ("max", "min", "mean"))
+        most, least, mean = (if_resolved(tilt[name], MICRO, near) for name in ("max", "min", "mean"))
         yield second, f"{words}: max {most}, min {least}, mean {mean}"
 
 
@@ -209,10 +211,10 @@ def tilt_resolved(summary) -> float:
     return summary["accuracy"] * clearance / radius if clearance and radius else 0.0
 
 
-def _resolved(tilt, near, digits=4) -> str:
-    """A tilt (rad) in urad; what is no more than the accuracy, `near` (rad), as that."""
-    below = tilt is not None and 0.0 < tilt < near
-    return f"below {_n(near, MICRO, 3)}" if below else _n(tilt, MICRO, digits)
+def if_resolved(value, factor: float, near: float, digits: int = 4) -> str:
+    """A number (SI; None: "-") times `factor`; one below what the accuracy resolves, `near` (SI), as that."""
+    below = value is not None and 0.0 < abs(value) < near
+    return f"{BELOW}{_n(near, factor, 3)}" if below else _n(value, factor, digits)
 
 
 def _all_is_settled(summary) -> bool:
