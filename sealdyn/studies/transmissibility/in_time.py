@@ -42,8 +42,9 @@ def measured(scene, point: dict) -> dict:
     turns = math.ceil(-math.log(LEFT) / decay / turn) + 4
     if turns > point["longest"]:
         raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
-    amplitude = _amplitude(seal, point["speed"])
-    scene = _forced(seal, point["speed"], amplitude)
+    clearance = seal.clearance(point["speed"])
+    amplitude = _amplitude(seal, point["speed"], clearance)
+    scene = _forced(seal, point["speed"], clearance, amplitude)
     fine = np.array(_steady(scene, turns, point["accuracy"], amplitude))
     coarse = np.array(_steady(scene, turns, COARSER * point["accuracy"], amplitude))
     away = np.abs(fine - coarse)
@@ -55,15 +56,16 @@ def measured(scene, point: dict) -> dict:
     }  # fmt: skip
 
 
-def _amplitude(seal: Arrangement, speed: float) -> float:
-    """Forcing (rad) that leaves the film open."""
+def _amplitude(seal: Arrangement, speed: float, clearance: float) -> float:
+    """Forcing (rad) that leaves the film of a `clearance` (m) open."""
     film, change = seal.scene.film, coning_change(seal.scene, float, speed)
-    thinnest = min(h for _, h in aligned_gaps(film, seal.clearance(speed), change))
+    thinnest = min(h for _, h in aligned_gaps(film, clearance, change))
     return AMPLITUDE * thinnest / film.outer_radius / max(1.0, seal.algebra(speed)[2])
 
 
-def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
-    """The arrangement with both forcings, on the linear film, which has the stiffness of asperities that touch too."""
+def _forced(seal: Arrangement, speed: float, clearance: float, amplitude: float) -> Scene:
+    """The arrangement with both forcings (rad), on the linear film of a `clearance` (m), which has the
+    stiffness of asperities that touch too."""
     linear = seal.linear(speed)
     own = Coefficients(
         tilt_stiffness=linear.film_k[1, 1],
@@ -75,7 +77,7 @@ def _forced(seal: Arrangement, speed: float, amplitude: float) -> Scene:
     return replace(
         scene,
         # Inertia has moved the gap, and is in the coefficients.
-        film=replace(scene.film, model="linear", coefficients=own, inertia=False, clearance=seal.clearance(speed)),
+        film=replace(scene.film, model="linear", coefficients=own, inertia=False, clearance=clearance),
         contact=None,
         stator=replace(scene.stator, misalignment=amplitude, misalignment_direction=0.0),
         rotor=replace(scene.rotor, misalignment=amplitude, runout=amplitude, misalignment_phase=0.0, runout_phase=0.0),

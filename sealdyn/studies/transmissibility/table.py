@@ -32,9 +32,7 @@ def table(seals: dict[str, Arrangement], speed: float, by_formula: bool, rows: l
         roads["time_domain"][name] = [row.get(q) for q in QUANTITIES]
     for road, both in roads.items():
         for name, values in both.items():
-            values.append(
-                min(filter(_known, critical_misalignments(seals[name], speed, values).values()), default=None)
-            )
+            values.append(min(critical_misalignments(seals[name], speed, values).values(), default=None))
             values.append(_critical_speed(seals[name], road, by_formula))
     kinds = [*((n, "1") for n in NAMES.values()), ("critical_misalignment", "C/r_o"), ("critical_speed", "rad/s")]
 
@@ -60,21 +58,21 @@ KEYS = {
 PARTNERS = {"fmr": ("stator.misalignment",), "fms": ("rotor.runout",), "fmsr": KEYS["fmsr"]}
 
 
-def critical_misalignments(seal: Arrangement, speed: float, values) -> dict[str, float | None]:
+def critical_misalignments(seal: Arrangement, speed: float, values) -> dict[str, float]:
     """By its key, the misalignment of each of PARTNERS at first touch, of the asperities of rough faces, in units of
     C/r_o, the other key of KEYS being one such unit; from static and dynamic transmissibility, the first two of
-    `values`; None for faces that touch when aligned."""
+    `values`; of none that closes the film, nor of faces that touch when aligned."""
     film, rough = seal.scene.film, touch_height(seal.scene)
     change = coning_change(seal.scene, float, speed)
     touch = min((h - rough) / r for r, h in aligned_gaps(film, film.clearance, change))
+    if values[0] is None or touch <= 0.0:
+        return {}
     found = {}
     for key in PARTNERS[seal.name]:
         forcing, own = (values[0], values[1]) if key == KEYS[seal.name][0] else (values[1], values[0])
-        if values[0] is None or touch <= 0.0:
-            found[key] = None
-            continue
         size = float(cf.critical_forcing(touch * film.outer_radius / film.clearance, own, forcing))
-        found[key] = size if np.isfinite(size) else None
+        if np.isfinite(size):
+            found[key] = size
     return found
 
 
@@ -83,7 +81,7 @@ def critical_words(seals: dict[str, Arrangement], speed: float, rows: list[dict]
     row, said = {row["quantity"]: row for row in rows}, []
     for name, seal in seals.items():
         values = [row[NAMES[q]][name] for q in QUANTITIES]
-        known = {k: v for k, v in critical_misalignments(seal, speed, values).items() if _known(v)}
+        known = critical_misalignments(seal, speed, values)
         if not known:
             said.append(f"{name.upper()} none")
             continue
@@ -94,10 +92,6 @@ def critical_words(seals: dict[str, Arrangement], speed: float, rows: list[dict]
         smaller = ", the smaller of its two" if len(known) > 1 else ""
         said.append(f"{name.upper()} {key} {plain(known[key])} beside {other} 1{beyond}{smaller}")
     return f"Critical misalignment, at first touch, in C/r_o: {'; '.join(said)}."
-
-
-def _known(value) -> bool:
-    return value is not None
 
 
 def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | None:
