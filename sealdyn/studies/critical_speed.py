@@ -401,7 +401,8 @@ def fates(rows, start) -> str:
     rows = [row for row in rows if row["start"] == start]
     failed = [row["failed"] for row in rows if "failed" in row]
     slow = [row for row in rows if row.get("fate") == TOO_SLOW]
-    rows, parts, last = [row for row in rows if "failed" not in row and row not in slow], [], None
+    rows = [row for row in rows if row.get("fate") not in (None, TOO_SLOW)]
+    parts, last = [], None
     whirls = f"{start.capitalize()} whirls in time"
     left = ""
     if slow:
