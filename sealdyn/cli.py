@@ -237,7 +237,7 @@ def run(
     complete = f"the run is complete: {result.archive}"
     _leaves(lambda: _kept_of_run(result.archive, words) if interrupted else complete)
     if plot and not interrupted and not interruption.asked:
-        summary["figure"] = _drawn("overview", result.archive)
+        summary["figure"] = _drawn("charts.overview", result.archive)
     if as_json:
         print(json.dumps(summary))
     else:
@@ -261,7 +261,7 @@ def _drawn(chart: str, archive: Path) -> str | None:
 
     figure = archive.with_suffix(".png")
     try:
-        importlib.import_module(f"sealdyn.report.charts.{chart}").draw(archive, figure)
+        importlib.import_module(f"sealdyn.report.{chart}").draw(archive, figure)
     except Exception as error:
         what = " ".join(str(error).split())[:200]
         line = f"warning: {figure} was not drawn ({type(error).__name__}: {what}); the archive is whole"
@@ -684,12 +684,12 @@ def plot(
             asked = read_study(file)["study"]
             if asked.replace("_", "-") not in study_names():
                 raise Stop(Status.INVALID, f'{file}: study "{asked}"; expected one of {", ".join(study_names())}')
-            name = f"study_{asked}"
+            name = None
         elif kind not in (None, "overview"):
             _of_a_face_seal(file)
-        chart = importlib.import_module(f"sealdyn.report.charts.{name}")
+        place = f"charts.{name}" if name else "panels"
         try:
-            chart.draw(file, out)
+            importlib.import_module(f"sealdyn.report.{place}").draw(file, out)
         except OSError as error:
             raise _not_written(error, out, "the archive is whole") from None
     print(out)
@@ -911,7 +911,7 @@ def study(
         except OSError as error:
             raise _not_written(error, error.filename or out, _left["words"]()) from None
     _leaves(lambda: f"the study is complete: {answer['archive']}")
-    if plot and (figure := _drawn(f"study_{answer['study']}", Path(answer["archive"]))):
+    if plot and (figure := _drawn("panels", Path(answer["archive"]))):
         answer["figure"] = figure
     if as_json:
         print(json.dumps(answer))

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Lists of an answer that are sentences, and columns that hold words where they hold anything.
-NO_COLUMNS, WORDS = ("left_out", "verdict"), ("failed", "reason", "message")
+# What an answer declares for those who read it, and columns that hold words where they hold anything.
+NO_COLUMNS = ("left_out", "verdict", "notes", "tables", "written")
+WORDS = ("failed", "reason", "message")
 
 
 @dataclass(frozen=True)
@@ -23,8 +24,8 @@ def columns(answer: dict) -> dict[str, Column]:
     column of the number of the row they belong to ("points/let_go/points", from 0).  An axis ("key", "unit", "values")
     is the column named like its key."""
     found: dict[str, Column] = {}
-    _add_tree(answer, "", found)
-    return {key: column for key, column in found.items() if key not in NO_COLUMNS and column.values.size}
+    _add_tree({key: held for key, held in answer.items() if key not in NO_COLUMNS}, "", found)
+    return {key: column for key, column in found.items() if column.values.size}
 
 
 def _add_tree(tree: dict, path: str, found) -> None:

@@ -19,15 +19,19 @@ from .tables import unit_of, units_of
 FORMAT = "sealdyn study 1"
 
 
-def write_study(path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=()) -> Path:
+def write_study(
+    path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=(), panels=()
+) -> Path:
     """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers or truths in it as a float64
     dataset `/data/KEY` (columns.py) with its unit, so that any HDF5 reader can plot it.  `units` and `along` as in
     `tables.variables` are kept as JSON, so that the archive can be shown without its study.
-    `meta` becomes root attributes.  Replaces an existing file only when complete; returns its path."""
+    `meta` becomes root attributes; `panels`, plain data, are kept so that the archive draws itself.  Replaces an
+    existing file only when complete; returns its path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
     texts = {"scenario": scenario_text, "resolved": json.dumps(resolved), "answer": json.dumps(answer)}
+    texts |= {"panels": json.dumps(list(panels))}
     numbers = [(key, column.values) for key, column in columns(answer).items() if column.values.dtype.kind in "fb"]
     meta = {**meta, "units": units, "along": dict(along)}
     size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(8 * values.size for _, values in numbers)
@@ -90,6 +94,8 @@ def read_study(path) -> dict:
             info["scenario"] = file["scenario"].asstr()[()]
             info["resolved"] = json.loads(file["resolved"].asstr()[()])
             info["answer"] = json.loads(file["answer"].asstr()[()])
+            info["panels"] = json.loads(file["panels"].asstr()[()])
+            info["written"] = info["answer"].get("written", {}) if isinstance(info["answer"], dict) else {}
             if not isinstance(info["answer"], dict) or not isinstance(info["study"], str):
                 raise TypeError("its answer is no table")
             if not all(isinstance(info.get(name, {}), dict) for name in ("units", "along")):

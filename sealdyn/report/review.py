@@ -123,7 +123,7 @@ def _run(path: Path, rules, validation) -> dict:
         "message": told(info.get("message", "")),
         "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
         "warnings": [words for name, words in rows if name == "WARNING"],
-        "figures": [(words, chart, _drawn(path, chart)) for chart, words in figures.items()],
+        "figures": [(words, chart, _drawn(path, f"charts.{chart}")) for chart, words in figures.items()],
         "rules": [{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in rules(path, info)]
         if rules
         else [],
@@ -151,7 +151,7 @@ def _study(path: Path, tables) -> dict:
         "message": "" if answer["verdict"] else told(answer.get("message", "")),
         "rows": [],
         "warnings": [],
-        "figures": [(f"Study {study['study']}", "study", _drawn(path, f"study_{study['study']}"))],
+        "figures": [(f"Study {study['study']}", "study", _drawn(path, "panels"))],
         "rules": [],
         "film": "",
         "validation": [],
@@ -187,7 +187,7 @@ def _drawn(path: Path, chart: str) -> str:
     """A chart as the address of an image that stands in the page."""
     with tempfile.TemporaryDirectory() as folder:
         figure = Path(folder) / "figure.png"
-        importlib.import_module(f"{__package__}.charts.{chart}").draw(path, figure)
+        importlib.import_module(f"{__package__}.{chart}").draw(path, figure)
         return f"data:image/png;base64,{base64.b64encode(figure.read_bytes()).decode()}"
 
 

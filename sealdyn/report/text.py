@@ -6,6 +6,7 @@ import re
 from ..status import Status
 from ..toml_line import toml_line
 from .radial import radial_rows
+from .tables import table_lines
 
 MICRO, MILLI, DEGREES = 1e6, 1e3, 180 / math.pi
 
@@ -357,6 +358,11 @@ def study_lines(answer: dict, tables) -> list[str]:
     `tables`: pairs of rows (dicts) and columns `(heading, key of a row, factor)`, the factor 1 if left out; a dotted
     key goes into the dicts of a row.  A row with the key `failed` ends with that reason.
     """
+    if "found" in answer:
+        out = [f"  {answer['found']}"]
+        for table in answer["tables"]:
+            out += [f"    {line}" for line in table_lines(table, answer["written"])]
+        return out + [f"  {note}" for note in answer["notes"]]
     out = [f"  {sentence}" for sentence in answer["verdict"]]
     for rows, columns in tables:
         if rows:

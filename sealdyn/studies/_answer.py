@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -18,7 +17,7 @@ from ..scenario.reader import Scenario
 from ..scenario.settings import scenario_of
 from ..simulation.result import at_hand
 from . import study_names
-from ._runner import run_study, study_module
+from ._runner import run_study, study_info
 
 if TYPE_CHECKING:
     import xarray
@@ -53,14 +52,15 @@ class Answer:
         """Its numbers as an `xarray.Dataset` with units.  Of a study over keys the dimensions are the keys, the
         variables its outputs and the `status` and `message` of each point; of others every list of numbers of the
         answer, "curve.h_min", along the columns that its study names."""
-        module = study_module(self.study)
-        return answer_as_dataset(self.answer, getattr(module, "units", {}), getattr(module, "ALONG", {}))
+        info = study_info(self.study)
+        return answer_as_dataset(self.answer, info.units, info.along)
 
     def plot(self) -> Figure:
         """Its figure, of matplotlib; `figure.savefig("map.svg")` writes it."""
-        chart = importlib.import_module(f"sealdyn.report.charts.study_{self.study}")
+        from ..report.panels import draw
+
         with at_hand(self.archive, self.content) as path:
-            return chart.draw(path, None)
+            return draw(path)
 
 
 def study(

@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__, studies
+from ..answers import Answer, as_json, plain
 from ..archive import followed, only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
+from ..report.text import speed_unit
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
 from ..scene import variants
@@ -23,6 +25,7 @@ from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..status import Status
+from . import Info
 
 
 def study_tables(name: str, answer: dict) -> list:
@@ -45,6 +48,31 @@ def study_module(name: str):
     """The study `name` (underscored): its file, or `study.py` in its folder."""
     found = importlib.import_module(f"{studies.__name__}.{name}")
     return importlib.import_module(f"{found.__name__}.study") if hasattr(found, "__path__") else found
+
+
+def study_info(name: str) -> Info:
+    """What study `name` (underscored) declares of itself."""
+    module = study_module(name)
+    if hasattr(module, "INFO"):
+        return module.INFO
+    old = {new: getattr(module, before) for new, before in OLD.items() if hasattr(module, before)}
+    seals = "any" if getattr(module, "ANY_SEAL", False) else "radial" if getattr(module, "RADIAL", False) else "face"
+    return Info(seals=seals, **old)
+
+
+OLD = {
+    "refuses": "REFUSES",
+    "wavy": "WITH_WAVES",
+    "of_waves": "OF_WAVES",
+    "units": "units",
+    "along": "ALONG",
+    "timed": "TIMED",
+}
+
+
+def written_units(scenario: Scenario) -> dict[str, str]:
+    """{SI unit: unit} in which a scenario has what may be read in several: its speeds."""
+    return {"rad/s": speed_unit({"scenario": scenario.text, "overrides": scenario.overrides})[0]}
 
 
 @dataclass
@@ -111,16 +139,16 @@ def run_study(
     ('balance.h5', True)
     """
     name = name.replace("-", "_")
-    module = study_module(name)
-    _refuse_seal(name, module, scenario.scene)
+    module, info = study_module(name), study_info(name)
+    _refuse_seal(name, info, scenario.scene)
     # What can be left out, a face seal has.
     studied, left_out = (scenario, []) if _is_radial(scenario.scene) else without(scenario, leave_out)
     if not _is_radial(scenario.scene):
-        _refuse(name, studied.scene, getattr(module, "REFUSES", ()))
+        _refuse(name, studied.scene, info.refuses)
     settings = study_settings(scenario, name, module.Settings, flags or {})
     out = archive_of(name, scenario, out)
-    plain = json.loads(json.dumps(asdict(settings), default=str))
-    asked = [__version__, name, scenario.text, list(scenario.overrides), plain, left_out]
+    asked_for = json.loads(json.dumps(asdict(settings), default=str))
+    asked = [__version__, name, scenario.text, list(scenario.overrides), asked_for, left_out]
     # Files may have changed since.
     identity = json.dumps([*asked, *filter(None, [scenario.motions()])], sort_keys=True)
     with only_writer(out) as out:
@@ -129,14 +157,21 @@ def run_study(
         with _crew(workers, scheduler) as crew:
             tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
             answer = module.run(studied, settings, tools)
-        verdict, failures = list(answer["verdict"]), tools.failures
+        panels, notes, failures = [], [], tools.failures
+        known = " ".join([answer.found, *answer.notes] if isinstance(answer, Answer) else answer["verdict"])
         # Unless the study has told it itself.
-        if failures and failures[0] not in " ".join(verdict):
-            verdict.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
+        if failures and failures[0] not in known:
+            notes.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
         if left_out:
-            verdict.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
-        answer = {"status": Status.OK, "message": " ".join(verdict), "study": name, "left_out": left_out, **answer,
-                  "verdict": verdict}  # fmt: skip
+            notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
+        if isinstance(answer, Answer):
+            panels = plain(answer.panels)
+            written = {**written_units(scenario), **answer.written}
+            answer = as_json(replace(answer, notes=[*answer.notes, *notes], written=written))
+        else:
+            answer = {**answer, "verdict": [*answer["verdict"], *notes]}
+        answer = {"status": Status.OK, "message": " ".join(answer["verdict"]), "study": name, "left_out": left_out,
+                  **answer}  # fmt: skip
         libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {
             "python": platform.python_version()
         }
@@ -147,10 +182,10 @@ def run_study(
             "question": scenario.question,
             "overrides": list(scenario.overrides),
             "study": name,
-            "settings": plain,
+            "settings": asked_for,
+            "asks": info.asks,
         }
-        names = (getattr(module, name, {}) for name in ("units", "ALONG"))
-        write_study(out, scenario.text, scenario.resolved(), meta, answer, *names)
+        write_study(out, scenario.text, scenario.resolved(), meta, answer, info.units, info.along, panels)
         journal.done()
     return {**answer, "archive": str(out)}
 
@@ -159,19 +194,18 @@ def _is_radial(scene) -> bool:
     return isinstance(scene, RadialScene)
 
 
-def _refuse_seal(name: str, module, scene):
+def _refuse_seal(name: str, info: Info, scene):
     """Raises SceneError for a seal of a kind that the study `name` does not know."""
-    known = getattr(module, "ANY_SEAL", False) or _is_radial(scene) == getattr(module, "RADIAL", False)
-    if not known:
+    if info.seals not in ("any", "radial" if _is_radial(scene) else "face"):
         study = name.replace("_", "-")
         if _is_radial(scene):
             key, found = "lip" if scene.lip else "circumferential", "a radial seal"
             raise SceneError(key, found, f"a face seal for {study}; of radial ones there are followability and sweep")
         raise SceneError("film", "a face seal", f"[lip] or [circumferential]: {study} is of radial seals")
-    if _is_radial(scene) or getattr(module, "WITH_WAVES", False):
+    if _is_radial(scene) or info.wavy:
         return
     if waves_of(scene):
-        beside = getattr(module, "OF_WAVES", "")
+        beside = info.of_waves
         key = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
         raise SceneError(
             key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around{beside}"

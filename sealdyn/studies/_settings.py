@@ -9,7 +9,7 @@ from ..scenario.reader import ScenarioFile
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
 from . import study_names
-from ._runner import study_module
+from ._runner import study_info, study_module
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def refuse_settings(scenario) -> None:
 
 def time_of(name: str) -> str:
     """How long study `name` takes, in words."""
-    words, seconds = study_module(name.replace("-", "_")).TIMED
+    words, seconds = study_info(name.replace("-", "_")).timed
     return f"{seconds} s of processor time on one core with `{words}` and no other settings"
 
 

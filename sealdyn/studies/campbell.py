@@ -8,27 +8,34 @@ import numpy as np
 from scipy.linalg import eig
 from scipy.optimize import brentq, linear_sum_assignment
 
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
+from ..quantities import in_words
 from ..scene.variants import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
-from ._words import frequencies
-from ._words import speed as speed_words
+from . import Info
 
-WITH_WAVES = True
-REFUSES = ("secondary-seal",)
-ALONG = {"modes": ("speed",)}
-units = dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s") | {"growth_rate": "1/s"}
-units |= dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1")
+INFO = Info(
+    timed=("fms_reference", 2),
+    asks="At which frequencies does the seal whirl?",
+    refuses=("secondary-seal",),
+    wavy=True,
+    units={
+        **dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s"), "growth_rate": "1/s",
+        **dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1"),
+    },
+    along={"modes": ("speed",)},
+)  # fmt: skip
 # Shapes of neighbouring speeds that resemble each other less than this ask for a speed between them.
 ALIKE, HALVINGS = 0.97, 7
 NOT_OSCILLATING = 1e-9
 # Of their size: eigenvalues that differ by less are equal.
 SAME = 1e-9
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 2)
+# Of a decrement: beyond, a mode hardly oscillates and its curve would hide the others.
+MOST_DECREMENT = 100.0
+DASHES = {"forward": "", "backward": "dashed", "axial": "dotted", "none": "dashdot"}
+CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
 @dataclass(frozen=True)
@@ -49,7 +56,7 @@ class Settings:
     """Orders of the shaft speed that are drawn besides 1x and 1/2x."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Modes over speed, where they meet the order lines, and where they turn or lose their damping."""
     scene = frozen_at_start(scenario.scene)
     model, own = Model(scene), abs(scene.shaft.speed)
@@ -69,7 +76,7 @@ def run(scenario, settings, tools) -> dict:
     modes = described(values, shapes[:, :, :count], speeds)
     more = [settings.lines] if isinstance(settings.lines, int | float) else list(settings.lines)
     lines = sorted({1.0, 0.5, *map(float, more)}, reverse=True)
-    answer = {
+    numbers = {
         "speed": speeds.tolist(),
         "unit": settings.unit,
         "own_speed": own,
@@ -80,7 +87,8 @@ def run(scenario, settings, tools) -> dict:
         "stator_speed": scene.stator.speed,
         "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
     }
-    return answer | {"verdict": _verdict(answer)}
+    written = {"rad/s": settings.unit}
+    return Answer(numbers, _found(numbers, written), [_table(numbers)], _panels(numbers), written=written)
 
 
 # --- following modes -----------------------------------------------------------------------------------
@@ -267,51 +275,87 @@ def thresholds(modes, speeds) -> list[dict]:
     return found
 
 
-def _verdict(answer) -> list[str]:
-    said, ends = [], (answer["speed"][0], answer["speed"][-1])
-    turning = answer["stator_speed"]
-    if turning:
-        said.append(f"The stator keeps its {turning:.5g} rad/s at every shaft speed.")
-    for number, mode in enumerate(answer["modes"], 1):
-        low, high = mode["frequency"][0], mode["frequency"][-1]
-        damping = "" if any(mode["growth_rate"]) else ", undamped"
-        way = {"none": "does not oscillate", "axial": "oscillates"}.get(
-            mode["direction"], f"mostly {mode['direction']}"
-        )
-        words = f"{frequencies(low, high)} at a shaft speed of {speed_words(ends[0])} to {speed_words(ends[1])}"
-        words = "" if mode["direction"] == "none" and low == high == 0.0 else f": {words}"
-        said.append(f"Mode {number} ({mode['kind']}, {way}{damping}){words}.")
-    growing = [f"mode {number} ({mode['kind']})" for number, mode in enumerate(answer["modes"], 1) if _grows(mode)]
+def _found(numbers, written) -> str:
+    """The first loss of damping, or what there is in its place."""
+    turns = [point for point in numbers["thresholds"] if point["what"] == "damping"]
+    growing = [number for number, mode in enumerate(numbers["modes"], 1) if _grows(mode)]
+    met = [crossing for crossing in numbers["crossings"] if crossing["line"] == 1.0]
     if growing:
-        said.append(f"Unstable at every speed of this range: {', '.join(growing)}.")
-    for point in answer["thresholds"]:
-        if point["what"] == "damping":
-            ratio = (
-                "" if point["whirl_ratio"] is None else f", whirling at {point['whirl_ratio']:.3g} of the shaft speed"
-            )
-            said.append(f"Mode {point['mode']} loses or regains its damping at {speed_words(point['speed'])}{ratio}.")
-        else:
-            said.append(f"Mode {point['mode']} changes its direction of whirl at {speed_words(point['speed'])}.")
-    said += _met(answer["crossings"], answer["lines"])
-    for c in answer["stator_crossings"]:
-        said.append(f"Mode {c['mode']} meets the stator's own speed at a shaft speed of {speed_words(c['speed'])}.")
-    if turning and not answer["stator_crossings"]:
-        said.append("No mode meets the stator's own speed in this range.")
-    return said
+        return f"Unstable at every speed of this range: mode {' and '.join(map(str, growing))}."
+    if turns:
+        first = min(turns, key=lambda point: point["speed"])
+        mode, k = numbers["modes"][first["mode"] - 1], np.searchsorted(numbers["speed"], first["speed"])
+        change = "loses" if mode["growth_rate"][min(k, len(numbers["speed"]) - 1)] > 0.0 else "regains"
+        return f"Mode {first['mode']} {change} its damping at {in_words('speed', first['speed'], written, 5)}."
+    if met:
+        first = min(met, key=lambda crossing: crossing["speed"])
+        return f"Mode {first['mode']} meets once per turn at {in_words('speed', first['speed'], written, 5)}."
+    return "No mode meets once per turn or changes its damping in this range."
 
 
-def _met(crossings, lines) -> list[str]:
-    """Where modes meet the order lines: a sentence for each mode and line, and of once per turn if there is none."""
-    said = []
-    for line in lines:
-        name = {1.0: "once per turn", 0.5: "half the shaft speed"}.get(line, f"{line:g} times the shaft speed")
-        here = [c for c in crossings if c["line"] == line]
-        for mode in dict.fromkeys(c["mode"] for c in here):
-            at = " and ".join(speed_words(c["speed"]) for c in here if c["mode"] == mode)
-            said.append(f"Mode {mode} meets {name} at {at}.")
-        if line == 1.0 and not here:
-            said.append(f"No mode meets {name} in this range.")
-    return said
+def _table(numbers) -> Table:
+    """A row a mode: what it is, and the speeds at which something happens to it."""
+    lines = sorted(numbers["lines"], reverse=True)
+    columns = [("1", "mode"), ("1", "kind"), ("1", "whirl"), ("speed", "frequency from"), ("speed", "to")]
+    columns += [("speed", f"meets {line:g}x") for line in lines]
+    columns += [("speed", "damping changes"), ("1", "whirl ratio"), ("speed", "whirl turns round")]
+    columns += [("speed", "meets the stator's speed")] if numbers["stator_speed"] else []
+    rows = []
+    for number, mode in enumerate(numbers["modes"], 1):
+        events = [
+            [c["speed"] for c in numbers["crossings"] if (c["mode"], c["line"]) == (number, line)] for line in lines
+        ]
+        own = [point for point in numbers["thresholds"] if point["mode"] == number]
+        damping = [point for point in own if point["what"] == "damping"]
+        events += [[p["speed"] for p in damping], [p["whirl_ratio"] for p in damping]]
+        events += [[p["speed"] for p in own if p["what"] == "direction"]]
+        if numbers["stator_speed"]:
+            events += [[c["speed"] for c in numbers["stator_crossings"] if c["mode"] == number]]
+        name = [number, mode["kind"], mode["direction"], mode["frequency"][0], mode["frequency"][-1]]
+        # What happens more than once takes a row each time.
+        for k in range(max(1, *map(len, events))):
+            rows.append([*(name if k == 0 else [None] * len(name)), *(e[k] if k < len(e) else None for e in events)])
+    return Table("modes", columns, rows)
+
+
+def _panels(numbers) -> list[Panel]:
+    """Frequencies beside decrements, over speed."""
+    speed, modes = numbers["speed"], numbers["modes"]
+    frequencies, decrements, crossings = [], [], numbers["crossings"]
+    for k, mode in enumerate(modes):
+        colour = CYCLE[k % len(CYCLE)]
+        # Each direction of whirl has its dashes; a curve goes on to the point where the next begins.
+        for way in dict.fromkeys(mode["directions"]):
+            near = [way in mode["directions"][max(0, j - 1) : j + 1] for j in range(len(speed))]
+            part = [value if there else None for value, there in zip(mode["frequency"], near, strict=True)]
+            if any(part):
+                label = f"mode {k + 1}, {mode['kind'] if way == 'axial' else way}"
+                frequencies.append(Series("line", speed, part, label=label, style=f"{colour} {DASHES[way]} "))
+        values = [d if d is not None and abs(d) < MOST_DECREMENT else None for d in mode["log_decrement"]]
+        if any(value is not None for value in values):
+            decrements.append(Series("line", speed, values, label=f"mode {k + 1}", style=colour))
+    highest = max((max(mode["frequency"]) for mode in modes), default=0.0)
+    top = min(1.08 * highest, 1.25 * speed[-1]) or None
+    for line in numbers["lines"]:
+        frequencies.append(Series("line", [speed[0], speed[-1]], [line * speed[0], line * speed[-1]],
+                                  label=f"{line:g}x shaft speed", style="grey thin dotted"))  # fmt: skip
+    if crossings:
+        at = [[c[name] for c in crossings] for name in ("speed", "frequency")]
+        frequencies.append(Series("marks", *at, label="meets an order line", style="black open circle front"))
+    turns = [point["speed"] for point in numbers["thresholds"] if point["what"] == "damping"]
+    levels = [Level(at, "", upright=True, style="bad dashed", number=True) for at in turns]
+    own = [Level(numbers["own_speed"], "this scenario", upright=True, style="black dotted")]
+    own = own if speed[0] < numbers["own_speed"] < speed[-1] else []
+    over = Axis("speed", low=speed[0], high=speed[-1])
+    width = max(0.02, min((abs(v) for one in decrements for v in one.y if v), default=1.0))
+    sizes = [abs(v) for one in decrements for v in one.y if v is not None]
+    scale = Axis("log_decrement", scale="asinh" if max(sizes, default=0.0) > 30 * width else "linear", width=width)
+    zero = [Level(0.0, "stable above", style="black")]
+    return [
+        Panel("Whirl frequency", over, Axis("rad/s", "whirl frequency", low=0.0, high=top), frequencies, levels + own,
+              wide=1.4),
+        Panel("Damping", over, scale, decrements, zero + levels, note="no mode oscillates" * (not decrements)),
+    ]  # fmt: skip
 
 
 def _grows(mode) -> bool:

@@ -1,11 +1,11 @@
-"""Regression of numbers: the `--json` of every scenario's run and of every study on its timed scenario, kept and compared.
+"""Regression of numbers: the `--json` of every scenario's run and of every study on its timed scenario.
 
     python tests/benchmark/same_numbers.py keep numbers.json [NAME ...]     (NAME: a scenario's or a study's)
     python tests/benchmark/same_numbers.py compare before.json after.json
 
 A refactoring changes no number: every finite number, null, truth value, status, enumeration and exit code stands under
-its old key, equal to the bit on one machine.  Sentences are not compared; the keys in EXCEPTED are not either.  Commands
-run from this checkout, one after the other; `compare` ends with exit code 1 where anything differs.
+its old key, equal to the bit on one machine.  Sentences are not compared; the keys in EXCEPTED are not either.
+Commands run from this checkout, one after the other; `compare` ends with exit code 1 where anything differs.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""What each study costs: processor time of one run of every study with its default settings, on one core: what TIMED
+"""What each study costs: processor time of one run of every study with its default settings, on one core: what `timed`
 in its file and the table of the README say.
 
     python tests/benchmark/study_times.py [study ...]
@@ -17,10 +17,10 @@ from pathlib import Path
 
 from sealdyn.scenario.shipped import shipped_paths
 from sealdyn.studies import study_names
-from sealdyn.studies._runner import study_module
+from sealdyn.studies._runner import study_info
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = {name: study_module(name.replace("-", "_")).TIMED[0].split() for name in study_names()}
+COMMANDS = {name: study_info(name.replace("-", "_")).timed[0].split() for name in study_names()}
 
 
 def cost(study: str, scenario: str, *flags: str) -> tuple[float, str]:

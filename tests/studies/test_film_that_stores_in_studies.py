@@ -43,7 +43,7 @@ def modes_at(scenario, speed):
 @pytest.mark.parametrize("arrangement", ["fms", "fmr"])
 def test_campbell_follows_the_modes_of_every_speed(arrangement):
     scenario = reference(arrangement)
-    found = campbell.run(scenario, campbell.Settings(points=25, speed_to=9000.0), InProcess())
+    found = campbell.run(scenario, campbell.Settings(points=25, speed_to=9000.0), InProcess()).numbers
     for i in (0, 8, 24):
         expected = [m.value for m in modes_at(scenario, found["speed"][i])]
         for mode in found["modes"]:
@@ -57,7 +57,7 @@ def test_campbell_follows_the_modes_of_every_speed(arrangement):
 
 def test_campbell_crosses_zero_damping_at_the_critical_speed():
     scenario = reference()
-    found = campbell.run(scenario, campbell.Settings(points=61, speed_to=12000.0), InProcess())
+    found = campbell.run(scenario, campbell.Settings(points=61, speed_to=12000.0), InProcess()).numbers
     model = Model(frozen_at_start(scenario.scene))
     critical = whirl_speeds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
     crossing = next(p["speed"] for p in found["thresholds"] if p["what"] == "damping")

@@ -8,12 +8,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from drawn import crossed, drawn, panel, text_trouble
-from in_process import InProcess
+from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SCENARIO, SUMMARY, drop, first, pressures, whirling, write
 
-from sealdyn import read_scenario
-from sealdyn.archive import ArchiveWriter, Series, write_study
+from sealdyn.archive import ArchiveWriter, Series
 from sealdyn.report.charts import (
     film,
     orbit,
@@ -21,15 +19,11 @@ from sealdyn.report.charts import (
     poincare,
     record,
     spectrum,
-    study_campbell,
-    study_transmissibility,
 )
 from sealdyn.report.charts.film import thickness
 from sealdyn.report.charts.orbit import hull
 from sealdyn.report.charts.record import Run
 from sealdyn.report.charts.spectrum import order_spectrum
-from sealdyn.studies import campbell
-from sealdyn.studies.transmissibility import study as transmissibility
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 KINDS = {"overview": overview, "orbit": orbit, "film": film, "spectrum": spectrum, "poincare": poincare}
@@ -227,42 +221,3 @@ def test_importing_the_charts_room_does_not_import_matplotlib():
     code = "import sys, json, sealdyn.report.charts; print(json.dumps('matplotlib' in sys.modules))"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert json.loads(said.stdout) is False
-
-
-# --- studies -----------------------------------------------------------------------------------------
-
-
-STUDIES = {
-    (campbell, study_campbell): [
-        ("fms_reference", [], {}),
-        ("fmr_reference", [], {}),
-        ("fmr_reference", ["rotor.polar_inertia=2.6667e-4"], {"lines": (0.5, 1.0, 2.0), "unit": "rad/s"}),
-        ("fmsr_both_flexible", [], {}),
-    ],
-    (transmissibility, study_transmissibility): [
-        ("fmr_reference", [], {"points": 61, "time_points": 0}),
-        ("fms_reference", ["film.model=linear"], {"points": 31, "time_points": 1, "speed_to": 1000.0}),
-        ("fmsr_both_flexible", ["stator.speed=-300"], {"points": 61, "time_points": 0, "unit": "rpm"}),
-        ("fmr_reference", [], {"points": 61, "time_points": 0, "speed_to": 1e5}),
-    ],
-}
-
-
-@pytest.mark.parametrize(
-    "modules, name, overrides, settings", [(modules, *case) for modules, cases in STUDIES.items() for case in cases]
-)
-def test_study_charts_are_legible(tmp_path, modules, name, overrides, settings):
-    study, chart = modules
-    scenario = read_scenario(SCENARIOS / f"{name}.toml", overrides)
-    answer = study.run(scenario, study.Settings(**settings), InProcess())
-    meta = {"study": chart.__name__.split(".study_")[-1], "name": name, "question": scenario.question}
-    path = write_study(tmp_path / "s.h5", scenario.text, {}, meta, answer, study.units)
-    figure = drawn(chart, path, tmp_path / "s.png", written=False)
-    assert text_trouble(figure) == ([], [])
-    if study is campbell:
-        assert not crossed(figure.axes[0])
-    else:
-        heights = [ax.get_position().y0 for ax in figure.axes[:5]]
-        # Amplitudes above, the phases of the first two below them.
-        assert heights[0] == heights[1] == heights[2] > heights[3] == heights[4]
-        assert figure.axes[3].get_ylabel().endswith(", deg")

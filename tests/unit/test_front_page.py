@@ -12,7 +12,7 @@ from sealdyn import studies
 from sealdyn.analysis.design_rules import rule_names
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import study_names
-from sealdyn.studies._runner import study_module
+from sealdyn.studies._runner import study_info
 
 README = (Path(__file__).parents[2] / "README.md").read_text()
 
@@ -65,7 +65,7 @@ def test_every_study_has_its_question_in_the_readme():
 
 @pytest.mark.parametrize("name", study_names())
 def test_times_in_the_readme_are_those_beside_the_studies(name):
-    words, seconds = study_module(name.replace("-", "_")).TIMED
+    words, seconds = study_info(name.replace("-", "_")).timed
     (row,) = re.findall(rf"^\|.* \| `{name}`, (\w+).*\| (\d+) \|$", README, re.MULTILINE)
     assert row == (words.split()[0], str(seconds))
 

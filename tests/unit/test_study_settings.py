@@ -11,7 +11,7 @@ from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
 from sealdyn.studies import contact_onset, steady_state, study_names, sweep
-from sealdyn.studies._runner import study_module
+from sealdyn.studies._runner import study_info, study_module
 from sealdyn.studies._settings import schema_with_studies, settings_of
 from sealdyn.studies.failures import study as failures
 from sealdyn.studies.rub import study as rub
@@ -111,7 +111,7 @@ def test_units_of_keys():
 @pytest.mark.parametrize("name", study_names())
 def test_every_setting_is_described_wherever_it_is_asked_for(name):
     """Help, JSON schema: what it holds, its unit, its default, what it means; and the time that the study takes."""
-    _, seconds = study_module(name.replace("-", "_")).TIMED
+    _, seconds = study_info(name.replace("-", "_")).timed
     help = " ".join(_about_study(name).replace("\\\\[", "[").split())
     table = schema_with_studies()["properties"]["study"]["properties"][name.replace("-", "_")]
     assert f"{seconds} s of processor time" in help and f"{seconds} s of processor time" in table["description"]

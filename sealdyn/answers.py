@@ -1,0 +1,162 @@
+"""An answer declares what it is: numbers, one sentence, tables and panels, all plain data in SI.
+
+Whoever shows it (terminal, figure, page, file) takes names and units from `quantities`; nobody formats by hand.
+`plain` and `panels_of` carry panels through an archive.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
+
+from .quantities import quantity
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of numbers (SI), words, truths or None below `columns`, pairs of a quantity (or SI unit) and a heading.
+    `written` {quantity or SI unit: unit} goes before the units that a scenario wrote."""
+
+    name: str
+    columns: Sequence[tuple[str, str]]
+    rows: Sequence[Sequence[Any]]
+    written: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A quantity (or SI unit) along an axis, and its name, by default that of the quantity.
+
+    `scale` "linear", "log" or "asinh" (linear below `width`, SI); `low`, `high` (SI) where the axis is not to fit what
+    is drawn; `words` names places 0, 1, 2 ... of an axis of words."""
+
+    quantity: str = "1"
+    label: str = ""
+    scale: str = "linear"
+    low: float | None = None
+    high: float | None = None
+    width: float | None = None
+    words: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Series:
+    """What is drawn over x and y (SI; None leaves a gap).
+
+    `kind`: "line"; "marks"; "shade" between y and `z` over x; "bars" at x as high as y (`flat`: lying, at y as long as
+    x); "map" of `z` [y][x] in colours; "contour" of `z` [y][x] at zero; "words": `names` at x, y.
+    `style`: words in any order: a role that has a colour of its own (film, tilt, leakage, contact, theory, stator,
+    rotor, good, bad, warn, black, grey, pale; first, second ... seventh of a cycle), dashes (dashed, dotted,
+    dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick), open, thin, thick, faint,
+    front (above all else).  `error`: bars of error on y.  `names`: a word at each mark or bar.  `right`: belongs to
+    the axis on the right."""
+
+    kind: str
+    x: Sequence
+    y: Sequence
+    z: Sequence | None = None
+    label: str = ""
+    style: str = ""
+    error: Sequence | None = None
+    names: Sequence[str] = ()
+    right: bool = False
+
+
+@dataclass(frozen=True)
+class Level:
+    """A value (SI) of the y axis, or of the x axis (`upright`), drawn through the panel, its meaning and, with
+    `number`, the value itself as its label; `to`: a band up to there.  `legend`: named in the legend instead."""
+
+    value: float
+    meaning: str = ""
+    upright: bool = False
+    style: str = "grey dashed"
+    number: bool = False
+    to: float | None = None
+    legend: bool = False
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes.  `below`: stands under the panel before it and shares its x axis; others stand side by side.
+    `wide`, `tall`: shares of the figure's width and height.  `right`: the axis on the right.  `colour`: of a map.
+    `polar`: x an angle, y a radius.  `equal`: both axes in one scale.  `down`: y grows downwards.
+    `note`: words in a corner; a panel without series says them in its middle."""
+
+    title: str
+    x: Axis = Axis()
+    y: Axis = Axis()
+    series: Sequence[Series] = ()
+    levels: Sequence[Level] = ()
+    right: Axis | None = None
+    colour: Axis | None = None
+    note: str = ""
+    below: bool = False
+    wide: float = 1.0
+    tall: float = 1.0
+    polar: bool = False
+    equal: bool = False
+    down: bool = False
+    columns: int = 1
+
+
+@dataclass(frozen=True)
+class Answer:
+    """`numbers` (SI, nested: what `--json` prints), what was `found` in one sentence, `tables`, `panels`, `notes` (what
+    a number cannot say: limits, failed points), and `written` {quantity or SI unit: unit} as the scenario has it."""
+
+    numbers: dict[str, Any]
+    found: str
+    tables: Sequence[Table] = ()
+    panels: Sequence[Panel] = ()
+    notes: Sequence[str] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
+
+
+def as_json(answer: Answer) -> dict[str, Any]:
+    """What `--json` prints of an answer: its numbers, `found`, `notes`, `tables`, units as `written`, and `verdict`,
+    the sentences of both.  **Raises** ValueError where a number has one of these names."""
+    words = {"found": answer.found, "notes": list(answer.notes), "verdict": [answer.found, *answer.notes]}
+    words |= {"tables": [_table(table) for table in answer.tables], "written": dict(answer.written)}
+    if twice := words.keys() & answer.numbers.keys():
+        raise ValueError(f"numbers named {sorted(twice)}")
+    return {**answer.numbers, **words}
+
+
+def _table(table: Table) -> dict:
+    """A table as JSON has it; its columns keep their quantity, from which names and units follow."""
+    columns = [{"name": name, "unit": quantity(held).unit, "quantity": held} for held, name in table.columns]
+    written = {"written": dict(table.written)} if table.written else {}
+    return {"name": table.name, "columns": columns, "rows": _data(table.rows), **written}
+
+
+def plain(panels: Sequence[Panel]) -> list[dict]:
+    """Panels as JSON has them: lists for arrays, null for what is no number, fields at their defaults left out."""
+    return [_data(panel) for panel in panels]
+
+
+def panels_of(held: Sequence[dict]) -> list[Panel]:
+    """Panels of what `plain` returned.  **Raises** TypeError for anything else."""
+    out = []
+    for row in held:
+        axes = {name: Axis(**row[name]) for name in ("x", "y", "right", "colour") if name in row}
+        parts = {"series": [Series(**one) for one in row.get("series", ())]}
+        parts["levels"] = [Level(**one) for one in row.get("levels", ())]
+        out.append(Panel(**{**row, **axes, **parts}))
+    return out
+
+
+def _data(value):
+    """JSON-ready data of a value of any panel."""
+    if is_dataclass(value):
+        held = ((part, getattr(value, part.name)) for part in fields(value))
+        return {part.name: _data(one) for part, one in held if one is not part.default and not _is_blank(one)}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_data(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _is_blank(value) -> bool:
+    return value is None or (isinstance(value, str | list | tuple) and not value)

@@ -1,0 +1,137 @@
+"""Quantities: what each number of an answer is called, its SI unit, and the unit in which a person reads it.
+
+One table serves the terminal, figures, pages, comparisons and archives; a number itself is SI wherever it is kept.
+A quantity that is not in the table is named by its SI unit ("m", "rad/s"); "1" or "" has none.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+RPM, HERTZ, DEGREES = 30 / math.pi, 0.5 / math.pi, 180 / math.pi
+
+
+class Quantity(NamedTuple):
+    """`unit` (SI), long `name`, the unit `shown` to a person with its `factor` ("": by size, SIZES), and the `scale` on
+    which a run's accuracy bounds its error: "clearance", "tilt" (clearance over outer radius), "" for none."""
+
+    unit: str
+    name: str = ""
+    shown: str = ""
+    factor: float = 1.0
+    scale: str = ""
+
+
+# SI unit -> units from the size (SI) on at which they begin, the smallest first, with the factor.
+SIZES = {
+    "m": ((0.0, "nm", 1e9), (5e-8, "um", 1e6), (1e-3, "mm", 1e3)),
+    "rad": ((0.0, "nrad", 1e9), (5e-8, "urad", 1e6), (1e-3, "mrad", 1e3)),
+    "rad/s": ((0.0, "rpm", RPM),),
+    "Pa": ((0.0, "Pa", 1.0), (1e3, "bar", 1e-5)),
+    "Pa*s": ((0.0, "uPa s", 1e6), (1e-4, "mPa s", 1e3)),
+    "m^3/s": ((0.0, "ml/h", 3.6e9), (1e-5, "l/min", 6e4)),
+    "kg/s": ((0.0, "g/h", 3.6e6), (1e-3, "kg/h", 3600.0)),
+    "m^3": ((0.0, "mm^3", 1e9),),
+    "m^2": ((0.0, "mm^2", 1e6),),
+    "s": ((0.0, "us", 1e6), (1e-4, "ms", 1e3), (1.0, "s", 1.0), (600.0, "min", 1 / 60), (7200.0, "h", 1 / 3600)),
+    "N/m": ((0.0, "N/um", 1e-6), (1e11, "kN/um", 1e-9)),
+    "N m/rad": ((0.0, "N m/rad", 1.0), (1e4, "kN m/rad", 1e-3), (1e7, "MN m/rad", 1e-6)),
+    "N m s/rad": ((0.0, "N m s/rad", 1.0), (1e4, "kN m s/rad", 1e-3), (1e6, "MN m s/rad", 1e-6)),
+    "m/s": ((0.0, "um/s", 1e6), (1e-3, "mm/s", 1e3), (1.0, "m/s", 1.0)),
+    "Pa*m/s": ((0.0, "kPa m/s", 1e-3), (1e4, "MPa m/s", 1e-6)),
+}
+
+QUANTITIES = {
+    # Film and faces
+    "clearance": Quantity("m", "clearance", scale="clearance"),
+    "h_min": Quantity("m", "thinnest film", "um", 1e6, "clearance"),
+    "film_thickness": Quantity("m", "film thickness", "um", 1e6, "clearance"),
+    "largest_gap": Quantity("m", "largest gap", "um", 1e6, "clearance"),
+    "depth": Quantity("m", "depth"),
+    "radius": Quantity("m", "radius", "mm", 1e3),
+    "misalignment": Quantity("rad", "relative misalignment", scale="tilt"),
+    "tilt": Quantity("rad", "tilt", scale="tilt"),
+    "angle": Quantity("rad", "angle", "deg", DEGREES),
+    "phase": Quantity("deg", "phase", "deg", 1.0),
+    "pressure": Quantity("Pa", "pressure", "bar", 1e-5),
+    "contact_pressure": Quantity("Pa", "contact pressure", "MPa", 1e-6),
+    "leakage": Quantity("m^3/s", "leakage"),
+    "mass_flow": Quantity("kg/s", "mass flow", "kg/h", 3600.0),
+    "cavitated_fraction": Quantity("1", "cavitated share of the face", "%", 100.0),
+    "share": Quantity("1", "share", "%", 100.0),
+    "viscosity": Quantity("Pa*s", "viscosity"),
+    # Forces and power
+    "force": Quantity("N", "force", "N", 1.0),
+    "moment": Quantity("N m", "moment", "N m", 1.0),
+    "torque": Quantity("N m", "torque", "N m", 1.0),
+    "power": Quantity("W", "power", "W", 1.0),
+    "friction_power": Quantity("W", "friction", "W", 1.0),
+    "axial_stiffness": Quantity("N/m", "axial stiffness"),
+    "axial_damping": Quantity("N s/m", "axial damping", "N s/m", 1.0),
+    "tilt_stiffness": Quantity("N m/rad", "tilt stiffness"),
+    "tilt_damping": Quantity("N m s/rad", "tilt damping"),
+    "wear_rate": Quantity("m/s", "wear rate", "um/h", 3.6e9),
+    "volume": Quantity("m^3", "volume"),
+    # Motion
+    "time": Quantity("s", "time"),
+    "turns": Quantity("1", "turns of the shaft"),
+    "speed": Quantity("rad/s", "shaft speed"),
+    "frequency": Quantity("rad/s", "frequency", "Hz", HERTZ),
+    "frequency_hz": Quantity("Hz", "frequency", "Hz", 1.0),
+    "growth_rate": Quantity("1/s", "growth rate", "1/s", 1.0),
+    "acceleration": Quantity("m/s^2", "acceleration", "g", 1 / 9.80665),
+    "whirl_ratio": Quantity("1", "whirl ratio"),
+    "log_decrement": Quantity("1", "logarithmic decrement"),
+    "transmissibility": Quantity("rad/rad", "transmissibility", "", 1.0),
+    "temperature": Quantity("K", "temperature", "K", 1.0),
+}
+
+
+def quantity(name: str) -> Quantity:
+    """The quantity of a name, or one that an SI unit names ("N/m")."""
+    return QUANTITIES.get(name) or Quantity(name or "1")
+
+
+def shown_in(name: str, values: Iterable = (), written: Mapping[str, str] | None = None) -> tuple[str, float]:
+    """Unit in which `values` (SI) of a quantity are read, and its factor.
+
+    `written`: {quantity or SI unit: unit} as a scenario wrote it, which goes before the table.  Otherwise the table's
+    unit, or for a quantity of many sizes the one that suits the largest value.  "" of a pure number.
+    """
+    held = quantity(name)
+    asked = (written or {}).get(name) or (None if held.shown else (written or {}).get(held.unit))
+    if asked and (factor := factor_of(held.unit, asked)):
+        return asked, factor
+    if held.shown or name == "transmissibility":
+        return held.shown, held.factor
+    size = max((abs(v) for v in values if isinstance(v, int | float) and math.isfinite(v)), default=0.0)
+    sizes = SIZES.get(held.unit)
+    if sizes is None:
+        return ("" if held.unit in ("", "1", "rad/rad") else held.unit.replace("*", " ")), 1.0
+    # Zeros are read in the unit of everyday.
+    fits = sizes[1:2] or sizes if size == 0.0 else [row for row in sizes if size >= row[0]]
+    _, unit, factor = fits[-1]
+    return unit, factor
+
+
+def factor_of(unit: str, shown: str) -> float | None:
+    """How many of the unit `shown` make one of the SI `unit`, None where the table has no such pair."""
+    if shown == unit:
+        return 1.0
+    sized = {name: factor for _, name, factor in SIZES.get(unit, ())}
+    named = {held.shown: held.factor for held in QUANTITIES.values() if held.unit == unit and held.shown}
+    return (sized | named).get(shown)
+
+
+def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:
+    """A number of so many digits, speeds and flows of five or six figures without an exponent; "-" of None."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    words = f"{value * factor:.{digits}g}"
+    return f"{float(words):.0f}" if words.endswith(("e+04", "e+05", "e+06")) else words
+
+
+def in_words(name: str, value: float | None, written: Mapping[str, str] | None = None, digits: int = 4) -> str:
+    """A value (SI) with its unit: "4.898 mrad", "9549 rpm"."""
+    unit, factor = shown_in(name, [value], written)
+    return f"{number(value, factor, digits)} {unit}".strip()
