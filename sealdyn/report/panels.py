@@ -360,8 +360,8 @@ def _colours_of(colour: Axis, values):
 
 
 # Words whose colours mean something.
-MEANING = {"stable": "good", "ok": "good", "yes": "good", "unstable": "bad", "collapsed": "bad", "no": "bad",
-           "contact": "bad", "failed": "bad", "neutral": "warn", "inaccurate": "warn"}  # fmt: skip
+MEANING = {"stable": "good", Status.OK: "good", "unstable": "bad", Status.COLLAPSED: "bad", Status.FAILED: "bad",
+           "contact": "bad", "neutral": "warn", Status.INACCURATE: "warn"}  # fmt: skip
 
 
 def _roles(words):
