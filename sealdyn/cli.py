@@ -273,7 +273,7 @@ def _drawn(chart: str, archive: Path) -> str | None:
 def _large(file, scenario, yes: bool) -> bool:
     """Whether a large run is wanted: said, or asked on a terminal; what is worth saying of its size is said."""
     from .scene.scene import SceneError
-    from .simulation.size import refuse_large, size_of
+    from .simulation.plausibility import refuse_large, size_of
 
     size = size_of(scenario)
     try:
@@ -422,10 +422,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .report.text import resolved_lines
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
-    from .simulation.beside_reynolds import beside_reynolds
-    from .simulation.plausibility import before_the_run
+    from .simulation.film_error import beside_reynolds
+    from .simulation.plausibility import before_the_run, size_of
     from .simulation.simulate import prepare_run
-    from .simulation.size import size_of
     from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
@@ -476,7 +475,7 @@ def _refuse_settings(scenario):
 def _check_radial(file, scenario, as_json):
     """The same of a radial seal."""
     from .analysis.radial_rules import findings
-    from .radial_seals.closed_form import said
+    from .radial_seals.followers import said
     from .report.text import resolved_lines
     from .scene.scene import SceneError
     from .simulation.radial import prepare_radial

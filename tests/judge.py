@@ -17,7 +17,7 @@ from scipy.sparse import csc_matrix
 
 from sealdyn.faces.film_thickness import h_min_of
 from sealdyn.faces.geometry import COLLAPSE
-from sealdyn.simulation.second_run import beside_jumps
+from sealdyn.simulation.verification_run import beside_jumps
 from sealdyn.solvers.contract import absolute_tolerances
 from sealdyn.solvers.integrate import solve
 
@@ -27,7 +27,7 @@ class TooLong(Exception):
 
 
 class Instants:
-    """A sink for the columns of LookedAt at given times (m,) (s, of the run); raises TooLong after `deadline` (s, of
+    """A sink for the columns of ErrorScales at given times (m,) (s, of the run); raises TooLong after `deadline` (s, of
     time.process_time)."""
 
     def __init__(self, scales, times, deadline=math.inf):

@@ -275,7 +275,7 @@ class OwnSeal:
         return np.concatenate([mechanical, np.full(self.gas.size, highest * self.scene.film.clearance)])
 
     def columns(self, t, y, piece=None):
-        """Row (2 n + 5,) as LookedAt has it: displacements over `lengths`, rates over these times `rate`, film force
+        """Row (2 n + 5,) as ErrorScales has it: displacements over `lengths`, rates over these times `rate`, film force
         (N), moments about x and y (N m), flow (m^3/s), torque (N m)."""
         now = self._at(t, self.piece(t) if piece is None else piece)
         loads = self._loads(now, self._gap(self._motion(t, y, now)[1]), y[2 * self.n :])

@@ -17,7 +17,7 @@ def findings(scenario, model) -> list[dict]:
     acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
     Raises SceneError where the film has no solution."""
     # Whoever asks for names alone does not wait for arrays.
-    from ..simulation.summary import plain
+    from ..simulation.result import plain
     from .rules._seal import Seal
 
     seal = Seal(scenario.scene, scenario.application or Application(), model)

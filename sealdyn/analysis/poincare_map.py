@@ -16,7 +16,7 @@ from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
-from ..simulation.method_selection import choose_method
+from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, SolverFailure, Status, tolerance_for
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS

@@ -14,7 +14,7 @@ from ..dynamics.extrema import H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
-from ..simulation.method_selection import choose_method
+from ..simulation.selection import choose_method
 from ..solvers.contract import Counts, SolverFailure, Status
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS

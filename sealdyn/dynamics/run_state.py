@@ -27,7 +27,7 @@ class FilmClosed(SceneError):
 class RunState:
     """A model over `duration` (s): its `intervals`, start `y0` (size,), observers (`extrema`, `contacts`, `stick_slip`
     or None), `reasons` (sentences) and `cautions`, and `last`: the segment's index, time in it (s) and unknowns (size,)
-    reached so far; `start` where it starts and why (simulation/start_selection.py), None if nobody chose."""
+    reached so far; `start` where it starts and why (simulation/selection.py), None if nobody chose."""
 
     def __init__(self, model: Model, duration: float):
         self.model, self.duration = model, duration

@@ -5,7 +5,7 @@ import numpy as np
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from . import closed_form
-from .signals import conductance
+from .observers import conductance
 
 # Share of a run in which nothing but the first look at it lies.
 AT_ONCE = 1e-9

@@ -3,7 +3,7 @@
 A run of constant conditions is followed by solvers/global_error.py to its end.  Its first stretch is done on trial with
 a loose tolerance: if that errs little enough the run goes on from there, else it starts again with a tolerance sharper
 in proportion.  Any other run has the cautious tolerance of solvers/contract.py, and is done once more, sharper
-(second_run.py); where the two differ by too much it starts again.
+(verification_run.py); where the two differ by too much it starts again.
 **Valid** estimates, not bounds.
 """
 
@@ -16,15 +16,14 @@ import numpy as np
 from ..dynamics.run_state import RunState
 from ..solvers.advance import Advance
 from ..solvers.block import Block
-from ..solvers.contract import Cause, Counts, SolverFailure, Status, tolerance_for
-from ..solvers.energy_audit import EnergyAudit
+from ..solvers.contract import TIGHTEST, Cause, Counts, SolverFailure, Status, tolerance_for
+from ..solvers.energy_audit import EnergyAudit, missing_energy
 from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
-from .cell_error import cell_error
-from .film_error import model_error
-from .looked_at import LookedAt
+from .film_error import cell_error, model_error
+from .verification_run import LEAST_SHARPER, OTHER, ErrorScales
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -81,7 +80,7 @@ class TrialRun:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Estimated errors of all that is looked at (looked_at.py), relative to the scales of `accuracy`: of the solver, of
+    """Estimated errors of all that is looked at (ErrorScales), relative to the scales of `accuracy`: of the solver, of
     the film against the next higher film model (each None where it cannot be estimated, or there is no higher one),
     both together, and a sentence; `horizon` (s): the time up to which a run that is measured is as exact as asked, None
     where it is to its end.  `cells`: error of cells that stand beside, with what is asked of them, `grid`."""
@@ -124,7 +123,7 @@ def error_estimator(run: RunState, method: str) -> GlobalErrorEstimate | None:
         return None
     asked = model.accuracy
     segment, least = run.segment(0), tolerance_for(method, asked, run.memory)
-    scales = LookedAt(run)
+    scales = ErrorScales(run)
     errors = GlobalErrorEstimate(segment, ERROR_SHARE * asked, least, scales)
     if not errors.sound:
         return None
@@ -188,7 +187,7 @@ def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun 
 
 def solver_error(method: str, tolerance: float, apart: np.ndarray | None) -> float | None:
     """Estimated error of a run that is not followed, by this method with this `tolerance`, from how far it is `apart`
-    (m,) from a sharper one (second_run.py); None if there is none."""
+    (m,) from a sharper one (verification_run.py); None if there is none."""
     if method == "expm":
         # Exact at the steps, and between them as good as the tolerance wants it (tests/convergence).
         return BETWEEN * tolerance
@@ -282,3 +281,100 @@ def certify(
         more = f"more cells_r and cells_theta{_so_many(by_cells, grid)}"
         sentence += f"; cells NOT as fine as asked: try {more}, or a looser grid_accuracy"
     return Certificate(asked, by_solver, by_model, sentence, until, by_cells if grid is not None else None, grid)
+
+
+# Tries in all; the share of the accuracy aimed at, and by how much a tolerance is sharpened at least and at most.
+MOST, AIM, LEAST, SHARPEST = 4, 0.3, 0.1, 1e-3
+# A sharper try that leaves more than this of the error has not helped.
+HELPED = 0.5
+# An error of the size of the motion itself that sharper tolerances do not touch: chaos, and no method helps.
+WHOLE = 0.1
+# Steps of a run beyond which it is not done again, and beyond which not by a method that is not compiled.
+LONG, SLOW, COMPILED = 1_000_000, 1_000, ("adams", "bdf", "ida")
+
+
+@dataclass(frozen=True)
+class Try:
+    """A method, its tolerance (None: what the run's own choice is) and a sentence why; `last`: nothing is tried after
+    it."""
+
+    method: str
+    tolerance: float | None
+    why: str
+    last: bool = False
+
+    def start(self, run):
+        """What `choose_tolerance` returns: a TrialRun or None, and what follows the run's errors or None."""
+        if self.tolerance is None:
+            return choose_tolerance(run, self.method)
+        # What has been estimated before, and too large, is measured now.
+        return TrialRun.without_steps(self.tolerance, f"tolerance {self.tolerance:.1e}"), None
+
+
+def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> Try | None:
+    """What to try after `one`, whose certificate is `found`; None where it is exact enough, did not end well, or
+    nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Try, tolerance, certificate) of
+    those before.  Where a sharper one gives up, what those before have is not lost."""
+    if outcome.status == Status.FAILED and tries and not one.last:
+        return _instead(run, solver, one, outcome, tries)
+    if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
+        return None
+    if one.method == "expm" or one.last or outcome.counts.steps > LONG:
+        return None
+    measured = _measured(tries)
+    stuck = bool(measured) and found["solver"] > HELPED * measured[-1][2]["solver"]
+    # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
+    share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
+    sharp = max(outcome.tolerance * share, LEAST_SHARPER * TIGHTEST)
+    why = f"{one.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"
+    if len(tries) + 1 < MOST and not stuck and sharp < HELPED * outcome.tolerance:
+        return Try(one.method, sharp, why)
+    other, tried = OTHER[one.method], {before[0].method for before in tries}
+    lost = (stuck and found["solver"] > WHOLE) or outcome.counts.steps > SLOW
+    free = (
+        solver == "auto" and not lost and not run.model.unknowns.has_residual_form and other not in (one.method, *tried)
+    )
+    if len(tries) + 1 < MOST and free:
+        return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
+    best = min(measured, key=lambda before: before[2]["solver"], default=None)
+    if best and best[2]["solver"] < HELPED * found["solver"]:
+        return Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
+    return None
+
+
+def _measured(tries: list) -> list:
+    """Those of `tries` that did not give up."""
+    return [before for before in tries if before[2]["solver"] is not None]
+
+
+def _instead(run, solver: str, one: Try, outcome, tries: list) -> Try | None:
+    """What to try where a sharper try `one` gave up: the other method, else the best of those before."""
+    other, tried = OTHER[one.method], {before[0].method for before in tries}
+    why = f"{one.why}; at tolerance {outcome.tolerance:.1e} {one.method} gave up"
+    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (one.method, *tried)
+    if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
+        return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
+    best = min(_measured(tries), key=lambda before: before[2]["solver"], default=None)
+    return best and Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
+
+
+def judged(found: dict, outcome, tries: list):
+    """Certificate and outcome of the last try: "inaccurate" where energy is missing, or where the solver erred by
+    more than was asked, unless errors grow so fast that sharper tries only put off when they show (chaos): then the
+    certificate has a horizon."""
+    if outcome.status != Status.OK:
+        return found, outcome
+    lost = missing_energy(outcome.energy_residual, found["asked"])
+    if lost:
+        return found, replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=lost)
+    if found["solver"] is None or found["solver"] <= found["asked"]:
+        return found, outcome
+    before = tries[-1][2] if tries else None
+    if before and found["horizon"] and before["horizon"] and found["solver"] > HELPED * before["solver"]:
+        said = (
+            f"{found['said'].split('; NOT met')[0]}; within it up to the horizon of predictability, "
+            f"{found['horizon']:.4g} s: later the run stands for its statistics only"
+        )
+        return {**found, "said": said}, outcome
+    message = f"not as exact as asked: estimated {found['solver']:.1e}, asked {found['asked']:.0e}"
+    return found, replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=message)

@@ -1,9 +1,7 @@
-"""How far the motion of a scene with a linear film is from that with the next higher film model, without running that
-one.
+"""How far a film is from a better one, without a run of that.
 
-On the states the linear film visits, the higher film pushes differently; that difference, as a force on the linearised
-rings, gives the difference of the motions (the defect of the lower film, answered linearly).
-**Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the error from the defect; here of a model, derived here.
+Of a linear film its motion from that with the next higher film model (`model_errors`), of a film by lines of radius the
+film over radius and angle (`beside_reynolds`), of a film of cells itself with half of them (`cell_error`).
 """
 
 import math
@@ -11,10 +9,31 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..faces.geometry import DZ, DZ_RATE, FLOW_INNER, FORCE, GAP_STATE_SIZE, GY, GY_RATE
-from ..films import film_module
+from ..faces.film_thickness import h_min
+from ..faces.geometry import (
+    CAVITATED,
+    CONING_RATE,
+    DZ,
+    DZ_RATE,
+    FLOW_INNER,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    MEAN_SPIN,
+    MOMENT_X,
+    MOMENT_Y,
+)
+from ..faces.surfaces import lay_surfaces
+from ..films import film_module, film_name, refused
 from ..numerics.kernel import outer_kernel
+from ..numerics.piecewise_linear import initially
+from ..scene.reynolds import Reynolds
+from ..scene.variants import seals_that_stick
 from ..scene.waviness import waves_of
+from .verification_run import ErrorScales
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.
 FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
@@ -30,6 +49,10 @@ def model_error(run, higher: str = "radial", enough: float = math.inf) -> float 
 
 def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
     """Estimated difference of a linear film's scene from that with the film model `higher` over the run.
+
+    On the states the linear film visits, the higher film pushes differently; that difference, as a force on the
+    linearised rings, gives the difference of the motions (the defect of the lower film, answered linearly).
+    **Source** Zadunaisky (1976), Numer. Math. 27, 21-39: the error from the defect; here of a model, derived here.
 
     `run` a RunState with a linear film and its start; looking further ends once an error exceeds `enough`.
     **Valid** small errors (their squares are left out), constant conditions, rings with mass, a stable scene.
@@ -192,3 +215,139 @@ class FilmComparison:
         at_each(Value(self.film.flow), self.block, gaps)
         leakage = np.abs(gaps[:, FLOW_INNER] - self.gaps[:, FLOW_INNER]) / self.leakage
         return np.array([film.max(), leakage.max()])
+
+
+# Cells over radius and angle, and the least share of the face that counts as cavitated.
+CELLS, TORN = (40, 96), 1e-3
+# Differences below this are those of the cells; a film with less than this share of a force has lost its liquid.
+FINE, STARVED = 3e-3, 1e-6
+
+
+def beside_reynolds(run) -> dict | None:
+    """Force, moment and leakage of a run's film over those of the film "reynolds", less 1, at the start or at its
+    linear steady tilt, whichever tilts it more: `tilt` (rad), `force`, `moment`, `leakage` (None where nothing leaks or
+    turns), `cavitated` shares of the face, by either film, and a sentence, `said`.  None where the film has no lines of
+    radius, or the other does not take the faces.
+
+    A film by lines of radius leaves out the flow along the circle, little in narrow faces, and where the pressure would
+    be below that of cavities the liquid that these keep.  A floor of the pressure makes liquid where cavities end, and
+    so is full at once where they take their time to fill: force and moment are too large where cavities are long,
+    leakage may be anything.  Both films stand in the frame that turns with the tilt, in which cavities are steady.
+    **Source** films/reynolds beside the film of a run.
+    **Valid** faces that are the same all around, liquids without inertia.
+    """
+    model = run.model
+    scene, (film, f) = model.scene, model.observed
+    floor = scene.film.cavitation_pressure is not None
+    if model.unknowns.film_unknowns or waves_of(scene) or film_name(film) == "linear":
+        return None
+    options = Reynolds(cells_r=CELLS[0], cells_theta=CELLS[1], roughness="none", sectors=1,
+                       cavitation="mass-conserving" if floor else "none")  # fmt: skip
+    keeps, table = film_module("reynolds"), replace(scene.film, model="reynolds", reynolds=options)
+    # Of a narrow seal, the two are one.
+    table = replace(table, geometry="cylindrical")
+    if refused(keeps, table):
+        return None
+    s = _turning_state(run)
+    g = keeps.parameters(table, model.clearance)
+    lay_surfaces(g, scene)
+    if h_min(f, s)[0] <= 0.0:
+        return None
+    other = s.copy()
+    film.flow(f, s)
+    tilt, torn = math.hypot(s[GX], s[GY]), s[CAVITATED] > TORN
+    found = {"tilt": tilt, "force": None, "moment": None, "leakage": None, "cavitated": [float(s[CAVITATED]), None]}
+    at = f"at a tilt of {1e6 * tilt:.4g} urad"
+    what = f"floor of the pressure, on {100 * s[CAVITATED]:.2g} % of the face {at}" if torn else at
+    x = np.empty(len(keeps.unknowns(g).names))
+    code = keeps.start(g, other, x)
+    if code == 0:
+        keeps.flow(g, other, x)
+    floor_alone = (scene.film.cavitation_pressure or 0.0) * math.pi * (table.outer_radius**2 - table.inner_radius**2)
+    if code or (torn and other[FORCE] - floor_alone < STARVED * (s[FORCE] - floor_alone)):
+        why = "a film that keeps its liquid is starved, edges at the cavitation pressure give it none"
+        return found | {"said": f"{what}: {why}"} if torn else None
+    moment = [math.hypot(at[MOMENT_X], at[MOMENT_Y]) for at in (s, other)]
+    parts = {"leakage": (s[FLOW_INNER], other[FLOW_INNER]), "force": (s[FORCE], other[FORCE]), "moment": moment}
+    if not tilt:
+        del parts["moment"]
+    off = {part: float(mine / whole - 1.0) for part, (mine, whole) in parts.items() if whole}
+    than = "cavities that keep their liquid" if torn else "flow along the circle, too"
+    than += ", between smooth faces" if scene.contact is not None else ""
+    told = ", ".join(f"{part} {100 * share:+.2g} %" for part, share in off.items() if abs(share) > FINE)
+    said = f"{what}, beside a film with {than} (reynolds): {told or f'the same within {100 * FINE:.2g} %'}"
+    return found | off | {"cavitated": [float(s[CAVITATED]), float(other[CAVITATED])], "said": said}
+
+
+def _turning_state(run) -> np.ndarray:
+    """Gap state at the start or of the linear steady tilt, in the frame that turns with the tilt."""
+    scene, s = run.model.scene, run.segment(0).gap_state(0.0, run.y0).copy()
+    tilt, rate = complex(s[GX], s[GY]), complex(s[GX_RATE], s[GY_RATE])
+    whirl = (tilt.conjugate() * rate).imag / abs(tilt) ** 2 if tilt else 0.0
+    steady, steady_whirl, _ = steady_tilt(run.model)
+    if abs(steady) > abs(tilt):
+        tilt, whirl = steady, steady_whirl
+    s[DZ_RATE : DZ_RATE + 3] = 0.0
+    s[GX], s[GY], s[GX_RATE], s[GY_RATE] = tilt.real, tilt.imag, 0.0, 0.0
+    s[MEAN_SPIN] = 0.5 * (initially(scene.shaft.speed) + initially(scene.stator.speed)) - whirl
+    return s
+
+
+# The difference to half the cells, over this, is the error of all of them.
+RICHARDSON = 3.0
+
+
+def cell_error(run) -> float | None:
+    """Relative error of the film's cells, the largest of force, moment and leakage on the scales of the certificate, of
+    the film at rest at the gap where the run began and where it ended; None of a film that has none to halve, or no
+    steady pressures there.
+
+    **Source** Richardson (1911), *Phil. Trans. R. Soc. A* 210, 307: what halving changes, over 2^2 - 1, is the error of
+    a method of second order.
+    """
+    model = run.model
+    film, f = model.observed
+    if not hasattr(film, "halved"):
+        return None
+    coarse = film.parameters(model.interface.halved(), model.clearance)
+    lay_surfaces(coarse, model.scene)
+    scales, worst = ErrorScales(run), 0.0
+    for index, tau, y in ((0, 0.0, run.y0), run.last or (0, 0.0, run.y0)):
+        loads = []
+        for block in (f, coarse):
+            s, x = run.segment(index).gap_state(tau, y).copy(), np.empty(len(film.unknowns(block).names))
+            s[[DZ_RATE, GX_RATE, GY_RATE, CONING_RATE]] = 0.0
+            if film.start(block, s, x):
+                return None
+            film.flow(block, s, x)
+            still = np.zeros(2 * scales.n)
+            loads.append([[*still, s[FORCE], s[MOMENT_X], s[MOMENT_Y], s[FLOW_INNER], 0.0]])
+        worst = max(worst, scales.errors(*map(np.array, loads[::-1])).max())
+    return float(worst) / RICHARDSON
+
+
+def steady_tilt(model) -> tuple[complex, float, str]:
+    """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
+    if seals_that_stick(model.scene):
+        return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
+    if model.scene.shaft.motion or model.scene.housing.motion:
+        return 0.0, 0.0, "a motion by samples has no linear steady state: aligned"
+    segment = model.segment()
+    if not segment.harmonic:
+        return 0.0, 0.0, "a sweep has no linear steady state: aligned"
+    linear = model.linear_scene()
+    parts: dict[float, complex] = {}
+    for harmonic in segment.harmonics():
+        g = linear.relative(harmonic, linear.response(harmonic))
+        # Re(g e^{iwt}) is a forward and a backward circle.
+        w = harmonic.frequency
+        parts[w] = parts.get(w, 0.0) + (g[1] + 1j * g[2]) / 2
+        parts[-w] = parts.get(-w, 0.0) + ((g[1] - 1j * g[2]) / 2).conjugate()
+    mean = parts.pop(0.0, 0.0)
+    if abs(mean) > 0:
+        return complex(mean), 0.0, "mean tilt of the linear steady state"
+    if parts:
+        w, largest = max(parts.items(), key=lambda item: abs(item[1]))
+        if abs(largest) > 0:
+            return complex(largest), float(w), "turning tilt of the linear steady state, at one instant"
+    return 0.0, 0.0, "no forcing tilts this scene: aligned"

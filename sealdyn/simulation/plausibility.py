@@ -1,20 +1,24 @@
-"""Where a run leaves what its film is valid for, or the numbers look like a slip of units: cautions, in words."""
+"""Whether a scene and its run are plausible: cautions where a run leaves what its film is valid for, numbers without a
+unit that no seal has, and the size of a run, reckoned before it hurts."""
 
 import math
+from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from ..dynamics.cautions import Caution, Concern
+from ..dynamics.intervals import largest_value
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
-from .bare_numbers import slips
-from .beside_reynolds import TORN, beside_reynolds
+from ..scene.scene import SceneError
+from .film_error import TORN, beside_reynolds
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
@@ -79,7 +83,7 @@ def _floored(run):
 
 def _units(scenario, model):
     """Bare numbers where a unit is usual, faces a millimetre apart."""
-    yield from (Caution(Concern.UNITS, said) for said in slips(scenario))
+    yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
         sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
@@ -252,3 +256,147 @@ def _least_pressure(segment, tau, y) -> float:
     x = y[None, segment.film] if segment.model.unknowns.film_unknowns is not None else None
     at = samples(segment, np.array([tau]), y[None, : segment.n], rates[None, :], x)
     return float(np.min(fields(at, [0], x)["pressure"]))
+
+
+class Usual(NamedTuple):
+    """What a number without a unit is of seals, from `least` to `most` in its SI `unit`; else it may be one in the unit
+    `shown`, of which SI values less `zero` are `factor` times as many."""
+
+    least: float
+    most: float
+    unit: str
+    shown: str
+    factor: float
+    zero: float = 0.0
+
+
+WEARS = Usual(0.0, 1e-11, "1/Pa", "mm^3/(N m)", 1e9)
+SMALL_ANGLE = Usual(-0.02, 0.02, "rad", "mrad", 1e3)
+ABSOLUTE = Usual(1e3, 1e9, "Pa", "bar", 1e-5)
+OF_A_FACE = Usual(0.0, 1.0, "m", "mm", 1e3)
+OF_A_RING = Usual(0.0, 100.0, "kg", "g", 1e3)
+STIFF = Usual(100.0, 1e12, "N/m", "N/mm", 1e-3)
+USUAL = {
+    "film.viscosity": Usual(1e-6, 0.1, "Pa s", "cP", 1e3),
+    "film.temperature": Usual(273.0, 330.0, "K", "degC", 1.0, 273.15),
+    "film.outer_pressure": ABSOLUTE, "film.inner_pressure": ABSOLUTE,
+    "film.outer_radius": OF_A_FACE, "film.inner_radius": OF_A_FACE,
+    "film.coning": SMALL_ANGLE, "rotor.runout": SMALL_ANGLE,
+    "rotor.misalignment": SMALL_ANGLE, "stator.misalignment": SMALL_ANGLE,
+    "closing.balance_ratio": Usual(0.0, 3.0, "", "%", 100.0),
+    "rotor.support.radius": OF_A_FACE, "stator.support.radius": OF_A_FACE,
+    "rotor.support.axial_stiffness": STIFF, "stator.support.axial_stiffness": STIFF,
+    "rotor.body.length": OF_A_FACE, "stator.body.length": OF_A_FACE,
+    "rotor.body.inner_radius": OF_A_FACE, "stator.body.inner_radius": OF_A_FACE,
+    "rotor.body.outer_radius": OF_A_FACE, "stator.body.outer_radius": OF_A_FACE,
+    "film.density": Usual(100.0, 1e5, "kg/m^3", "g/cm^3", 1e-3),
+    "film.specific_heat": Usual(100.0, 1e5, "J/(kg K)", "kJ/(kg K)", 1e-3),
+    "rotor.mass": OF_A_RING, "stator.mass": OF_A_RING,
+    "contact.roughness": Usual(0.0, 1e-5, "m", "um", 1e6),
+    "contact.compressive_strength": Usual(1e6, 1e12, "Pa", "MPa", 1e-6),
+    "contact.stator_wear_coefficient": WEARS, "contact.rotor_wear_coefficient": WEARS,
+}  # fmt: skip
+
+
+def unit_warnings(scenario) -> list[str]:
+    """Sentences on the bare numbers of a Scenario where a unit is usual, or of another size than seals have."""
+    said, scene = [], scenario.scene
+    for ring, speed in (("shaft", scene.shaft.speed), ("stator", scene.stator.speed)):
+        if f"{ring}.speed" in scenario.bare:
+            fastest = max(points(speed), key=abs)
+            read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
+            said.append(f"{ring}.speed without a unit is read as {read}")
+    for key, usual in USUAL.items():
+        written = next((name for name in (key, key.replace("_radius", "_diameter")) if name in scenario.bare), None)
+        value = _held(scene, key) if written else None
+        if value is not None and not usual.least <= value <= usual.most:
+            value *= 1.0 if written == key else 2.0
+            shown = (value - usual.zero) * usual.factor
+            read = f"{f'{value:.6g} {usual.unit}'.strip()}, which is {shown:.6g} {usual.shown}"
+            said.append(f"{written} without a unit is read as {read}")
+    return said
+
+
+def _held(scene, key: str) -> float | None:
+    """The value at a dotted key, of a table its first one; None where there is none."""
+    for name in key.split("."):
+        scene = getattr(scene, name, None)
+    return None if scene is None else initially(scene)
+
+
+# Bytes of a row of an archive; seconds of a turn that nothing undercuts (the reference seal at a loose accuracy).
+ROW, TURN = 300, 2e-4
+# Above these a run asks first: bytes of the archive, seconds.
+LARGE, LONG = 10e9, 86400.0
+# Beyond these there is no machine: turns, rows.
+MOST = 1e12
+
+
+@dataclass(frozen=True)
+class Size:
+    """Turns of the faster ring and rows of a run; bytes of its archive and seconds that it takes at least."""
+
+    turns: float
+    rows: float
+
+    @property
+    def bytes(self) -> float:
+        """Of the archive, about."""
+        return ROW * self.rows
+
+    @property
+    def seconds(self) -> float:
+        """At least."""
+        return TURN * self.turns
+
+    @property
+    def possible(self) -> bool:
+        """On any machine."""
+        return max(self.turns, self.rows) <= MOST
+
+    def __str__(self):
+        """In words."""
+        return (
+            f"{self.turns:.3g} turns, {self.rows:.3g} rows: an archive of {_bytes(self.bytes)}, {_time(self.seconds)}"
+        )
+
+
+def size_of(scenario) -> Size:
+    """What a run of a scenario takes; instant, whatever its numbers."""
+    shaft = largest_value(scenario.scene.shaft.speed)
+    # A radial seal has no ring that turns beside the shaft.
+    stator = largest_value(scenario.scene.stator.speed) if hasattr(scenario.scene, "stator") else 0.0
+    settings = scenario.run
+    turns = settings.turns
+    if turns is None:
+        turns = settings.duration * max(shaft, stator) / (2 * math.pi)
+    rows = settings.samples
+    if rows is None:
+        rows = 1000 if shaft == 0.0 else turns * settings.samples_per_turn
+    # Integers of any length.
+    return Size(float(turns), float(min(rows, 10**300)))
+
+
+def refuse_large(scenario, allowed: bool = False):
+    """Raises SceneError for a run beyond any machine, and for a large one that is not `allowed`."""
+    size, settings = size_of(scenario), scenario.run
+    if size.possible and (allowed or (size.bytes <= LARGE and size.seconds <= LONG)):
+        return
+    if size.rows > size.turns and (not size.possible or size.bytes > LARGE):
+        key = "run.samples" if settings.samples is not None else "run.samples_per_turn"
+    else:
+        key = "run.turns" if settings.turns is not None else "run.duration"
+    less = f"fewer: at most {LARGE / ROW:.2g} rows and {LONG / TURN:.2g} turns"
+    raise SceneError(key, str(size), f"{less}; or --yes (allow_large=True)" if size.possible else less)
+
+
+def _bytes(count: float) -> str:
+    return f"{count / 1e9:.3g} GB" if count < 1e15 else f"{count:.1e} bytes"
+
+
+def _time(seconds: float) -> str:
+    if seconds < 3600.0:
+        return f"at least {seconds:.2g} s"
+    if seconds < 86400.0:
+        return f"at least {seconds / 3600:.2g} h"
+    return f"at least {seconds / 86400:.3g} days" if seconds < 3e9 else f"at least {seconds / 3.156e7:.2g} years"

@@ -9,19 +9,17 @@ import numpy as np
 
 from ..archive import FIELD_TIME, ArchiveWriter, Fields, Series, partial_path
 from ..dynamics.intervals import largest_value, time_of_angle
-from ..radial_seals import signals
-from ..radial_seals.run_state import RadialRun
-from ..radial_seals.segments import RadialModel
+from ..radial_seals import observers
+from ..radial_seals.model import RadialModel, RadialRun
 from ..radial_seals.summary import summary_of
 from ..scene.scene import SceneError
 from ..solvers.contract import Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import solve
 from .certificate import ended, interrupted, without
-from .result import Result
-from .second_run import SHARPER, Nothing, sharper
+from .result import Result, plain
 from .sinks import ArchiveSink, Tally
-from .summary import plain
+from .verification_run import SHARPER, Nothing, sharper
 
 # Instants at which gap and load around the shaft are kept, at most.
 MOST_INSTANTS = 600
@@ -64,9 +62,9 @@ def simulate_radial(scenario, out, progress=None, stop=None, resume=False) -> Re
 
     begun = clock.perf_counter()
     run, method, why, interval, count = prepare_radial(scenario)
-    series = {name: Series(*about) for name, about in signals.SERIES.items()}
+    series = {name: Series(*about) for name, about in observers.SERIES.items()}
     grid = {"theta": (Series("rad", "angle, from the x axis", "deg", 180 / math.pi), run.model.followers.angles)}
-    fields = Fields({name: Series(*about) for name, about in signals.FIELDS.items()}, grid, MOST_INSTANTS + 2)
+    fields = Fields({name: Series(*about) for name, about in observers.FIELDS.items()}, grid, MOST_INSTANTS + 2)
     writer = ArchiveWriter(
         out, scenario_text=scenario.text, resolved=scenario.resolved(), meta=_meta(scenario, method), series=series,
         fields=fields, resume=resume, expected_rows=count,
@@ -131,7 +129,7 @@ class RadialSink(ArchiveSink):
 
     def take(self, segment, taus, q, q_rate, x=None):
         """Series and fields at segment times (m,) (s) of displacements and rates (m, n)."""
-        found, around = signals.columns(segment, taus, q, q_rate)
+        found, around = observers.columns(segment, taus, q, q_rate)
         self.tally.rows += len(taus)
         number = found["time"] / self.dt
         at = np.flatnonzero(np.isin(np.rint(number), self.kept) & (np.abs(number - np.rint(number)) < 1e-6))
@@ -162,7 +160,7 @@ class Apart:
         if last > first:
             taus = self.times[first:last] - block.segment.time
             us, vs = block.at(taus)
-            _, around = signals.columns(block.segment, taus, us, vs)
+            _, around = observers.columns(block.segment, taus, us, vs)
             self.columns[first:last] = np.hstack([us, around["follower_load"]])
 
     def state(self):

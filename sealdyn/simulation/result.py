@@ -1,4 +1,4 @@
-"""What a run leaves: how it ended, its numbers, and its archive, on disk or in memory."""
+"""What a run leaves: how it ended, its archive, on disk or in memory, and its numbers by their dotted keys."""
 
 from __future__ import annotations
 
@@ -15,6 +15,13 @@ from ..report.plot import Plot
 
 if TYPE_CHECKING:
     import xarray
+import math
+from enum import StrEnum
+
+import numpy as np
+
+from ..scenario.errors import nearest_of
+from ..scene.radial import RadialScene
 
 
 @dataclass(frozen=True)
@@ -60,3 +67,127 @@ def at_hand(archive: Path | None, content: bytes | None) -> Iterator[Path]:
         path = Path(folder) / "archive.h5"
         path.write_bytes(content)
         yield path
+
+
+# What of the stability is found only where it is asked for.
+SPEEDS = ("critical_speed", "thresholds", "resonance_speeds")
+UNITS = {
+    "h_min.value": "m", "h_min.time": "s", "h_min.theta": "rad", "h_min.radius": "m", "h_min.steady": "m",
+    "relative_misalignment": "rad", "leakage.mean": "m^3/s", "leakage.max": "m^3/s", "leakage.mean_ml_per_h": "ml/h",
+    "leakage.mean_kg_per_h": "kg/h", "leakage.conditions.temperature": "K", "leakage.conditions.pressure": "Pa",
+    "friction.torque": "N m", "friction.power": "W", "friction.max_power": "W", "friction.temperature_rise": "K",
+    "film.clearance": "m", "film.leakage": "m^3/s", "film.friction_power": "W", "film.axial_stiffness": "N/m",
+    "film.tilt_stiffness": "N m/rad", "film.axial_damping": "N s/m", "film.tilt_damping": "N m s/rad",
+    "film.cross_stiffness": "N m/rad", "closing.force": "N", "closing.spring_force": "N", "closing.duty": "Pa",
+    "closing.face_area": "m^2", "contact.gap_error": "m", "contact.touch_at": "m", "contact.first": "s",
+    "contact.lowest": "m", "contact.depth": "m", "contact.longest": "s", "contact.impulse": "N s",
+    "contact.force": "N", "contact.torque": "N m", "contact.max_pressure": "Pa", "contact.wear_rate": "m/s",
+    "contact.first_lift": "s", "contact.energy_lost": "J", "stability.critical_speed": "rad/s",
+    "stability.fastest": "rad/s",
+    "stability.growth_rate": "1/s", "stability.growth_rate_uncertainty": "1/s", "stability.speed": "rad/s",
+    "stability.stator_speed": "rad/s", "closed_form.relative_max": "rad", "closed_form.relative_min": "rad",
+    "closed_form.axial_closing": "m", "closed_form.formula_max": "rad", "closed_form.formula_min": "rad",
+    "closed_form.speed": "rad/s", "closed_form.needed_preload": "N", "closed_form.largest_eccentricity": "m",
+    "end.time": "s", "end.asked": "s", "follower.mass": "kg", "follower.stiffness": "N/m", "follower.damping": "N s/m",
+    "follower.preload": "N", "follower.friction": "N", "follower.arc": "m",
+}  # fmt: skip
+# Of the whole run of a radial seal, and of its second half.
+UNITS |= {
+    f"{part}.{name}": unit
+    for part in ("whole", "settled")
+    for name, unit in {
+        "largest_gap": "m", "largest_gap_time": "s", "largest_gap_angle": "rad", "least_load": "N",
+        "least_load_time": "s", "largest_load": "N", "load": "N", "friction_torque": "N m",
+        "leakage_estimate": "m^3/s",
+    }.items()
+}  # fmt: skip
+
+# What every summary of a face seal has.
+COMMON = (
+    "h_min.value",
+    "h_min.of_clearance",
+    "film.clearance",
+    "relative_misalignment.max",
+    "relative_misalignment.steady_max",
+    "leakage.mean",
+    "friction.power",
+    "contact_margin",
+    "stability.verdict",
+)
+# What every summary of a radial seal has.
+RADIAL = (
+    "settled.contact_share",
+    "whole.largest_gap",
+    "whole.least_load",
+    "settled.friction_torque",
+    "settled.leakage_estimate",
+    "closed_form.margin",
+)
+
+
+def common(scene) -> tuple[str, ...]:
+    """What every summary of a seal of this kind has."""
+    return RADIAL if isinstance(scene, RadialScene) else COMMON
+
+
+def output(parts: dict, key: str):
+    """The value at a dotted key of a summary, or of its `parts` (summary.py).  Raises ValueError, which names the
+    nearest key there is."""
+    place = parts
+    for name in key.split("."):
+        place = place() if callable(place) else place
+        if not isinstance(place, dict) or name not in place:
+            known = [*leaves(plain(parts)), *(f"stability.{speeds}" for speeds in SPEEDS)]
+            raise ValueError(f"the run's summary has no {key}{nearest_of(key, known, 0.3)}")
+        place = place[name]
+    place = plain(place)
+    if isinstance(place, dict):
+        raise ValueError(f"{key} holds several numbers: one of {', '.join(f'{key}.{k}' for k in place)}")
+    return place
+
+
+def missing(parts: dict, keys) -> dict[str, str]:
+    """The dotted keys that a summary, or its `parts` (summary.py), has no value of, each with the sentence why."""
+    found = {}
+    for key in keys:
+        try:
+            output(parts, key)
+        except ValueError as error:
+            found[key] = str(error)
+    return found
+
+
+def leaves(tree: dict, key: str = "") -> list[str]:
+    """Dotted keys of all values."""
+    found = []
+    for name, below in tree.items():
+        found += leaves(below, f"{key}{name}.") if isinstance(below, dict) else [f"{key}{name}"]
+    return found
+
+
+def with_speeds(keys) -> bool:
+    """Whether one of the keys asks for critical or resonance speeds."""
+    return any(name in key for key in keys for name in SPEEDS)
+
+
+def unit_of(key: str) -> str:
+    """SI unit of the value at a dotted key, or of all below the one above it; empty without one."""
+    return UNITS.get(key) or UNITS.get(key.rpartition(".")[0]) or ""
+
+
+def plain(value):
+    """JSON-ready: what a function finds, numpy scalars as Python's, words of an enumeration as words, NaN and infinity
+    as null."""
+    if callable(value):
+        value = value()
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, StrEnum):
+        return str(value)
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

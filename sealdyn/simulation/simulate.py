@@ -28,17 +28,13 @@ from ..scene.scene import SceneError
 from ..solvers.contract import Counts, Enough, Status, attainable
 from ..solvers.energy_audit import EnergyAudit
 from ..solvers.integrate import Outcome, solve
-from .attempts import Try, judged, next_try
-from .bare_numbers import slips
-from .certificate import TrialRun, certify, choose_tolerance, ended, interrupted, without
-from .film_selection import select_film
-from .method_selection import check_method, choose_method
-from .result import Result
-from .second_run import Comparison
+from .certificate import TrialRun, Try, certify, choose_tolerance, ended, interrupted, judged, next_try, without
+from .plausibility import refuse_large, unit_warnings
+from .result import Result, plain
+from .selection import Start, check_method, choose_method, choose_start, select_film
 from .sinks import ArchiveSink, Tally, TallySink, what_is_kept
-from .size import refuse_large
-from .start_selection import Start, choose_start
-from .summary import parts, plain, summarise
+from .summary import parts, summarise
+from .verification_run import Comparison
 
 
 def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
@@ -70,7 +66,7 @@ def simulate(
     `scenario` from `read_scenario`; `out` the archive's path (default outputs/<name>.h5); `progress(t, end)` is
     called as time advances (s); `stop()` returning true ends the run cleanly; `resume` goes on where an
     interrupted or killed run left off, also after a KeyboardInterrupt.  A run that fails is a result with its status.
-    `allow_large`: also a run of a day or of an archive of gigabytes (simulation/size.py).
+    `allow_large`: also a run of a day or of an archive of gigabytes (simulation/plausibility.py).
     Raises SceneError or ArchiveError for a scene or file that cannot be, or that another run is writing.
 
     >>> result = sealdyn.simulate(sealdyn.read_scenario("fms.toml"), "fms.h5")
@@ -216,7 +212,7 @@ def prepare_run(scenario):
     try:
         return _prepared(scenario)
     except SceneError as error:
-        if not (meant := slips(scenario)):
+        if not (meant := unit_warnings(scenario)):
             raise
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 

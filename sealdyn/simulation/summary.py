@@ -1,7 +1,6 @@
 """What a run amounts to: the numbers of `run --json`, from the run, the outcome and the running tallies."""
 
 import math
-from enum import StrEnum
 from functools import cache
 
 import numpy as np
@@ -22,11 +21,10 @@ from ..scene.waviness import waves_of
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions
+from .result import plain
 from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
-# What of the stability is found only where it is asked for.
-SPEEDS = ("critical_speed", "thresholds", "resonance_speeds")
 
 
 def model_chosen(scenario, run, method: str, why: str) -> dict:
@@ -124,24 +122,6 @@ def state_names(unknowns) -> list[str]:
 def _state_places(unknowns) -> dict:
     rates = {f"{n}_rate": at for n, at in zip(unknowns.names, unknowns.rate_places, strict=True) if at >= 0}
     return {name: place for place, name in enumerate(unknowns.names)} | rates
-
-
-def plain(value):
-    """JSON-ready: what a function finds, numpy scalars as Python's, words of an enumeration as words, NaN and infinity
-    as null."""
-    if callable(value):
-        value = value()
-    if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, StrEnum):
-        return str(value)
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
 
 
 def _steady(run, outcome, period, begun_well):

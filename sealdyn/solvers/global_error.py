@@ -24,7 +24,8 @@ NOTABLE = 1.2
 class GlobalErrorEstimate:
     """An observer of the error so far, carried along a run of constant conditions; every ring has mass.  `worst` is the
     largest of any displacement at any step, relative to its scale, and of what else is `looked_at` (an object as
-    LookedAt of simulation/looked_at.py, or None), rates at any step, loads at a few where these are largest; beyond
+    ErrorScales of simulation/verification_run.py, or None), rates at any step, loads at a few where these are largest;
+    beyond
     `allowed` a run had better use a sharper tolerance than its own `tolerance`, down to `least`.  Not `sound`: the
     eigenvectors nearly coincide, and nothing is estimated."""
 

@@ -30,7 +30,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
-from ..simulation.method_selection import choose_method
+from ..simulation.selection import choose_method
 from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
 from ._words import no_film_beyond, plain

@@ -10,10 +10,8 @@ import numpy as np
 
 from ..analysis import radial_rules
 from ..dynamics.intervals import largest_value
-from ..radial_seals.closed_form import largest_eccentricity
-from ..radial_seals.followers import followers_of
-from ..radial_seals.run_state import RadialRun
-from ..radial_seals.segments import RadialModel
+from ..radial_seals.followers import followers_of, largest_eccentricity
+from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, values_in_si, with_values
 from ..scene.scene import SceneError

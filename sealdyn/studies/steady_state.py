@@ -16,7 +16,7 @@ from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import with_values
-from ..simulation.method_selection import choose_method
+from ..simulation.selection import choose_method
 from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve

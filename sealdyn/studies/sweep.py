@@ -14,7 +14,7 @@ from ..scenario.settings import MOST, axis, with_own_unit
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
-from ..simulation.outputs import common, unit_of
+from ..simulation.result import common, unit_of
 from ..status import Status
 from ._trends import trend
 from ._words import WEAR, plain, quantity, shown_in

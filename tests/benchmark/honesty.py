@@ -10,7 +10,7 @@ time where they agree within accuracy/100; of cavitating films by their method t
 they agree within accuracy/10, loads and flows at 99 % of the instants, as the certificate has them.
 Scenes of which less than a turn is known are drawn anew.
 A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
-enough.  Honest: every quantity of the certificate (simulation/looked_at.py) and every contact is right
+enough.  Honest: every quantity of the certificate (simulation/verification_run.py) and every contact is right
 within the asked accuracy, or the run says that it is not.
 Cost: processor time of all that, over that of the cheapest method and tolerance that would have done, known only in
 hindsight; smooth scenes; the least of three times each.
@@ -43,12 +43,10 @@ from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
-from sealdyn.simulation.attempts import Try, judged, next_try
-from sealdyn.simulation.film_selection import select_film
-from sealdyn.simulation.looked_at import QUANTITIES, LookedAt
-from sealdyn.simulation.method_selection import choose_method
-from sealdyn.simulation.second_run import Comparison, beside_jumps
+from sealdyn.simulation.certificate import Try, judged, next_try
+from sealdyn.simulation.selection import choose_method, select_film
 from sealdyn.simulation.simulate import certificate
+from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, beside_jumps
 from sealdyn.solvers.integrate import solve
 
 SEED, TIMES = 20_26, 3
@@ -80,7 +78,7 @@ def automatic(drawn, times):
     method, why = choose_method(run)
     one, tries = Try(method, None, why), []
     while True:
-        sink = Instants(LookedAt(run), times)
+        sink = Instants(ErrorScales(run), times)
         trial, errors = one.start(run)
         options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
         seen = Comparison(run) if errors is None and one.method != "expm" else None
@@ -157,7 +155,7 @@ def judge(number, family="wide"):
         reference.check_start()
     except ValueError:
         return {**row, "why": "no scene"}
-    scales, times = LookedAt(reference), instants(random, reference)
+    scales, times = ErrorScales(reference), instants(random, reference)
     chosen = choose_method(reference)[0]
     own = number % OWN == 0 and highest.film.model not in ("gas_dam", "reynolds")
     known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if own else None
@@ -175,7 +173,7 @@ def judge(number, family="wide"):
     if found["horizon"]:
         rows = min(rows, int(np.searchsorted(times, found["horizon"])))
     true = in_order(run.model, reference.model, known.columns)
-    errors = LookedAt(run).errors(columns[:rows], true[:rows])
+    errors = ErrorScales(run).errors(columns[:rows], true[:rows])
     errors = (beside_jumps(errors) if chosen == "trbdf2" else errors).max(axis=0, initial=0.0)
     if drawn.scene.film.model == "gas_reynolds":
         fine = in_finer_cells(drawn, scales, times, chosen)
@@ -183,7 +181,7 @@ def judge(number, family="wide"):
             return {**row, "why": "finer cells take too long"}
         rows = min(rows, len(fine))
         # What is left of second order has a share of the difference.
-        beyond = LookedAt(run).errors(columns[:rows], fine[:rows]).max(axis=0, initial=0.0)
+        beyond = ErrorScales(run).errors(columns[:rows], fine[:rows]).max(axis=0, initial=0.0)
         errors = np.maximum(errors, beyond * FINER**2 / (FINER**2 - 1.0))
     until = times[rows - 1] if rows < len(times) else drawn.duration
     wrong, depth, instant = contact_errors(contacts, known.contacts or [], until, run, scales.rate)

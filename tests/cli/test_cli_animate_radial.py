@@ -11,8 +11,7 @@ from drawn import frames, panel, text_trouble
 from PIL import Image
 
 from sealdyn.archive import FIELD_TIME, column, field
-from sealdyn.radial_seals.run_state import RadialRun
-from sealdyn.radial_seals.segments import RadialModel
+from sealdyn.radial_seals.model import RadialModel, RadialRun
 from sealdyn.report.charts.followers_animation import REACH, Around, body, panels
 from sealdyn.report.charts.moving import moments, stage
 from sealdyn.report.charts.palette import CONTACT, FILM

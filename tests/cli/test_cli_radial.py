@@ -54,8 +54,7 @@ def test_what_is_expected_of_them():
 
 def simulate_summary(path):
     from sealdyn.dynamics.intervals import largest_value
-    from sealdyn.radial_seals.closed_form import largest_eccentricity, needed_preload
-    from sealdyn.radial_seals.followers import followers_of
+    from sealdyn.radial_seals.followers import followers_of, largest_eccentricity, needed_preload
 
     scene = read_scenario(path).scene
     found, speed = followers_of(scene), largest_value(scene.shaft.speed)

@@ -10,8 +10,8 @@ import pytest
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scene.scene import SceneError
+from sealdyn.simulation.plausibility import size_of
 from sealdyn.simulation.simulate import simulate
-from sealdyn.simulation.size import size_of
 
 SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 COMMAND = [sys.executable, "-m", "sealdyn.cli"]

@@ -10,7 +10,7 @@ from sealdyn.archive import read_info
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.segments import Segment
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.simulation import film_selection
+from sealdyn.simulation import selection
 from sealdyn.simulation.simulate import simulate
 from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
@@ -90,7 +90,7 @@ def test_long_steps_are_audited_by_what_the_solver_worked_out():
 
 def test_a_run_that_loses_energy_is_inaccurate(tmp_path, monkeypatch):
     """Status, warning and archive say so, though the run is the exact one of its wrong equations."""
-    monkeypatch.setattr(film_selection, "Model", wrong(MISTAKES["spring 1 % stiff"]))
+    monkeypatch.setattr(selection, "Model", wrong(MISTAKES["spring 1 % stiff"]))
     scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["run.turns=5"])
     found = simulate(scenario, tmp_path / "a.h5")
     assert found.status == "inaccurate" == read_info(found.archive)["status"]

@@ -25,8 +25,8 @@ from sealdyn.scene.gas import GasReynolds
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
 from sealdyn.scene.variants import with_values
-from sealdyn.simulation.looked_at import LookedAt
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
+from sealdyn.simulation.verification_run import ErrorScales
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TURN = 2 * math.pi / 1000.0
@@ -72,7 +72,7 @@ def test_run_and_certificate(make, accuracy):
         return prepared(scene, duration, accuracy)
 
     reference = anew()
-    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference)
+    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
     known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
     # Where a hit has magnified the references' own errors, nothing is known any more.
     assert known.rows > 30
@@ -95,7 +95,7 @@ def test_chaos_is_promised_up_to_its_horizon():
         return prepared(scene, duration, accuracy)
 
     reference = anew()
-    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference)
+    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
     known = truth(anew, scales, times, accuracy, choose_method(reference)[0], math.inf)
     _, _, found, outcome, columns, _, _ = automatic(Drawn(scene, duration, accuracy, "rest", ()), times)
     assert outcome.status == "ok" and not found["met"] and 0.0 < found["horizon"] < duration
@@ -114,10 +114,10 @@ def test_a_gas_dam_rings_after_every_step_too_long():
         return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
 
     reference = anew()
-    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference)
+    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference)
     known = truth(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
     run, _, found, outcome, columns, *_ = automatic(drawn, times)
-    errors = LookedAt(run).errors(columns[: known.rows], known.columns[: known.rows])
+    errors = ErrorScales(run).errors(columns[: known.rows], known.columns[: known.rows])
     assert outcome.status == "ok" and found["met"] and known.rows == len(times)
     assert errors.max() < drawn.accuracy
 
@@ -134,7 +134,7 @@ def test_gas_that_stores(number):
         return prepared(drawn.scene, drawn.duration, accuracy, drawn.start)
 
     reference = anew()
-    scales, times = LookedAt(reference), instants(np.random.default_rng(5), reference, 24)
+    scales, times = ErrorScales(reference), instants(np.random.default_rng(5), reference, 24)
     known = truth_in_own_words(anew, scales, times, drawn.accuracy, choose_method(reference)[0], math.inf)
     assert known.rows == len(times)
     _, method, found, outcome, columns, *_ = automatic(drawn, times)
@@ -159,8 +159,8 @@ def test_cells_too_few_for_a_ring_that_rings_on_trapped_gas_are_told():
     for cells in ((7, 16), (28, 16)):
         table = replace(gas_film, gas_reynolds=GasReynolds(cells=cells))
         run = prepared(replace(scene, film=table), drawn.duration, 1e-4)
-        columns.append(by_steps(run, LookedAt(run), times, "ida", 1e-5)[0])
-    apart = LookedAt(run).errors(*columns).max()
+        columns.append(by_steps(run, ErrorScales(run), times, "ida", 1e-5)[0])
+    apart = ErrorScales(run).errors(*columns).max()
     _, _, found, outcome, *_ = automatic(drawn, times)
     assert outcome.status == "ok" and apart > 3.0 * drawn.accuracy
     assert found["met"] is False and found["model"] > 0.05 * apart and "cells" in found["said"]

@@ -14,8 +14,8 @@ from sealdyn.scene.film import Film
 from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
 from sealdyn.simulation.certificate import choose_tolerance
-from sealdyn.simulation.looked_at import LookedAt
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
+from sealdyn.simulation.verification_run import ErrorScales
 from sealdyn.solvers.integrate import solve
 
 SPEED = 787.0
@@ -48,7 +48,7 @@ def test_rates_and_loads_between_steps(name, accuracy):
         return prepared(SCENES[name], duration, accuracy, "rest")
 
     run = make()
-    scales, times = LookedAt(run), instants(np.random.default_rng(1), run, 120)
+    scales, times = ErrorScales(run), instants(np.random.default_rng(1), run, 120)
     truth = landed(make(), scales, times, Radau, min(1e-8, accuracy * 1e-4))
     method, _ = choose_method(run)
     trial, errors = choose_tolerance(run, method)

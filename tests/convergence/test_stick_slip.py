@@ -12,9 +12,8 @@ from sealdyn.scene.excitation import AxialVibration, Housing, Shaft
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene
 from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.simulation.looked_at import LookedAt
-from sealdyn.simulation.method_selection import choose_method
-from sealdyn.simulation.second_run import Comparison
+from sealdyn.simulation.selection import choose_method
+from sealdyn.simulation.verification_run import Comparison, ErrorScales
 from sealdyn.solvers.integrate import solve
 
 DURATION, MASS, FRICTION, SPRING, AMPLITUDE, TONE = 0.2, 0.5, 5.0, 2e5, 20e-6, 2 * math.pi * 100.0
@@ -39,7 +38,7 @@ class Events(Instants):
 
 def at(accuracy, method=None, tolerance=None):
     run = prepared(SCENE, DURATION, accuracy, "rest")
-    scales, seen, chosen = LookedAt(run), Comparison(run), method or choose_method(run)[0]
+    scales, seen, chosen = ErrorScales(run), Comparison(run), method or choose_method(run)[0]
     sink = Events(scales, TIMES)
     outcome = solve(run, chosen, accuracy, sink, tolerance=tolerance, seen=seen)
     assert outcome.status == "ok"

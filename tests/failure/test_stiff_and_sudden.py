@@ -17,7 +17,7 @@ from scipy.integrate import quad, solve_ivp
 from sealdyn.faces.geometry import TOUCH, regularised_thickness
 from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmark"))
 import stiff_and_sudden as measured

@@ -6,7 +6,7 @@ import pytest
 
 from sealdyn import read_scenario
 from sealdyn.simulation import beside_reynolds as module
-from sealdyn.simulation.beside_reynolds import beside_reynolds
+from sealdyn.simulation.film_error import beside_reynolds
 from sealdyn.simulation.simulate import prepare_run, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

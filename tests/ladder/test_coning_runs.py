@@ -16,7 +16,7 @@ from sealdyn.films import film_module
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
 from sealdyn.solvers.contract import Status
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder

@@ -19,7 +19,7 @@ from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.simulation.method_selection import check_method, choose_method
+from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.solvers.contract import Cause
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies.coefficients.study import Settings, against_frequency

@@ -17,9 +17,9 @@ from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.films.radial import film as radial
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.scene import SceneError
-from sealdyn.simulation.cell_error import cell_error
 from sealdyn.simulation.certificate import certify
-from sealdyn.simulation.method_selection import check_method, choose_method
+from sealdyn.simulation.film_error import cell_error
+from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.solvers.integrate import solve
 
 # Narrow, so that nothing flows around the circle; thick as a liquid, at a mean pressure that hardly lets it give way.

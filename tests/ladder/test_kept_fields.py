@@ -14,7 +14,7 @@ from sealdyn import open_archive
 from sealdyn.archive import column, field, read_info
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.simulation import film_selection
+from sealdyn.simulation import selection
 from sealdyn.simulation.simulate import simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -105,7 +105,7 @@ CELLS, ANGLES = 4, 8
 def cells(monkeypatch):
     """Runs of scenarios whose film is that of cells, with a liquid that gives way."""
     model = partial(Model, film=film_of(CELLS, ANGLES, compressibility=1e-8))
-    monkeypatch.setattr(film_selection, "Model", model)
+    monkeypatch.setattr(selection, "Model", model)
 
 
 def test_pressures_of_a_film_with_unknowns_are_kept_as_they_are(tmp_path, cells):

@@ -24,8 +24,8 @@ from sealdyn.scene.film import Film
 from sealdyn.scene.reynolds import Reynolds
 from sealdyn.scene.scene import SceneError
 from sealdyn.scene.waviness import Waviness
-from sealdyn.simulation.method_selection import check_method, choose_method
-from sealdyn.simulation.second_run import Nothing
+from sealdyn.simulation.selection import check_method, choose_method
+from sealdyn.simulation.verification_run import Nothing
 from sealdyn.solvers.contract import Counts, SolverFailure, Status
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS

@@ -9,11 +9,17 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sealdyn.analysis import radial_rules
-from sealdyn.radial_seals.closed_form import fastest, hangs_up, held_between, largest_eccentricity, needed_preload
 from sealdyn.radial_seals.contact import _dips, _first_below
-from sealdyn.radial_seals.followers import followers_of, lip_line
-from sealdyn.radial_seals.run_state import RadialRun
-from sealdyn.radial_seals.segments import RadialModel, RadialSegment
+from sealdyn.radial_seals.followers import (
+    fastest,
+    followers_of,
+    hangs_up,
+    held_between,
+    largest_eccentricity,
+    lip_line,
+    needed_preload,
+)
+from sealdyn.radial_seals.model import RadialModel, RadialRun, RadialSegment
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
 from sealdyn.simulation.simulate import simulate
@@ -272,7 +278,7 @@ def test_the_audit_and_the_certificate_bite(sizes, tmp_path, monkeypatch):
     if sizes == "energies":
         monkeypatch.setattr(RadialSegment, "energies", lambda *at: 1.001 * energies(*at))
     else:
-        monkeypatch.setattr("sealdyn.radial_seals.segments.BETWEEN", 100.0)
+        monkeypatch.setattr("sealdyn.radial_seals.model.BETWEEN", 100.0)
     scenario = read_scenario(SEGMENTS, ["run.turns=1", "shaft.eccentricity='0.3 mm'"])
     found = simulate(scenario, tmp_path / "x.h5")
     assert found.status == "inaccurate"

@@ -12,12 +12,18 @@ import pytest
 
 from sealdyn.archive import FIELD_TIME, column, field, read_info
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.radial_seals import signals
-from sealdyn.radial_seals.closed_form import fastest, hangs_up, held_between, largest_eccentricity, needed_preload, said
+from sealdyn.radial_seals import observers
 from sealdyn.radial_seals.contact import Contacts
-from sealdyn.radial_seals.followers import followers_of
-from sealdyn.radial_seals.run_state import RadialRun
-from sealdyn.radial_seals.segments import RadialModel, RadialSegment
+from sealdyn.radial_seals.followers import (
+    fastest,
+    followers_of,
+    hangs_up,
+    held_between,
+    largest_eccentricity,
+    needed_preload,
+    said,
+)
+from sealdyn.radial_seals.model import RadialModel, RadialRun, RadialSegment
 from sealdyn.radial_seals.summary import _warnings
 from sealdyn.report.radial import radial_rows
 from sealdyn.scenario.reader import parse_scenario
@@ -157,7 +163,7 @@ def test_series_are_sums_over_the_followers(kind):
     # One so far inside that its springs pull it out: nothing presses on the shaft all the same.
     us[:, 1] = -5e-3
     vs = np.where(modes == RIDING, surfaces[:, :, 1], rng.normal(size=(2, 12)) * 0.01)
-    found, around = signals.columns(segment, taus, us, vs)
+    found, around = observers.columns(segment, taus, us, vs)
     m, matrix, d, preload, friction = constants(kind)
     loads = (
         m * surfaces[:, :, 2] + d * surfaces[:, :, 1] + us @ matrix + preload + friction * np.sign(surfaces[:, :, 1])

@@ -20,7 +20,7 @@ from sealdyn.numerics.parallel import Together, evaluate, processes
 from sealdyn.numerics.results import Results
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.batch import run_many
-from sealdyn.simulation.outputs import COMMON
+from sealdyn.simulation.result import COMMON
 from sealdyn.studies._runner import run_study
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"

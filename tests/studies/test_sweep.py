@@ -16,7 +16,7 @@ from sealdyn.report.text import study_lines
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis, with_own_unit
-from sealdyn.simulation.outputs import leaves, unit_of
+from sealdyn.simulation.result import leaves, unit_of
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scenes import fms, started
 
-from sealdyn.simulation.attempts import Try, next_try
+from sealdyn.simulation.certificate import Try, next_try
 from sealdyn.solvers.contract import Cause, Counts, Status
 from sealdyn.solvers.integrate import Outcome
 

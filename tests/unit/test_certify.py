@@ -35,9 +35,9 @@ from sealdyn.simulation import certificate
 from sealdyn.simulation import film_error as film_comparison
 from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, error_estimator, solver_error
 from sealdyn.simulation.film_error import model_error, model_errors
-from sealdyn.simulation.film_selection import select_film
-from sealdyn.simulation.second_run import Comparison, Nothing
+from sealdyn.simulation.selection import select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
+from sealdyn.simulation.verification_run import Comparison, Nothing
 from sealdyn.solvers.contract import Counts, tolerance_for
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve

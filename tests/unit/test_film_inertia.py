@@ -33,7 +33,7 @@ from sealdyn.films.radial import floored
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.film import Profile
 from sealdyn.scene.scene import Closing, SceneError
-from sealdyn.simulation.film_selection import select_film
+from sealdyn.simulation.selection import select_film
 
 DENSITY = 870.0
 SPINS = [(0.0, SPEED), (SPEED, 0.0), (SPEED, SPEED), (-0.7 * SPEED, SPEED), (3.0 * SPEED, -0.4 * SPEED)]

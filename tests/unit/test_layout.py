@@ -10,7 +10,7 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import AxialRunout, Rotor, Support
 from sealdyn.scene.scene import Closing, Initial, RingStart
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
 
 TURN = 2 * math.pi / SPEED
 ALIGNED = dict(own=0.0, fixed=0.0)

@@ -7,13 +7,13 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, film, fms, prepared
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import Shaft
-from sealdyn.simulation.looked_at import LookedAt
+from sealdyn.simulation.verification_run import ErrorScales
 
 VOLUME = math.pi * (R_O**2 - R_I**2) * CLEARANCE
 
 
 def scales(duration=0.01, **scene):
-    return LookedAt(prepared(fms(**scene), duration, 1e-6))
+    return ErrorScales(prepared(fms(**scene), duration, 1e-6))
 
 
 def test_the_rate_is_that_of_the_run():

@@ -11,13 +11,12 @@ import sealdyn
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import with_values
-from sealdyn.simulation import batch, looped_run
-from sealdyn.simulation.batch import run_many
-from sealdyn.simulation.looped_run import SAMPLED, LoopedRun, NotSampled, integrate
-from sealdyn.simulation.outputs import leaves, output
+from sealdyn.simulation import batch
+from sealdyn.simulation.batch import SAMPLED, LoopedRun, NotSampled, integrate, run_many
+from sealdyn.simulation.result import leaves, output, plain
 from sealdyn.simulation.simulate import in_memory, prepare_run, simulate_in_memory
 from sealdyn.simulation.sinks import TallySink
-from sealdyn.simulation.summary import parts, plain
+from sealdyn.simulation.summary import parts
 from sealdyn.solvers.contract import Status, tolerance_for
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.sundials import why_slow
@@ -199,13 +198,13 @@ def test_a_failing_run_costs_one_row(by_itself):
 
 
 def test_more_contacts_than_a_loop_keeps(by_itself, monkeypatch):
-    monkeypatch.setattr(looped_run, "MOST_CONTACTS", 4)
+    monkeypatch.setattr(batch, "MOST_CONTACTS", 4)
     (row,) = rows("rub", "stator.misalignment", ["1 mrad"], ["contact.touches"], "run.duration=0.27")
     assert len(by_itself) == 1 and row["contact.touches"] > 4
 
 
 def test_more_samples_than_a_loop_hands_over(by_itself, monkeypatch):
-    monkeypatch.setattr(looped_run, "MOST_OUTPUT", 300)
+    monkeypatch.setattr(batch, "MOST_OUTPUT", 300)
     for outputs, alone in ((["leakage.mean"], 1), (["h_min.value"], 0)):
         by_itself.clear()
         rows("fms_reference", "rotor.runout", ["10 urad"], outputs, "run.turns=2")

@@ -11,7 +11,7 @@ import sealdyn
 from sealdyn.analysis import shooting
 from sealdyn.analysis.shooting import NoOrbit, Shooter
 from sealdyn.scene.excitation import Shaft, Whirl
-from sealdyn.simulation.method_selection import choose_method
+from sealdyn.simulation.selection import choose_method
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 

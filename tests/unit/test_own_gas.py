@@ -11,7 +11,7 @@ from own_words import OwnSeal, own
 from scenes import prepared
 from scipy.integrate import Radau
 
-from sealdyn.simulation.looked_at import LookedAt
+from sealdyn.simulation.verification_run import ErrorScales
 
 SEED = 78
 SCENES = tuple(range(12))
@@ -22,7 +22,7 @@ def scene_of(number):
     """What is drawn, a run, its scales, and the seal in own words."""
     drawn = gas_reynolds(np.random.default_rng([SEED, number]), other_faces=False)
     run = prepared(drawn.scene, drawn.duration, 1e-10)
-    return drawn, run, LookedAt(run), OwnSeal(drawn.scene, drawn.duration)
+    return drawn, run, ErrorScales(run), OwnSeal(drawn.scene, drawn.duration)
 
 
 def state_at(random, seal, t):

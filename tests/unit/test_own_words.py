@@ -12,7 +12,7 @@ from own_words import OwnSeal, own
 from scenes import prepared
 from scipy.integrate import DOP853, Radau
 
-from sealdyn.simulation.looked_at import LookedAt
+from sealdyn.simulation.verification_run import ErrorScales
 
 SEED = 77
 # Together everything that `wide` draws but sticking: see test_scenes_have_everything.
@@ -28,7 +28,7 @@ def scene_of(number):
     drawn = wide(np.random.default_rng([SEED, number]))
     scene = replace(drawn.scene, film=replace(drawn.scene.film, model="radial"))
     run = prepared(scene, drawn.duration, 1e-12)
-    return drawn, scene, run, LookedAt(run), OwnSeal(scene, drawn.duration)
+    return drawn, scene, run, ErrorScales(run), OwnSeal(scene, drawn.duration)
 
 
 def state_at(random, seal, t, thinnest):

@@ -10,7 +10,7 @@ from sealdyn.dynamics.cautions import Concern
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.scene import SceneError
-from sealdyn.simulation import bare_numbers, plausibility, simulate
+from sealdyn.simulation import plausibility, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = SCENARIOS / "fms_reference.toml"
@@ -167,12 +167,12 @@ def test_a_seal_that_cannot_be_for_want_of_a_unit_says_so(key, slip, shown):
 
 
 def read_as(key, slip) -> str:
-    return f"{slip} {bare_numbers.USUAL[key].unit}".strip()
+    return f"{slip} {plausibility.USUAL[key].unit}".strip()
 
 
 def test_a_bare_diameter_is_told_as_it_was_written():
     scenario = read_scenario(PUMP, ["film.inner_diameter=50", "film.outer_diameter=60"])
-    said = bare_numbers.slips(scenario)
+    said = plausibility.unit_warnings(scenario)
     assert "film.inner_diameter without a unit is read as 50 m, which is 50000 mm" in said
     assert all("radius" not in sentence for sentence in said)
 

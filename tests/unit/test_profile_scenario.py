@@ -12,7 +12,7 @@ from sealdyn.scenario.schema import json_schema
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
 from sealdyn.scene.scene import SceneError
-from sealdyn.simulation.film_selection import select_film
+from sealdyn.simulation.selection import select_film
 
 SCENARIO = """
 [shaft]

@@ -14,8 +14,8 @@ from sealdyn.dynamics.run_state import RunState
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.simulation import simulate as simulation
 from sealdyn.simulation.batch import run_many
+from sealdyn.simulation.selection import Start, choose_start
 from sealdyn.simulation.simulate import prepare_run, simulate, simulate_in_memory
-from sealdyn.simulation.start_selection import Start, choose_start
 from sealdyn.studies.work_precision import film_ladder, study
 
 ROOT = Path(__file__).parents[2]

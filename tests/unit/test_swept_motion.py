@@ -41,9 +41,9 @@ from sealdyn.scene.sweep import (
     span,
 )
 from sealdyn.simulation.batch import run_many
+from sealdyn.simulation.film_error import steady_tilt
 from sealdyn.simulation.run import evaluate
 from sealdyn.simulation.simulate import prepare_run, simulate
-from sealdyn.simulation.steady_tilt import steady_tilt
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()
 UP = AxialSweep((20.0, 400.0), displacement=3e-7, start=0.01, duration=0.4)

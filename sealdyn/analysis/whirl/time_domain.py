@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...dynamics.run_state import RunState
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...solvers.contract import Enough, Status, attainable
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

@@ -13,7 +13,7 @@ from ...scenario.settings import values_in_si
 from ...scene.scene import SceneError
 from ...scene.variants import frozen_at_start
 from ...scene.waviness import waves_of
-from ...simulation.steady_tilt import steady_tilt
+from ...simulation.film_error import steady_tilt
 from ...units import Angle, Length, Speed
 from .._words import HERTZ, RPM, frequencies
 from .._words import speed as speed_words

@@ -21,7 +21,7 @@ from ...numerics.piecewise_linear import initially
 from ...scene.coning import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

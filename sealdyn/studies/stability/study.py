@@ -21,7 +21,7 @@ from ...scenario.settings import axis, with_values
 from ...scene.excitation import Housing, Shaft
 from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
 from .._words import no_film_beyond, speed
 from .grid import INERTIA_RATIO, Grid

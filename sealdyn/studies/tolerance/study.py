@@ -10,7 +10,7 @@ from ...numerics.parallel import Together
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
 from ...simulation.batch import run_many
-from ...simulation.outputs import unit_of
+from ...simulation.result import unit_of
 from ...status import Status
 from .effects import Sample, convergence, indices, tightened
 from .estimates import moments, number, probability, quantiles

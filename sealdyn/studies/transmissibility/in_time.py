@@ -14,7 +14,7 @@ from ...scene.coning import coning_change
 from ...scene.film import Coefficients, aligned_gaps
 from ...scene.scene import Scene
 from ...scene.variants import frozen_at_start
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

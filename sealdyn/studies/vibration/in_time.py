@@ -9,7 +9,7 @@ from ...dynamics.extrema import H
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...faces.geometry import DZ, GX, GY
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...solvers.contract import MANY, Enough, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

@@ -24,7 +24,7 @@ from ...faces.geometry import FORCE, PROFILE_DEPTHS, SPIN_DIFFERENCE, WEAR, smal
 from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
-from ...simulation.method_selection import choose_method
+from ...simulation.selection import choose_method
 from ...solvers.contract import Cause, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
-from ...simulation.second_run import BESIDE_JUMPS
+from ...simulation.verification_run import BESIDE_JUMPS
 from ...solvers.contract import Counts, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder

@@ -16,8 +16,8 @@ from pydantic import Field
 
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
-from ...simulation.beside_reynolds import beside_reynolds
-from ...simulation.method_selection import check_method, choose_method
+from ...simulation.film_error import beside_reynolds
+from ...simulation.selection import check_method, choose_method
 from ...simulation.simulate import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS

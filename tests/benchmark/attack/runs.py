@@ -15,8 +15,8 @@ from sealdyn.archive import ArchiveError, column, read_info
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.scene.scene import SceneError
+from sealdyn.simulation.plausibility import size_of
 from sealdyn.simulation.simulate import simulate
-from sealdyn.simulation.size import size_of
 
 from .outcome import PATIENCE, one_line, place
 from .scenarios import SCENARIOS, healthy, mutated

@@ -9,7 +9,7 @@ from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
 from ....dynamics.steady_extremes import steady_extremes
-from ....simulation.steady_tilt import steady_tilt
+from ....simulation.film_error import steady_tilt
 from ._common import integrated, row
 
 ITEM = 12

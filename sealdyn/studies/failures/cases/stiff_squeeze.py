@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from ....analysis.sources.green_1989 import reference_scene
 from ....scene.rings import Rotor, Stator
-from ....simulation.method_selection import choose_method
+from ....simulation.selection import choose_method
 from ....solvers.contract import Counts, Status
 from ....solvers.methods import METHODS
 from ._common import integrated, row, run_from

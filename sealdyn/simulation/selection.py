@@ -1,0 +1,182 @@
+"""The lowest film model that keeps the asked accuracy."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..dynamics import modes
+from ..dynamics.intervals import constant_and_slope
+from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
+from ..faces.geometry import COLLAPSE, DZ, FLOOR
+from ..scene.gas import viscosity_of
+from ..scene.scene import SceneError
+from .film_error import model_error
+
+
+def select_film(scene, settings, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
+    """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
+    that was chosen for it (None: not estimated).  `settings` as the `[run]` table: `accuracy`, and `duration` (s) or
+    `turns`; `start(run)` sets the run's unknowns.
+
+    Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is below
+    half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
+    """
+    film, accuracy = scene.film, settings.accuracy
+
+    def started(scene, observed=None) -> RunState:
+        model = Model(scene, accuracy, observed)
+        run = RunState(model, model.time_of(settings.turns) if settings.duration is None else settings.duration)
+        start(run)
+        return run
+
+    highest = started(scene)
+    name = highest.model.interface.name
+    if film.model != "auto":
+        return highest, None
+    if film.gas is not None:
+        highest.reasons.append(f"film auto: the {name} film, for a gas")
+        return highest, None
+    if name != "radial":
+        highest.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
+        return highest, None
+    why = _why_not_linear(scene, highest)
+    if why is None:
+        simpler = replace(scene, film=replace(film, model="linear", coefficients="radial"))
+        linear = started(simpler, highest.model.observed)
+        error = model_error(linear, enough=0.5 * accuracy)
+        if error is not None and error < 0.5 * accuracy:
+            linear.reasons.append(
+                f"film auto: the linear film, with the radial film's coefficients, is within {error:.1e} of it"
+            )
+            return linear, error
+        why = (
+            "the linear film's error cannot be estimated"
+            if error is None
+            else f"the linear film errs by {error:.1e} or more"
+        )
+    highest.reasons.append(f"film auto: the radial film; {why}")
+    return highest, None
+
+
+def _why_not_linear(scene, radial: RunState) -> str | None:
+    """What rules the linear film out before anything is tried, or None."""
+    unknowns = radial.model.unknowns
+    if scene.contact or unknowns.seals:
+        return "contact or friction is no place for a linear film"
+    if scene.film.cavitation_pressure is not None:
+        return "the pressure has a floor"
+    if scene.film.inertia:
+        return "the fluid has inertia"
+    if not unknowns.constant or unknowns.has_residual_form:
+        return "conditions change, or a ring has no mass"
+    # A tilt ratio t leaves errors of t^2: no estimate is needed to see that far.
+    ratio = 1.0 - radial.start_film() / radial.model.clearance
+    if ratio * ratio > 100.0 * radial.model.accuracy:
+        return f"the film starts {abs(ratio):.2g} off the clearance, and a linear film errs by about the square"
+    return None
+
+
+# Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
+STIFF = 60.0
+
+
+def choose_method(run) -> tuple[str, str]:
+    """The method for a run (RunState), by its name in METHODS, and a sentence why."""
+    model = run.model
+    if hasattr(model.interface.film, "settle"):
+        return "trbdf2", "cells that tear and fill: TR-BDF2, the film settled at each stage"
+    if model.unknowns.massless:
+        return "ida", "a massless ring has no rates: IDA, on the residual form"
+    if model.unknowns.has_residual_form:
+        return "ida", "the film has unknowns of its own: IDA, on the residual form"
+    if model.unknowns.linear and model.unknowns.constant:
+        return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
+    ratio = _fastest_decay(run) * model.shortest_period / (2 * math.pi)
+    if ratio > STIFF:
+        return "bdf", f"fastest decay {float(f'{ratio:.3g}'):g} times the fastest forcing: stiff, CVODE BDF"
+    return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
+
+
+def check_method(model, method: str) -> None:
+    """Raises SceneError where a method cannot integrate a scene."""
+    unknowns = model.unknowns
+    settles = hasattr(model.interface.film, "settle")
+    if method == "trbdf2" and not settles:
+        raise SceneError("run.solver", '"trbdf2"', "another solver: it is for films whose cells tear and fill")
+    if unknowns.has_residual_form and method != "ida" and not (settles and method == "trbdf2"):
+        what = "a massless ring" if unknowns.massless else "a film with unknowns of its own"
+        raise SceneError("run.solver", f'"{method}" for {what}', '"ida" (or "auto")')
+    if method == "expm" and not (unknowns.linear and unknowns.constant):
+        what = "a nonlinear film, contact or friction" if not unknowns.linear else "parameters that change with time"
+        raise SceneError("run.solver", f'"expm" with {what}', 'film.model = "linear" and constant parameters')
+
+
+def _fastest_decay(run) -> float:
+    """Fastest decay (1/s) of the scene linearised where the run starts (a squeezed film is stiffer by the cube) and at
+    the equilibrium of each interval's loads."""
+    model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
+    varying = (model.scene.shaft.speed, viscosity_of(model.scene.film))
+    places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
+    for interval in run.intervals.few:
+        places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
+    scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
+    return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)
+
+
+STABLE = "on the linear steady response, which is stable"
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a run starts: `taken` "rest", "steady" or an archive; `why` a sentence, empty where it was asked for."""
+
+    taken: str
+    why: str = ""
+
+
+def choose_start(run, asked: str) -> Start:
+    """The start of a run (RunState, still at rest) whose scenario says `asked` (`run.start`)."""
+    if asked != "auto":
+        return Start(asked)
+    closed = run.start_film() <= run.model.face[COLLAPSE]
+    doubt = _response_is_doubtful(run)
+    if doubt and not closed:
+        return Start("rest", f"at rest: {doubt}")
+    ruled_out = _no_steady_response(run)
+    if ruled_out:
+        return Start("rest", f"at rest: {ruled_out}")
+    if closed:
+        # Where both are closed the response is the one to tell of.
+        overlap = f"at rest the faces would overlap; on the linear steady response, though {doubt}"
+        return Start("steady", overlap if doubt else STABLE)
+    if run.start_film(run.steady_start()) <= run.model.face[COLLAPSE]:
+        return Start("rest", "at rest: the linear steady response closes the film")
+    return Start("steady", STABLE)
+
+
+def _response_is_doubtful(run) -> str:
+    """Why the motion need not stay near a linear steady response; else empty."""
+    unknowns = run.model.unknowns
+    if run.model.scene.initial.given:
+        return "[initial] gives the rest"
+    if run.model.contact is not None:
+        return "contact is not linear"
+    if unknowns.seals:
+        return "what a secondary seal holds is not linear"
+    if unknowns.film_unknowns is not None:
+        return "a film with unknowns of its own starts with them settled"
+    return "" if unknowns.constant else "conditions change with time"
+
+
+def _no_steady_response(run) -> str:
+    """Why a run cannot start on a linear steady response; else empty."""
+    model = run.model
+    if model.scene.initial.given:
+        return "[initial] gives the rest"
+    if not model.loads_are_balanced(model.start):
+        return "no gap at which the film holds the loads"
+    verdict = modes.verdict(model.linear_scene().modes())
+    return "" if verdict == "stable" else f"the linear steady response is {verdict}"
