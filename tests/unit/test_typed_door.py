@@ -40,10 +40,14 @@ def test_a_type_checker_agrees_and_finds_what_is_wrong(tmp_path):
     (tmp_path / "wrong.py").write_text(WRONG)
     # A checker does not see through the finder of an editable installation: it is shown the folder,
     # and asked of the two files alone.
-    words = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", tmp_path / "cache"]
+    words = [sys.executable, "-m", "mypy", "--config-file=", "--strict", "--follow-imports=silent"]
     place = os.environ | {"MYPYPATH": str(Path(sealdyn.__file__).parents[1])}
     done = subprocess.run(
-        [*words, SCRIPT, tmp_path / "wrong.py"], capture_output=True, text=True, cwd=SCRIPT.parent, env=place
+        [*words, "--cache-dir", tmp_path / "cache", SCRIPT, tmp_path / "wrong.py"],
+        capture_output=True,
+        text=True,
+        cwd=SCRIPT.parent,
+        env=place,
     )
     errors = re.findall(r"^(.*?)(\w+\.py):(\d+): error: ", done.stdout, re.MULTILINE)
     assert {int(line) for _, name, line in errors if name == "wrong.py"} == set(range(2, WRONG.count("\n") + 1)), (
