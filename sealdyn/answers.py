@@ -15,12 +15,14 @@ from .quantities import quantity
 @dataclass(frozen=True)
 class Table:
     """Rows of numbers (SI), words, truths or None below `columns`, pairs of a quantity (or SI unit) and a heading.
-    `written` {quantity or SI unit: unit} goes before the units that a scenario wrote."""
+    `written` {quantity or SI unit: unit} goes before the units that a scenario wrote.  Columns of the quantity "row"
+    hold numbers of the quantity (or SI unit) that `of_rows` names for each row."""
 
     name: str
     columns: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[Any]]
     written: Mapping[str, str] = field(default_factory=dict)
+    of_rows: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,9 @@ class Answer:
     notes: Sequence[str] = ()
     written: Mapping[str, str] = field(default_factory=dict)
 
+    def __getitem__(self, key: str) -> Any:
+        return self.numbers[key]
+
 
 def as_json(answer: Answer) -> dict[str, Any]:
     """What `--json` prints of an answer: its numbers, `found`, `notes`, `tables`, units as `written`, and `verdict`,
@@ -126,8 +131,10 @@ def as_json(answer: Answer) -> dict[str, Any]:
 def _table(table: Table) -> dict:
     """A table as JSON has it; its columns keep their quantity, from which names and units follow."""
     columns = [{"name": name, "unit": quantity(held).unit, "quantity": held} for held, name in table.columns]
-    written = {"written": dict(table.written)} if table.written else {}
-    return {"name": table.name, "columns": columns, "rows": _data(table.rows), **written}
+    more = {"written": dict(table.written)} if table.written else {}
+    if table.of_rows:
+        more["of_rows"] = [{"unit": quantity(held).unit, "quantity": held} for held in table.of_rows]
+    return {"name": table.name, "columns": columns, "rows": _data(table.rows), **more}
 
 
 def plain(panels: Sequence[Panel]) -> list[dict]:

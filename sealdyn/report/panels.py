@@ -42,7 +42,9 @@ DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 
 MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
          "star": "*", "tick": "_"}  # fmt: skip
 # Columns of panels side by side; width (inches) of a figure by their number; height of a panel alone and in a stack.
-ACROSS, WIDTHS, ALONE, STACKED = 4, (8.5, 11.5, 13.0, 13.0), 4.6, 3.0
+ACROSS, WIDTHS, ALONE, STACKED = 3, (8.5, 11.5, 13.0, 13.5), 4.6, 3.0
+# Height of a panel of several rows, and from how many panels on four stand in a row.
+IN_ROWS, MANY = 3.4, 7
 # Letters of a legend that an inch has room for, and points of height that a row of it takes.
 LETTERS, ROW = 11.0, 12.0
 # Of the largest value of a diverging map: below, its colours are linear.
@@ -74,11 +76,11 @@ def draw(path, out=None):
 def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = BLACK, written=None):
     """A figure: heading, then the panels."""
     stacks = _stacks(panels_of(plain(panels)))
-    rows = [stacks[k : k + ACROSS] for k in range(0, len(stacks), ACROSS)] if len(stacks) > ACROSS else [stacks]
-    if len(rows) > 1:
-        across = -(-len(stacks) // len(rows))
-        rows = [stacks[k : k + across] for k in range(0, len(stacks), across)]
-    heights = [max(_height(stack) for stack in row) for row in rows]
+    most = ACROSS + (len(stacks) >= MANY)
+    across = -(-len(stacks) // -(-len(stacks) // most))
+    rows = [stacks[k : k + across] for k in range(0, len(stacks), across)]
+    alone = ALONE if len(rows) == 1 else IN_ROWS
+    heights = [max(_height(stack, alone) for stack in row) for row in rows]
     figure = sheet(WIDTHS[max(map(len, rows)) - 1], 1.1 + sum(heights))
     top = heading(figure, title, below, bold, colour)
     width, height = figure.get_size_inches()
@@ -103,8 +105,8 @@ def _stacks(panels) -> list[list[Panel]]:
     return stacks
 
 
-def _height(stack) -> float:
-    return ALONE * stack[0].tall if len(stack) == 1 else STACKED * sum(panel.tall for panel in stack)
+def _height(stack, alone: float) -> float:
+    return alone * stack[0].tall if len(stack) == 1 else STACKED * sum(panel.tall for panel in stack)
 
 
 def _draw_stack(figure, place, stack, width: float, written) -> None:
@@ -185,7 +187,7 @@ class _Scaled:
     @property
     def label(self) -> str:
         name = self.axis.label or quantity(self.axis.quantity).name
-        return printed(", ".join(filter(None, (name, self.unit))))
+        return printed(", ".join(filter(None, (name.strip(), self.unit))))
 
     def scale(self, ax, which: str) -> None:
         if self.axis.scale == "log":

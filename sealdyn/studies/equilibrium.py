@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import (
     ClosingForce,
     crossing,
@@ -18,6 +19,7 @@ from ..dynamics.equilibrium import (
 from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scene.coning import coned
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
@@ -25,24 +27,26 @@ from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..scene.waviness import waves_of
 from ..units import Length
-from ._words import shown_in, wear, wearing
+from . import Info
 
-WITH_WAVES = True
+INFO = Info(
+    timed=("run_in", 2),
+    asks="At which clearance does the seal ride?",
+    wavy=True,
+    units={
+        **dict.fromkeys(("opening_force", "film_force", "contact_force"), "N"), "stiffness": "N/m", "range": "m",
+        "clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s",
+        **dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s"),
+        **dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1"),
+    },
+    along={"curve": ("clearance",)},
+)  # fmt: skip
+# What is drawn of the force of asperities, in closing forces, and of the stiffness, in that of the stiffest root.
+SHOWN = 3.0
 # Relative error of the film's integrals.
 FINE = 1e-10
-# Of which force load support is a share.
-ABOVE = "of the closing force above the lower pressure"
 # From clearance to clearance in looking for where friction gives way.
 STRIDE = 1.05
-ALONG = {"curve": ("clearance",)}
-units = dict.fromkeys(("opening_force", "film_force", "contact_force"), "N") | {"stiffness": "N/m", "range": "m"}
-units |= {"clearance": "m", "held": "m", "mass_flow": "kg/s", "leakage": "m^3/s"}
-units |= dict.fromkeys(("wear_rate", "standing", "travelling"), "m/s")
-units |= dict.fromkeys(("load_support", "friction_coefficient", "cavitated_fraction"), "1")
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("run_in", 2)
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,7 @@ def find(scene) -> Found:
     return replace(found, roots=equilibria(film, opening, found.closing, *pressures, waves_of(scene), scene.contact))
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """All equilibria in the range, the opening force over clearance and the closing force."""
     scene = kept_waves(frozen_at_start(scenario.scene))
     found, film, surfaces = find(scene), coned(scene), (waves_of(scene), scene.contact)
@@ -103,7 +107,7 @@ def run(scenario, settings, tools) -> dict:
         for c, step in zip(clearance, steps, strict=True)
     ])  # fmt: skip
     support = support_stiffness(scene)
-    answer = {
+    numbers = {
         "roots": [root_row(scene, root, found, friction) for root in roots],
         "closing_force": found.closing,
         "balance_ratio": float(found.law.balance_ratio),
@@ -119,7 +123,7 @@ def run(scenario, settings, tools) -> dict:
             "stiffness": stiffness.tolist(),
         },
     }
-    return answer | {"verdict": _verdict(answer, wearing(_wears(scene)))}
+    return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers, scene))
 
 
 def kept_waves(scene):
@@ -232,58 +236,89 @@ def _range(film, surfaces, roots, settings) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def tables(answer) -> list:
-    """Every clearance of balance."""
-    flow, factor = shown_in("m^3/s", [root["leakage"] for root in answer["roots"]])
-    columns = (("clearance, um", "clearance", 1e6), ("stiffness, N/um", "stiffness", 1e-6), ("stable", "stable"),
-               ("by the film, N", "film_force"), ("by contact, N", "contact_force"),
-               ("load support, % above low pressure", "load_support", 100),
-               ("friction coefficient", "friction_coefficient"),
-               (f"leakage, {flow}", "leakage", factor), ("cavity, %", "cavitated_fraction", 100))  # fmt: skip
-    return [(answer["roots"], columns)]
+def _found(numbers) -> str:
+    """Where the seal rides."""
+    carried, rows = "film and asperities" if any(numbers["curve"]["contact_force"]) else "the film", numbers["roots"]
+    stable = [in_words("clearance", root["clearance"], digits=6) for root in rows if root["stable"]]
+    low, high = (in_words("clearance", end) for end in numbers["range"])
+    if stable:
+        return f"The seal rides at {' or '.join(stable)}: {carried} carry the closing force there, stably."
+    kind = "only unstably" if rows else "nowhere"
+    return f"Between {low} and {high} {carried} carry the closing force {kind}."
 
 
-def _verdict(answer, faces) -> list[str]:
-    """In words; `faces` that wear."""
-    (low, high), roots, support = answer["range"], answer["roots"], answer["support_stiffness"]
-    stable = [f"{1e6 * root['clearance']:.6g} um" for root in roots if root["stable"]]
-    opening = "Film with asperities" if any(answer["curve"]["contact_force"]) else "Film"
-    said = [
-        f"{opening} and closing force balance at {len(roots)} clearance(s) from {1e6 * low:.4g} to {1e6 * high:.4g} "
-        f"um; stable: {', '.join(stable) or 'none'}.",
-        f"Closing force {answer['closing_force']:.6g} N (balance ratio {answer['balance_ratio']:.5g}, spring "
-        f"{answer['spring_force']:.4g} N; {answer['closing_said']}).",
-    ]
-    loose = [f"{1e6 * root['clearance']:.6g} um" for root in roots if not root["stable"]]
-    if loose:
-        less = "A smaller gap would carry less there, and a larger one more: the faces close, or open to a stable gap."
-        said.append(f"Statically unstable: {', '.join(loose)}.  {less}")
-    for root in roots:
-        where, rough = 1e6 * root["clearance"], root["contact_force"]
-        if rough:
-            words = f"At {where:.4g} um asperities carry {rough:.5g} N of {rough + root['film_force']:.5g} N absolute"
-            share = root["load_support"]
-            words += "" if share is None else f", {100 * (1 - share):.4g} % {ABOVE}; the film carries the rest"
-            said.append(f"{words}.")
-        if "wear_rate" in root:
-            said.append(f"There {wear(root['wear_rate'])} wear off {faces} on average.")
-        if "stator_wear" in root:
-            standing, even = (wear(root["stator_wear"][key]) for key in ("standing", "travelling"))
-            said.append(f"The stator's crests wear {standing} while its waves stand; if these travel slowly around the "
-                        f"ring, by whole waves, it wears {even} everywhere: evenly.")  # fmt: skip
-        if "held" in root:
-            low, high = map(_um, root["held"])
-            said.append(f"The secondary seal's friction, {answer['friction']:.4g} N, holds from {low} to {high} too.")
+def _tables(numbers) -> list[Table]:
+    """Every clearance of balance, and what closes the faces."""
+    names = (
+        ("clearance", "clearance", "clearance"), ("1", "stable", "stable"),
+        ("axial_stiffness", "stiffness", "stiffness"), ("force", "by the film", "film_force"),
+        ("force", "by contact", "contact_force"), ("share", "load support", "load_support"),
+        ("1", "friction coefficient", "friction_coefficient"), ("leakage", "leakage", "leakage"),
+        ("cavitated_fraction", "cavity", "cavitated_fraction"), ("wear_rate", "wear of both faces", "wear_rate"),
+    )  # fmt: skip
+    columns, rows = [name[:2] for name in names], [[root.get(key) for *_, key in names] for root in numbers["roots"]]
+    if any("stator_wear" in root for root in numbers["roots"]):
+        columns += [("wear_rate", "of crests, standing"), ("wear_rate", "travelling")]
+        worn = [root.get("stator_wear", {}) for root in numbers["roots"]]
+        rows = [[*row, one.get("standing"), one.get("travelling")] for row, one in zip(rows, worn, strict=True)]
+    if any("held" in root for root in numbers["roots"]):
+        columns += [("clearance", "held by friction from"), ("clearance", "to")]
+        rows = [[*row, *root.get("held", (None, None))] for row, root in zip(rows, numbers["roots"], strict=True)]
+    closing = [[numbers[key] for key in ("closing_force", "balance_ratio", "spring_force", "support_stiffness")]]
+    named = [("force", "closing force"), ("1", "balance ratio"), ("force", "spring"), ("axial_stiffness", "support")]
+    return [Table("equilibria", columns, rows), Table("closing", named, closing)]
+
+
+def _notes(numbers, scene) -> list[str]:
+    """What the rows do not say."""
+    roots, notes = numbers["roots"], [f"Closing force: {numbers['closing_said']}."]
+    wears = [face for face, coefficient in _wears(scene).items() if coefficient]
     if not roots:
-        curve = answer["curve"]["opening_force"]
-        said.append(f"The film carries {min(curve):.5g} to {max(curve):.5g} N there: never the closing force.")
-    elif len(stable) > 1:
-        said.append("Several stable clearances: the start of a run decides which one the seal takes.")
-    elif any(not root["stable"] and root["stiffness"] + support > 0 for root in roots):
-        said.append(f"The support's {support:.3g} N/m would hold an unstable one.")
-    return said
+        least, most = (in_words("force", end(numbers["curve"]["opening_force"])) for end in (min, max))
+        notes.append(f"The film carries {least} to {most} there.")
+    if any(not root["stable"] for root in roots):
+        notes.append("From an unstable clearance the faces close, or open to a stable one.")
+    if any(not root["stable"] and root["stiffness"] + numbers["support_stiffness"] > 0 for root in roots):
+        notes.append("The support's stiffness would hold an unstable one.")
+    if sum(root["stable"] for root in roots) > 1:
+        notes.append("Several stable clearances: the start of a run decides which one the seal takes.")
+    if wears and any("wear_rate" in root for root in roots):
+        notes.append(f"Wear of the {' and the '.join(wears)}; of waves that travel by whole waves it is even.")
+    return notes
 
 
-def _um(clearance) -> str:
-    """A clearance (m) in words; None: as far as was looked."""
-    return f"{1e6 * clearance:.4g} um" if clearance is not None else "beyond what was looked at"
+def _panels(numbers) -> list[Panel]:
+    """Forces above, stiffness below, over clearance."""
+    curve, closing, roots = numbers["curve"], numbers["closing_force"], numbers["roots"]
+    clearance, opening, rough = (np.array(curve[name]) for name in ("clearance", "opening_force", "contact_force"))
+    # Asperities pressed flat carry so much that nothing else would be seen.
+    most = min(opening.max(), SHOWN * closing) if rough.any() and closing > 0 else opening.max()
+    lowest = min(opening.min(), closing, 0.0 if rough.any() else np.inf)
+    span = max(max(most, closing) - lowest, 1e-9)
+    seen = clearance >= clearance[np.argmax(opening <= most + 0.18 * span)] / 10**0.25
+    over = Axis("clearance", "clearance at the inner radius", "log", clearance[seen][0], clearance[-1])
+    forces = [Series("line", clearance, opening, label="opening force", style="film thick")]
+    if rough.any():
+        forces.append(Series("line", clearance, rough, label="of it asperities", style="contact dotted"))
+    stiff = [Series("line", clearance, np.array(curve["stiffness"]), style="film")]
+    for stable, style in ((True, "good circle large front"), (False, "bad cross large front")):
+        at = [root["clearance"] for root in roots if root["stable"] == stable]
+        names = [in_words("clearance", c) for c in at]
+        label = "stable" if stable else "unstable"
+        forces.append(Series("marks", at, [closing] * len(at), label=label, style=style, names=names))
+        stiff.append(
+            Series("marks", at, [root["stiffness"] for root in roots if root["stable"] == stable], style=style)
+        )
+    held = max((root["stiffness"] for root in roots), default=0.0)
+    ends = (
+        {"low": min(min(curve["stiffness"]), 0.0) - 0.1 * held, "high": SHOWN * held}
+        if rough.any() and held > 0
+        else {}
+    )
+    level = Level(closing, "closing force", style="theory dashed", number=True)
+    force = Axis("force", "axial force", low=lowest - 0.08 * span, high=max(most, closing) + 0.18 * span)
+    return [
+        Panel("Opening and closing force", over, force, [one for one in forces if len(one.x)], [level], tall=1.4),
+        Panel("Axial stiffness (negative: the gap runs away)", over, Axis("axial_stiffness", **ends),
+              [one for one in stiff if len(one.x)], [Level(0.0, style="black")], below=True),
+    ]  # fmt: skip

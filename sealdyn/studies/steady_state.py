@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..analysis.shooting import NoOrbit, Shooter
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics import modes
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
@@ -14,6 +15,7 @@ from ..dynamics.signals import signals
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import with_values
 from ..simulation.selection import choose_method
@@ -21,24 +23,26 @@ from ..simulation.stability import critical_speed
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
-from ._words import RPM, speed
+from . import Info
 
-WITH_WAVES = True
+INFO = Info(
+    timed=("fms_reference", 5),
+    asks="What is the periodic steady state?",
+    wavy=True,
+    units={
+        "period": "s", "time": "s", "h_min": "m", "speed": "rad/s",
+        **dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalignment", "shaft_angle"), "rad"),
+        **dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transient", "defects"), "1"),
+    },
+    along={"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
+           "near_threshold": ("speed",)},
+)  # fmt: skip
 # Cycles of a period of which each has samples of its own from there on, how many, and the most samples.
 FEW, PER_CYCLE, MOST = 4, 48, 20_000
 # Turns of a run without a period that are drawn, and samples of each.
 SHOWN, PER_TURN = 20, 64
-ALONG = {"orbit": ("time",), "linear": ("time",), "linear/multipliers": ("mode",), "multipliers": ("mode",),
-         "near_threshold": ("speed",)}  # fmt: skip
-units = {"period": "s", "time": "s", "h_min": "m", "speed": "rad/s"}
-units |= dict.fromkeys(("relative_tilt_x", "relative_tilt_y", "relative_misalignment", "shaft_angle"), "rad")
-units |= dict.fromkeys(("multipliers", "multiplier", "part", "shooting", "transient", "defects"), "1")
-
 # Accuracy of the orbit that is shown, at least.
 SHARP = 1e-8
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 5)
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,7 @@ class Settings:
     """Longest transient tried, in periods."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Orbit, multipliers, verdict on the nonlinear orbit; against harmonic balance; cost near the threshold."""
     for key, least in (("turns", 1), ("samples", 2), ("longest", 1)):
         if getattr(settings, key) < least:
@@ -70,16 +74,16 @@ def run(scenario, settings, tools) -> dict:
     try:
         orbit = shooter.find()
     except NoOrbit as reason:
-        threshold = f"critical speed {speed(critical)}" if critical else "no critical speed"
-        said = f"No periodic steady state was found: {reason}.", f"Linear theory: {verdict} here, {threshold}."
         values = [v for mode in linear.modes() for v in {mode.value, mode.value.conjugate()}]
         foretold = [complex(np.exp(v * shooter.period)) for v in values]
-        return {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None, "h_min": None,
-                "relative_misalignment": None, "critical_speed": critical, "near_threshold": [], "orbit": None,
-                "reason": str(reason), "defects": shooter.defects,
-                "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold],
-                           **_linear_film(shooter, settings.samples)},
-                "verdict": list(said)}  # fmt: skip
+        numbers = {"status": Status.FAILED, "period": shooter.period, "multipliers": None, "stable": None,
+                   "h_min": None, "relative_misalignment": None, "critical_speed": critical, "near_threshold": [],
+                   "orbit": None, "reason": str(reason), "defects": shooter.defects,
+                   "linear": {"verdict": verdict, "multipliers": [[m.real, m.imag] for m in foretold],
+                              **_linear_film(shooter, settings.samples)}}  # fmt: skip
+        there = f"critical speed {in_words('speed', critical)}" if critical else "no critical speed"
+        found = f"No periodic steady state was found: {reason}; linear theory: {verdict}, {there}."
+        return Answer(numbers, found, panels=_panels(numbers))
     tools.say(0.1)
     # Of a seal that follows closely the accuracy of a run is more than the whole relative tilt.
     waves = shooter.extremes(orbit.start, _samples(shooter, settings.samples), min(scenario.run.accuracy, SHARP))
@@ -88,7 +92,7 @@ def run(scenario, settings, tools) -> dict:
     rows = []
     if critical and not shooter.model.unknowns.has_residual_form:
         rows = _near_threshold(scenario, settings, critical, tools)
-    answer = {
+    numbers = {
         "period": orbit.period,
         "multipliers": [[float(m.real), float(m.imag)] for m in orbit.multipliers],
         "stable": orbit.stable,
@@ -103,7 +107,9 @@ def run(scenario, settings, tools) -> dict:
         "near_threshold": rows,
         "critical_speed": critical,
     }
-    return {**answer, "verdict": _verdict(answer)}
+    kind = "stable" if orbit.stable else "UNSTABLE"
+    found = f"The periodic steady state is {kind}; h_min {in_words('h_min', waves['h_min']['value'], digits=5)}."
+    return Answer(numbers, found, _tables(numbers), _panels(numbers))
 
 
 def _samples(shooter, asked: int) -> int:
@@ -130,24 +136,78 @@ def _waves(model, waves) -> dict:
     return {name: [float(x) for x in columns[name]] for name in names}
 
 
-def tables(answer) -> list:
-    """Cost of shooting and of waiting near the critical speed."""
-    columns = (("of critical speed", "part"), ("speed, rpm", "speed", RPM), ("periods by shooting", "shooting"),
-               ("by waiting (-: not within longest)", "transient"), ("ends", "transient_ends"))  # fmt: skip
-    return [(answer["near_threshold"], columns)]
+def _tables(numbers) -> list[Table]:
+    """The orbit, and what shooting and waiting cost near the critical speed."""
+    low, tilt, linear = numbers["h_min"], numbers["relative_misalignment"], numbers.get("linear") or {}
+    largest = max((math.hypot(*m) for m in numbers["multipliers"] or ()), default=None)
+    columns = [("time", "period"), ("1", "largest multiplier"), ("h_min", "h_min"), ("share", "of the clearance"),
+               ("misalignment", "misalignment from"), ("misalignment", "to"), ("misalignment", "linear from"),
+               ("misalignment", "to"), ("1", "periods integrated")]  # fmt: skip
+    row = [numbers["period"], largest, low["value"], low["of_clearance"], tilt["min"], tilt["max"],
+           linear.get("relative_min"), linear.get("relative_max"), numbers.get("periods_used")]  # fmt: skip
+    tables = [Table("steady state", columns, [row])]
+    if numbers["near_threshold"]:
+        names = (("share", "of critical speed", "part"), ("speed", "speed", "speed"),
+                 ("1", "periods by shooting", "shooting"), ("1", "by waiting", "transient"),
+                 ("1", "waiting ends", "transient_ends"), ("1", "failed", "failed"))  # fmt: skip
+        rows = [[row.get(key) or None for *_, key in names] for row in numbers["near_threshold"]]
+        tables.append(Table("cost near the threshold", [name[:2] for name in names], rows))
+    return tables
 
 
-def _verdict(answer) -> list[str]:
-    size = max(math.hypot(*m) for m in answer["multipliers"])
-    tilt, low, linear = answer["relative_misalignment"], answer["h_min"], answer["linear"]
-    kind = "stable" if answer["stable"] else "UNSTABLE"
-    return [
-        f"The periodic steady state (period {answer['period']:.6g} s) is {kind}, largest Floquet multiplier "
-        f"{size:.4g}; h_min {low['value'] * 1e6:.5g} um, {low['of_clearance'] * 100:.4g} % of the clearance.",
-        f"Relative misalignment {tilt['min'] * 1e6:.5g} to {tilt['max'] * 1e6:.5g} urad (linear: "
-        f"{linear['relative_min'] * 1e6:.5g} to {linear['relative_max'] * 1e6:.5g}); found with "
-        f"{answer['periods_used']} periods of integration.",
-    ]
+def _panels(numbers) -> list[Panel]:
+    """Orbit, multipliers, film and cost: those that there are."""
+    orbit, linear, panels = numbers.get("orbit"), numbers.get("linear") or {}, []
+    periodic = numbers["period"] and orbit
+    over = "one period" if periodic else "the last turns"
+    if orbit:
+        x, y = orbit["relative_tilt_x"], orbit["relative_tilt_y"]
+        marks = [Series("marks", [0.0], [0.0], style="grey plus")]
+        marks += [Series("marks", x[:1], y[:1], label="shaft angle 0", style="black circle front")] if periodic else []
+        curve = Series("line", x, y, style="tilt")
+        panels.append(Panel(f"Relative tilt over {over}", Axis("tilt", "tilt about x"), Axis("tilt", "tilt about y"),
+                            [curve, *marks], equal=True))  # fmt: skip
+    elif numbers.get("defects"):
+        left = numbers["defects"]
+        panels.append(Panel("Newton's method on the period map", Axis("1", "step"),
+                            Axis("1", "defect over one period, scales", "log"),
+                            [Series("line", range(1, len(left) + 1), left, style="contact circle")]))  # fmt: skip
+    values, name = numbers.get("multipliers"), "Floquet multipliers"
+    if not values:
+        values, name = linear.get("multipliers"), "Multipliers of linear theory"
+    if values:
+        turn = np.linspace(0, 2 * np.pi, 200)
+        real, imaginary = np.array(values).T
+        largest = float(np.max(np.hypot(real, imaginary)))
+        circle = Series("line", np.cos(turn), np.sin(turn), label="unit circle", style="grey thin")
+        dots = Series("marks", real, imaginary, style=f"{'tilt' if largest < 1.0 else 'contact'} open circle")
+        panels.append(Panel(f"{name}: largest {largest:.3g}", Axis("1", "real part"), Axis("1", "imaginary part"),
+                            [circle, dots], equal=True))  # fmt: skip
+    film = orbit or (linear if "h_min" in linear else None)
+    if film:
+        named = f"Thinnest film over {over}" if orbit else "Thinnest film of linear theory"
+        panels.append(Panel(named, Axis("time"), Axis("h_min", "h_min"),
+                            [Series("line", film["time"], film["h_min"], style="film" if orbit else "theory")],
+                            [] if orbit else [Level(0.0, "the faces touch", style="contact")]))  # fmt: skip
+    rows = [row for row in numbers["near_threshold"] if "failed" not in row]
+    if rows:
+        panels.append(_cost_panel(rows))
+    return panels or [Panel("Periodic steady state", note=numbers.get("reason") or "no periodic orbit")]
+
+
+def _cost_panel(rows) -> Panel:
+    """Periods that shooting and waiting integrate, over the distance from the critical speed."""
+    away, cost = [1.0 - row["part"] for row in rows], [row["shooting"] for row in rows]
+    series = [Series("line", away, cost, label="shooting", style="tilt circle")]
+    waited = [row["transient"] or None for row in rows]
+    if any(waited):
+        series.append(Series("line", away, waited, label="waiting for the transient", style="theory dashed square"))
+    lost = [at for at, periods in zip(away, waited, strict=True) if periods is None]
+    if lost:
+        beyond = max(20.0 * max(cost), 2.0 * max((w for w in waited if w), default=0.0))
+        series.append(Series("marks", lost, [beyond] * len(lost), label="transient: no answer", style="contact cross"))
+    x = Axis("1", "distance below the critical speed, 1 - w/w_cr", "log", 1.2 * max(away), min(away) / 1.2)
+    return Panel("Cost near the threshold", x, Axis("1", "periods integrated", "log"), series)
 
 
 def _near_threshold(scenario, settings, critical, tools) -> list[dict]:
@@ -195,7 +255,7 @@ def waiting(scene, shooter, orbit, accuracy: float, longest: int) -> tuple[int |
     return None, ""
 
 
-def _time_domain(scenario, reason: str) -> dict:
+def _time_domain(scenario, reason: str) -> Answer:
     """Without a common period: a long run, of which the last turns are drawn, and it says so."""
     scene = scenario.scene
     speed = abs(initially(scene.shaft.speed)) or 1.0
@@ -208,7 +268,7 @@ def _time_domain(scenario, reason: str) -> dict:
     record, unknowns = run.extrema.records[1], run.model.unknowns
     times, q, q_rate = (part[-SHOWN * PER_TURN :] for part in recorder.arrays())
     shown = {"times": times, "displacements": q, "rates": q_rate}
-    return {
+    numbers = {
         "period": None,
         "multipliers": None,
         "stable": None,
@@ -219,9 +279,7 @@ def _time_domain(scenario, reason: str) -> dict:
         # What a film holds is not recorded, and its forces do not follow from the motion alone.
         "orbit": _waves(run.model, shown) if unknowns.constant and not unknowns.film_unknowns else None,
         "reason": reason,
-        "verdict": [
-            f"In time over {turns} turns, the second half: h_min {record[0] * 1e6:.5g} um, relative misalignment "
-            f"{record[6] * 1e6:.5g} to {record[4] * 1e6:.5g} urad.",
-            f"No period to shoot for: {reason}.",
-        ],
     }
+    low = in_words("h_min", float(record[0]), digits=5)
+    found = f"No period to shoot for: {reason}; in time over {turns} turns, the second half: h_min {low}."
+    return Answer(numbers, found, _tables(numbers), _panels(numbers))

@@ -8,7 +8,9 @@ from functools import partial
 
 import numpy as np
 
+from ..answers import Answer, Axis, Panel, Series, Table
 from ..numerics.parallel import Together
+from ..quantities import QUANTITIES, in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis, with_own_unit
 from ..scene.radial import RadialScene
@@ -16,22 +18,23 @@ from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
 from ..simulation.result import common, unit_of
 from ..status import Status
-from ._trends import trend
-from ._words import WEAR, plain, quantity, shown_in
+from . import Info
 
-WITH_WAVES = True
-# Of radial seals as of face seals.
-ANY_SEAL = True
+INFO = Info(
+    timed=("fms_reference --vary rotor.runout=0:1mrad:21", 2),
+    asks="How do the numbers of a run follow a key?",
+    seals="any",
+    wavy=True,
+)
 # Seconds of a run at least, bytes of its row.
 LEAST, ROW = 2e-3, 500
 # Changes over a grid of fewer of the accuracy's errors than this may be errors.
 NEAR = 5.0
-# Values of the key in the table.
-COLUMNS = 10
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference --vary rotor.runout=0:1mrad:21", 2)
+# Outputs that are drawn.
+DRAWN = 8
+# A power law is looked for in so many points at least, over such a ratio of the key and such a one of the output; of
+# the range of its logarithm, how far it may be off.
+FEW, WIDE, MOVED, OFF = 4, 1.5, 1.05, 0.03
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ class Settings:
     """Dotted keys of the run's summary (`run --json` shows all); without them the usual ones of the kind of seal."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """One short run at every point of the grid; the first key varies slowest."""
     vary = [settings.vary] if isinstance(settings.vary, str) else list(settings.vary)
     if not vary:
@@ -71,38 +74,34 @@ def run(scenario, settings, tools) -> dict:
     )
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
-    answer = {
+    numbers = {
         "keys": keys,
         "axes": [with_own_unit(scenario.scene, a) for a in axes],
         "outputs": outputs,
         "output_units": {o: unit_of(o) for o in outputs},
     }
     if all("failed" in row for row in rows):
-        answer["status"] = Status.FAILED
-    answer["rows"] = rows
-    return {**answer, "verdict": sentences(answer, unresolved(outputs, rows, model), model and model.accuracy)}
-
-
-def sentences(answer, lost, accuracy) -> list[str]:
-    """The verdict: how many points ended how, what over one key follows it and how, and what of the changes is `lost`
-    {output: error of the runs' `accuracy`}."""
-    keys, rows, units = answer["keys"], answer["rows"], answer["output_units"]
+        numbers["status"] = Status.FAILED
+    numbers["rows"] = rows
     ends = counted([_end(row) for row in rows])
-    said = [f"{len(rows)} points over {' and '.join(keys)}: {ends}."]
-    for output in (name for name in answer["outputs"] if name not in lost and len(keys) == 1):
-        (along,) = answer["axes"]
-        points = [(row[keys[0]], row[output]) for row in rows if all(map(_is_number, (row[keys[0]], row.get(output))))]
-        said.append(trend(output, keys[0], along["unit"], points, shown_of(output, units, [y for _, y in points])))
-    if lost:
-        short = f"by little more than run.accuracy = {accuracy:g} lets err; a smaller one would tell"
-        names = (f"{output} ({quantity(error, units[output], 3)})" for output, error in lost.items())
-        said.append(f"Over the grid {', '.join(names)} change {short}.")
-    return [words for words in said if words]
+    found, notes = f"{len(rows)} points over {' and '.join(keys)}: {ends}.", []
+    if lost := unresolved(outputs, rows, model):
+        names = (f"{name} ({in_words(quantity_of(name), error, digits=3)})" for name, error in lost.items())
+        short = f"by little more than run.accuracy = {model.accuracy:g} lets err; a smaller one would tell"
+        notes.append(f"Over the grid {', '.join(names)} change {short}.")
+    return Answer(numbers, found, _tables(numbers, lost), _panels(numbers), notes)
 
 
-def shown_of(output, units, values) -> tuple[str, float]:
-    """The unit in which people read the `values` (SI) of an output, and its factor."""
-    return WEAR if output.endswith("wear_rate") else shown_in(units.get(output, ""), values)
+def quantity_of(output: str) -> str:
+    """The quantity, or SI unit, of an output of a run's summary."""
+    last = output.split(".")[-1]
+    return last if last in QUANTITIES and QUANTITIES[last].unit == unit_of(output) else unit_of(output) or "1"
+
+
+def quantity_along(axis: dict) -> str:
+    """The unit in which the values of a key are: as written, or SI; "1" of words and pure numbers."""
+    unit = axis["unit"] or axis["si"]
+    return "1" if axis["unit"] is None or unit == "SI" else unit
 
 
 def unresolved(outputs, rows, model) -> dict[str, float]:
@@ -121,44 +120,88 @@ def unresolved(outputs, rows, model) -> dict[str, float]:
     return lost
 
 
-def tables(answer) -> list:
-    """Over one key a line for each output, with at most COLUMNS of its values; over several the range of each output,
-    or how often it has which word."""
-    rows = answer["rows"]
-    if len(answer["keys"]) > 1 or all("failed" in row for row in rows):
-        return [_ranges(answer)]
-    (along,) = answer["axes"]
-    few = sorted({round(k) for k in np.linspace(0, len(rows) - 1, min(COLUMNS, len(rows)))})
-    names = [*answer["outputs"], *(["status"] if any(_end(row) != Status.OK for row in rows) else [])]
-    lines = [_line(answer, name, [rows[k] for k in few]) for name in names]
-    unit, part = along["unit"], f" ({len(few)} of {len(rows)})" if len(few) < len(rows) else ""
-    values = [value if isinstance(value, str) else plain(value, 4) for value in (rows[k][along["key"]] for k in few)]
-    heading = f"{along['key']}{f', {unit}' if unit else ''}{part}"
-    columns = [(value, str(k)) for k, value in enumerate(values)]
-    return [(lines, ((heading, "output"), ("unit", "unit"), *columns))]
+def _tables(numbers, lost) -> list[Table]:
+    """A row a point; over one key, how each output follows it; over several, the range of each output."""
+    rows, axes, outputs = numbers["rows"], numbers["axes"], numbers["outputs"]
+    columns = [(quantity_along(axis), axis["key"]) for axis in axes]
+    columns += [(quantity_of(output), output) for output in outputs] + [("1", "status")]
+    cells = [[*(row[a["key"]] for a in axes), *(row.get(o) for o in outputs), _end(row)] for row in rows]
+    tables = [Table("points", columns, cells)]
+    followed = [output for output in outputs if _numbers(rows, output)]
+    if not followed or len(rows) == 1:
+        return tables
+    at = (quantity_along(axes[0]), f"at {axes[0]['key']}")
+    names = [("1", "output"), ("row", "least"), at, ("row", "largest"), at, ("1", "power of the key")]
+    ranges = [_range(numbers, output, output in lost) for output in followed]
+    return [*tables, Table("ranges", names, ranges, of_rows=[quantity_of(output) for output in followed])]
 
 
-def _line(answer, name, rows) -> dict:
-    """An output in its unit at some rows, counted."""
-    if name == "status":
-        return {"output": name, **{str(k): _end(row) for k, row in enumerate(rows)}}
-    found = [row.get(name) for row in answer["rows"]]
-    unit, factor = shown_of(name, answer["output_units"], [value for value in found if _is_number(value)])
-    values = [row.get(name) for row in rows]
-    told = {str(k): factor * value if _is_number(value) else value for k, value in enumerate(values)}
-    return {"output": name, "unit": unit if any(map(_is_number, found)) else "", **told}
+def _numbers(rows, output) -> list[float]:
+    return [row[output] for row in rows if _is_number(row.get(output))]
 
 
-def _ranges(answer):
-    ranges = []
-    for output in answer["outputs"]:
-        values = [row[output] for row in answer["rows"] if row.get(output) is not None]
-        numbers = bool(values) and all(map(_is_number, values))
-        unit, factor = shown_of(output, answer["output_units"], values) if numbers else ("", 1.0)
-        ends = {"least": counted(values) or "none"}
-        ends = {"least": factor * min(values), "largest": factor * max(values)} if numbers else ends
-        ranges.append({"output": output, **ends, "unit": unit})
-    return ranges, tuple((name, name) for name in ("output", "least", "largest", "unit"))
+def _range(numbers, output: str, lost: bool) -> list:
+    """Least and largest value of an output, where along the first key they are, and the power with which it follows the
+    only key, unless that is `lost` in the errors."""
+    key = numbers["axes"][0]["key"]
+    rows = [row for row in numbers["rows"] if _is_number(row.get(output))]
+    low, high = (end(rows, key=lambda row: row[output]) for end in (min, max))
+    power, points = None, [(row[key], row[output]) for row in rows if _is_number(row[key])]
+    if points and len(numbers["keys"]) == 1 and not lost:
+        power = power_law(*np.array(points, float).T)
+    return [output, low[output], low[key], high[output], high[key], power]
+
+
+def power_law(x, y) -> float | None:
+    """The power with which y (m,) follows x (m,), None where it follows none."""
+    if len(x) < FEW or np.min(x) <= 0.0 or np.min(y) * np.max(y) <= 0.0:
+        return None
+    far, high = np.log(x), np.log(np.abs(y))
+    if np.ptp(far) < math.log(WIDE) or np.ptp(high) < math.log(MOVED):
+        return None
+    power, start = np.polyfit(far, high, 1)
+    fits = np.max(np.abs(power * far + start - high)) <= OFF * np.ptp(high)
+    return float(power) if fits else None
+
+
+# --- panels ----------------------------------------------------------------------------------------------
+
+
+def along(axis: dict) -> tuple[Axis, list]:
+    """The axis of a key, and the places of its values on it: words are counted."""
+    if axis["unit"] is None:
+        return Axis("1", axis["key"], words=[str(value) for value in axis["values"]]), list(range(len(axis["values"])))
+    return Axis(quantity_along(axis), axis["key"]), list(axis["values"])
+
+
+def _panels(numbers) -> list[Panel]:
+    """A panel an output: a line over one key, a map over two."""
+    axes, keys, outputs = numbers["axes"], numbers["keys"], list(dict.fromkeys(numbers["outputs"]))[:DRAWN]
+    panels = []
+    for output in outputs:
+        raw = [row.get(output) for row in numbers["rows"]]
+        words = list(dict.fromkeys(value for value in raw if isinstance(value, str)))
+        values = [words.index(value) if isinstance(value, str) else value for value in raw]
+        if len(keys) > 2 or all(value is None for value in values):
+            why = "more than two keys: see the table in the archive" if len(keys) > 2 else "no value at any point"
+            panels.append(Panel(output, note=why))
+            continue
+        scale = Axis("1", " ", words=words) if words else Axis(quantity_of(output), " ")
+        x, places = along(axes[0])
+        if len(keys) == 1:
+            lost = [at for at, value in zip(places, values, strict=True) if value is None]
+            series = [
+                Series("marks" if words or axes[0]["unit"] is None else "line", places, values, style="blue circle")
+            ]
+            foot = min((v for v in values if v is not None), default=0.0)
+            if lost:
+                series.append(Series("marks", lost, [foot] * len(lost), label="no value", style="contact cross"))
+            panels.append(Panel(output, x, scale, series))
+        else:
+            y, heights = along(axes[1])
+            cells = np.array(values, dtype=object).reshape(len(places), len(heights)).T.tolist()
+            panels.append(Panel(output, x, y, [Series("map", places, heights, cells)], colour=scale))
+    return panels
 
 
 def _end(row) -> str:

@@ -168,7 +168,6 @@ def test_waves_that_travel_wear_evenly_what_standing_ones_wear_at_their_crests()
     assert root["stator_wear"]["travelling"] == pytest.approx(1e-16 * speed * np.mean(around), rel=2e-3)
     assert root["stator_wear"]["standing"] == pytest.approx(1e-16 * speed * crest, rel=2e-3)
     assert root["wear_rate"] == pytest.approx(4 * root["stator_wear"]["travelling"], rel=1e-12)
-    assert any("evenly" in line for line in answer["verdict"])
     flat = equilibrium.run(replace(scenario, scene=plane), equilibrium.Settings(points=3), None)["roots"][0]
     assert flat["wear_rate"] > 0.0 and "stator_wear" not in flat
 

@@ -4,13 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawn import curve, drawn, panel, points, text_trouble
 from oracles import opening_force
 from scipy.optimize import brentq
 
+import sealdyn
 from sealdyn import read_scenario
 from sealdyn.archive import read_study
-from sealdyn.report.charts import study_equilibrium
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.studies import equilibrium
@@ -90,9 +89,7 @@ def test_a_scenario_without_a_question_has_a_figure_too(tmp_path):
     found = run_study("equilibrium", parse_scenario(text, "[bare]"), tmp_path / "bare.h5", workers=1)
     study = read_study(found["archive"])
     assert (study["question"], study["name"]) == ("", "[bare]")
-    figure = drawn(study_equilibrium, found["archive"], tmp_path / "bare.png")
-    above, below = panel(figure, "Opening and closing"), panel(figure, "Axial stiffness of")
-    kept = np.array([found["curve"][name] for name in ("clearance", "opening_force", "stiffness")])
-    assert curve(above, "opening force of the aligned film") == pytest.approx(kept[:2] * [[1e6], [1.0]], rel=1e-12)
-    assert points(below)[1][: len(kept[0])] == pytest.approx(1e-6 * kept[2], rel=1e-12)
-    assert ", N" in above.get_ylabel() and "N/µm" in below.get_ylabel() and text_trouble(figure) == ([], [])
+    above, below = study["panels"]
+    assert above["series"][0]["y"] == found["curve"]["opening_force"]
+    assert below["series"][0]["y"] == found["curve"]["stiffness"]
+    assert sealdyn.study("equilibrium", parse_scenario(text, "[bare]"), workers=1).plot().axes

@@ -97,10 +97,6 @@ def test_equilibrium_is_where_film_and_asperities_carry_the_closing_force(pump, 
     assert root["contact_force"] == pytest.approx(rough_force(clearance), rel=1e-6) and root["contact_force"] > 300
     supported = (root["film_force"] - P_I * AREA) / (CLOSING - P_I * AREA)
     assert root["load_support"] == pytest.approx(supported, rel=1e-7)
-    (said,) = [
-        s for s in equilibrium.run(pump, equilibrium.Settings(points=11), None)["verdict"] if "asperities carry" in s
-    ]
-    assert f"of {CLOSING:.5g} N absolute, {100 * (1 - supported):.4g} % {equilibrium.ABOVE}" in said
     step = 1e-4 * clearance
     slope = (rough_force(clearance + step) - rough_force(clearance - step)) / (2 * step)
     # Flat faces: the film's force does not change with the clearance.

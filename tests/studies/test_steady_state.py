@@ -4,13 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawn import curve, drawn, panel, points, text_trouble
 from oracles import tilt_roots
 
 import sealdyn
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.archive import read_study
-from sealdyn.report.charts import study_steady_state
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies._runner import run_study
 
@@ -33,11 +31,9 @@ def test_answer_archive_and_figure(tmp_path):
         assert at_least < row["transient"] < at_most
     kept = read_study(tmp_path / "s.h5")
     assert kept["answer"]["h_min"] == answer["h_min"] and kept["scenario"] == scenario.text
-    figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
-    film, waits = panel(figure, "Smallest film"), panel(figure, "Cost")
-    assert points(film)[1] == pytest.approx(1e6 * np.array(answer["orbit"]["h_min"]), rel=1e-12)
-    assert curve(waits, "shooting")[1].tolist() == [low["shooting"], high["shooting"]]
-    assert all(unit in film.get_xlabel() + film.get_ylabel() for unit in ("ms", "µm")) and text_trouble(figure)[1] == []
+    film, waits = kept["panels"][2:]
+    assert film["series"][0]["y"] == answer["orbit"]["h_min"]
+    assert waits["series"][0]["y"] == [low["shooting"], high["shooting"]]
     assert not list(tmp_path.glob("*.jsonl"))
 
 
@@ -90,8 +86,7 @@ def test_incommensurate_forcing_falls_back_on_time(tmp_path):
     # What is drawn are the last turns of that run.
     shown = answer["orbit"]["relative_misalignment"]
     assert 0.9 * tilt["min"] < min(shown) < max(shown) < 1.001 * tilt["max"]
-    figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
-    assert sum(len(ax.lines) > 0 for ax in figure.axes) == 2 and text_trouble(figure)[1] == []
+    assert len(read_study(tmp_path / "s.h5")["panels"]) == 2
 
 
 @pytest.mark.parametrize("runout", ["0", "1e-9"])
@@ -113,15 +108,14 @@ def test_without_an_orbit_the_answer_says_so_and_is_drawn(tmp_path):
     assert answer["status"] == "failed" and answer["period"] == pytest.approx(2 * np.pi / 1000)
     nothing = ("multipliers", "stable", "h_min", "relative_misalignment", "orbit")
     assert [answer[name] for name in nothing] == [None] * 5 and answer["near_threshold"] == []
-    assert answer["critical_speed"] > 1000 and len(answer["verdict"]) <= 3
+    assert answer["critical_speed"] > 1000
     # What linear theory foretells is drawn in place of the orbit's multipliers.
     foretold = [abs(complex(*m)) for m in answer["linear"]["multipliers"]]
     assert answer["linear"]["verdict"] == "stable" and len(foretold) == 6 and max(foretold) < 1.0
     # And that its film would cut into the faces.
     assert min(answer["linear"]["h_min"]) < 0.0
-    figure = drawn(study_steady_state, tmp_path / "s.h5", tmp_path / "s.png")
-    assert any(len(line.get_xdata()) == 6 for ax in figure.axes for line in ax.lines)
-    assert text_trouble(figure)[1] == []
+    panels = read_study(tmp_path / "s.h5")["panels"]
+    assert any(len(one["x"]) == 6 for panel in panels for one in panel["series"])
 
 
 @pytest.mark.parametrize("key, value", [("samples", 0), ("turns", 0), ("longest", -1)])

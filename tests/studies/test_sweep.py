@@ -12,7 +12,6 @@ from killed import COMMAND, kill_midway, mark_first
 
 import sealdyn
 from sealdyn.archive import as_dataset
-from sealdyn.report.text import study_lines
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import axis, with_own_unit
@@ -20,7 +19,6 @@ from sealdyn.simulation.result import leaves, unit_of
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.studies import sweep as study
 from sealdyn.studies._runner import run_study
-from sealdyn.studies._trends import trend
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 SHORT = ["run.turns=6", 'run.start="steady"']
@@ -79,37 +77,24 @@ def test_rows_equal_single_runs(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("law", "words"),
-    [
-        (lambda x: 2e-6 * x**-2.5, "out falls by a factor of 32, from 2 to 0.0625 um, about as key^-2.5."),
-        (lambda x: 1e-6 * (4 + x), "out grows by 60 %, from 5 to 8 um."),
-        (lambda x: 1e-6 * (x - 2) ** 2, "out turns over key: least, 0 um, at 2 N; largest, 4 um, at 4 N."),
-        (lambda x: 1e-6 + 0 * x, "out stays at 1 um."),
-        (lambda x: 1e-6 + 1e-10 * np.cos(2 * np.pi * x), "out hardly changes: 1 um, within 0.02 %."),
-        (lambda x: 1e-6 * (x - 1), "out grows from 0 to 3 um."),
-    ],
-)
-def test_the_trend_of_an_output_is_a_sentence(law, words):
+    ("law", "power"),
+    [(lambda x: 2e-6 * x**-2.5, -2.5), (lambda x: 1e-6 * (4 + x), None), (lambda x: 1e-6 * (x - 2) ** 2, None),
+     (lambda x: 1e-6 + 0 * x, None), (lambda x: -3.0 * x, 1.0)],
+)  # fmt: skip
+def test_the_power_with_which_an_output_follows_a_key(law, power):
     x = np.linspace(1.0, 4.0, 7)
-    assert trend("out", "key", "N", list(zip(x[::-1], law(x)[::-1], strict=True)), ("um", 1e6)) == words
-    assert trend("out", "key", "N", [(1.0, 1.0)]) == ""
+    found = study.power_law(x[::-1], law(x)[::-1])
+    assert found == power if power is None else found == pytest.approx(power, rel=1e-9)
 
 
-def test_over_one_key_the_table_has_the_values_in_units_that_people_read():
-    keys, count = ["film.coning"], 21
-    axes = [{"key": "film.coning", "unit": "mrad", "values": list(range(count))}]
-    rows = [{"film.coning": k, "status": "ok", "contact.wear_rate": 1e-9 * k, "stability.verdict": "stable"}
-            for k in range(count)]  # fmt: skip
-    rows[-1] = {"film.coning": count - 1, "failed": "no seal"}
-    outputs = ["contact.wear_rate", "stability.verdict"]
-    answer = {"keys": keys, "axes": axes, "outputs": outputs, "rows": rows, "output_units": {outputs[0]: "m/s"}}
-    heading, rate, verdict, status = study_lines({"verdict": []}, study.tables(answer))
-    assert " ".join(heading.split()) == "film.coning, mrad (10 of 21) unit 0 2 4 7 9 11 13 16 18 20"
-    assert " ".join(rate.split()) == "contact.wear_rate um/h 0 7.2 14.4 25.2 32.4 39.6 46.8 57.6 64.8 -"
-    assert verdict.split()[1:] == 9 * ["stable"] + ["-"] and status.endswith("ok  not possible")
-    said = study.sentences(answer, {}, 1e-6)
-    assert said == ["21 points over film.coning: 20 ok, 1 not possible.",
-                    "contact.wear_rate grows from 0 to 68.4 um/h."]  # fmt: skip
+def test_tables_have_every_point_and_the_range_of_every_output(tmp_path):
+    answer = sweep(tmp_path, "rotor.runout=20,40,-1 urad", "h_min.value,stability.verdict")
+    points, ranges = answer["tables"]
+    assert [column["name"] for column in points["columns"]] == ["rotor.runout", *answer["outputs"], "status"]
+    assert [row[1] for row in points["rows"]] == [row.get("h_min.value") for row in answer["rows"]]
+    (row,) = ranges["rows"]
+    films = [value["h_min.value"] for value in answer["rows"] if "h_min.value" in value]
+    assert row[1] == min(films) and row[3] == max(films) and ranges["of_rows"][0]["unit"] == "m"
 
 
 def test_outputs_have_units():
@@ -236,7 +221,7 @@ class Failing(InProcess):
 def test_a_sweep_of_which_no_run_is_possible_has_failed(count, status):
     scenario = parse_scenario(PATH.read_text(), "fms_reference", list(SHORT))
     answer = study.run(scenario, study.Settings(vary="rotor.runout=20,40 urad"), Failing(count))
-    assert answer.get("status", "ok") == status
+    assert answer.numbers.get("status", "ok") == status
 
 
 def test_changes_as_small_as_the_accuracy_are_not_shown_as_an_answer(tmp_path):
@@ -245,18 +230,14 @@ def test_changes_as_small_as_the_accuracy_are_not_shown_as_an_answer(tmp_path):
     path = Path(__file__).parents[2] / "scenarios" / "pump_seal.toml"
     scenario = parse_scenario(path.read_text(), "pump", rough)
     answer = study.run(scenario, study.Settings(vary=vary, outputs=["h_min.value", "friction.power"]), InProcess())
-    clearance = simulate_in_memory(scenario)["film"]["clearance"]
     # Its trend would be that of the errors.
-    trend_of_friction, said = answer["verdict"][1:]
-    assert (
-        trend_of_friction.startswith("friction.power grows")
-        and said.startswith("Over the grid h_min.value (0.00")
-        and "friction" not in said
-    )
-    assert float(said.split("(")[1].split(" um")[0]) == pytest.approx(1e4 * clearance, rel=0.02)
+    (note,) = answer.notes
+    assert "h_min.value" in note and "friction" not in note
+    (_, ranges) = answer.tables
+    assert {row[0]: row[-1] for row in ranges.rows}["h_min.value"] is None
     fine = parse_scenario(path.read_text(), "pump", ["run.turns=1", "run.accuracy=1e-6"])
     wide = study.Settings(vary="closing.spring_force=100:200 N:3", outputs=["h_min.value"])
-    assert study.run(fine, wide, InProcess())["verdict"][1].startswith("h_min.value falls")
+    assert study.run(fine, wide, InProcess()).notes == []
 
 
 def test_an_axis_tells_the_unit_of_bare_numbers(tmp_path):

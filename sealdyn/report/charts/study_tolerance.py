@@ -6,11 +6,10 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from ...archive import read_study
+from ...quantities import shown_in
 from ..text import speed_unit
-from .page import EVEN, PAPER, absent, legend, look, number, power, save, study_page, upright
+from .page import EVEN, PAPER, absent, legend, look, number, power, printed, save, study_page, upright
 from .palette import BLACK, BLUE, CONTACT, CYCLE, GREY, ORANGE, PALE, SKY
-from .record import fitting
-from .study_sweep import MUCH, SHOWN
 
 # Outputs that have a histogram, and keys that have a row.
 MOST, MOST_KEYS = 4, 10
@@ -22,7 +21,6 @@ LETTERS, FEWER_LETTERS = 44, 38
 STEPS = (1, 2, 2.5, 5, 10)
 # From which on numbers are read in thousands, millions, ...
 LARGE = 1e5
-ALSO = SHOWN | {"Pa": ("bar", 1e-5)}
 BAND = (("5", "95", 0.5), ("25", "75", 1.0))
 LINES = {"1": "1, 99 %", "50": "_", "99": "_"}
 
@@ -64,22 +62,11 @@ def _has_indices(answer) -> bool:
 
 def _shown(unit: str, size: float, speeds) -> tuple[str, float]:
     """What a quantity of this SI unit and size is shown in, speeds as in `speeds`, and the factor."""
-    if unit == "rad/s":
-        return speeds
-    if unit == "m^3/s" and size >= MUCH:
-        return "l/min", 6e4
-    unit, factor = ALSO.get(unit, (unit, 1.0))
+    unit, factor = shown_in(unit, [size], {"rad/s": speeds[0]})
     if size * factor >= LARGE:
         thousands = int(np.log10(size * factor) / 3)
-        return f"{power(3 * thousands)} {unit}".strip(), factor / 1e3**thousands
-    finer, more = fitting(unit, size * factor)
-    return finer, more * factor
-
-
-def _key_shown(unit: str, values, speeds) -> tuple[str, float]:
-    """The same of a key: angles from a milliradian on in mrad."""
-    size = np.abs(values).max()
-    return ("mrad", 1e3) if unit == "rad" and size >= 1e-3 else _shown(unit, size, speeds)
+        return f"{power(3 * thousands)} {printed(unit)}".strip(), factor / 1e3**thousands
+    return printed(unit), factor
 
 
 def _values(answer, name) -> tuple[np.ndarray, str, float]:
@@ -190,7 +177,7 @@ def _cloud(ax, answer):
     if not np.isfinite(values).any():
         return absent(ax, _title(f"{name} over {key}"), "no value in any run")
     x = np.array(answer["samples"]["keys"][key])
-    unit, factor = _key_shown(answer["scatter"][key]["unit"], x, answer["speeds"])
+    unit, factor = _shown(answer["scatter"][key]["unit"], np.abs(x).max(), answer["speeds"])
     x = factor * x
     touched = np.array(answer["samples"]["contact"], dtype=float) == 1
     if not touched.all():
