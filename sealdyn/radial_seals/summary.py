@@ -4,7 +4,7 @@ import numpy as np
 
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from . import closed_form
+from .followers import fastest, hangs_up, largest_eccentricity, needed_preload
 from .observers import conductance
 
 # Share of a run in which nothing but the first look at it lies.
@@ -14,8 +14,8 @@ AT_ONCE = 1e-9
 def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
     """The numbers of `run --json`, SI; `settled` are those of the second half of the run."""
     scene, followers, contacts = run.model.scene, run.model.followers, run.stick_slip
-    speed = closed_form.fastest(scene.shaft)
-    needed = closed_form.needed_preload(followers, scene.shaft, speed)
+    speed = fastest(scene.shaft)
+    needed = needed_preload(followers, scene.shaft, speed)
     kind = "lip" if scene.lip else "circumferential"
     first = contacts.first_lift
     if first is not None and first < AT_ONCE * run.duration:
@@ -39,8 +39,8 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
             "speed": abs(speed),
             "needed_preload": needed,
             "margin": followers.preload / needed if needed else None,
-            "largest_eccentricity": closed_form.largest_eccentricity(followers, scene.shaft, speed),
-            "hangs_up": closed_form.hangs_up(followers),
+            "largest_eccentricity": largest_eccentricity(followers, scene.shaft, speed),
+            "hangs_up": hangs_up(followers),
         },
         "energy_residual": outcome.energy_residual,
         "warnings": [],

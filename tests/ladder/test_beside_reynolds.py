@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sealdyn import read_scenario
-from sealdyn.simulation import beside_reynolds as module
+from sealdyn.simulation import film_error as module
 from sealdyn.simulation.film_error import beside_reynolds
 from sealdyn.simulation.simulate import prepare_run, simulate
 
