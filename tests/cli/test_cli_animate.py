@@ -59,6 +59,7 @@ def test_a_video(folder):
     assert (folder / "a.mp4").read_bytes()[4:8] == b"ftyp"
 
 
+@pytest.mark.core
 def test_the_film_is_that_of_the_archive(folder):
     """At samples the thinnest place is h_min; between them a straight line."""
     run = Run(folder / "a.h5")

@@ -115,6 +115,7 @@ def test_followers_do_not_touch_each_other(count):
     assert np.abs(angles[radii < 1.001]).max() < np.abs(angles).max() and radii.min() == pytest.approx(1.0)
 
 
+@pytest.mark.core
 def test_gap_and_load_are_those_of_the_archive(folder):
     found = Run(folder / "a.h5")
     figure, movers, at = staged(found)

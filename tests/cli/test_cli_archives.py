@@ -29,6 +29,7 @@ def series(path) -> dict:
         return {name: item[:] for name, item in file.items() if isinstance(item, h5py.Dataset)}
 
 
+@pytest.mark.core
 def test_rerun_equals_the_original(folder):
     answer = sealdyn("run", "first.h5", "--json", "--no-plot", cwd=folder)
     assert answer.code == 0 and answer.found["archive"] == "first-rerun.h5"

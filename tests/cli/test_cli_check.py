@@ -1,5 +1,6 @@
 """What `sealdyn check` says beyond the scene."""
 
+import pytest
 from command import SCENARIOS, sealdyn
 
 DAM = SCENARIOS / "gas_dam_reference.toml"
@@ -26,6 +27,7 @@ def test_check_prints_gauge_pressures_as_absolute_and_says_so(tmp_path):
     assert "gauge" not in sealdyn(*arguments[:2], cwd=tmp_path).out
 
 
+@pytest.mark.core
 def test_check_prints_the_mass_of_a_body(tmp_path):
     body = "{ inner_radius = 0, outer_diameter = '20 cm', length = '10 cm', density = '1 g/cm3' }"
     text = (SCENARIOS / "axial_only.toml").read_text().splitlines()

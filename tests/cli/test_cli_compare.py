@@ -19,6 +19,7 @@ def folder(tmp_path_factory):
     return folder
 
 
+@pytest.mark.core
 def test_what_differs(folder):
     found = sealdyn("compare", "a.h5", "b.h5", "--json", cwd=folder).found
     before = read_info(folder / "a.h5")["resolved"]["stator"]["misalignment"]

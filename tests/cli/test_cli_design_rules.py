@@ -106,6 +106,7 @@ def test_a_wrong_sheet_is_told_in_one_line(described, tmp_path, change, says):
     assert answer.code == 2 and len(answer.err.splitlines()) == 1 and says in answer.err
 
 
+@pytest.mark.core
 def test_the_table_changes_no_number_of_a_run(described, tmp_path):
     assert read_scenario(described) == read_scenario(REFERENCE)
     assert read_scenario(described).unused() == []

@@ -109,6 +109,7 @@ def collapse(tmp_path_factory):
     return folder, sealdyn("run", REFERENCE, *settings(DIVERGING), "--json", cwd=folder)
 
 
+@pytest.mark.core
 def test_collapse_says_when_where_and_what_to_try(collapse):
     _, answer = collapse
     assert answer.code == 3

@@ -34,6 +34,7 @@ def test_coefficients_over_speed_and_frequency(tmp_path):
     assert done.found["verdict"][0] in sealdyn("show", "c.h5", cwd=tmp_path).out
 
 
+@pytest.mark.core
 def test_a_run_for_matlab(tmp_path):
     sealdyn("run", REFERENCE, "--set", "run.turns=2", "--no-plot", "--out", "x.h5", cwd=tmp_path)
     done = sealdyn("show", "x.h5", "--mat", "x.mat", cwd=tmp_path)

@@ -9,6 +9,7 @@ from sealdyn.archive import column
 REFERENCE = SCENARIOS / "gas_dam_reference.toml"
 
 
+@pytest.mark.core
 def test_reference_follows_its_seat(tmp_path):
     done = sealdyn("run", REFERENCE, "--out", "x.h5", "--json", "--no-plot", cwd=tmp_path)
     assert done.code == 0 and done.found["status"] == "ok"

@@ -1,5 +1,6 @@
 """A run that is not as exact as asked: done again, sharper, and if that does not help status and exit code say so."""
 
+import pytest
 from command import SCENARIOS, sealdyn, settings
 
 from sealdyn.archive import read_info
@@ -12,6 +13,7 @@ def test_a_run_that_errs_too_much_is_done_again(tmp_path):
     assert found["tolerance"] < 5e-9
 
 
+@pytest.mark.core
 def test_a_run_that_no_tolerance_helps_is_inaccurate(tmp_path):
     """A flat ring squeezed to a hundredth of its film amplifies errors beyond what any of its methods can keep."""
     out = tmp_path / "a.h5"

@@ -96,6 +96,7 @@ def test_a_complete_archive_is_replaced_only_by_a_complete_one(interrupted):
     assert interrupted["archive"].read_bytes() == interrupted["complete"]
 
 
+@pytest.mark.core
 def test_an_interrupted_run_goes_on_to_where_an_unbroken_one_ends(interrupted, unbroken):
     folder = interrupted["folder"]
     other = sealdyn("run", REFERENCE, "--continue", "--json", cwd=folder)

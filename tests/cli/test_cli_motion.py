@@ -1,6 +1,7 @@
 """A run with the motion of its shaft in a file, and again from its archive alone."""
 
 import numpy as np
+import pytest
 from command import REFERENCE, sealdyn, settings
 
 from sealdyn.archive import column, read_info
@@ -14,6 +15,7 @@ def write_motion(path, amplitude=1e-6):
     np.savetxt(path, columns, delimiter=",", header="time (ms), tilt_x (urad), tilt_y (urad)", comments="")
 
 
+@pytest.mark.core
 def test_archive_holds_the_motion_of_a_file(tmp_path):
     write_motion(tmp_path / "shaft.csv")
     (tmp_path / "seal.toml").write_text(REFERENCE.read_text() + '\n[shaft.motion]\nfile = "shaft.csv"\n')

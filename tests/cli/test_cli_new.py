@@ -29,6 +29,7 @@ def test_it_explains_itself(kind):
     assert sum("  # " in line for line in keys) > 0.5 * len(keys)
 
 
+@pytest.mark.core
 def test_nothing_is_overwritten(tmp_path):
     (tmp_path / "fms.toml").write_text("mine")
     answer = sealdyn("new", "fms", cwd=tmp_path)

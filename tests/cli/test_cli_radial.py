@@ -65,6 +65,7 @@ def simulate_summary(path):
     }  # fmt: skip
 
 
+@pytest.mark.core
 def test_a_seal_that_loses_contact_says_so(folder):
     place, found = folder
     assert found["contact"]["lift"] >= 2 * 6 - 1 and found["whole"]["largest_gap"] > 1e-5

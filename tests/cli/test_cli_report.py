@@ -49,6 +49,7 @@ def folder(tmp_path_factory):
     return folder
 
 
+@pytest.mark.core
 def test_it_stands_by_itself(folder):
     page = Page((folder / "review.html").read_text())
     assert all(address.startswith(("data:image/png;base64,", "#part")) for address in page.addresses)

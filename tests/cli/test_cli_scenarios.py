@@ -144,6 +144,7 @@ def test_archive_opens_for_a_stranger(run):
         assert data.attrs["status"] == ending(answer)[0] and "[film]" in data.attrs["scenario"]
 
 
+@pytest.mark.core
 def test_a_real_process_prints_what_an_engineer_reads_first(tmp_path):
     answer = finished(started("run", REFERENCE, *short(REFERENCE), "--no-plot", cwd=tmp_path))
     assert answer.code == 0, answer.err
@@ -180,6 +181,7 @@ def test_steady_start_has_no_transient(tmp_path):
         assert gap[:64] == pytest.approx(gap[-65:-1], abs=1e-6 * TILT_SCALE)
 
 
+@pytest.mark.core
 def test_h_min_between_samples_is_that_of_a_dense_run(tmp_path):
     """Sampled twice a turn or 2000 times: the thinnest film is the same, and the dense samples come close to it."""
     asked = {"run.turns": 3, "stator.misalignment": '"100 urad"', "run.start": '"steady"'}

@@ -51,6 +51,7 @@ def test_a_scheduler_has_its_own_workers(tmp_path):
     assert "--workers" in refused("--scheduler", "tcp://127.0.0.1:8786", "--workers", "2", cwd=tmp_path)
 
 
+@pytest.mark.core
 def test_no_folder_for_results(tmp_path):
     (tmp_path / "taken").write_text("")
     assert "taken" in refused("--results", tmp_path / "taken", cwd=tmp_path)

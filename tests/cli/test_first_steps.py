@@ -34,6 +34,7 @@ def test_its_commands_work_one_after_the_other(tmp_path):
     assert made == {"fms.toml", "outputs/fms.h5", "outputs/fms.png"} | of_study
 
 
+@pytest.mark.core
 def test_a_study_without_a_name_names_them(tmp_path):
     helped = " ".join(sealdyn("study", "--help", cwd=tmp_path).out.split())
     assert all(f"{name}: " in helped.replace("- ", "-") for name in study_names())

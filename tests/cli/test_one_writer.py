@@ -90,6 +90,7 @@ def test_workers_of_a_dead_study_hold_nothing(tmp_path):
     assert left(tmp_path) == ["s.h5"]
 
 
+@pytest.mark.core
 def test_a_lock_is_of_the_file_not_of_its_name(tmp_path):
     (tmp_path / "link.h5").symlink_to(tmp_path / "a.h5")
     with only_writer(tmp_path / "a.h5"):

@@ -8,6 +8,7 @@ from benchmark.attack.scenarios import scenarios
 from benchmark.attack.worlds import WORLDS, world
 
 
+@pytest.mark.core
 def test_scenarios():
     ledger = Ledger()
     scenarios(ledger, 7, range(1000))

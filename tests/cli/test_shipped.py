@@ -19,6 +19,7 @@ PATHS = {path.stem: path for path in sorted(SCENARIOS.rglob("*.toml"), key=lambd
 NAMES = [*PATHS]
 
 
+@pytest.mark.core
 def test_every_scenario_is_listed_with_its_question(tmp_path):
     answer = sealdyn("list", cwd=tmp_path)
     lines = answer.out.splitlines()

@@ -44,6 +44,7 @@ def test_a_run_beyond_any_machine_is_not_begun_whatever_is_said(tmp_path):
         simulate(read_scenario(SEAL, ["run.turns=1e14"]), tmp_path / "a.h5", allow_large=True)
 
 
+@pytest.mark.core
 def test_check_tells_the_size():
     size = size_of(read_scenario(SEAL, ["run.turns=1e7"]))
     # Measured: 180 GB.

@@ -84,6 +84,7 @@ def total(name, w):
     return found
 
 
+@pytest.mark.core
 def test_greens_conjecture_in_40_digits():
     with mp.workdps(40):
         here = {name: float(total(name, mp.mpf(1000))) for name in ("fmr", "fms", "fmsr")}

@@ -54,6 +54,7 @@ def test_tilt_pair_is_greens_dimensionless_formula(speed, coning):
     assert film.tilt_damping == pytest.approx(float(damping), rel=1e-14)
 
 
+@pytest.mark.core
 def test_published_dimensionless_coefficients():
     # Green (1989) prints K_f 0.0118, D_f 8.3e-3; his I 1.63e-3, K_s 8.14e-4, D_s 4.88e-4 check the scales.
     _, to_stiffness, to_damping = (float(x) for x in scales(mp.mpf(1000), exact()))
@@ -127,6 +128,7 @@ def test_all_four_coefficients_from_a_perturbed_strip(coning):
     assert force == pytest.approx(float(2e5 * area + 2 * mp.pi * mean_radius * strip(seal, films)), rel=1e-13)
 
 
+@pytest.mark.core
 def test_axial_stiffness_is_the_slope_of_the_opening_force():
     face = {name: REFERENCE[name] for name in FACE} | {"inner_pressure": 1e5, "outer_pressure": 6e5}
     up, down = (narrow_seal_opening_force(**face | {"clearance": c}) for c in (10.001e-6, 9.999e-6))

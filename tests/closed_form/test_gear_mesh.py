@@ -12,6 +12,7 @@ from sealdyn import read_scenario
 SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "gear_mesh.toml")
 
 
+@pytest.mark.core
 def test_film_takes_what_the_mass_does_not_follow():
     w = 2 * math.pi * 5400.0
     displacement = 45 * 9.80665 / w**2

@@ -56,6 +56,7 @@ def compute(row, seal, speed_unit):
     return None if threshold is None else threshold * speed_unit
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("row", GREEN_1989, ids=lambda r: f"{r.arrangement}-{r.quantity}-{r.inertia_ratio}")
 def test_table_1(row):
     computed = compute(row, *exact(row.inertia_ratio))

@@ -11,6 +11,7 @@ from sealdyn.closed_form import ludwig_allen as la
 MU, U, WIDTH, R = 5e-3, 60.0, 1.02e-3, 0.06
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("row", la.LUDWIG_ALLEN, ids=lambda row: f"q={row.force_ratio:g}")
 def test_published_films(row):
     """The group was recovered from the rounded print: 2 % for q = 2, 0.2 % for the other."""

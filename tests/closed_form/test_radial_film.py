@@ -66,6 +66,7 @@ def test_coefficients_from_a_displaced_film(geometry, coning):
     assert film.axial_damping == pytest.approx(-2 * np.pi * slope(geometry, coning, 1, "lift_rate"), rel=1e-12)
 
 
+@pytest.mark.core
 def test_numbers_of_the_reference_seal():
     # Independently computed values, printed to these digits.
     planar = radial_film_coefficients(**REFERENCE, geometry="planar")

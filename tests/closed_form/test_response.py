@@ -143,6 +143,7 @@ def test_both_edges_touch_at_the_critical_coning():
     assert coning * 0.040 / 10e-6 == pytest.approx(1 / 0.8)
 
 
+@pytest.mark.core
 def test_critical_forcing_brings_the_response_to_contact():
     assert 2e-6 + 0.07 * critical_forcing(3e-4, 2e-6, 0.07) == pytest.approx(3e-4)
     assert critical_forcing(3e-4, 4e-4, 0.07) < 0

@@ -60,6 +60,7 @@ def test_a_film_with_negative_damping_whirls_backward():
     assert fms_critical_speed(**seal) == pytest.approx(speed, rel=1e-9)
 
 
+@pytest.mark.core
 def test_reference_seal_thresholds():
     # 5.89e3 rad/s printed as 5.9e3; none for c = 1/2.
     assert fms_critical_speed(**REFERENCE) == pytest.approx(5.89e3, abs=5.0)

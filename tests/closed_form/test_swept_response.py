@@ -95,6 +95,7 @@ def test_ring_moves_as_an_independent_integration_has_it(table, force, sweep):
     assert found.record(0)[0] <= CLEARANCE + gap.min() + 1e-15
 
 
+@pytest.mark.core
 def test_lag_of_a_slow_sweep_is_that_of_its_rate():
     """Of a tone whose frequency changes at the rate a (rad/s^2) the answer is `(H - i a/2 H'') exp(i phase)`, to second
     order in a; without the second part the amplitude at resonance is late by the first order."""

@@ -58,6 +58,7 @@ def test_printed_forces_of_tilted_faces_cannot_be():
     assert force * AROUND / zuk.POUND_FORCE == pytest.approx(82.8, abs=0.05)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("films", TILTS)
 def test_mass_flows_balance_the_momentum(films):
     """2 f R T G^2 int dx/h^3 is the drop of P^2."""

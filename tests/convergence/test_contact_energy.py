@@ -73,6 +73,7 @@ def test_contact_work_is_the_change_of_its_potential():
         assert work == pytest.approx(energies[0] - energies[1], abs=10 * accuracy * y[-1])
 
 
+@pytest.mark.core
 def test_an_undamped_ring_keeps_its_energy_through_impacts():
     """No film, no damper: kinetic, spring and asperity energy stay what they were, bounce after bounce."""
     scene, _, _ = SCENES["impacts in a vacuum"]

@@ -67,6 +67,7 @@ def test_panels_converge_exponentially(law, name):
     assert found[-1] < 1e-11
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("law", [LAW, GAUSSIAN], ids=["christensen", "gaussian"])
 def test_the_points_given_are_enough(law):
     draw = np.random.default_rng(3)

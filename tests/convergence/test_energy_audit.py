@@ -52,6 +52,7 @@ MISTAKES = {
 }
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("mistake", MISTAKES)
 @pytest.mark.parametrize("scene", [fmr(), fms("linear")], ids=["fmr", "fms-linear"])
 def test_a_wrong_force_is_exposed(scene, mistake):
@@ -106,6 +107,7 @@ def test_a_ring_that_stays_stuck_exchanges_nothing(tmp_path, speed):
     assert found.status == "ok" and found.summary["energy_residual"] < 1e-9
 
 
+@pytest.mark.core
 def test_gyroscopic_moment_does_no_work():
     """Turning it the other way round is another seal, but no energy is missing: the audit is right to be silent."""
     turned = wrong(lambda g, v: -2j * INERTIA * 2 * SPEED * v)

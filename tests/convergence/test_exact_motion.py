@@ -106,6 +106,7 @@ def test_a_defective_scene_is_carried_on_exactly():
     assert motion.free(np.array([1.0, 2.0]), [0.0, 3.0]) == pytest.approx(np.array([[1.0, 2.0], [7.0, 2.0]]))
 
 
+@pytest.mark.core
 def test_against_the_matrix_written_out():
     """Forced motion of the reference rotor from rest: an integral of exp(A (t - s)) f(s) by quadrature."""
     ready = prepared(SCENES["fmr"], TURN, 1e-9)

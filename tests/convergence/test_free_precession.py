@@ -91,6 +91,7 @@ def test_one_circle_keeps_its_radius_and_turns_at_the_closed_form(method, root):
     assert abs(turning) < 2 * accuracy * TILT_SCALE / 100e-6 / times[-1]
 
 
+@pytest.mark.core
 def test_a_short_disk_precesses_at_2224_and_minus_225_rad_per_s():
     assert pytest.approx(1000 + math.sqrt(1.5e6), rel=1e-14) == FORWARD
     assert pytest.approx(1000 - math.sqrt(1.5e6), rel=1e-13) == BACKWARD

@@ -65,6 +65,7 @@ def test_fixed_steps_are_of_second_order_on_a_damped_forced_scene(method):
     assert np.log2(np.array(found[:-1]) / np.array(found[1:])) == pytest.approx([2.0, 2.0], abs=0.15), found
 
 
+@pytest.mark.core
 def test_newmark_and_midpoint_keep_the_energy_and_generalised_alpha_does_not():
     """Free precession for thirty turns: quadratic invariants stay to rounding, numerical damping shows."""
     duration = 30 * 2 * math.pi / 1000.0

@@ -80,6 +80,7 @@ def worst(found, speed, legs):
 #   10 000 rpm   legs 5e-13, 1.3e-11, 3e-11     floats 5e-10, 7e-9, 4e-8
 #   16 Hz        legs 6e-13, 1.2e-11, 6e-10     floats 4e-10, 5e-9, 3e-7
 # A leg is at most 2000 turns: a phase inside it is as good as a float of that size, whatever came before.
+@pytest.mark.core
 @pytest.mark.parametrize("speed", [1047.1975511965977, 2 * math.pi * 16.0], ids=["10000 rpm", "16 Hz"])
 def test_phases_after_a_million_turns(speed):
     legs = split_at_breaks(2 * math.pi * 1e6 / speed, speed, 0.0, [])

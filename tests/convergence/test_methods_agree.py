@@ -50,6 +50,7 @@ def test_error_and_energy_within_the_asked_accuracy(name, method, reference):
         assert found.outcome.energy_residual < 10 * accuracy
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853", "radau"])
 def test_error_falls_with_the_accuracy(method, reference):
     """Proportionally, by regression: a method that stopped listening would show a flat line.  Radau IIA is of order 5

@@ -105,6 +105,7 @@ def test_chaos_is_promised_up_to_its_horizon():
     assert scales.errors(columns[late], known.columns[late]).max() > 0.1
 
 
+@pytest.mark.core
 def test_a_gas_dam_rings_after_every_step_too_long():
     """Steps of Adams that pass over a motion 185 times as fast as the shaft, which nothing damps, leave rates 14 times
     the asked accuracy from the truth; followed along the steps their errors were a twentieth of it."""

@@ -39,6 +39,7 @@ SCENES = {
 }
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 @pytest.mark.parametrize("name", SCENES)
 def test_rates_and_loads_between_steps(name, accuracy):

@@ -74,6 +74,7 @@ def test_other_methods_agree(method, truth):
     assert np.all(scales.errors(sink.all(), truth.all())[away] < 0.5e-3)
 
 
+@pytest.mark.core
 def test_the_first_slide_is_one_of_constant_friction(truth):
     """Until the ring first comes to rest on the housing, which starts at its crest, nothing jumps."""
 

@@ -27,6 +27,7 @@ def test_a_nearly_closed_film_that_damps_a_million_times_does_not_chatter(fricti
     assert found["secondary_seal"]["sticks"] + found["secondary_seal"]["slips"] < 10
 
 
+@pytest.mark.core
 def test_steps_that_bring_nothing_end_a_run():
     watch = Advance(1.0, 1e-3)
     for k in range(STEPS):

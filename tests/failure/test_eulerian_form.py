@@ -57,6 +57,7 @@ def in_nutation(g, v):
     return [abs(g), np.angle(g), turn.real * abs(g), turn.imag]
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("c", [0.5, 3.0])
 def test_eulerian_form_gives_the_same_trajectory(c):
     """Ten turns whose nutation stays above 22 urad: 7e-13 of the tilt scale apart (measured), DOP853 on both."""

@@ -78,6 +78,7 @@ def test_a_dip_of_states_is_seen_down_to_the_certified_error(method, accuracy, e
     assert all(abs(event["depth"] - depth) < 2 * accuracy * CLEARANCE for event in events)
 
 
+@pytest.mark.core
 def test_impulse_and_angle_of_a_contact():
     """A stiff pair of faces: the impulse of each contact is the integral of the contact force over it."""
     hard = Contact(roughness=1e-7, compressive_strength=3e8)

@@ -61,6 +61,7 @@ once_a_turn.terminal, once_a_turn.direction = [False], [0]
 #            1e-4   1e-6   1e-8
 #   Adams     58    116    168
 #   BDF       71    117    300
+@pytest.mark.core
 @pytest.mark.parametrize("method,rtol,at_most", [("Adams", 1e-4, 100), ("Adams", 1e-6, 200), ("Adams", 1e-8, 270),
                                                  ("BDF", 1e-4, 150), ("BDF", 1e-6, 260)])  # fmt: skip
 def test_root_finding_misses_most_dips(method, rtol, at_most):
@@ -111,6 +112,7 @@ def test_root_finding_runs_through_the_collapse(method, rtol):
     assert found.t_events is None or len(np.atleast_1d(found.t_events)) == 0
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("method", ["adams", "bdf", "ida", "dop853"])
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
 def test_the_watch_stops_at_the_collapse(method, accuracy):

@@ -89,6 +89,7 @@ def test_explicit_methods_stick_with_the_flat_ring(method):
 
 # CVODE's Adams survives at the orders 1 and 2, which are stable however stiff the scene: 11 380 steps and 13 570
 # right-hand sides where BDF takes 1198 and 2066.
+@pytest.mark.core
 def test_adams_pays_for_the_squeeze_with_steps():
     adams, bdf = by("squeeze", "adams"), by("squeeze", "bdf")
     assert adams.steps > 5 * bdf.steps and adams.calls > 4 * bdf.calls
@@ -205,6 +206,7 @@ def thrown(thickness, method, **tolerances):
 
 # RK45 at its default tolerances goes through to h = -0.26 m in four steps and calls it a success; with the film
 # continued below a floor it crawls, and says so.  Radau passes 6 trial states with h <= 0 and is right: 0.259 um.
+@pytest.mark.core
 def test_a_raw_film_lets_the_faces_through_silently():
     through, _ = thrown(lambda h: h, "RK45")
     assert through.success and through.y[0, -1] < -0.1

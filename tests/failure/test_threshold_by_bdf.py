@@ -45,6 +45,7 @@ def rate_by_bdf(speed, tolerance):
     return np.polyfit(t[late], np.log(size[late]), 1)[0]
 
 
+@pytest.mark.core
 def test_loose_bdf_calls_an_unstable_seal_stable():
     speed = 1.0002 * THRESHOLD
     # Measured: +0.60, -0.21 and -0.02 1/s, where the seal grows at +0.24; restarted now and then -0.50 at 1e-5.

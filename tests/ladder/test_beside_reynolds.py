@@ -33,6 +33,7 @@ def test_edges_at_the_cavitation_pressure_starve_what_keeps_its_liquid():
     assert off["force"] is None and "starve" in off["said"]
 
 
+@pytest.mark.core
 def test_a_tilt_that_turns_with_the_fluid_tears_nothing():
     """The rotor's runout is steady in its own frame: the wedge is that of the fluid against it."""
     assert found("fms_reference", *LOW)["cavitated"][0] > 0.01

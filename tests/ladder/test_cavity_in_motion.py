@@ -81,6 +81,7 @@ def front(x):
     return (first + 1.0 - void[first] / void[first + 1]) / n
 
 
+@pytest.mark.core
 def test_the_front_moves_as_the_closed_form_has_it():
     # The faces part again at 0.75.
     times, kept, lost, whole = marched(400, 1500, 0.75)

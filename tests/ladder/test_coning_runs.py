@@ -94,6 +94,7 @@ def test_the_gap_follows_the_cone_as_the_axial_equation_says(law):
     assert seen["coning"] == pytest.approx([cone(time)[0] for time in t], rel=1e-9)
 
 
+@pytest.mark.core
 def test_at_a_constant_speed_it_is_that_coning():
     law = dict(coning_per_speed_squared=-4e-10, coning_per_kelvin=5e-6, coning_reference_temperature=300.0)
     table = film(outer_pressure=P_O, inner_pressure=P_I)

@@ -40,6 +40,7 @@ def test_compliance_makes_work_and_strain_energy_least(order):
     assert RING.compliance(order) == pytest.approx(w, rel=1e-10)
 
 
+@pytest.mark.core
 def test_the_largest_waviness_that_o_rings_can_give():
     for order, published in ((6, 3.57), (9, 0.684)):
         found = RING.largest_waviness(order, 0.005 * PRESSURES, 0.5 * lebeck_1979.OUTER) / HALF

@@ -81,6 +81,7 @@ def test_modes_are_those_of_rings_and_film_together(scene, compressibility):
     assert np.sum(found.real > 0) == np.sum(expected.real > 0)
 
 
+@pytest.mark.core
 def test_a_film_that_hardly_stores_has_the_modes_of_slow_motion():
     soft, hard = (stored(aligned(fms, speed=5000.0), b).linear_scene() for b in (1e-12, 0.0))
     assert hard.film is None and soft.film is not None

@@ -48,6 +48,7 @@ def steady(cells, angles=64):
     return cellular, f, s, x
 
 
+@pytest.mark.core
 def test_force_moments_leakage_and_torque_tend_to_the_radial_films_at_second_order():
     exact = moving_state()
     radial.flow(radial.parameters(film(), CLEARANCE, 1e-13), exact)

@@ -41,6 +41,7 @@ def test_parallel_and_divergent_dams_are_unstable_when_thin(tilt, mils):
     assert all(stiffness(h, tilt) > 0 for h in np.linspace(1.01 * mils, 1.0, 5))
 
 
+@pytest.mark.core
 def test_a_convergent_dam_is_stable():
     assert all(stiffness(h, -0.002) > 0 for h in np.linspace(0.1, 1.0, 19))
 

@@ -37,6 +37,7 @@ def both(cells=(12, 48), **changes):
 # --- small compressibility ----------------------------------------------------------------------------
 
 
+@pytest.mark.core
 def test_a_gas_that_hardly_gives_way_is_the_radial_film():
     """Force above the inner pressure, moments, volume flow and torque, of a gap that moves."""
     film, liquid = both()

@@ -18,6 +18,7 @@ def rule(*changes):
     return followability(prepare_run(read_scenario(SCENARIO, changes))[0].model)
 
 
+@pytest.mark.core
 def test_the_rule_is_spring_against_friction_and_inertia():
     (found,) = rule()
     needed = FRICTION + (MASS * SPEED**2 - STIFFNESS) * AMPLITUDE

@@ -89,6 +89,7 @@ def test_a_film_that_closes_leaves_the_fields_of_its_end(tmp_path):
     assert at[-1] == time[-1]
 
 
+@pytest.mark.core
 def test_a_linear_film_keeps_none(tmp_path):
     result = archived(tmp_path, "fms_reference", ["run.turns=1", "film.model='linear'"])
     assert read_info(result.archive)["fields"] == {}

@@ -44,6 +44,7 @@ def rows():
     return {(row["order"], row["quantity"], row["amplitude"]): row for row in lebeck_1979.checks()}
 
 
+@pytest.mark.core
 def test_load_support_friction_and_leakage_of_three_and_six_waves(rows):
     wanted = {(3, 0.60): (0.847, 0.0177, 0.0866), (6, 0.55): (0.958, 0.0066, 0.0874)}
     for (order, amplitude), (support, friction, leakage) in wanted.items():

@@ -60,6 +60,7 @@ def test_extremes_of_the_relative_misalignment(flexible, c):
     assert runs[2].record(1)[LEAST] / MISALIGNMENT == pytest.approx(least, rel=1e-6)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("limit", ["rotor", "stator"])
 def test_fmsr_tends_to_its_limits_as_one_over_stiffness(limit):
     """Stiffen the stator's support: FMR is left.  Stiffen the rotor's: FMS."""

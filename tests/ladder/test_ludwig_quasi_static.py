@@ -28,6 +28,7 @@ def test_static_residuals_vanish_at_the_closed_form_and_a_root_finder_returns_to
         assert found == pytest.approx(films, rel=1e-4)
 
 
+@pytest.mark.core
 def test_no_static_film_below_the_least_ratio():
     with pytest.raises(ValueError, match="hang-up"):
         quasi_static.static_root(1.6, (5e-7, 1e-7), RING)

@@ -78,6 +78,7 @@ def test_film_balances_force_and_both_moments(q, guide):
     assert mean**2 == pytest.approx(integrals(e)[0] * RING.group, rel=1e-7)
 
 
+@pytest.mark.core
 def test_the_range_of_films():
     """Free: from 4/pi, where the load acts at the arm R, to 16/pi^2, just where Ludwig & Allen's film begins."""
     least, most = rr.film_range()

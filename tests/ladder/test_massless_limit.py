@@ -46,6 +46,7 @@ def test_light_ring_tends_to_the_massless_one_linearly(build, model):
     assert errors[-1] < 1e-4
 
 
+@pytest.mark.core
 def test_massless_ring_obeys_its_first_order_equation():
     """D gamma' + K gamma = ..., complex, from SciPy: FMR ring at rest, then dragged along."""
     c = film_coefficients(0.032, 0.04, 1e-5, 3.125e-3, 0.5e-3, 5e5)

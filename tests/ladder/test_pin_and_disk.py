@@ -156,6 +156,7 @@ def test_slowly_turned_it_follows_behind_by_the_dead_band():
     assert math.cos(first * speed) == pytest.approx(1 - 2 * friction / P, abs=0.05)
 
 
+@pytest.mark.core
 def test_a_pin_held_by_more_than_the_disk_pulls_stays():
     found = pin(1.01 * P, 0.3 * NATURAL, 3)
     assert not found.events and np.ptp(found.q) == 0.0 and found["stator_seal_stuck"].all()

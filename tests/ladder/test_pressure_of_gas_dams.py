@@ -18,6 +18,7 @@ def answer(at="", *overrides):
     return pressure.run(read_scenario(REFERENCE, overrides), Settings(at), None)
 
 
+@pytest.mark.core
 def test_the_field_sums_up_to_the_dams_force_and_moments():
     found = answer("tilt = 0.03 mrad")
     assert found["integrated"]["force"] == pytest.approx(found["force"], rel=2e-3)

@@ -99,6 +99,7 @@ def coned_pressure(r, geometry):
     return DROP * (primitive(r) - primitive(R_I)) / (primitive(R_O) - primitive(R_I))
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("geometry", ["planar", "cylindrical"])
 def test_aligned_coned_faces_have_the_closed_form(geometry):
     found = answer("", [f"film.geometry={geometry}"])

@@ -91,6 +91,7 @@ def test_rubbing_converges_and_its_energy_balances():
         assert found.outcome.energy_residual < 10 * accuracy
 
 
+@pytest.mark.core
 def test_wear_at_the_radii_is_the_wear_rate_of_the_run():
     """Sum of depth rate times hat area over the face: the mean wear rate, at every sample."""
     found = rubbing(1e-6)

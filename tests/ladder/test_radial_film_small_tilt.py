@@ -39,6 +39,7 @@ def test_small_tilt_is_the_closed_form(flexible, geometry):
     assert found.record(1)[LEAST] / forcing == pytest.approx(least, rel=1e-5)
 
 
+@pytest.mark.core
 def test_the_film_leaves_its_linear_form_with_the_square_of_the_tilt():
     """Deviation from the linear steady state (harmonic balance) grows as amplitude squared."""
     amplitudes, deviations = np.array([1e-4, 2e-4, 4e-4, 8e-4]), []

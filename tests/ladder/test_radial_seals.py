@@ -60,6 +60,7 @@ def lifts(scene, turns=2.0) -> int:
 # --- where contact is lost ----------------------------------------------------------------------------
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("speed", [100.0, W, 2000.0])
 @pytest.mark.parametrize("eta", [0.0, 0.3])
 @pytest.mark.parametrize("offset", [0.0, 3e-5])

@@ -406,6 +406,7 @@ def test_a_run_that_goes_on_amounts_to_the_same(when, tmp_path):
             assert rest.summary[part][name] == pytest.approx(value, rel=1e-4, abs=near), (part, name)
 
 
+@pytest.mark.core
 def test_the_impulse_is_the_integral_of_the_load():
     """Of a lip that rides for a third of a turn, to what the equations are exact to."""
     shaft = RadialShaft(R, 300.0, eccentricity=1e-4)

@@ -52,6 +52,7 @@ def test_the_vector_itself(turn):
     assert np.max(np.abs(tilt - standing - turning * np.exp(1j * SPEED * found.times))) < 1e-6 * MISALIGNMENT
 
 
+@pytest.mark.core
 def test_triangle_of_nutations(turn):
     """|g|^2 = |s|^2 + |r|^2 - 2 |s| |r| cos(psi_r - psi_s), s and r the tilts of the rings."""
     found, (stator, rotor) = turn[:2]

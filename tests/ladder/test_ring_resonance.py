@@ -34,6 +34,7 @@ samples = 20000
 """
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(("share", "verdict"), [(0.85, "pass"), (1.0, "fail"), (1.15, "pass")])
 def test_a_shaken_ring_moves_most_where_the_rule_fails(tmp_path, share, verdict):
     """Amplitude over the housing's, settled: sqrt(1 + (2 D r)^2)/sqrt((1 - r^2)^2 + (2 D r)^2): 3.5, 10 and 2.9."""

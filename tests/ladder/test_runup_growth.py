@@ -90,6 +90,7 @@ def oracle(ring, trip, times, start):
     return out
 
 
+@pytest.mark.core
 def test_thresholds_are_those_of_the_complex_ring():
     ready = free_model(scenario().scene, 1000.0)
     assert whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4) == pytest.approx(

@@ -63,6 +63,7 @@ def test_coulomb_oscillator_loses_four_f_over_k_a_cycle_and_stops(method, start,
     assert after.sum() > 10 and np.ptp(found.q[after, 0]) == 0.0 and not found.rates[after].any()
 
 
+@pytest.mark.core
 def test_amplitude_falls_by_four_f_over_k_each_cycle():
     friction, start = 0.1, 5e-6
     found = oscillator(friction, start, 5)
@@ -73,6 +74,7 @@ def test_amplitude_falls_by_four_f_over_k_each_cycle():
         assert np.max(found.q[part, 0]) == pytest.approx(peak, rel=2e-3)
 
 
+@pytest.mark.core
 def test_a_ring_at_rest_inside_the_dead_band_stays():
     found = oscillator(2.6, 5e-6, 3)
     assert not found.events and np.ptp(found.q[:, 0]) == 0.0 and found["stator_seal_stuck"].all()

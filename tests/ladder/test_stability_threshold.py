@@ -37,6 +37,7 @@ def eigenvalues(kind, speed):
     return tilt_roots(speed, flexible, inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, **film)
 
 
+@pytest.mark.core
 def test_critical_speeds_of_the_reference_seal():
     assert CRITICAL["fms"] == pytest.approx(5.89e3, rel=1e-3)
     assert CRITICAL["fmr"] == pytest.approx(8.684e3, rel=1e-3)

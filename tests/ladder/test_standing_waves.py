@@ -60,6 +60,7 @@ def test_a_clearance_is_found_between_wavy_faces():
     assert found.clearance == pytest.approx(CLEARANCE, rel=1e-6)
 
 
+@pytest.mark.core
 def test_small_motion_between_waves_is_that_of_the_differences():
     """Stiffness at rest against differences of the steady film; three waves are the same in all directions."""
     model = Model(seal(), 1e-4)

@@ -1,6 +1,7 @@
 """A cavity that travels around the circle with a turning face nearly as tilted as the film is thick."""
 
 import numpy as np
+import pytest
 from benchmark.cavitating_film import PLAIN, TRAVELS
 
 from sealdyn.dynamics.model import Model
@@ -13,6 +14,7 @@ from sealdyn.solvers.trbdf2 import trbdf2
 FEW_CELLS = "film.reynolds.cells_r=6", "film.reynolds.cells_theta=48"
 
 
+@pytest.mark.core
 def test_steps_pass_cells_that_tear_and_fill_all_the_time():
     ends = []
     for tolerance in (1e-3, 1e-4):

@@ -31,6 +31,7 @@ TABLE = {
 }
 
 
+@pytest.mark.core
 def test_every_row_has_its_verdict(rows):
     found = {(r["arrangement"], r["inertia_ratio"], r["quantity"]): r for r in rows}
     assert found.keys() == TABLE.keys() and len(rows) == len(TABLE)

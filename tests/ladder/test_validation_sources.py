@@ -167,6 +167,7 @@ def same_as_kept(name, rows):
         assert new["deviation"] is None or new["deviation"] == pytest.approx(old["deviation"], rel=0.1, abs=1e-3)
 
 
+@pytest.mark.core
 def test_what_is_kept_is_what_is_computed(dams, rings):
     same_as_kept("zuk-1972", dams)
     same_as_kept("ludwig-allen", rings)

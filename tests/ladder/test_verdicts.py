@@ -93,6 +93,7 @@ def test_both_rings_float(stator_speed):
         assert inside == pytest.approx(expected, rel=1e-8)
 
 
+@pytest.mark.core
 def test_all_thresholds_not_the_first_alone():
     """Between rings that turn against one another the whirl loses and regains its damping."""
     draw, several = np.random.default_rng(5), 0

@@ -26,6 +26,7 @@ def answer(row):
     return pressure.run(scenario, pressure.Settings(), None)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("row", zuk.ZUK_1972, ids=lambda row: f"{row.tilt:g}-{row.mean_film / zuk.MIL:.1f}mil")
 def test_rows_of_the_table(row):
     found = answer(row)

@@ -49,6 +49,7 @@ def test_fields_and_columns_of_an_answer_lie_along_what_its_study_names():
     assert both.speed.attrs["units"] == "rad/s"
 
 
+@pytest.mark.core
 def test_rows_of_an_answer_are_a_dimension():
     found = sealdyn.study("campbell", SCENARIO, workers=1)
     frequency = found.data["modes.frequency"]

@@ -73,6 +73,7 @@ def test_coupled_modes_veer_and_exchange_their_shapes():
     assert len({int(s) for s in np.sign(upper[0].imag - upper[1].imag)}) == 1
 
 
+@pytest.mark.core
 def test_gyroscopic_ring_on_springs():
     """-I s^2 + J W s + K = 0 for the undamped rotor: frequencies (J W +- sqrt((J W)^2 + 4 I K)) / 2 I."""
     found = answer("free_precession", points=31)

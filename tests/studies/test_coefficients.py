@@ -52,6 +52,7 @@ def by_differences(dz, tilt, speed=1000.0):
     return jacobian[:, :3], jacobian[:, 3:]
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("tilt", [0.0, 150e-6])
 def test_matrices_are_the_derivatives_of_the_film_forces(tilt):
     found = answer(tilt=tilt)

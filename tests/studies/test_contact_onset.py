@@ -36,6 +36,7 @@ def found(request):
     return request.param, scenario, key, onset(scenario, point)
 
 
+@pytest.mark.core
 def test_linear_onset_is_the_formula(found):
     arrangement, scenario, _, answer = found
     film, ring = scenario.scene.film, scenario.scene.stator if arrangement == "fms" else scenario.scene.rotor

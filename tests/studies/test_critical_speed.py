@@ -58,6 +58,7 @@ def test_verdict_at_two_thousandths_of_the_threshold(kind, share):
     assert found["rate"] == pytest.approx(max(roots.real), rel=0.05)
 
 
+@pytest.mark.core
 def test_unconditionally_stable_rotor_has_no_critical_speed(tmp_path):
     answer = study("fmr_reference", tmp_path)
     assert answer["formula"] is None and answer["eigenvalue"] is None and answer["time_domain"]["value"] is None

@@ -47,6 +47,7 @@ def test_a_run_has_the_waves_that_are_left(tmp_path):
     assert result.summary["film"]["clearance"] < 8e-6
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(
     ("override", "key"),
     [

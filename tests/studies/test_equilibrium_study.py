@@ -33,6 +33,7 @@ def opening(clearance, coning):
     return opening_force(clearance, coning, 0.0, 5e5)
 
 
+@pytest.mark.core
 def test_converging_film_rides_where_the_forces_balance():
     found = answer(balanced(3.125, 0.75, 50.0))
     area = np.pi * (0.04**2 - 0.032**2)

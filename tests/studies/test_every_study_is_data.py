@@ -107,6 +107,7 @@ def test_a_map_lies_along_its_keys(tmp_path):
 # --- answers of any kind -----------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 def test_rows_within_rows_are_a_table_that_knows_its_rows():
     rows = [
         {"net": 1.0, "ways": [{"to": 2.0}, {"to": 3.0}]},

@@ -61,6 +61,7 @@ def exhibits():
     return [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in BOUNDS]
 
 
+@pytest.mark.core
 def test_every_place_has_an_exhibit():
     names = exhibit_names()
     assert set(names) == set(BOUNDS) and sorted(set(names.values())) == list(range(1, 15))

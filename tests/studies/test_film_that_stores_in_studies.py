@@ -85,6 +85,7 @@ def test_critical_speed_has_no_formula_and_no_family_of_whirls():
     assert answer["nonlinear"]["tipping"] == [] and answer["nonlinear"]["verdict"]
 
 
+@pytest.mark.core
 def test_transmissibility_is_harmonic_balance_alone():
     scenario = reference()
     settings = transmissibility.Settings(points=5, speed_to=3000.0, time_points=1)

@@ -28,6 +28,7 @@ def greens(request):
     return answer(request.param, points=41, speed_to=4000.0, time_points=8)
 
 
+@pytest.mark.core
 def test_greens_conjecture_and_where_it_fails(greens):
     (row,) = [r for r in greens["table"] if r["quantity"] == "maximum_relative_misalignment"]
     for road in ("formula", "linear_algebra", "time_domain"):

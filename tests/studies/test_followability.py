@@ -9,6 +9,7 @@ import sealdyn
 RADIAL = Path(__file__).parents[2] / "scenarios" / "radial"
 
 
+@pytest.mark.core
 def test_runs_confirm_the_curve():
     found = sealdyn.study("followability", RADIAL / "circumferential_reference.toml", runs=1, speed="9000,12000 rpm",
                           workers=1)  # fmt: skip

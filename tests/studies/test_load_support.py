@@ -22,6 +22,7 @@ def studied(vary, tmp_path, *overrides, name="lebeck_n3"):
     return run_study("load-support", scenario, tmp_path / "s.h5", flags={"vary": vary}, workers=1)
 
 
+@pytest.mark.core
 def test_plane_faces_carry_what_the_pressure_does(tmp_path):
     """The pressure of parallel faces falls with ln r whatever the pressures and the roughness; asperities take the
     rest."""

@@ -32,6 +32,7 @@ def growth_at(speed):
     return max(tilt_roots(speed, "rotor", inertia=INERTIA, polar=INERTIA / 3, k_s=K_S, d_s=D_S, k=K_F, d=D_F).real)
 
 
+@pytest.mark.core
 def test_threshold_is_where_the_roots_written_out_here_cross():
     speed = exhibit.threshold(fmr("linear", 3.0))
     # K_F and D_F are printed with four digits.

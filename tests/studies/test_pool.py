@@ -50,6 +50,7 @@ def quiet(done, count):
     pass
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("workers", [1, 2])
 def test_rows_come_in_the_order_of_the_points(calls, tmp_path, workers):
     rows = evaluate(square, points(5), Checkpoint(tmp_path / "j", "a"), processes(workers), quiet, "squares")

@@ -78,6 +78,7 @@ def test_finished_points_are_kept_for_others(tmp_path):
     assert CALLS == [0, 1, 2, 3, 0]
 
 
+@pytest.mark.core
 def test_what_a_point_is():
     """Whatever decides the answer makes another point; where the scenario came from does not."""
     own = partial(batch.run_many, scenario())

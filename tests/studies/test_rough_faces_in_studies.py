@@ -90,6 +90,7 @@ def clearance():
     return brentq(lambda c: film_force(c) + rough_force(c) - CLOSING, 0.05e-6, 0.449e-6, xtol=1e-18)
 
 
+@pytest.mark.core
 def test_equilibrium_is_where_film_and_asperities_carry_the_closing_force(pump, clearance):
     (root,) = equilibrium.run(pump, equilibrium.Settings(points=11), None)["roots"]
     assert root["clearance"] == pytest.approx(clearance, rel=1e-8) and root["stable"]

@@ -184,6 +184,7 @@ def orbit_of(function, x, count):
     return np.array(out)
 
 
+@pytest.mark.core
 def test_classes_of_the_logistic_map():
     """Periods 1, 2, 4 and chaos, as everyone knows them."""
     for r, expected in ((2.8, 1), (3.2, 2), (3.5, 4), (3.83, 3), (3.9, None)):

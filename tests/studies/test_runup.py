@@ -281,6 +281,7 @@ def test_an_unstable_seal_does_not_calm_down(tmp_path):
     assert answer["slowest"] > 0
 
 
+@pytest.mark.core
 def test_the_tilt_that_touches_whatever_the_profile():
     """Faces 30 um apart everywhere, by a profile of 25 um on a clearance of 5: h = floor at the outer radius."""
     film = "film.profile={ radius = ['32 mm', '40 mm'], depth = ['25 um', '25 um'] }"

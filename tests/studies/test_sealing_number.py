@@ -96,6 +96,7 @@ def test_chart_of_failed_points(tmp_path, monkeypatch):
     assert drawn(study_sealing_number, tmp_path / "none.h5", tmp_path / "none.png").axes
 
 
+@pytest.mark.core
 def test_other_seals_are_refused(tmp_path):
     with pytest.raises(SceneError) as refused:
         run_study("sealing-number", read("film.coning=1 mrad"), tmp_path / "a.h5", workers=1)

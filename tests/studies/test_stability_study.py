@@ -85,6 +85,7 @@ def test_a_balance_that_finds_the_clearance_is_solved_along_its_axis():
     assert total[1, 1] == pytest.approx(wanted, rel=1e-6)
 
 
+@pytest.mark.core
 def test_thresholds_of_green_lie_on_the_maps_zero():
     """FMR, c = 3: 8.684e3 rad/s; FMS: 2 (1 + D_s/D_f) sqrt(K/I) = 5.89e3 rad/s, written out here."""
     k, d, k_s, d_s, inertia = 5791.0375, 4.0815, 400.0, 0.24, 8e-4

@@ -52,6 +52,7 @@ def slowest_root(speed, k, d):
     return np.exp(max(stator_roots(speed, k, d).real) * 2 * np.pi / speed)
 
 
+@pytest.mark.core
 def test_a_linear_scene_answers_with_roots_and_formulas(tmp_path):
     speed = 5000.0
     overrides = ["film.model=linear", f"shaft.speed={speed}"]

@@ -59,6 +59,7 @@ def test_what_cannot_be_varied(words):
         axis(words, "here", "study.sweep.vary")
 
 
+@pytest.mark.core
 def test_rows_equal_single_runs(tmp_path):
     answer = sweep(tmp_path, ["rotor.runout=20,40 urad", "film.coning=2 mrad,3 mrad"])
     assert answer["keys"] == ["rotor.runout", "film.coning"]

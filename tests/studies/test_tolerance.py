@@ -172,6 +172,7 @@ THREE = ["rotor.runout=normal(20, 2 urad)", "stator.misalignment=uniform(10, 30 
          "film.coning=truncated(3, 0.5, 2, 3.2 mrad)"]  # fmt: skip
 
 
+@pytest.mark.core
 def test_points_have_their_distributions_and_are_independent():
     scatters = read_scatter(scenario(), THREE)
     laws = (norm(2e-5, 2e-6), uniform(1e-5, 2e-5), truncnorm(-2, 0.4, 3e-3, 5e-4))

@@ -51,6 +51,7 @@ def test_greens_table_1_follows_from_either_scenario(file, ring, c):
             assert row["time_domain"][seal] == pytest.approx(row["formula"][seal], rel=1e-4)
 
 
+@pytest.mark.core
 def test_crossovers_solve_greens_formulas():
     """K_s 400 N m, D_s 0.24 N m s, K_f 5791 N m, D_f 4.082 N m s of the paper's Fig. 8, c = 1/2."""
     seal = read_scenario(SCENARIOS / "fmr_reference.toml", ["film.model=linear"])

@@ -118,6 +118,7 @@ def test_a_runout_that_touches_alone_leaves_nothing_to_vibration():
     assert set(found["table"]["axial_touch"]) == {0.0} and "close the film without any" in found["verdict"][0]
 
 
+@pytest.mark.core
 def test_peaks_bands_and_gear_mesh():
     found = answer("fms", highest=20e3, points=31, accelerations=(50.0, 500.0))
     for peak in found["peaks"]:

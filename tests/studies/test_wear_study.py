@@ -69,6 +69,7 @@ def test_the_closing_force_is_what_the_start_has_decided():
 # --- flat parallel faces under a constant load -----------------------------------------------------------
 
 
+@pytest.mark.core
 def test_new_flat_faces_wear_by_k_p_v():
     """Depth k p v t at every radius as long as the pressure is still that of new faces: for a few milliseconds."""
     _, found = history(pressed(), 1e-6)

@@ -22,6 +22,7 @@ def family(request):
     return request.param, scene, threshold, model, branch(model, threshold)
 
 
+@pytest.mark.core
 def test_leaves_the_threshold_with_the_square_of_the_amplitude(family):
     name, _, threshold, model, whirls = family
     least_damped = max((m for m in model.linear_scene().modes() if m.kind == "tilt"), key=lambda m: m.value.real)

@@ -193,6 +193,7 @@ def test_time_at_an_error_between_runs():
     assert study.time_at(points, 1e-7) is None
 
 
+@pytest.mark.core
 def test_tolerances_are_even_in_the_exponent():
     assert study.tolerances(study.Settings()) == pytest.approx(10.0 ** -np.arange(2, 12), rel=1e-3)
 

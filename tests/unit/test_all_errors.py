@@ -46,6 +46,7 @@ def test_slips_are_reported_together(slips):
     assert set(keys(FMR, *(f"{slip}={SLIPS[slip]}" for slip in slips))) == expected
 
 
+@pytest.mark.core
 def test_the_first_is_an_unknown_key_then_a_wrong_value_then_a_missing_one():
     text = FMR.replace('viscosity = "0.5 mPa*s"', "").replace('"5 bar"', '"5 rpm"').replace("[stator]", "[statr]")
     found = keys(text.replace("inner_pressure = ", "inner_presure = "))

@@ -57,6 +57,7 @@ def test_whatever_room_was_kept_a_finished_file_has_its_rows_alone(tmp_path, mon
     assert list(tmp_path.iterdir()) == [tmp_path / "run.h5"]
 
 
+@pytest.mark.core
 def test_what_goes_in_comes_out_to_the_last_bit(tmp_path):
     path = tmp_path / "run.h5"
     run = writer(path)

@@ -44,6 +44,7 @@ def written(path, stop, step=7, **options):
     return run
 
 
+@pytest.mark.core
 def test_what_goes_in_comes_out_to_the_last_bit(tmp_path):
     path = written(tmp_path / "run.h5", 75).finish("ok", "", {})
     assert_fields(path, 75)

@@ -67,6 +67,7 @@ def rooms_imported(path: Path):
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 
+@pytest.mark.core
 def test_rooms_are_few_and_known():
     rooms = {room(path) for path in FILES}
     assert rooms == set(FLOOR)

@@ -31,6 +31,7 @@ def following(solver, one, error, tries):
     return next_try(started(fms(), 0.01), solver, one, outcome, certificate(error), tries)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("solver", ["auto", "adams"])
 def test_a_sharper_try_that_gives_up_loses_nothing(solver):
     one = Try("adams", 1e-11, "chosen; sharper; sharper")

@@ -38,6 +38,7 @@ def drawn(request):
     return segment, times, 0.3 * segment.scales * draw.uniform(-1, 1, (40, segment.size))
 
 
+@pytest.mark.core
 def test_derivatives_are_the_right_hand_side(drawn):
     segment, taus, ys = drawn
     found = segment.derivatives(taus, ys)

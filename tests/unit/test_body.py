@@ -33,6 +33,7 @@ def inertias(ring):
     return [getattr(ring, key) for key in INERTIAL]
 
 
+@pytest.mark.core
 @settings(deadline=None)
 @given(
     st.floats(0.0, 0.1), st.floats(1e-4, 0.1), st.floats(1e-4, 0.3), st.sampled_from([*DENSITIES]), st.floats(100, 2e4)

@@ -71,6 +71,7 @@ SCENES = {
 }
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("start", ["rest", "steady"])
 @pytest.mark.parametrize("name", SCENES)
 def test_model_error_is_the_difference_of_the_films(name, start):

@@ -146,6 +146,7 @@ def test_steady_gas_flows_into_the_cone_that_opens():
     assert rates - still == pytest.approx(np.broadcast_to(RATE * (r - 0.032), rates.shape), rel=1e-11)
 
 
+@pytest.mark.core
 def test_thickness_and_its_rate_follow_the_cone():
     f = geometry.face_parameters(film(), CLEARANCE)
     at = [state(coning_change=CHANGE + k * 1e-6 * RATE, coning_rate=RATE) for k in (-1, 0, 1)]

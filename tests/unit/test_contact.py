@@ -207,6 +207,7 @@ def test_planar_film_has_the_same_contact():
     assert rub(CHRISTENSEN, face(), *state) == rub(CHRISTENSEN, face(shape="planar"), *state)
 
 
+@pytest.mark.core
 def test_closed_forms_against_the_density():
     """Share in contact, E(H), E(H^3) by quadrature of Christensen's density."""
     for x in (-1.3, -1.0, -0.99, -0.5, 0.0, 0.3, 0.81, 0.999, 1.0, 1.7):

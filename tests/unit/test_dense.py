@@ -41,6 +41,7 @@ def test_order_on_sines():
     assert max(error(t, sines, np.linspace(t[0], t[-1], 3001))) < 2e-13
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("degree", range(12))
 def test_polynomials_up_to_degree_eleven_are_exact(degree):
     draw = np.random.default_rng(degree)

@@ -94,6 +94,7 @@ def test_every_rule_is_kept_here_and_broken_there():
     assert all(rows()[rule]["verdict"] == "note" and rows()[rule]["most"] is None for rule in TOLD)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("rule", KEPT_AND_BROKEN)
 def test_a_seal_keeps_the_rule_and_another_does_not(rule):
     kept, broken, verdict = KEPT_AND_BROKEN[rule]

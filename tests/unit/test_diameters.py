@@ -21,6 +21,7 @@ def parse(text, *overrides):
     return parse_scenario(text, "seal.toml", overrides)
 
 
+@pytest.mark.core
 def test_a_scene_from_its_drawing_is_the_scene_of_its_radii():
     assert DRAWN.count("_diameter =") == 2 and "\ndiameter =" in DRAWN
     assert parse(DRAWN).scene == parse(FMR).scene and parse(DRAWN) == parse(FMR)

@@ -123,6 +123,7 @@ def states_of(segment, y):
     return states
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("name", SCENES)
 def test_right_hand_side_against_the_complex_form(name):
     segment = segment_of(name)

@@ -67,6 +67,7 @@ def test_compiled_loaded_and_on_another_vector_unit(tmp_path):
     assert bits(reversed(SCENES), tmp_path, tmp_path / "plain", NUMBA_CPU_NAME="generic") == compiled
 
 
+@pytest.mark.core
 def test_no_kernel_leaves_its_rounding_to_the_compiler():
     """Fast-math, or threads: the sums of a kernel would hang on what the optimiser makes of it, which differs between
     a kernel compiled beside its callees and one that finds them on disk."""

@@ -37,6 +37,7 @@ def scene(closing=None, build=fms, **film_changes):
 # --- two of three -------------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("geometry", ["cylindrical", "planar"])
 @pytest.mark.parametrize("balance,spring", [(0.72, 40.0), (0.80, 0.0), (0.65, 120.0)])
 def test_balance_ratio_and_spring_give_a_clearance_that_balances(geometry, balance, spring):

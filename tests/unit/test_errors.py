@@ -13,6 +13,7 @@ from sealdyn.studies.wear.rosenbrock import NoAverage
 from sealdyn.units import QuantityError
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(
     "error",
     [

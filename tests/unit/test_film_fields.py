@@ -62,6 +62,7 @@ def pressures(table, s, radii, angles):
     return p if table.cavitation_pressure is None else np.maximum(p, table.cavitation_pressure)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("faces", FACES)
 def test_pressures_are_those_of_reynolds_equation(faces):
     table, s = film(**FACES[faces]), gap_state()

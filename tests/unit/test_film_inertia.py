@@ -144,6 +144,7 @@ def heavy(**changes):
     return film("radial", density=1000.0, inertia=True, **changes)
 
 
+@pytest.mark.core
 def test_the_reference_seal_gains_86_kpa():
     """One ring at rest: 3/20 rho w^2 (r_o^2 - r_i^2), 17 % of what is sealed."""
     s = gap_state([0.0] * 6 + [0.5 * SPEED, MU, 0.0, 5e5])

@@ -78,6 +78,7 @@ def test_state_matrix_of_a_film_that_stores_is_refused():
         LinearScene([STATOR, RIGID], *film.slow, film).state_matrix()
 
 
+@pytest.mark.core
 def test_answers_that_leave_rounding_and_no_more_are_no_reason_to_give_up(monkeypatch):
     film = line_of_pressures(1e-3, 2500.0, 1.0)
     expected = LinearScene([STATOR, RIGID], *film.slow, film).eigen()[0]

@@ -180,6 +180,7 @@ def test_flows_differ_by_the_volume_squeezed_out(geometry):
     assert inner - outer == pytest.approx(state[3] * AREA, rel=1e-9)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("shape", BENT.values(), ids=BENT)
 def test_opening_force_is_the_aligned_film_s(shape):
     table = film(coning=0.0, profile=Profile(*shape))

@@ -152,6 +152,7 @@ def test_cross_stiffness_is_mean_spin_times_damping(coning, geometry):
     assert np.max(np.abs([k[0, 1:], k[1:, 0]])) * 0.04 < 1e-8 * wedge
 
 
+@pytest.mark.core
 def test_leakage_grows_with_the_square_of_the_tilt():
     f = block(CONVERGING)
     still = [0.0] * 6 + [0.5 * SPEED, MU, P_I, P_O]

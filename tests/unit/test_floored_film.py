@@ -150,6 +150,7 @@ def test_smooth_in_the_state(pressures, mean):
         assert np.max(np.abs(values - smooth)) < 1e-9 * np.max(values)
 
 
+@pytest.mark.core
 def test_the_tables_are_a_gauss_kronrod_pair():
     """Exact for polynomials up to degree 31 and 19, and not beyond."""
     x = np.concatenate([cavitated_circle.NODES, -cavitated_circle.NODES[-2::-1]])

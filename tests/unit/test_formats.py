@@ -40,6 +40,7 @@ def test_what_is_no_version_is_refused(version):
     assert told.value.key.startswith("schema")
 
 
+@pytest.mark.core
 def test_the_version_changes_nothing_of_a_run():
     plain, said = (parse_scenario(FMS.replace(SAID, line), "fms") for line in ("", SAID))
     assert plain == said and plain.resolved() == said.resolved() and hash(plain.given) == hash(said.given)

@@ -39,6 +39,7 @@ def states(count=40):
     return zip(draw.normal(size=count) * 0.3 * CLEARANCE, tilts * np.cos(angles), tilts * np.sin(angles), strict=True)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("mean", [False, True], ids=["local", "mean"])
 @pytest.mark.parametrize("coning", CONINGS.values(), ids=CONINGS)
 def test_smallest_thickness_against_a_search(coning, mean):

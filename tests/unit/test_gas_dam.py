@@ -74,6 +74,7 @@ def against_march(films, pressures, friction="laminar", kind=KINDS[0], radii=(R_
     return np.max(np.abs(np.array(ours) / truth - 1))
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("row", zuk.ZUK_1972, ids=lambda row: f"{row.tilt:g}-{row.mean_film / MIL:.1f}mil")
 def test_table_against_the_march(row):
     films = row.mean_film - row.tilt * WIDTH / 2, row.mean_film + row.tilt * WIDTH / 2

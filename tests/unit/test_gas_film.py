@@ -102,6 +102,7 @@ def test_turned_tilt_turns_the_moment_and_mirrored_pressures_reverse_the_flow():
     assert back[geometry.FORCE] == pytest.approx(forth[geometry.FORCE], rel=1e-12)
 
 
+@pytest.mark.core
 def test_pressure_field_sums_up_to_the_force():
     table = film(gas_dam=None)
     f, s = gas_dam.parameters(table, table.clearance), loads(table, 2.5e-5 + 1e-5j)
@@ -154,6 +155,7 @@ def test_a_run_that_leaves_what_the_film_has_solutions_for_ends_in_words(method)
 # --- gases --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 def test_gas_constants_and_viscosities_are_the_published_ones():
     """Universal gas constant over molar mass; viscosities at 300 K of Lemmon & Jacobsen (2004) for nitrogen, argon and
     air, of Petersen (1970) for helium, within 1.5 %."""

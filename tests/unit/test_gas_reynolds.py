@@ -31,6 +31,7 @@ def orders(errors, factor=2.0):
 # --- steady -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("slip", [False, True])
 def test_parallel_faces_have_the_exact_steady_film(slip):
     """p^2 is linear in ln r; with slip p^2 + 2 a p, a = 6 mean free path times pressure over h."""

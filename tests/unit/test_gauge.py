@@ -17,6 +17,7 @@ def parse(text, *overrides):
     return parse_scenario(text, "seal.toml", overrides)
 
 
+@pytest.mark.core
 def test_a_scene_in_gauge_is_the_scene_in_absolute_pressures():
     gauge = parse(FMR, "film.outer_pressure=5 barg", "film.inner_pressure=0 psig")
     assert gauge == parse(FMR, "film.outer_pressure=6.01325 bar", "film.inner_pressure=1 atm")

@@ -102,6 +102,7 @@ def test_whirl_of_the_shaft_carries_a_flexible_rotor(ratio):
         assert complex(*rate[1:]) == pytest.approx(s * answer * np.exp(s * t), rel=1e-12)
 
 
+@pytest.mark.core
 def test_balance_at_turning_and_standing_forcing_is_the_closed_form():
     whole = run_of(rotor=Rotor(**ring(3.0, misalignment=1e-5)), stator=Stator(misalignment=1e-5))
     linear, found = whole.model.linear_scene(), {}

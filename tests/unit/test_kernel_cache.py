@@ -103,6 +103,7 @@ def test_kernels_of_others_stay(package, tmp_path):
     assert package()[0] == (30.0, 1, 4, True) and other.exists()
 
 
+@pytest.mark.core
 def test_sources_of_this_package_reach_their_constants():
     """Files of kernels, and a file without a kernel whose numbers a kernel takes in."""
     found = {path.name for path in sealdyn.kernel_cache.kernel_sources()}

@@ -82,6 +82,7 @@ def test_a_start_of_a_rigid_ring_tilts_nothing():
     assert layout(fmr(**ALIGNED, initial=Initial(stator=RingStart(tilt_x=1e-6)))).model.unknowns.names == ["rotor_z"]
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(
     "build, arrangement, floats",
     [(fmr, "FMR:", [False, True]), (fms, "FMS:", [True, False]), (fmsr, "FMSR:", [True] * 2)],

@@ -63,6 +63,7 @@ def imposed(scene, leg, tau):
 # --- phases ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 def test_phase_after_a_million_turns():
     legs = split_at_breaks(MILLION, SPEED, -300.0, [])
     assert len(legs) >= 500

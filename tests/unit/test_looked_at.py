@@ -16,6 +16,7 @@ def scales(duration=0.01, **scene):
     return ErrorScales(prepared(fms(**scene), duration, 1e-6))
 
 
+@pytest.mark.core
 def test_the_rate_is_that_of_the_run():
     """A table that goes on beyond the run does not loosen what is promised of it."""
     faster = Shaft(speed=PiecewiseLinear((0.0, 0.1), (SPEED, 11.0 * SPEED)))

@@ -108,6 +108,7 @@ def by_itself(monkeypatch):
     return seen
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-6])
 def test_rows_are_single_runs_within_the_accuracy(by_itself, accuracy):
     runout, outputs = ["10 urad", "30 urad"], ["h_min.value", "relative_misalignment.max", "end.state.stator_tilt_x"]

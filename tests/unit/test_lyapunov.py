@@ -43,6 +43,7 @@ def lorenz_tangent(x, q):
     return y[:3], y[3:].reshape(3, -1)
 
 
+@pytest.mark.core
 def test_logistic_map_has_ln_2():
     found = [
         two_trajectories(logistic, [0.3], [1.0], 20_000, distance=1e-8),

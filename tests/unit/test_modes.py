@@ -142,6 +142,7 @@ def fms_threshold():
     return 2 * (1 + D_S / D_F) * math.sqrt((K_S + K_F) / INERTIA)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("rings,expected", [(FMS, fms_threshold()), (FMR, fmr_threshold())], ids=["FMS", "FMR"])
 def test_critical_speed_is_the_formula(rings, expected):
     whole = run_of(**rings)

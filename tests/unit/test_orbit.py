@@ -67,6 +67,7 @@ def test_orbit_is_periodic_and_stable_below_the_threshold_and_not_above():
         assert orbit.stable is stable
 
 
+@pytest.mark.core
 def test_incommensurate_forcing_has_no_period():
     scene = fmr("linear")
     scene = replace(scene, shaft=replace(scene.shaft, whirl=[Whirl(ratio=2**0.5, angle=1e-6)]))

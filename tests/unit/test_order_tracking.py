@@ -17,6 +17,7 @@ def numbers(turns, first=0):
     return first + np.arange(turns * PER_TURN)
 
 
+@pytest.mark.core
 def test_an_order_comes_back_alone():
     """Amplitude and phase of order 1 among a standing tilt, the half order against the shaft and the second order."""
     number = numbers(40, first=7)

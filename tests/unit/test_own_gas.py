@@ -35,6 +35,7 @@ def state_at(random, seal, t):
             return y
 
 
+@pytest.mark.core
 def test_scenes_have_everything():
     drawn = [scene_of(number)[0] for number in SCENES]
     words = {word for one in drawn for word in one.words}

@@ -78,6 +78,7 @@ def rate_scales(run, load):
     return np.array(found)
 
 
+@pytest.mark.core
 def test_scenes_have_everything():
     drawn = [scene_of(number)[0] for number in SCENES]
     words = {word for one in drawn for word in one.words}

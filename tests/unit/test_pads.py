@@ -84,6 +84,7 @@ def test_steps_converge_as_cells_and_flanks_get_finer():
     assert abs(sharper[2] - sharper[1]) < abs(sharper[1] - sharper[0]), sharper
 
 
+@pytest.mark.core
 def test_pads_lift_with_the_speed():
     even = replace(CLOSED, phase=0.0)
     still, slow, fast = (lift(even, spin=spin) for spin in (0.0, 1000.0, 3000.0))

@@ -21,6 +21,7 @@ def test_gallery_shows_every_picture_and_fills_every_table():
     assert "{{" not in page
 
 
+@pytest.mark.core
 def test_every_key_has_a_meaning():
     schema, radial = json_schema(), json_schema(RadialFile)
     for table in (schema, radial, *schema["$defs"].values(), *radial["$defs"].values()):

@@ -46,6 +46,7 @@ def test_a_tame_seal_has_none():
     assert cautions() == {}
 
 
+@pytest.mark.core
 def test_reynolds_numbers_and_inertia_of_the_reference_seal():
     """rho W r h / mu: 640 where h = C = 10 um, 2800 at the outer edge; 3/20 rho w^2 (r_o^2 - r_i^2) = 86 kPa, 17 %."""
     found = cautions("shaft.speed=1000 rad/s", "film.viscosity=0.5 mPa*s")

@@ -230,6 +230,7 @@ def test_turning_the_tilt_turns_the_moment(shape):
             assert wear_integrals(f, (at[0], tilt.real, tilt.imag)) == pytest.approx(worn, rel=1e-10, abs=1e-300)
 
 
+@pytest.mark.core
 @bent
 def test_hat_areas(shape):
     """They sum to the face, and weigh a depth to its volume."""

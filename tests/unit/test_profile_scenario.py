@@ -48,6 +48,7 @@ def test_read_in_si():
     assert profile == Profile((0.032, 0.034, 0.036, 0.04), (3e-6, 1e-6, 0.0, -2e-6))
 
 
+@pytest.mark.core
 def test_resolved_and_read_back():
     """What `check` prints is a scenario with the same profile; the schema has the table; JSON can be made of it."""
     scenario = parse_scenario(SCENARIO, "worn.toml")

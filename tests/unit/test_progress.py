@@ -20,6 +20,7 @@ def shown():
     bar.bar.stop()
 
 
+@pytest.mark.core
 def test_a_run_done_again_begins_again(shown):
     shown(2.0, 2.0)
     begun = shown.bar.tasks[0].start_time

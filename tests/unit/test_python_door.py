@@ -31,6 +31,7 @@ def test_a_scenario_runs_and_runs_again(tmp_path):
         assert callable(getattr(sealdyn, name))
 
 
+@pytest.mark.core
 def test_all_names_are_listed():
     assert set(sealdyn.__all__) < set(dir(sealdyn)) and "__version__" in dir(sealdyn)
     with pytest.raises(AttributeError, match="no attribute 'simulat'"):
@@ -143,6 +144,7 @@ def test_a_clearance_is_found_for_a_leakage():
     assert brentq(over, 5e-6, 1e-4, xtol=1e-12) == pytest.approx(cube ** (1 / 3), rel=1e-3)
 
 
+@pytest.mark.core
 def test_numbers_are_those_of_the_run(results):
     keys = ["h_min.value", "leakage.mean", "stability.verdict"]
     found = sealdyn.evaluate(TILTED, {"film.clearance": "10 um", **SHORT}, keys)

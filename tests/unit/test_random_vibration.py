@@ -41,6 +41,7 @@ def imposed(housing, times, slot):
     return found
 
 
+@pytest.mark.core
 def test_mean_square_is_the_integral_of_the_density():
     for low, high in ((20.0, 2000.0), (50.0, 90.0), (400.0, 600.0), (1.0, 30.0)):
         inside = [max(low, 20.0), *(f for f in CORNERS if low < f < high), min(high, 2000.0)]

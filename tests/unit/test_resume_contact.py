@@ -40,6 +40,7 @@ def test_continued_as_if_never_stopped(tmp_path, stop_at):
         assert np.max(np.abs(ours - theirs)) < 10 * scenario.run.accuracy * scale
 
 
+@pytest.mark.core
 def test_a_ring_that_has_just_slipped_is_remembered_as_such():
     """It may be captured again only once it has been fast: the archive's state says so."""
     model = Model(read_scenario(RUB, SEAL).scene)

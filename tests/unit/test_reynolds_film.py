@@ -111,6 +111,7 @@ def test_no_pressure_below_cavitation_and_no_fill_above_one():
     assert np.any(u < -0.05)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("tilt", [0.0, 2e-5])
 def test_what_flows_in_flows_out(tilt):
     _, s, _ = settled(wide(), THREE, GX=tilt)

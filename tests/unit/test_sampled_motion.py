@@ -91,6 +91,7 @@ def test_bounds_hold_the_motion():
         assert max(found[1:]) <= bound[1] * (1 + 1e-9) < 8.0 * max(found[1:])
 
 
+@pytest.mark.core
 def test_samples_of_a_tone_are_the_tone_to_sixth_order():
     t, w = np.linspace(0.0, 0.02, 999), 2 * math.pi * TONE
     off = []

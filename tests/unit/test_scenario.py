@@ -31,6 +31,7 @@ def refusal(text, *overrides) -> str:
     return line
 
 
+@pytest.mark.core
 def test_reference_in_si():
     scenario = parse(FMR)
     film, rotor = scenario.scene.film, scenario.scene.rotor

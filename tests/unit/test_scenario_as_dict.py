@@ -49,6 +49,7 @@ def test_so_does_one_with_other_values(scenario, keys, data):
     assert alike(again, changed) and again.to_toml() == again.text
 
 
+@pytest.mark.core
 def test_a_scenario_of_tables_is_read_like_a_file():
     tables = REFERENCE.to_dict()
     tables["film"]["clearance"], tables["shaft"]["speed"] = (

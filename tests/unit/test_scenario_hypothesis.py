@@ -5,6 +5,7 @@ import tomllib
 from copy import deepcopy
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -126,6 +127,7 @@ def test_deep_nesting(key, depth):
     check(SHIPPED[0], f"{key}=" + "{a=" * depth + "1" + "}" * depth)
 
 
+@pytest.mark.core
 def test_the_unbroken_ones_pass():
     for tree in TREES:
         text = "\n".join(f"{quoted(k)} = {as_toml(v)}" for k, v in tree.items())

@@ -40,6 +40,7 @@ def test_wrench_is_the_circle_integral(v, q_x, q_y):
     assert np.abs(out - exact) / [scale, scale * RADIUS, scale * RADIUS] == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("angle", np.linspace(0.02, 1.5, 12))
 def test_sliding_loads_lie_on_the_limit_surface(angle):
     """What the seal gives while sliding is the most it can hold while stuck."""

@@ -32,6 +32,7 @@ def test_a_file_in_circles_is_refused(endless):
         must_be_sound(endless)
 
 
+@pytest.mark.core
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 def test_whoever_asked_may_be_gone(endless):
     """It was left behind, and went on for ever."""

@@ -35,6 +35,7 @@ def begun(*overrides):
     return [run.y0 for run in found], found[0].start
 
 
+@pytest.mark.core
 def test_a_stable_seal_starts_on_its_steady_response():
     (auto, rest, steady), start = begun()
     assert np.array_equal(auto, steady) and not np.array_equal(auto, rest)

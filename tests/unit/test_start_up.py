@@ -45,6 +45,7 @@ def run(tmp_path, scenario, *words):
     return loaded(RUN, "run", f"scenarios/{scenario}.toml", "--no-plot", "--out", tmp_path / "run.h5", *words)
 
 
+@pytest.mark.core
 def test_the_package_alone_loads_nothing():
     modules, _ = loaded("import sealdyn\n")
     heavy = {"numpy", "scipy", "numba", "h5py", "pydantic", "typer", "rich", "matplotlib", "xarray", "sksundae", "pint"}

@@ -52,6 +52,7 @@ def sentence(node):
     )
 
 
+@pytest.mark.core
 @pytest.mark.parametrize(
     "source",
     [

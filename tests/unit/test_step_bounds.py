@@ -193,6 +193,7 @@ def test_extremes_are_those_of_a_full_scan(seed):
     compared(steps_of(drawn(seed)))
 
 
+@pytest.mark.core
 def test_few_steps_are_scanned():
     fallen, share = compared(steps_of(fms(), turns=20))
     assert fallen < 0 and share > 0.7

@@ -80,6 +80,7 @@ def test_what_is_kept_goes_on(monkeypatch):
     assert later.worst == pytest.approx(whole.worst, rel=1e-12) and np.allclose(later.modal, whole.modal, rtol=1e-12)
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("degree", range(6))
 def test_integrals_are_exact_to_degree_five(degree):
     draw = np.random.default_rng(degree)

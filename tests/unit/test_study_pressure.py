@@ -34,6 +34,7 @@ def test_the_gap_state_may_be_written_in_any_way(at):
     assert low["theta"] == pytest.approx(1.5 * np.pi)
 
 
+@pytest.mark.core
 def test_nothing_said_is_the_aligned_equilibrium():
     found = answer()
     assert found["clearance"] == 1e-5 and found["tilt"] == 0.0 and found["gauge_force"] == found["force"]

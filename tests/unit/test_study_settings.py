@@ -100,6 +100,7 @@ def test_values_of_another_kind_are_refused(words):
     assert refused.value.key == "study.rub.values" and words in refused.value.found
 
 
+@pytest.mark.core
 def test_units_of_keys():
     units = {"rotor.runout": "rad", "film.outer_pressure": "Pa", "stator.support.axial_stiffness": "N/m"}
     assert {key: si_unit(SCENARIO.scene, key) for key in units} == units

@@ -121,6 +121,7 @@ def test_the_settled_part_comes_first_and_the_transient_by_its_name():
     assert names.index("steady state") < names.index("h_min") and "transient" not in names
 
 
+@pytest.mark.core
 def test_the_margin_ends_where_asperities_meet():
     """Linear theory of the reference seal: gap over reach at an edge; asperities of 3 rms take their height away."""
     rough = ["contact.compressive_strength='300 MPa'", "run.turns=1", "run.accuracy=1e-4", "run.start='rest'"]

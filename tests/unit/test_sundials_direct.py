@@ -57,6 +57,7 @@ def test_the_same_motion_as_through_scikit_sundae(name, method):
         assert 0.5 < counts.rhs / others.rhs < 2.0
 
 
+@pytest.mark.core
 def test_every_step_has_an_order_and_jacobians_are_counted():
     ready = prepared(fmr(), 10 * TURN, 1e-6)
     for method, highest in (("adams", 12), ("bdf", 5)):

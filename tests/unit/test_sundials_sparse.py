@@ -62,6 +62,7 @@ def test_the_same_motion_as_through_scikit_sundae(name):
         assert 0.5 < counts.rhs / others.rhs < 2.0 and 0.5 < counts.jacobians / others.jacobians < 2.0
 
 
+@pytest.mark.core
 def test_each_jacobian_costs_an_evaluation_per_unknown_of_the_rings_and_one():
     """As through scikit-sundae, where the same steps cost the same."""
     ready = on_film(fms())

@@ -193,6 +193,7 @@ def test_segments_end_where_sweeps_do_and_nowhere_between():
     )
 
 
+@pytest.mark.core
 def test_rates_are_octaves_a_minute():
     sweep = SWEEPS["octaves a minute"]
     assert span(sweep) == pytest.approx(0.4) and frequency_at(sweep, 0.01 + 0.4 / 3) == pytest.approx(60.0)
@@ -288,6 +289,7 @@ def test_runs_together_are_those_by_themselves():
     assert evaluate(scenario, fast, ["h_min.value"])["h_min.value"] != alone[1]
 
 
+@pytest.mark.core
 def test_a_swept_tone_of_constant_frequency_is_the_tone():
     """Nearly constant: the two frequencies differ by 1e-9 of themselves."""
     tone = Housing(axial=[AxialVibration(frequency=400.0, displacement=2e-7, phase=-math.pi / 2)])

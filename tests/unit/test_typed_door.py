@@ -24,6 +24,7 @@ sealdyn.run("pump.toml").plot.orbits()
 """
 
 
+@pytest.mark.core
 def test_every_public_name_is_in_the_script():
     assert set(re.findall(r"sealdyn\.(\w+)", SCRIPT.read_text())) == {*sealdyn.__all__, "__version__"}
 

@@ -185,6 +185,7 @@ def test_table_with_units_entry_by_entry():
     assert varying("1 Hz") == pytest.approx(2 * math.pi)
 
 
+@pytest.mark.core
 def test_table_is_linear_between_and_held_outside():
     table = PiecewiseLinear((1.0, 2.0, 2.0, 4.0), (10.0, 20.0, 50.0, 30.0))
     assert [table.at(t) for t in (-1, 1, 1.5, 2, 3, 4, 9)] == [10, 10, 15, 50, 40, 30, 30]

@@ -38,6 +38,7 @@ def test_a_quantity_without_quotation_marks(text, key, line, written):
     assert error.found == f"{written} without quotation marks (line {line})" and f'"{written}"' in error.expected
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("text", ["[film\nclearance = ", "[film]\nmodel = radial\n", "x = 1 = 2", "a = [1, 2\nb"])
 def test_other_slips_keep_the_words_of_the_parser(text):
     assert refusal(text).key == "" and "no TOML" in str(refusal(text))

@@ -156,6 +156,7 @@ def test_total_indicator_reading_follows_the_outer_radius():
     assert settings.with_values(read, {"film.outer_radius": 0.045}).scene.rotor.runout == 1e-5
 
 
+@pytest.mark.core
 def test_what_was_read_is_not_changed_by_what_is_made_of_it():
     read = scenario(
         text=TEXT + '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n[study.rub]\ndown = true\n'

@@ -41,6 +41,7 @@ def test_smallest_gap_of_a_bounce(method, per_turn):
     assert abs(beats - round(beats)) < 1e-4
 
 
+@pytest.mark.core
 def test_largest_and_smallest_tilt_of_free_precession():
     """Two circles, forward and backward: |g| between the sum and the difference of their radii."""
     tilt, tilt_rate = 20e-6, 5e-3

@@ -108,6 +108,7 @@ def drawn(seed, count, highest=12):
 # --- at one instant -------------------------------------------------------------------------------------
 
 
+@pytest.mark.core
 @pytest.mark.parametrize("shape", [None, SHAPE], ids=["cone", "profile"])
 @pytest.mark.parametrize("mean", [False, True], ids=["local", "mean"])
 def test_thickness_is_stator_surface_less_rotor_surface(shape, mean):

@@ -94,6 +94,7 @@ def test_masses_of_the_hats():
     assert hats.areas.sum() == pytest.approx(AREA, rel=1e-14, abs=0.0)
 
 
+@pytest.mark.core
 def test_flat_faces_wear_in_proportion_to_their_radius():
     """k p W r at every node, the ends too: no lumping of the half hats there."""
     radius = radii()

@@ -143,6 +143,7 @@ def test_a_floored_film_is_linearised_at_every_speed():
         assert found == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.core
 def test_massless_and_undamped_has_no_state_to_go_by():
     nothing = Coefficients(tilt_stiffness=1e3, tilt_damping=0.0, axial_stiffness=1e7, axial_damping=1.0)
     held = replace(SUPPORT, axial_damping=0.0)

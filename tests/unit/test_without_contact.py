@@ -14,6 +14,7 @@ CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 SEAL = '[stator.secondary_seal]\nradius = "45 mm"\nline_friction = "20 N/m"\n'
 
 
+@pytest.mark.core
 def test_tables_are_left_out_and_the_rest_stays():
     whole = parse_scenario(TEXT + CONTACT + SEAL, "x", ["contact.roughness=0.2 um", "shaft.speed=1100 rad/s"])
     film, names = without(whole, ["contact"])
