@@ -6,11 +6,13 @@ from itertools import groupby
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm, Normalize, SymLogNorm
+from matplotlib.ticker import LogLocator, MultipleLocator
 
 from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
 from ..quantities import quantity, shown_in
 from ..status import Status
+from .charts.face import annulus, in_the_middle
 from .charts.page import PAPER, absent, heading, logarithmic, look, number, power, printed, save, sheet
 from .charts.palette import (
     BLACK,
@@ -23,6 +25,7 @@ from .charts.palette import (
     LEAK,
     ORANGE,
     PALE,
+    PRESSURE,
     RING,
     STATUS,
     THEORY,
@@ -139,6 +142,8 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
         absent(ax, panel.title, panel.note or "nothing to draw")
         return
     x, y = (_Scaled(axis, _values(panel, which), written) for which, axis in (("x", panel.x), ("y", panel.y)))
+    # matplotlib's own angles.
+    x.factor = 1.0 if panel.polar else x.factor
     other = beside = None
     if panel.right:
         other = _Scaled(panel.right, _values(panel, "right"), written)
@@ -157,7 +162,9 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
     for one in panel.levels:
         _level(ax, one, x if one.upright else y)
     if panel.polar:
-        ax.set(xticks=[], yticks=[])
+        ax.set_xticks([])
+        ends = y.of([end for one in panel.series if one.kind == "map" for end in (one.y[0], one.y[-1])])
+        in_the_middle(ax, "\n".join((printed(panel.title), annulus(ax, ends.min(), ends.max()))))
     else:
         x.finish(ax, "x")
         y.finish(ax, "y")
@@ -187,7 +194,7 @@ class _Scaled:
     @property
     def label(self) -> str:
         name = self.axis.label or quantity(self.axis.quantity).name
-        return printed(", ".join(filter(None, (name.strip(), self.unit))))
+        return printed(", ".join(filter(None, (name.strip(), "degrees" if self.unit == "deg" else self.unit))))
 
     def scale(self, ax, which: str) -> None:
         if self.axis.scale == "log":
@@ -215,17 +222,13 @@ class _Scaled:
             powers = [10.0**k for k in range(last, first - 1, -step)][::-1]
             put([at for at in (*(-p for p in powers[::-1]), 0.0, *powers) if ends[0] <= at <= ends[1]])
             axis.set_major_formatter(lambda at, _: number(at) if 1e-3 <= abs(at) < 1e5 or at == 0 else _signed(at))
+        elif self.unit == "deg" and np.ptp(axis.get_view_interval()) > 180.0:
+            axis.set_major_locator(MultipleLocator(60.0 if which == "x" else 90.0))
         elif self.axis.scale == "log":
             low, high = axis.get_view_interval()
             if low > 0 and high / low > 300:
-                axis.set_major_locator(_decade_locator())
+                axis.set_major_locator(LogLocator(numticks=8))
                 axis.set_major_formatter(lambda at, _: number(at) if 1e-2 <= at < 1e4 else power(round(np.log10(at))))
-
-
-def _decade_locator():
-    from matplotlib.ticker import LogLocator
-
-    return LogLocator(numticks=8)
 
 
 def _signed(value: float) -> str:
@@ -358,7 +361,8 @@ def _colours_of(colour: Axis, values):
         return Normalize(low - room, high + room), ListedColormap(colormaps["PuOr_r"](half)), None
     if colour.scale == "log" and low > 0:
         return LogNorm(low, max(high, low * 1.001)), THICKNESS, None
-    return Normalize(low, max(high, low + 1e-9 * max(abs(high), abs(low), 1e-300))), THICKNESS, None
+    colours = PRESSURE if quantity(colour.quantity).unit == "Pa" else THICKNESS
+    return Normalize(low, max(high, low + 1e-9 * max(abs(high), abs(low), 1e-300))), colours, None
 
 
 # Words whose colours mean something.
@@ -421,6 +425,11 @@ def _title_and_legend(ax, beside, panel: Panel, width: float) -> None:
         more = beside.get_legend_handles_labels()
         handles, labels = handles + more[0], labels + more[1]
     named = {label: handle for handle, label in zip(handles, labels, strict=True) if label}
+    if panel.polar:
+        # The title stands in the middle; one above would lie on the heading.
+        if named:
+            ax.legend(named.values(), named.keys(), loc="upper center", bbox_to_anchor=(0.5, 0.44), fontsize=8)
+        return
     if not named:
         ax.set_title(printed(panel.title))
         return

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import simpson
 
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import Interface
 from ..faces.contact import contact_load
 from ..faces.film_thickness import film_thickness, h_min
@@ -22,58 +23,45 @@ from ..faces.geometry import (
     REFUSED,
 )
 from ..numerics.crossing import crossing
+from ..quantities import in_words, number, shown_in
 from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of
 from ..scene.gas import density_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Angle, Quantity, QuantityError, quoted
+from . import Info
 from .coefficients.matrices import State, gap_state
 
-WITH_WAVES = True
+INFO = Info(
+    timed=("fms_reference --at tilt=0.15mrad", 1),
+    asks="How is the film pressure spread over the face?",
+    wavy=True,
+    units={
+        "moment": "N*m", "integrated/moment": "N*m", "edges/inner": ["m", "Pa"], "edges/outer": ["m", "Pa"],
+        "centre_of_pressure": "1", "exit_mach": "1", "pressure/r": "m", "pressure/theta": "rad", "pressure/p": "Pa",
+        "beside/clearance": "m", "beside/force": "N", "beside/gauge_force": "N", "beside/leakage": "m^3/s",
+        "beside/mass_flow": "kg/s", "beside/circle_mean": "Pa",
+        **{f"profiles/{name}": "Pa" for name in ("thinnest", "thickest", "circle_mean", "width_mean", "mid_radius")},
+    },
+    along={
+        "pressure": ("r", "theta"),
+        "profiles": ("pressure/r",),
+        "profiles/width_mean": ("pressure/theta",),
+        "profiles/mid_radius": ("pressure/theta",),
+        "beside": ("clearance", "pressure/r"),
+    },
+)  # fmt: skip
 # What `at` may set.
 PLACES = {"clearance": Quantity("clearance", "m", '"10 um"', (), 0, True), "tilt": Angle.__metadata__[0]}
 # Error of the film's integrals, as a share; share of gauge force or moment by which the sums over a coarse grid err.
 EXACT, COARSE = 1e-10, 0.01
 # Of the larger edge pressure times the area: a gauge force below has no centre; of force and radius: no moment.
 NOTHING = 1e-9
-
+# Of the largest pressure: a field that differs by less around the circle is that of aligned faces.
+EVEN = 1e-9
 # What is kept of further clearances, beside their profile.
 BESIDE = ("clearance", "force", "gauge_force", "centre_of_pressure", "leakage", "mass_flow", "exit_mach")
-
-ALONG = {
-    "pressure": ("r", "theta"),
-    "profiles": ("pressure/r",),
-    "profiles/width_mean": ("pressure/theta",),
-    "profiles/mid_radius": ("pressure/theta",),
-    "beside": ("clearance", "pressure/r"),
-}
-units = {
-    "beside/clearance": "m",
-    "beside/force": "N",
-    "beside/gauge_force": "N",
-    "beside/leakage": "m^3/s",
-    "beside/mass_flow": "kg/s",
-    "moment": "N*m",
-    "integrated/moment": "N*m",
-    "pressure/r": "m",
-    "pressure/theta": "rad",
-    "pressure/p": "Pa",
-    "edges/inner": ["m", "Pa"],
-    "edges/outer": ["m", "Pa"],
-    "centre_of_pressure": "1",
-    "exit_mach": "1",
-    "beside/circle_mean": "Pa",
-    "profiles/thinnest": "Pa",
-    "profiles/thickest": "Pa",
-    "profiles/circle_mean": "Pa",
-    "profiles/width_mean": "Pa",
-    "profiles/mid_radius": "Pa",
-}
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference --at tilt=0.15mrad", 1)
 
 
 @dataclass(frozen=True)
@@ -87,17 +75,18 @@ class Settings:
     """Further clearances, "5 um, 6 um", whose profiles over the radius are drawn beside, at the same tilt."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Pressure over the film's own grid, what it sums up to, and profiles over the radius and around the circle; and
     what there is of it at further clearances."""
     place = _place(scenario.name, settings.at)
-    answer = _at(scenario, place)
-    others = [_at(scenario, {**place, "clearance": c}) for c in _clearances(scenario.name, settings.beside)]
-    answer["beside"] = [
+    numbers, message = _at(scenario, place)
+    others = [_at(scenario, {**place, "clearance": c})[0] for c in _clearances(scenario.name, settings.beside)]
+    numbers["beside"] = [
         {name: other[name] for name in BESIDE} | {"circle_mean": (other["profiles"] or {}).get("circle_mean")}
         for other in others
     ]
-    return answer
+    notes = [f"Clearance: {message}."] if message else []
+    return Answer(numbers, _found(numbers), _tables(numbers, others), _panels(numbers), notes + _limits(numbers))
 
 
 def _clearances(name: str, beside) -> list[float]:
@@ -109,8 +98,8 @@ def _clearances(name: str, beside) -> list[float]:
         raise ScenarioError(name, "study.pressure.beside", error.found, error.expected) from None
 
 
-def _at(scenario, place) -> dict:
-    """The answer at one place."""
+def _at(scenario, place) -> tuple[dict, str]:
+    """The answer at one place, and how its clearance was found, "" where it was given."""
     scene = frozen_at_start(scenario.scene, clearance=place.get("clearance"))
     try:
         interface, tilt = Interface(scene, EXACT), place.get("tilt", 0.0)
@@ -132,7 +121,7 @@ def _at(scenario, place) -> dict:
     # What leaves on the side of the low pressure.
     leakage = -s[FLOW_INNER] if interface.closing.outer_is_high else s[FLOW_OUTER]
     gauge = float(s[FORCE] - p_low * area)
-    answer = {
+    numbers = {
         "film": interface.name,
         "gas": scene.film.gas is not None,
         "clearance": float(interface.clearance),
@@ -155,8 +144,8 @@ def _at(scenario, place) -> dict:
         "integrated": None,
     }  # fmt: skip
     if any(field.name == "pressure" for field in getattr(interface.film, "FIELDS", ())):
-        answer |= _over_face(interface, s, own, answer)
-    return answer | {"verdict": _verdict(answer, "" if "clearance" in place else interface.message)}
+        numbers |= _over_face(interface, s, own, numbers)
+    return numbers, "" if "clearance" in place else interface.message
 
 
 def _place(name: str, at) -> dict[str, float]:
@@ -187,12 +176,13 @@ def _closed(interface, tilt: float) -> tuple[str, str]:
         return h_min(f, gap_state(interface, State(0.0, complex(tilt))))[0] - f[COLLAPSE]
 
     if gap(0.0) <= 0.0:
-        return f"faces that meet at a clearance of {1e6 * clearance:.4g} um", "a larger clearance"
-    found = f"faces that meet at a clearance of {1e6 * clearance:.4g} um and a tilt of {1e3 * tilt:.4g} mrad"
+        return f"faces that meet at a clearance of {in_words('clearance', clearance)}", "a larger clearance"
+    found = f"faces that meet at a clearance of {in_words('clearance', clearance)} and a tilt of "
+    found += in_words("tilt", tilt)
     # However far beyond the tilt is.
     while gap(0.5 * tilt) <= 0.0:
         tilt *= 0.5
-    return found, f"a tilt below {1e3 * abs(crossing(gap, 0.5 * tilt, tilt, 1e-9)):.4g} mrad"
+    return found, f"a tilt below {in_words('tilt', abs(crossing(gap, 0.5 * tilt, tilt, 1e-9)))}"
 
 
 def _contact_force(interface, s) -> float:
@@ -282,55 +272,39 @@ def weights(theta) -> np.ndarray:
     return 0.5 * (around[2:] - around[:-2])
 
 
-# --- in words -------------------------------------------------------------------------------------------
+# --- what is shown --------------------------------------------------------------------------------------
 
 
-def _verdict(answer, message: str) -> list[str]:
-    """Sentences on an answer; `message`: how its clearance was found, "" where it was given."""
-    where = f"{'the equilibrium of ' if message else ''}{1e6 * answer['clearance']:.5g} um"
-    where += f", tilted by {1e6 * answer['tilt']:.5g} urad" if answer["tilt"] else ", aligned"
-    x, y = answer["moment"]
-    said = [
-        f"At {where} ({answer['film']} film; thinnest {1e6 * answer['h_min']['value']:.4g} um): force "
-        f"{answer['force']:.6g} N, {answer['gauge_force']:.5g} N of it above the lower edge pressure; "
-        f"{f'moments {x:.4g} and {y:.4g} N m' if _turns(answer) else 'no moment'}; leakage "
-        f"{_flow(answer)}, {answer['mass_flow'] * 3600:.4g} kg/h.",
-    ]
-    if answer["exit_mach"] is not None:
-        choked = "choked" if answer["exit_mach"] >= 1.0 else "subsonic"
-        said.append(f"The gas leaves at a Mach number of {answer['exit_mach']:.4g} at most: {choked}.")
-    if message:
-        said.append(f"Clearance: {message}.")
-    if answer["contact_force"]:
-        said.append(f"Asperities carry {answer['contact_force']:.5g} N besides; the pressure shown is the film's.")
-    if answer["pressure"] is None:
+def _found(numbers) -> str:
+    """What the film carries, and where."""
+    where = f"At {in_words('clearance', numbers['clearance'], digits=5)}, "
+    where += f"tilted by {in_words('tilt', numbers['tilt'], digits=5)}" if numbers["tilt"] else "aligned"
+    found = f"{where}, the {numbers['film']} film carries {in_words('force', numbers['force'], digits=6)}"
+    if numbers["pressure"] is None:
+        return f"{found}."
+    low, high = (end(map(end, numbers["pressure"]["p"])) for end in (min, max))
+    ends = number(low, shown_in("pressure")[1]), in_words("pressure", high)
+    centre = numbers["centre_of_pressure"]
+    at = "" if centre is None else f", its centre {centre:.4g} of the width from the {numbers['high_pressure']} edge"
+    return f"{found} at {ends[0]} to {ends[1]}{at}."
+
+
+def _limits(numbers) -> list[str]:
+    """What the numbers do not tell of their own validity."""
+    said = []
+    if numbers["contact_force"]:
+        said.append("Asperities carry their force besides; the pressure shown is the film's.")
+    if numbers["pressure"] is None:
         said.append(
-            f"The {answer['film']} film has no pressure over the face: it implies a force and a moment that change in "
+            f"The {numbers['film']} film has no pressure over the face: it implies a force and a moment that change in "
             "proportion to the motion, and no profile; the radial and the profiled film have one."
         )
         return said
-    return [*said, *_of_the_field(answer)]
-
-
-def _flow(answer) -> str:
-    """The leakage as a volume, of a gas at normal conditions."""
-    if answer["gas"]:
-        return f"{answer['leakage'] * 6e4:.4g} l/min at 0 degC and 1.01325 bar"
-    return f"{answer['leakage'] * 3.6e9:.4g} ml/h"
-
-
-def _of_the_field(answer) -> list[str]:
-    p, centre, said = np.array(answer["pressure"]["p"]), answer["centre_of_pressure"], []
-    spread = f"Pressure {1e-5 * p.min():.5g} to {1e-5 * p.max():.5g} bar"
-    if centre is None:
-        said.append(f"{spread}; without a gauge force it has no centre.")
-    else:
-        edge = answer["high_pressure"]
-        said.append(f"{spread}; its centre lies {centre:.4g} of the width from the {edge} edge.")
+    p = np.array(numbers["pressure"]["p"])
     if p.min() < -NOTHING * p.max():
         said.append("A liquid hardly bears less than 0: film.cavitation_pressure gives the film a floor.")
-    if _is_coarse(answer):
-        force, (x, y) = answer["integrated"].values()
+    if _is_coarse(numbers):
+        force, (x, y) = numbers["integrated"].values()
         said.append(f"The grid is coarse here: the field sums up to {force:.5g} N and to {x:.4g} and {y:.4g} N m.")
     return said
 
@@ -348,19 +322,89 @@ def _is_coarse(answer) -> bool:
     return _turns(answer) and math.dist(shown, answer["moment"]) > COARSE * math.hypot(*answer["moment"])
 
 
-def tables(answer) -> list:
-    """What there is of it at every clearance, where there are more than one, and profiles over the radius."""
-    found = []
-    if answer["beside"]:
-        columns = (("clearance, um", "clearance", 1e6), ("force, N", "force"), ("gauge force, N", "gauge_force"),
-                   ("centre, share of the width", "centre_of_pressure"), ("mass flow, kg/h", "mass_flow", 3600),
-                   ("exit Mach", "exit_mach"))  # fmt: skip
-        found = [([answer, *answer["beside"]], columns)]
-    if answer["pressure"] is None:
+def _tables(numbers, others) -> list[Table]:
+    """What there is at every clearance, and profiles over the radius."""
+    flow = "leakage (0 degC, 1.01325 bar)" if numbers["gas"] else "leakage"
+    columns = [
+        ("clearance", "clearance"), ("tilt", "tilt"), ("h_min", "thinnest film"), ("force", "force"),
+        ("force", "above the lower edge pressure"), ("force", "asperities"), ("moment", "moment x"), ("moment", "y"),
+        ("leakage", flow), ("mass_flow", "mass flow"), ("1", "exit Mach"), ("share", "centre, of the width"),
+    ]  # fmt: skip
+    rows = [
+        [row["clearance"], row["tilt"] or None, row["h_min"]["value"], row["force"], row["gauge_force"],
+         row["contact_force"] or None, *(row["moment"] if _turns(row) else (None, None)), row["leakage"],
+         row["mass_flow"], row["exit_mach"], row["centre_of_pressure"]]
+        for row in [numbers, *others]
+    ]  # fmt: skip
+    found = [Table("state", columns, rows)]
+    if numbers["pressure"] is None:
         return found
-    profiles, r = answer["profiles"], answer["pressure"]["r"]
+    profiles = numbers["profiles"]
+    columns = [("radius", "radius"), ("pressure", "p where thinnest"), ("pressure", "where thickest"),
+               ("pressure", "mean of the circle")]  # fmt: skip
     names = ("thinnest", "thickest", "circle_mean")
-    rows = [{"r": r[k], **{name: profiles[name][k] for name in names}} for k in range(len(r))]
-    columns = (("radius, mm", "r", 1e3), ("p where thinnest, bar", "thinnest", 1e-5),
-               ("where thickest", "thickest", 1e-5), ("mean of the circle", "circle_mean", 1e-5))  # fmt: skip
-    return [*found, (rows, columns)]
+    if not _is_uneven(numbers):
+        columns, names = [columns[0], columns[-1]], ("circle_mean",)
+    rows = zip(numbers["pressure"]["r"], *(profiles[name] for name in names), strict=True)
+    return [*found, Table("over the radius", columns, [list(row) for row in rows])]
+
+
+def _is_uneven(numbers) -> bool:
+    """Whether the pressure differs around the circle."""
+    p = np.array(numbers["pressure"]["p"])
+    return bool(np.ptp(p, axis=1).max() > EVEN * np.abs(p).max())
+
+
+def _panels(numbers) -> list[Panel]:
+    """The face; profiles over radius and, where they differ, around the circle."""
+    if numbers["pressure"] is None:
+        return [Panel("Over the face", note=f"The {numbers['film']} film shows no pressure over the face.")]
+    field, profiles, low = numbers["pressure"], numbers["profiles"], numbers["h_min"]
+    # The circle closes.
+    around = [*field["theta"], field["theta"][0] + 2 * math.pi]
+    face = [Series("map", around, field["r"], [[*row, row[0]] for row in field["p"]])]
+    edges = [numbers["edges"][side][0] for side in ("inner", "outer")]
+    uneven = _is_uneven(numbers)
+    # Pads in a face that is otherwise even leave it no one thinnest place.
+    placed = uneven and profiles["at"]["thinnest"] != profiles["at"]["thickest"]
+    if placed:
+        face.append(Series("marks", [low["theta"]], [low["radius"]], label="thinnest film",
+                           style="contact circle open large front"))  # fmt: skip
+    panels = [Panel("Over the face", Axis("angle"), Axis("radius", low=edges[0], high=edges[1]), face, polar=True,
+                    colour=Axis("pressure", "film pressure"), wide=0.85)]  # fmt: skip
+    panels.append(_over_radius(numbers, edges, placed))
+    if uneven:
+        middle = in_words("radius", profiles["at"]["mid_radius"])
+        curves = [("width_mean", "mean of the face's width", "film thick"),
+                  ("mid_radius", f"at r = {middle}", "black dashed")]  # fmt: skip
+        series = [Series("line", around, [*profiles[name], profiles[name][0]], label=label, style=style)
+                  for name, label, style in curves]  # fmt: skip
+        levels = [Level(low["theta"], "thinnest film", upright=True, style="contact dotted", legend=True)]
+        panels.append(Panel("Around the circle", Axis("angle", "angle from the x axis", low=around[0], high=around[-1]),
+                            Axis("pressure", "film pressure"), series, levels if placed else [],
+                            below=True))  # fmt: skip
+    return panels
+
+
+def _over_radius(numbers, edges, placed: bool) -> Panel:
+    """Pressure from edge to edge, at this clearance and at the further ones."""
+    field, profiles, beside, series = numbers["pressure"], numbers["profiles"], numbers["beside"], []
+    if placed and not beside:
+        for name, style in (("thinnest", "contact"), ("thickest", "good dashed")):
+            label = f"where {name}, {in_words('angle', profiles['at'][name])}"
+            series.append(Series("line", field["r"], profiles[name], label=label, style=style))
+    label = f"at {in_words('clearance', numbers['clearance'])}, mean of the circle" if beside else "mean of the circle"
+    series.append(Series("line", field["r"], profiles["circle_mean"], label=label, style="film thick"))
+    for other in beside:
+        label = f"at {in_words('clearance', other['clearance'])}"
+        series.append(Series("line", field["r"], other["circle_mean"], label=label))
+    centre, levels = numbers["centre_of_pressure"], []
+    if centre is not None and 0 <= centre <= 1:
+        high, low = edges[::-1] if numbers["high_pressure"] == "outer" else edges
+        levels.append(
+            Level(
+                high + centre * (low - high), "centre of gauge pressure", upright=True, style="grey dotted", legend=True
+            )
+        )
+    return Panel("Over the radius", Axis("radius", low=edges[0], high=edges[1]), Axis("pressure", "film pressure"),
+                 series, levels)  # fmt: skip
