@@ -16,7 +16,6 @@ from sealdyn.studies import pressure
 from sealdyn.studies.pressure import Settings, sums
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-REFERENCE = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=radial"])
 R_I, R_O, CLEARANCE, CONING, DROP = 0.032, 0.040, 1e-5, 3.125e-3, 5e5
 AREA = np.pi * (R_O**2 - R_I**2)
 TILTED = "tilt = 0.15 mrad"
@@ -35,8 +34,9 @@ FACES = {
 }  # fmt: skip
 
 
-def answer(at="", overrides=(), scenario=REFERENCE):
+def answer(at="", overrides=(), scenario=None):
     changes = dict(word.split("=", 1) for word in overrides)
+    scenario = scenario or read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=radial"])
     return pressure.run(with_values(scenario, changes), Settings(at), None).numbers
 
 

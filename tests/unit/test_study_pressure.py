@@ -1,5 +1,6 @@
 """The study of film pressure: words for the gap state, bad ones in one line, rough faces, and its figure."""
 
+import functools
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +16,18 @@ from sealdyn.studies._runner import run_study
 from sealdyn.studies.pressure import Settings
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-REFERENCE = read_scenario(SCENARIOS / "fms_reference.toml")
 
 
-def whole(at="", scenario=REFERENCE):
-    return pressure.run(scenario, Settings(at), None)
+@functools.cache
+def reference():
+    return read_scenario(SCENARIOS / "fms_reference.toml")
 
 
-def answer(at="", scenario=REFERENCE):
+def whole(at="", scenario=None):
+    return pressure.run(scenario or reference(), Settings(at), None)
+
+
+def answer(at="", scenario=None):
     return whole(at, scenario).numbers
 
 
@@ -114,7 +119,7 @@ def series(found, title):
 
 def test_the_archive_and_what_is_drawn(tmp_path):
     flags = {"at": ["clearance=8 um", "tilt=0.15 mrad"]}
-    found = run_study("pressure", REFERENCE, tmp_path / "p.h5", flags=flags, workers=1)
+    found = run_study("pressure", reference(), tmp_path / "p.h5", flags=flags, workers=1)
     assert read_study(found["archive"])["answer"]["pressure"] == found["pressure"]
     shown = whole("clearance=8 um, tilt=0.15 mrad")
     mean = series(shown, "Over the radius")["mean of the circle"]
@@ -131,7 +136,7 @@ def test_a_film_without_a_field_says_so():
 
 
 def test_further_clearances_are_those_of_their_own():
-    shown = pressure.run(REFERENCE, Settings("clearance=8 um", ("9 um", "10um", 1.2e-5)), None)
+    shown = pressure.run(reference(), Settings("clearance=8 um", ("9 um", "10um", 1.2e-5)), None)
     found = shown.numbers
     assert [other["clearance"] for other in found["beside"]] == pytest.approx([9e-6, 1e-5, 1.2e-5])
     for other in found["beside"]:
@@ -141,4 +146,4 @@ def test_further_clearances_are_those_of_their_own():
         assert other["circle_mean"] == pytest.approx(own["profiles"]["circle_mean"])
     assert series(shown, "Over the radius")["at 12 um"].y == found["beside"][2]["circle_mean"]
     with pytest.raises(ScenarioError, match="beside: found"):
-        pressure.run(REFERENCE, Settings("", "5 bar"), None)
+        pressure.run(reference(), Settings("", "5 bar"), None)

@@ -1,6 +1,7 @@
 """Settings of a study: lists given as one flag, and errors of one line."""
 
 import dataclasses
+import functools
 import math
 from pathlib import Path
 
@@ -18,12 +19,17 @@ from sealdyn.studies.rub import study as rub
 from sealdyn.studies.sealing_number import study as sealing_number
 from sealdyn.studies.work_precision import study as work_precision
 
-SCENARIO = read_scenario(Path(__file__).parents[2] / "scenarios" / "fms_reference.toml")
+SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
+
+
+@functools.cache
+def scenario():
+    return read_scenario(SCENARIO)
 
 
 def settings(module, **flags):
     name = module.__name__.removesuffix(".study").rpartition(".")[2]
-    return study_settings(SCENARIO, name, module.Settings, flags)
+    return study_settings(scenario(), name, module.Settings, flags)
 
 
 @pytest.mark.parametrize(
@@ -90,23 +96,23 @@ def test_units_of_another_kind_are_not_converted(words):
     ],
 )
 def test_values_come_in_si(words, unit, found):
-    assert values_in_si(SCENARIO, words, unit, "study.rub.values") == pytest.approx(found, rel=1e-12)
+    assert values_in_si(scenario(), words, unit, "study.rub.values") == pytest.approx(found, rel=1e-12)
 
 
 @pytest.mark.parametrize("words", ["10 um:20 um:3", "1 bar", "3 foo", "much", "1 foo:2 foo:3", "1 rad, 2 m"])
 def test_values_of_another_kind_are_refused(words):
     with pytest.raises(ScenarioError) as refused:
-        values_in_si(SCENARIO, words, "rad", "study.rub.values")
+        values_in_si(scenario(), words, "rad", "study.rub.values")
     assert refused.value.key == "study.rub.values" and words in refused.value.found
 
 
 @pytest.mark.core
 def test_units_of_keys():
     units = {"rotor.runout": "rad", "film.outer_pressure": "Pa", "stator.support.axial_stiffness": "N/m"}
-    assert {key: si_unit(SCENARIO.scene, key) for key in units} == units
+    assert {key: si_unit(scenario().scene, key) for key in units} == units
     for key in ("rotor.runuot", "rotar.runout", "runout", "film.model.x"):
         with pytest.raises((AttributeError, KeyError)):
-            si_unit(SCENARIO.scene, key)
+            si_unit(scenario().scene, key)
 
 
 @pytest.mark.parametrize("name", study_names())

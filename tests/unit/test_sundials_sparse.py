@@ -161,7 +161,8 @@ def test_derivatives_that_fail_end_the_integration():
     segment.settle_film(0.0, y)
     begun = segment.start(0.0, y)
     segment.start = lambda tau, y: begun
-    segment.native = replace(segment.native, derivatives=failing_derivatives.address)
+    failing = cfunc(coupled_native.OF_DERIVATIVES)(failing_derivatives)
+    segment.native = replace(segment.native, derivatives=failing.address)
     with pytest.raises(SolverFailure, match="IDA_LSETUP_FAIL"):
         list(METHODS["ida"](segment, 0.0, y, "ida", 1e-6, Counts()))
 
@@ -200,7 +201,6 @@ def test_without_superlu_only_films_with_unknowns_go_through_scikit_sundae(monke
 # --- kernels ----------------------------------------------------------------------------------------
 
 
-@cfunc(coupled_native.OF_DERIVATIVES)
 def failing_derivatives(tau, alpha, y, yp, values, data):
     return coupled_native.FAILED
 

@@ -1,5 +1,6 @@
 """Quantities with units, against values worked out by hand."""
 
+import functools
 import math
 import subprocess
 import sys
@@ -237,7 +238,7 @@ WORDS |= {"mPa": "mPa", "N": "N", "um": "um", "daN": "daN", "hPa": "hPa", "mbar"
 WORDS |= {"oz": "oz", "ozf": "ozf", "slug": "slug", "tonne": "tonne", "dyn": "dyn", "torr": "torr", "mmHg": "mmHg"}
 WORDS |= {"cSt": "cSt", "atm": "atm", "kW": "kW", "cal": "cal", "ml": "ml", "thou": "thou", "degF": "degR", "kp": "kgf"}
 WORDS |= {"reyn": "psi*s", "bara": "bar", "min": "min", "K": "K"}
-SYMBOLS = pint.UnitRegistry()
+SYMBOLS = functools.cache(pint.UnitRegistry)
 
 
 @settings(deadline=None)
@@ -249,7 +250,7 @@ def test_every_spelling_is_what_pint_reads(parts, data):
         sign = data.draw(st.sampled_from("*.- ")) if n else ""
         words += sign + word + (data.draw(st.sampled_from(["^", "**", ""])) + str(power) if power > 1 else "")
     below = data.draw(st.sampled_from(["", *sorted(WORDS)]))
-    same = SYMBOLS.Quantity(1.0, "*".join(f"({WORDS[word]})**{power}" for word, power in parts))
-    same = same / SYMBOLS.Quantity(1.0, WORDS[below]) if below else same
+    same = SYMBOLS().Quantity(1.0, "*".join(f"({WORDS[word]})**{power}" for word, power in parts))
+    same = same / SYMBOLS().Quantity(1.0, WORDS[below]) if below else same
     _, factor = unit_names.dimension_and_factor(f"{words}/{below}" if below else words)
     assert float(factor) == pytest.approx(same.to_base_units().magnitude, rel=1e-9)
