@@ -1,52 +1,439 @@
-"""A seal held against design rules (rules/), all of them."""
+"""Design rules that a seal is judged by before it runs: a table, each with where it stands, its limit and the command
+that tests it in the time domain or on the film.
 
-import importlib
-from dataclasses import replace
+**Source** Hayden & Keller, Design Guide for Helicopter Transmission Seals, NASA CR-120997 (1974): experience with oil
+in gearboxes, good for a first judgement of other seals.  Limits are as printed, in SI.
+"""
 
-from ..scenario.rule_names import rule_names
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..dynamics.intervals import largest_value
+from ..numerics.piecewise_linear import initially, points
 from ..scene.application import Application
-from . import rules
+from ..scene.gas import viscosity_of
+from ..scene.waviness import HIGHEST_ORDER
+from ..simulation.result import plain
+from .seal_figures import Finding, Seal, Verdict, followability, missing, note, other_seals, resonances, within
 
 GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
+CC_PER_H = 1e-6 / 3600
+# Sliding speed (m/s) up to which other seals go; of ft/min rounded in print.
+OTHER_SEALS = {
+    "a conventional lip seal": 1220.0 / 60,
+    "a hydrodynamic lip seal": 2135.0 / 60,
+    "a circumferential seal": 4550.0 / 60,
+}
+SPRINGS = {"wave_washer": "a wave washer takes", "coil": "coil springs take", "bellows": "bellows take"}
+# Of the table's face width: how near counts as that width is not the guide's.
+NEAR = 0.1
+# Angles around the face: forty to a wave.
+ANGLES = np.linspace(0.0, 2 * np.pi, 40 * HIGHEST_ORDER + 1)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A design rule: `judge(seal, limit)` gives its `Finding`, of a figure in `unit` (SI) against the `limit` (SI: one
+    number, least and most, or a table; None: there is none); `source` is what of the guide its numbers are, `command`
+    tests it ("" if nothing does)."""
+
+    judge: Callable
+    limit: object
+    unit: str
+    source: str
+    command: str = ""
 
 
 def findings(scenario, model) -> list[dict]:
-    """What every rule says of a scenario and its `model`, one dict a rule: `rule`, `verdict` ("pass" | "fail" | "note"
+    """What every rule finds of a scenario and its `model`, one dict a rule: `rule`, `verdict` ("pass" | "fail" | "note"
     | "acknowledged" | "not applicable"), `value`, `unit`, `least` and `most` (SI, None where there are none), `guide`
     and `source` in it, `said` (a sentence), `command` that tests it ("" if none does), `reason` with which it is
     acknowledged (None without), and the rule's own numbers, `needs` among them: keys of which one is missing.
     Raises SceneError where the film has no solution."""
-    # Whoever asks for names alone does not wait for arrays.
-    from ..simulation.result import plain
-    from .rules._seal import Seal
-
-    seal = Seal(scenario.scene, scenario.application or Application(), model)
-    return [plain(_row(name, seal)) for name in rule_names()]
+    application = scenario.application or Application()
+    return rows(RULES, Seal(scenario.scene, application, model), application.acknowledge)
 
 
-def _row(name: str, seal) -> dict:
-    rule = importlib.import_module(f"{rules.__name__}.{name}")
-    reason = seal.application.acknowledge.get(name)
-    found = acknowledged(rule.finding(seal), reason)
+def rows(rules: dict[str, Rule], seal, acknowledge: dict[str, str]) -> list[dict]:
+    """`findings` by a table of rules, by name, for what they judge; `acknowledge` {rule: reason}."""
+    return [plain(_row(name, rule, rule.judge(seal, rule.limit), acknowledge.get(name)))
+            for name, rule in sorted(rules.items())]  # fmt: skip
+
+
+def _row(name: str, rule: Rule, finding: Finding, reason: str | None) -> dict:
+    if reason is not None and finding.verdict in (Verdict.FAIL, Verdict.NOTE):
+        finding = replace(finding, verdict=Verdict.ACKNOWLEDGED)
+    unit = rule.unit if finding.unit is None else finding.unit
     return {
         "rule": name,
-        "verdict": str(found.verdict),
-        "value": found.value,
-        "unit": found.unit,
-        "least": found.least,
-        "most": found.most,
+        "verdict": str(finding.verdict),
+        "value": finding.value,
+        "unit": "" if finding.value is None else unit,
+        "least": finding.least,
+        "most": finding.most,
         "guide": GUIDE,
-        "source": rule.SOURCE,
-        "said": found.said,
-        "command": rule.COMMAND,
+        "source": rule.source,
+        "said": finding.sentence,
+        "command": rule.command,
         "reason": reason,
-        **found.numbers,
+        **finding.numbers,
     }
 
 
-def acknowledged(found, reason: str | None):
-    """A rule's finding, acknowledged where the rule is broken and a `reason` is given."""
-    from .rules._finding import Verdict
+# --- faces and film --------------------------------------------------------------------------------------
 
-    broken = found.verdict in (Verdict.FAIL, Verdict.NOTE)
-    return replace(found, verdict=Verdict.ACKNOWLEDGED) if reason is not None and broken else found
+
+def _sliding_speed(seal: Seal, limit) -> Finding:
+    """Pass up to 6096 m/min; more "is possible with proper cooling": a note."""
+    speed = seal.sliding_speed
+    sentence = f"sliding speed {60 * speed:.4g} m/min at the mean diameter, face seals go up to {60 * limit:.0f} m/min"
+    if speed > limit:
+        sentence += ": more is possible with proper cooling"
+    suited = [f"{name} (up to {60 * most:.0f} m/min)" for name, most in OTHER_SEALS.items() if speed <= most]
+    if suited:
+        sentence += f"; this speed would also suit {', '.join(suited)}"
+    return within(sentence, speed, most=limit, beyond=Verdict.NOTE, also_suited=suited)
+
+
+def _runout(seal: Seal, limit) -> Finding:
+    """Pass up to the runout of its row; beyond the table's last speed no more than in its last row, and a note."""
+    runout = seal.application.shaft_runout
+    if runout is None:
+        return missing("application.shaft_runout")
+    speed = 60 * seal.sliding_speed
+    most = next((allowed for fastest, allowed in limit if speed <= fastest), None)
+    sentence = f"shaft runout {1e3 * runout:.4g} mm TIR at {speed:.4g} m/min"
+    if most is not None:
+        return within(f"{sentence}, {1e3 * most:.4g} mm allowed", runout, most=most)
+    last, most = limit[-1]
+    sentence += f", beyond the table, which ends with {1e3 * most:.4g} mm at {last:.0f} m/min"
+    if runout > most:
+        return within(sentence, runout, most=most)
+    return within(sentence, runout, most=0.0, beyond=Verdict.NOTE)
+
+
+def _misalignment(seal: Seal, limit) -> Finding:
+    """Pass up to 0.0005 rad, the largest of both rings' tilts and of the runout of the data sheet."""
+    rotor, stator = seal.scene.rotor, seal.scene.stator
+    key = "misalignment" if rotor.support else "runout"
+    tilts = {
+        f"rotor.{key}": largest_value(getattr(rotor, key)),
+        "stator.misalignment": largest_value(stator.misalignment),
+    }
+    tilts["application.face_runout"] = (seal.application.face_runout or 0.0) / seal.outer_diameter
+    worst = max(tilts, key=tilts.get)
+    if tilts[worst] == 0.0:
+        return missing(*tilts)
+    sentence = f"{worst} tilts a face by {1e6 * tilts[worst]:.4g} urad, up to {1e6 * limit:.0f} urad are usual"
+    return within(sentence, tilts[worst], most=limit)
+
+
+def _face_width(seal: Seal, limit) -> Finding:
+    """Pass within a tenth of the table's width, linear between its bores; else a note, for it is a width to begin with
+    and no limit.  Beyond the table a note."""
+    bore, width = seal.application.bore, seal.face_width
+    if bore is None:
+        return missing("application.bore")
+    bores, widths = limit
+    sentence = f"face {1e3 * width:.4g} mm wide at a bore of {1e3 * bore:.4g} mm"
+    if not bores[0] <= bore <= bores[-1]:
+        sentence += f", beyond the table ({1e3 * bores[0]:g} to {1e3 * bores[-1]:g} mm)"
+        return note(sentence, width, usual=None)
+    usual = float(np.interp(bore, bores, widths))
+    sentence += f"; {1e3 * usual:.4g} mm is usual"
+    if width > (1 + NEAR) * usual:
+        sentence += ": a wider face makes more heat"
+    return within(sentence, width, (1 - NEAR) * usual, (1 + NEAR) * usual, beyond=Verdict.NOTE, usual=usual)
+
+
+def _flatness(seal: Seal, limit) -> Finding:
+    """Pass up to 0.88 um on either face, as it was made."""
+    heights = {"stator": _height(seal.scene.stator), "rotor": _height(seal.scene.rotor)}
+    worst = max(heights, key=heights.get)
+    if heights[worst] == 0.0:
+        return missing("stator.waviness", "rotor.waviness")
+    sentence = f"the {worst}'s face is wavy by {1e6 * heights[worst]:.4g} um, faces are flat within {1e6 * limit:g} um"
+    return within(sentence, heights[worst], most=limit)
+
+
+def _height(ring) -> float:
+    """From trough to crest (m)."""
+    waves = (wave.amplitude * np.cos(wave.order * ANGLES + wave.phase) for wave in ring.waviness)
+    return float(np.ptp(sum(waves, np.zeros_like(ANGLES))))
+
+
+def _finish(seal: Seal, limit) -> Finding:
+    """Pass up to 0.14 um: two faces of 0.1 um have sqrt(2) times as much together.  The scene's roughness is an rms
+    one; a guide that averages reads some tenths less."""
+    if seal.scene.contact is None:
+        return missing("contact.roughness")
+    roughness, most = seal.scene.contact.roughness, math.sqrt(2) * limit
+    sentence = f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um"
+    return within(sentence, roughness, most=most)
+
+
+def _film_thickness(seal: Seal, limit) -> Finding:
+    """Pass from 1.25 to 2.5 um at the mean radius of the aligned faces; else a note: typical is no limit."""
+    film = seal.film_thickness
+    sentence = f"film {1e6 * film:.4g} um at the mean radius, typical are {1e6 * limit[0]:g} to {1e6 * limit[1]:g} um"
+    return within(sentence, film, *limit, beyond=Verdict.NOTE)
+
+
+def _leakage(seal: Seal, limit) -> Finding:
+    """Pass up to the goal, a note up to the limit of the data sheet (5 cc/h without one)."""
+    if seal.scene.film.gas is not None:
+        return other_seals("the film is a gas")
+    film, own = seal.scene.film, seal.application.leakage_limit
+    if initially(film.outer_pressure) == initially(film.inner_pressure):
+        return missing("film.outer_pressure", "film.inner_pressure")
+    goal, most = limit
+    leakage, most = seal.leakage, most if own is None else own
+    goal = min(goal, most)
+    whose = "the guide's" if own is None else "this seal's"
+    sentence = (
+        f"aligned faces leak {leakage / CC_PER_H:.4g} cc/h at the start, {whose} limit is {most / CC_PER_H:.4g} cc/h, "
+        f"the goal {goal / CC_PER_H:.4g} cc/h"
+    )
+    if leakage > most:
+        return within(sentence, leakage, most=most)
+    return within(sentence, leakage, most=goal, beyond=Verdict.NOTE)
+
+
+def _lubricant_side(seal: Seal, limit) -> Finding:
+    """Pass at the outer diameter, where it is thrown back into the seal; at the inner one the faces may starve: a
+    note."""
+    film = seal.scene.film
+    if film.gas is not None:
+        return other_seals("the film is a gas")
+    rise = initially(film.outer_pressure) - initially(film.inner_pressure)
+    if rise == 0.0:
+        return missing("film.outer_pressure", "film.inner_pressure")
+    if rise > limit:
+        sentence = "sealed at the outer diameter: the centrifugal force keeps the lubricant there"
+    else:
+        sentence = (
+            "sealed at the inner diameter: the centrifugal force throws the lubricant through the film, it may starve"
+        )
+    return within(sentence, rise, least=limit, beyond=Verdict.NOTE)
+
+
+def _heat(seal: Seal, limit) -> Finding:
+    """Watts at the highest sliding speed, of the film at the start, and of faces that carry the closing force above the
+    lower pressure: a note; fail if the film makes more than the faces do dry, and so spares them nothing.  What the
+    asperities make besides is in the sentence."""
+    speed, film = seal.sliding_speed, seal.film_thickness
+    if film <= 0.0:
+        # Rough faces may carry a cone that closes their mean planes.
+        return other_seals(f"the mean film is {1e6 * film:.4g} um: the asperities carry the faces")
+    full = initially(viscosity_of(seal.scene.film)) * seal.face_area * speed**2 / film
+    dry = [f * seal.face_load * speed for f in limit]
+    rough = seal.asperity_heat
+    sentence = f"heat {full:.4g} W of a full film of {1e6 * film:.4g} um"
+    sentence += f" and {rough:.4g} W of the asperities that touch," if rough > 0.0 else ""
+    sentence += f" at {60 * speed:.4g} m/min; faces that run dry would make {dry[0]:.4g} to {dry[1]:.4g} W"
+    if full > dry[1] > 0.0:
+        sentence += f": more than without it, {1e-4 * full / seal.face_area:.4g} W/cm^2 of face"
+        return within(sentence, full, most=dry[1], dry=dry, asperities=rough)
+    return note(sentence, full, dry=dry, asperities=rough)
+
+
+def _pressure_velocity(seal: Seal, limit) -> Finding:
+    """A note: closing force above the lower pressure, over the face, times the highest sliding speed."""
+    pv = seal.face_load / seal.face_area * seal.sliding_speed
+    sentence = (
+        f"PV {pv / 1e6:.4g} MPa m/s, if the faces carried all of the closing force: to be held against the limit of "
+        "their materials"
+    )
+    return note(sentence, pv)
+
+
+# --- closing force and springs ---------------------------------------------------------------------------
+
+
+def _face_pressure(seal: Seal, limit) -> Finding:
+    """Pass from 6.89 to 20.7 N/cm^2, spring force over the whole face."""
+    if seal.spring_force is None:
+        return missing("closing.spring_force")
+    (least, most), pressure = limit, seal.spring_force / seal.face_area
+    sentence = f"the spring presses the faces with {pressure / 1e4:.4g} N/cm^2"
+    sentence += f", usual are {least / 1e4:g} to {most / 1e4:g}"
+    return within(sentence, pressure, least, most)
+
+
+def _balance(seal: Seal, limit) -> Finding:
+    """Pass up to 68.9 N/cm^2 with a balance (closing area over face area) of 1 or more, 689 N/cm^2 below."""
+    pressure, balance = seal.sealed_pressure, seal.model.closing.balance_ratio
+    if pressure == 0.0:
+        return missing("film.outer_pressure", "film.inner_pressure", "application.highest_pressure")
+    most, kind = (limit[0], "unbalanced") if balance >= 1.0 else (limit[1], "balanced")
+    why = "" if seal.scene.closing.balance_ratio is not None else ", as the clearance asks for"
+    sentence = (
+        f"{pressure / 1e4:.4g} N/cm^2 sealed by a seal of balance {balance:.4g}{why}; {kind} seals take up to "
+        f"{most / 1e4:.4g} N/cm^2"
+    )
+    return within(sentence, pressure, most=most, balance=balance)
+
+
+def _hang_up(seal: Seal, limit) -> Finding:
+    """Pass if the spring beats what the ring needs to follow the rotor."""
+    scene = seal.scene
+    if scene.rotor.support or not scene.stator.support:
+        return other_seals("the rotor floats, which carries its axial runout itself")
+    if not scene.rotor.axial_runout:
+        return missing("rotor.axial_runout")
+    if scene.closing.spring_force is None:
+        return missing("closing.spring_force")
+    balance = followability(seal.model)
+    numbers = {key: balance[key] for key in ("ring", "available", "needed", "friction", "inertia", "holds")}
+    # To be equal is not enough.
+    least = math.nextafter(balance["needed"], math.inf)
+    return within(balance["sentence"], balance["available"], least=least, **numbers)
+
+
+def _axial_travel(seal: Seal, limit) -> Finding:
+    """Pass up to 0.76 mm with a wave washer, 1.27 mm with coil springs or bellows; without a kind of spring what all of
+    them take passes and what none of them does fails."""
+    travel, kind = seal.application.axial_displacement, seal.application.spring
+    if travel is None:
+        return missing("application.axial_displacement")
+    sentence = f"axial travel {1e3 * travel:.4g} mm"
+    least_of_all, most_of_all = min(limit.values()), max(limit.values())
+    if kind is None and least_of_all < travel <= most_of_all:
+        return missing("application.spring")
+    if kind is None:
+        most, words = least_of_all if travel <= least_of_all else most_of_all, "springs take"
+    else:
+        most, words = limit[kind], SPRINGS[kind]
+    sentence += f", {words} up to {1e3 * most:.4g} mm"
+    if travel > most_of_all:
+        sentence += ": beyond it a seal that rides on the shaft"
+    return within(sentence, travel, most=most)
+
+
+def _shaft_resonance(seal: Seal, limit) -> Finding:
+    """Fail if a ring on its springs has a resonance at a speed of the shaft, of the scene or in service, or at one of
+    the stator's carrier, where that turns."""
+    bands = [tuple(speed / (2 * math.pi) for speed in seal.shaft_speeds)]
+    if bands[0][1] == 0.0:
+        return missing("shaft.speed", "application.highest_speed")
+    turning = [abs(speed) / (2 * math.pi) for speed in points(seal.scene.stator.speed)]
+    if any(turning):
+        bands.append((min(turning), max(turning)))
+        return resonances(seal.scene, bands, "rotation of the shaft or of the stator's carrier")
+    return resonances(seal.scene, bands, "the shaft")
+
+
+def _gear_resonance(seal: Seal, limit) -> Finding:
+    """Fail if a ring on its springs has a resonance at a gear mesh frequency, at a tone of the housing or in a band of
+    its random vibration or of a sweep."""
+    housing = seal.scene.housing
+    tones = [tone.frequency for tone in (*housing.axial, *housing.angular)]
+    tones += seal.application.gear_mesh_frequency or ()
+    bands = [(tone, tone) for tone in tones]
+    bands += [(r.frequency[0], r.frequency[-1]) for r in (*housing.axial_random, *housing.angular_random)]
+    bands += [(min(sweep.frequency), max(sweep.frequency)) for sweep in housing.sweeps]
+    if not bands:
+        return missing("application.gear_mesh_frequency", "housing.axial")
+    return resonances(seal.scene, bands, "what surrounds it")
+
+
+# --- temperature and life --------------------------------------------------------------------------------
+
+
+def _seal_temperature(seal: Seal, limit) -> Finding:
+    """Pass up to the material's temperature; a note where the guide's own numbers leave it open."""
+    material, temperature = seal.application.secondary_seal_material, seal.highest_temperature
+    if material is None:
+        return missing("application.secondary_seal_material")
+    if material not in limit:
+        return other_seals("the rule knows nitrile and fluoroelastomer")
+    if temperature is None:
+        return missing("application.highest_temperature")
+    sure, most = limit[material]
+    sentence = f"{temperature:.4g} K at a secondary seal of {material}, good to {sure:g} K"
+    if most > sure:
+        sentence += f", at most {most:g} K"
+    if sure < temperature <= most:
+        return within(sentence, temperature, most=sure, beyond=Verdict.NOTE)
+    return within(sentence, temperature, most=most)
+
+
+def _coking(seal: Seal, limit) -> Finding:
+    """Pass up to 505 K."""
+    if seal.scene.film.gas is not None:
+        return other_seals("the film is a gas")
+    temperature = seal.highest_temperature
+    if temperature is None:
+        return missing("application.highest_temperature")
+    return within(f"{temperature:.4g} K, lubricants coke near {limit:g} K", temperature, most=limit)
+
+
+def _life(seal: Seal, limit) -> Finding:
+    """Pass up to 1500 h, what seals were asked for; more is a note."""
+    life = seal.application.life
+    if life is None:
+        return missing("application.life")
+    sentence = f"asked for {life / 3600:.4g} h between overhauls, seals of the guide for {limit / 3600:g} h"
+    return within(sentence, life, most=limit, beyond=Verdict.NOTE)
+
+
+RUN, LOAD_SUPPORT, WEAR = "sealdyn run FILE", "sealdyn study load-support FILE", "sealdyn study wear FILE"
+EQUILIBRIUM = "sealdyn study equilibrium FILE"
+RULES = {
+    "axial_travel": Rule(
+        _axial_travel, {"wave_washer": 0.76e-3, "coil": 1.27e-3, "bellows": 1.27e-3}, "m", "axial displacement"
+    ),
+    # Sealed pressure with a closing area not less than the face, and with less.
+    "balance": Rule(
+        _balance, (68.9e4, 689e4), "Pa",
+        "100 psi unbalanced; the guide prints the balance, a pure number, once in N/m^2", EQUILIBRIUM,
+    ),
+    "coking": Rule(_coking, 505.0, "K", "lubricants coke near 505 K"),
+    "face_pressure": Rule(
+        _face_pressure, (6.89e4, 20.7e4), "Pa",
+        "10 to 30 psi; section 2.2.4.3 prints 5.89 to 26.5 N/cm^2 for it, a misprint", EQUILIBRIUM,
+    ),
+    # Bores and widths.
+    "face_width": Rule(
+        _face_width, ((25.4e-3, 50.8e-3, 76.2e-3, 101.6e-3), (1.58e-3, 1.58e-3, 1.98e-3, 2.39e-3)), "m", "table 2.7",
+        LOAD_SUPPORT,
+    ),
+    "film_thickness": Rule(_film_thickness, (1.25e-6, 2.5e-6), "m", "typical film", RUN),
+    # Of each face.
+    "finish": Rule(_finish, 0.1e-6, "m", "finish of the faces about 0.1 um", LOAD_SUPPORT),
+    "flatness": Rule(_flatness, 0.88e-6, "m", "three helium light bands", LOAD_SUPPORT),
+    "gear_resonance": Rule(
+        _gear_resonance, None, "Hz", "gear mesh up to 5400 Hz, 45 g", "sealdyn study vibration FILE"
+    ),
+    "hang_up": Rule(_hang_up, None, "N", "spring load against friction and inertia", RUN),
+    # Friction coefficients of dry faces.
+    "heat": Rule(
+        _heat, (0.1, 0.25), "W", "full film mu A (w D/2)^2/h, dry pi f F D N, carbon-graphite f 0.1 to 0.25", RUN
+    ),
+    # Goal and limit.
+    "leakage": Rule(_leakage, (1 * CC_PER_H, 5 * CC_PER_H), "m^3/s", "limit 5 cc/h, goal 1 cc/h", RUN),
+    "life": Rule(_life, 1500 * 3600.0, "s", "1500 h between overhauls", WEAR),
+    "lubricant_side": Rule(
+        _lubricant_side, 0.0, "Pa", "lubricant on the outer diameter", "sealdyn run FILE --set film.inertia=true"
+    ),
+    "misalignment": Rule(
+        _misalignment, 0.0005, "rad", '0.0005 in/in of diameter; the metric twin ".0127 m/mm" is a misprint',
+        "sealdyn study contact-onset FILE",
+    ),
+    "pressure_velocity": Rule(
+        _pressure_velocity, None, "Pa m/s", "no limit of materials is taken from the guide", WEAR
+    ),
+    # Up to a sliding speed (m/min), total indicator reading (m).
+    "runout": Rule(_runout, ((1522.0, 0.508e-3), (3044.0, 0.38e-3), (6090.0, 0.254e-3)), "m", "table 3.8"),
+    # No doubt below the first, not beyond the second.
+    "seal_temperature": Rule(
+        _seal_temperature, {"nitrile": (380.0, 380.0), "fluoroelastomer": (450.0, 477.0)}, "K",
+        "nitrile 380 K, fluoroelastomer 450 to 477 K",
+    ),
+    "shaft_resonance": Rule(_shaft_resonance, None, "Hz", "rotation 3 to 350 Hz", "sealdyn study campbell FILE"),
+    # 20 000 ft/min.
+    "sliding_speed": Rule(_sliding_speed, 6096.0 / 60, "m/s", "tables 3.1 to 3.4 for the other seals"),
+}  # fmt: skip

@@ -1,15 +1,14 @@
-"""A radial seal held against the design guide's tables for lip and circumferential seals: experience, not mechanics."""
+"""A radial seal against the design guide's tables for lip and circumferential seals: experience, not mechanics."""
 
 import math
-from functools import partial
 
 import numpy as np
 
 from ..dynamics.intervals import largest_value
 from ..radial_seals.followers import followers_of
 from ..scene.application import RadialApplication
-from .design_rules import GUIDE, acknowledged
-from .rules._finding import Verdict, other_seals, within
+from .design_rules import Rule, rows
+from .seal_figures import Finding, Verdict, other_seals, within
 
 FOOT_PER_MINUTE, PSI = 0.3048 / 60.0, 6894.757
 # Table 3.2: total eccentricity (m) of lip seals without pressure, and the speed (m/s) that it allows.
@@ -21,8 +20,6 @@ LIP_PRESSURE_SPEED = np.array([3000.0, 2000.0, 1500.0]) * FOOT_PER_MINUTE
 # Table 3.3: the same of hydrodynamic lips, and the eccentricity (m) below which they work.
 RIBBED_PRESSURE, RIBBED_SPEED = np.array([6.89e3, 20.6e3, 34.4e3]), np.array([1830.0, 1220.0, 610.0]) / 60.0
 RIBBED_ECCENTRICITY = 0.127e-3
-# Load (N/m) of conventional and of hydrodynamic lips.
-LIP_LOAD, RIBBED_LOAD = (87.5, 123.0), (52.5, 70.0)
 # Table 3.4: runout (m, total indicator reading) of circumferential seals without pressure, and the speed (m/s) that it
 # allows, in the only order that falls: the rows of the scan are shuffled; 1830 m/min is 6000 ft/min.
 SEGMENT_RUNOUT = np.array([0.0254e-3, 0.127e-3, 0.254e-3, 0.381e-3, 0.508e-3])
@@ -30,19 +27,10 @@ SEGMENT_SPEED = np.array([4550.0, 3660.0, 2440.0, 1830.0, 1220.0]) / 60.0
 
 
 def findings(scenario) -> list[dict]:
-    """What every rule says of the scenario of a radial seal: dicts as design_rules.findings."""
+    """What every rule finds of the scenario of a radial seal: dicts as design_rules.findings."""
     scene, application = scenario.scene, scenario.application or RadialApplication()
     rules = CIRCUMFERENTIAL if scene.circumferential else RIBBED_LIP if application.hydrodynamic_lip else LIP
-    return [_row(name, *about, scene, application.acknowledge.get(name)) for name, about in rules.items()]
-
-
-def _row(name, source, command, rule, scene, reason) -> dict:
-    found = acknowledged(rule(scene), reason)
-    return {
-        "rule": name, "verdict": str(found.verdict), "value": found.value, "unit": found.unit, "least": found.least,
-        "most": found.most, "guide": GUIDE, "source": source, "said": found.said, "command": command, "reason": reason,
-        **found.numbers,
-    }  # fmt: skip
+    return rows(rules, scene, application.acknowledge)
 
 
 def surface_speed(scene) -> float:
@@ -50,101 +38,109 @@ def surface_speed(scene) -> float:
     return largest_value(scene.shaft.speed) * scene.shaft.radius
 
 
-def _lip_speed(scene):
-    shaft, speed = scene.shaft, surface_speed(scene)
-    total = shaft.eccentricity + shaft.offset
+def _lip_speed(scene, limit) -> Finding:
+    eccentricities, speeds = limit
+    total, speed = scene.shaft.eccentricity + scene.shaft.offset, surface_speed(scene)
     # Beyond the table its last speed stands: nothing is extrapolated.
-    allowed = float(np.interp(total, LIP_ECCENTRICITY[::-1], LIP_SPEED[::-1]))
-    said = (f"{60 * speed:.4g} m/min with {1e3 * total:.3g} mm of offset and eccentricity; experience allows "
-            f"{60 * allowed:.4g} m/min")  # fmt: skip
-    if total > LIP_ECCENTRICITY[0]:
-        said += f"; the table ends at {1e3 * LIP_ECCENTRICITY[0]:.3g} mm"
-        return within(said, speed, "m/s", most=0.0)
-    return within(said, speed, "m/s", most=allowed)
+    allowed = float(np.interp(total, eccentricities[::-1], speeds[::-1]))
+    sentence = f"{60 * speed:.4g} m/min with {1e3 * total:.3g} mm of offset and eccentricity"
+    sentence += f"; experience allows {60 * allowed:.4g} m/min"
+    if total > eccentricities[0]:
+        return within(f"{sentence}; the table ends at {1e3 * eccentricities[0]:.3g} mm", speed, most=0.0)
+    return within(sentence, speed, most=allowed)
 
 
-def _lip_eccentricity(scene):
+def _lip_eccentricity(scene, limit) -> Finding:
     total = scene.shaft.eccentricity + scene.shaft.offset
-    said = f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * RIBBED_ECCENTRICITY:.3g} mm"
-    return within(said, total, "m", most=RIBBED_ECCENTRICITY)
+    return within(f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * limit:.3g} mm", total, most=limit)
 
 
-def _lip_load(limits, scene):
+def _lip_load(scene, limit) -> Finding:
+    load = _preload(scene)
+    sentence = f"the lip presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
+    return within(sentence, load, *limit, beyond=Verdict.NOTE)
+
+
+def _preload(scene) -> float:
+    """Radial preload (N/m) along the circumference."""
     followers = followers_of(scene)
-    load = followers.preload / followers.arc
-    said = f"the lip presses with {load:.4g} N/m, usual are {limits[0]:g} to {limits[1]:g}"
-    return within(said, load, "N/m", *limits, beyond=Verdict.NOTE)
+    return followers.preload / followers.arc
 
 
-def _lip_pressure(pressures, speeds, scene):
+def _lip_pressure(scene, limit) -> Finding:
+    pressures, speeds = limit
     pressure, speed = scene.lip.pressure_difference, surface_speed(scene)
     allowed = float(np.interp(pressure, pressures, speeds))
-    said = f"{60 * speed:.4g} m/min at {1e-5 * pressure:.3g} bar; experience allows {60 * allowed:.4g} m/min"
     if pressure > pressures[-1]:
-        return within(f"{1e-5 * pressure:.3g} bar; the table ends at 5 psi, 0.345 bar", pressure, "Pa",
-                      most=float(pressures[-1]))  # fmt: skip
-    return within(said, speed, "m/s", most=allowed)
+        sentence = f"{1e-5 * pressure:.3g} bar; the table ends at 5 psi, 0.345 bar"
+        return within(sentence, pressure, most=float(pressures[-1]), unit="Pa")
+    sentence = f"{60 * speed:.4g} m/min at {1e-5 * pressure:.3g} bar; experience allows {60 * allowed:.4g} m/min"
+    return within(sentence, speed, most=allowed)
 
 
-def _segment_speed(scene):
+def _segment_speed(scene, limit) -> Finding:
+    runouts, speeds = limit
     runout, speed = 2.0 * scene.shaft.eccentricity, surface_speed(scene)
-    allowed = float(np.interp(runout, SEGMENT_RUNOUT, SEGMENT_SPEED))
-    said = f"{60 * speed:.4g} m/min with {1e3 * runout:.3g} mm TIR; experience allows {60 * allowed:.4g} m/min"
-    if runout > SEGMENT_RUNOUT[-1]:
-        return within(said + "; the table ends at 0.508 mm", runout, "m", most=float(SEGMENT_RUNOUT[-1]))
-    return within(said, speed, "m/s", most=allowed)
+    allowed = float(np.interp(runout, runouts, speeds))
+    sentence = f"{60 * speed:.4g} m/min with {1e3 * runout:.3g} mm TIR; experience allows {60 * allowed:.4g} m/min"
+    if runout > runouts[-1]:
+        return within(sentence + "; the table ends at 0.508 mm", runout, most=float(runouts[-1]), unit="m")
+    return within(sentence, speed, most=allowed)
 
 
-def _segment_runout(scene):
-    runout, most = 2.0 * scene.shaft.eccentricity, 0.0005 * 2.0 * scene.shaft.radius
-    said = f"{1e3 * runout:.3g} mm TIR, 0.0005 of the diameter are {1e3 * most:.3g} mm"
-    return within(said, runout, "m", most=most, beyond=Verdict.NOTE)
+def _segment_runout(scene, limit) -> Finding:
+    runout, most = 2.0 * scene.shaft.eccentricity, limit * 2.0 * scene.shaft.radius
+    sentence = f"{1e3 * runout:.3g} mm TIR, {limit:g} of the diameter are {1e3 * most:.3g} mm"
+    return within(sentence, runout, most=most, beyond=Verdict.NOTE)
 
 
-def _garter_load(scene):
-    followers = followers_of(scene)
-    load = followers.preload / followers.arc
-    return within(f"the garter spring presses with {load:.4g} N/m, usual are 17.5 to 35", load, "N/m", least=17.5,
-                  most=35.0, beyond=Verdict.NOTE)  # fmt: skip
+def _garter_load(scene, limit) -> Finding:
+    load = _preload(scene)
+    sentence = f"the garter spring presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
+    return within(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
-def _axial_load(scene):
+def _axial_load(scene, limit) -> Finding:
     load = scene.circumferential.axial_force / (2.0 * math.pi * scene.shaft.radius)
-    return within(f"axial springs press with {load:.4g} N/m, usual are about 70 (here 50 to 90)", load, "N/m",
-                  least=50.0, most=90.0, beyond=Verdict.NOTE)  # fmt: skip
+    sentence = f"axial springs press with {load:.4g} N/m, usual are about 70 (here {limit[0]:g} to {limit[1]:g})"
+    return within(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
-def _segment_pressure(scene):
+def _segment_pressure(scene, limit) -> Finding:
     pressure = scene.circumferential.pressure_difference
-    return within(f"{1e-4 * pressure:.3g} N/cm^2, below 0.689 (1 psi)", pressure, "Pa", most=6890.0)
+    return within(f"{1e-4 * pressure:.3g} N/cm^2, below {1e-4 * limit:.3g} (1 psi)", pressure, most=limit)
 
 
-def _hang_up(scene):
+def _hang_up(scene, limit) -> Finding:
     followers = followers_of(scene)
-    said = (f"the garter spring presses a segment with {followers.preload:.3g} N, its flange holds it with up to "
-            f"{followers.friction:.3g} N")  # fmt: skip
-    return within(said, followers.friction, "N", most=followers.preload * (1.0 - 1e-12))
+    sentence = f"the garter spring presses a segment with {followers.preload:.3g} N"
+    sentence += f", its flange holds it with up to {followers.friction:.3g} N"
+    # To be equal is not enough.
+    return within(sentence, followers.friction, most=followers.preload * (1.0 - 1e-12))
+
+
+def _other_lips(sentence: str):
+    return lambda scene, limit: other_seals(sentence)
 
 
 FOLLOW = "sealdyn study followability FILE"
-# Rule: where it stands in the guide, the command that tests it, and the rule.
 LIP = {
-    "lip_eccentricity": ("table 3.3", FOLLOW, lambda scene: other_seals("table 3.3 is of hydrodynamic lips")),
-    "lip_load": ("lip load of conventional lips", FOLLOW, partial(_lip_load, LIP_LOAD)),
-    "lip_pressure": ("table 3.1", "", partial(_lip_pressure, LIP_PRESSURE, LIP_PRESSURE_SPEED)),
-    "lip_speed": ("table 3.2", FOLLOW, _lip_speed),
+    "lip_eccentricity": Rule(_other_lips("table 3.3 is of hydrodynamic lips"), None, "m", "table 3.3", FOLLOW),
+    "lip_load": Rule(_lip_load, (87.5, 123.0), "N/m", "lip load of conventional lips", FOLLOW),
+    "lip_pressure": Rule(_lip_pressure, (LIP_PRESSURE, LIP_PRESSURE_SPEED), "m/s", "table 3.1"),
+    "lip_speed": Rule(_lip_speed, (LIP_ECCENTRICITY, LIP_SPEED), "m/s", "table 3.2", FOLLOW),
 }
 RIBBED_LIP = {
-    "lip_eccentricity": ("table 3.3", FOLLOW, _lip_eccentricity),
-    "lip_load": ("lip load of hydrodynamic lips", FOLLOW, partial(_lip_load, RIBBED_LOAD)),
-    "lip_pressure": ("table 3.3", "", partial(_lip_pressure, RIBBED_PRESSURE, RIBBED_SPEED)),
-    "lip_speed": ("table 3.2", FOLLOW, lambda scene: other_seals("table 3.2 is of conventional lips")),
+    "lip_eccentricity": Rule(_lip_eccentricity, RIBBED_ECCENTRICITY, "m", "table 3.3", FOLLOW),
+    "lip_load": Rule(_lip_load, (52.5, 70.0), "N/m", "lip load of hydrodynamic lips", FOLLOW),
+    "lip_pressure": Rule(_lip_pressure, (RIBBED_PRESSURE, RIBBED_SPEED), "m/s", "table 3.3"),
+    "lip_speed": Rule(_other_lips("table 3.2 is of conventional lips"), None, "m/s", "table 3.2", FOLLOW),
 }
 CIRCUMFERENTIAL = {
-    "axial_load": ("axial load about 70 N/m", FOLLOW, _axial_load),
-    "garter_load": ("radial garter load 17.5 to 35 N/m", FOLLOW, _garter_load),
-    "hang_up": ("friction on the case flange", "sealdyn run FILE", _hang_up),
-    "segment_pressure": ("below 0.689 N/cm^2", "", _segment_pressure),
-    "segment_runout": ("shaft runout below 0.0005 of the diameter", FOLLOW, _segment_runout),
-    "segment_speed": ("table 3.4", FOLLOW, _segment_speed),
+    "axial_load": Rule(_axial_load, (50.0, 90.0), "N/m", "axial load about 70 N/m", FOLLOW),
+    "garter_load": Rule(_garter_load, (17.5, 35.0), "N/m", "radial garter load 17.5 to 35 N/m", FOLLOW),
+    "hang_up": Rule(_hang_up, None, "N", "friction on the case flange", "sealdyn run FILE"),
+    "segment_pressure": Rule(_segment_pressure, 6890.0, "Pa", "below 0.689 N/cm^2"),
+    "segment_runout": Rule(_segment_runout, 0.0005, "m", "shaft runout below 0.0005 of the diameter", FOLLOW),
+    "segment_speed": Rule(_segment_speed, (SEGMENT_RUNOUT, SEGMENT_SPEED), "m/s", "table 3.4", FOLLOW),
 }

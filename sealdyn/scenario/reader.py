@@ -30,8 +30,7 @@ from .diameters import radius_key, with_radii
 from .errors import ScenarioError, explained, tables, together, without_indices
 from .motion_files import with_columns
 from .overrides import override_key, without_arrays
-from .rule_names import RADIAL as RADIAL_RULES
-from .rule_names import unknown_rules
+from .rule_names import CIRCUMFERENTIAL, LIP, unknown_rules
 from .unquoted import unquoted_quantity
 from .version import SCHEMA, refuse_newer
 
@@ -320,8 +319,7 @@ def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> d
     if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
         wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
     if file.application is not None:
-        known = RADIAL_RULES["lip" if file.lip else "circumferential"]
-        unknown = unknown_rules(file.application.acknowledge, known)
+        unknown = unknown_rules(file.application.acknowledge, LIP if file.lip else CIRCUMFERENTIAL)
         wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
     if wrong:
         raise together(wrong)

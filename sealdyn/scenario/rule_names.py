@@ -1,37 +1,18 @@
-"""Names of the design rules that a scenario may acknowledge: those of the files in analysis/rules, none of which is
-read for that."""
-
-import pkgutil
-from pathlib import Path
+"""Names of the design rules that a scenario may acknowledge (analysis/design_rules.py, radial_rules.py)."""
 
 from .errors import nearest_of
 
-FOLDER = Path(__file__).parents[1] / "analysis" / "rules"
+FACE = (
+    "axial_travel", "balance", "coking", "face_pressure", "face_width", "film_thickness", "finish", "flatness",
+    "gear_resonance", "hang_up", "heat", "leakage", "life", "lubricant_side", "misalignment", "pressure_velocity",
+    "runout", "seal_temperature", "shaft_resonance", "sliding_speed",
+)  # fmt: skip
+LIP = ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed")
+CIRCUMFERENTIAL = ("axial_load", "garter_load", "hang_up", "segment_pressure", "segment_runout", "segment_speed")
 
 
-# Those of radial seals (analysis/radial_rules.py).
-RADIAL = {
-    "lip": ("lip_eccentricity", "lip_load", "lip_pressure", "lip_speed"),
-    "circumferential": (
-        "axial_load",
-        "garter_load",
-        "hang_up",
-        "segment_pressure",
-        "segment_runout",
-        "segment_speed",
-    ),
-}
-
-
-def rule_names() -> list[str]:
-    """Names of the rules there are."""
-    return sorted(m.name for m in pkgutil.iter_modules([str(FOLDER)]) if m.name[0] != "_")
-
-
-def unknown_rules(acknowledged, known=None) -> list[tuple[str, str, str]]:
-    """What is wrong with the names of rules that are acknowledged, of the `known` ones (None: those of face seals):
-    (key, found, expected)."""
-    known = (known or rule_names()) if acknowledged else []
+def unknown_rules(acknowledged, known: tuple[str, ...] = FACE) -> list[tuple[str, str, str]]:
+    """What is wrong with the names of rules that are acknowledged, of the `known` ones: (key, found, expected)."""
     return [
         (f"acknowledge.{name}", "an unknown design rule",
          f"one of {', '.join(known)}{nearest_of(name, known, 0.0)}")

@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sealdyn.analysis.design_rules import findings, rule_names
-from sealdyn.analysis.rules import axial_travel, face_width, runout
-from sealdyn.analysis.rules._finding import Verdict
+from sealdyn.analysis import radial_rules
+from sealdyn.analysis.design_rules import RULES, findings
+from sealdyn.analysis.seal_figures import Verdict
 from sealdyn.dynamics.interface import flow_at_rest, rest_state
 from sealdyn.faces.geometry import CONTACT_FORCE
+from sealdyn.scenario import rule_names
 from sealdyn.scenario.errors import tables
 from sealdyn.scenario.reader import ScenarioFile, parse_scenario
 from sealdyn.scene.application import Application
@@ -89,8 +90,14 @@ KEPT_AND_BROKEN = {
 TOLD = {"heat", "pressure_velocity"}
 
 
+def test_every_rule_may_be_acknowledged():
+    assert [*rule_names.FACE] == sorted(RULES)
+    assert {*rule_names.LIP} == {*radial_rules.LIP} == {*radial_rules.RIBBED_LIP}
+    assert {*rule_names.CIRCUMFERENTIAL} == {*radial_rules.CIRCUMFERENTIAL}
+
+
 def test_every_rule_is_kept_here_and_broken_there():
-    assert set(KEPT_AND_BROKEN) | TOLD == set(rule_names())
+    assert set(KEPT_AND_BROKEN) | TOLD == set(RULES)
     assert all(rows()[rule]["verdict"] == "note" and rows()[rule]["most"] is None for rule in TOLD)
 
 
@@ -206,6 +213,12 @@ def test_fluoroelastomer_is_told_by_two_numbers(kelvin, verdict):
 
 # --- rules as functions --------------------------------------------------------------------------------
 
+
+def found(name, application, **figures):
+    """What a rule finds of a seal of which only some figures are given."""
+    return RULES[name].judge(SimpleNamespace(application=application, **figures), RULES[name].limit)
+
+
 SPEEDS = st.floats(0.0, 200.0)
 
 
@@ -214,9 +227,7 @@ def test_no_faster_shaft_may_run_out_more(one, other, reading):
     """The verdict never gets better with speed; beyond the table nothing passes but a shaft without runout."""
     order = ("pass", "note", "fail")
     verdicts = [
-        order.index(
-            runout.finding(SimpleNamespace(application=Application(shaft_runout=reading), sliding_speed=s)).verdict
-        )
+        order.index(found("runout", Application(shaft_runout=reading), sliding_speed=s).verdict)
         for s in sorted((one, other))
     ]
     assert verdicts == sorted(verdicts)
@@ -226,25 +237,25 @@ def test_no_faster_shaft_may_run_out_more(one, other, reading):
 
 @given(st.floats(1e-3, 0.2), st.floats(1e-4, 1e-2))
 def test_face_width_is_interpolated_between_the_bores_of_the_table_only(bore, width):
-    found = face_width.finding(SimpleNamespace(application=Application(bore=bore), face_width=width))
-    usual = found.numbers["usual"]
+    one = found("face_width", Application(bore=bore), face_width=width)
+    usual = one.numbers["usual"]
     if 0.0254 <= bore <= 0.1016:
         assert 1.58e-3 <= usual <= 2.39e-3
-        assert (found.verdict == Verdict.PASS) == (found.least <= width <= found.most)
+        assert (one.verdict == Verdict.PASS) == (one.least <= width <= one.most)
     else:
-        assert usual is None and found.verdict == Verdict.NOTE
-    between = face_width.finding(SimpleNamespace(application=Application(bore=0.0889), face_width=width))
+        assert usual is None and one.verdict == Verdict.NOTE
+    between = found("face_width", Application(bore=0.0889), face_width=width)
     assert between.numbers["usual"] == pytest.approx((1.98e-3 + 2.39e-3) / 2, rel=1e-12)
 
 
 @given(st.floats(0.0, 3e-3))
 def test_travel_without_a_kind_of_spring_is_told_where_all_kinds_agree(travel):
-    found = axial_travel.finding(SimpleNamespace(application=Application(axial_displacement=travel)))
+    one = found("axial_travel", Application(axial_displacement=travel))
     kinds = {
-        axial_travel.finding(SimpleNamespace(application=Application(axial_displacement=travel, spring=kind))).verdict
-        for kind in axial_travel.MOST
+        found("axial_travel", Application(axial_displacement=travel, spring=kind)).verdict
+        for kind in RULES["axial_travel"].limit
     }
-    assert found.verdict == (kinds.pop() if len(kinds) == 1 else Verdict.NOT_APPLICABLE)
+    assert one.verdict == (kinds.pop() if len(kinds) == 1 else Verdict.NOT_APPLICABLE)
 
 
 # --- what cannot be told -------------------------------------------------------------------------------
@@ -255,7 +266,7 @@ def test_a_rule_without_its_data_names_keys_that_there_are():
     bare = rows("closing={}", 'film.clearance="1 um"', "film.outer_pressure=1 bar", "film.cavitation_pressure=1 bar")
     every = {f"{table}.{key}" for table, keys in tables(ScenarioFile).items() for key in keys}
     untold = {rule: row for rule, row in bare.items() if row["verdict"] == "not applicable"}
-    assert set(untold) == set(rule_names()) - TOLD - {"sliding_speed", "film_thickness", "shaft_resonance"}
+    assert set(untold) == set(RULES) - TOLD - {"sliding_speed", "film_thickness", "shaft_resonance"}
     for row in untold.values():
         assert row["value"] is None and row["needs"] and set(row["needs"]) <= every
 
