@@ -83,9 +83,9 @@ class Panel:
     """One pair of axes.  `below`: stands under the panel before it and shares its x axis; others stand side by side.
     `wide`, `tall`: shares of the figure's width and height.  `right`: the axis on the right.  `colour`: of a map.
     `polar`: x an angle, y a radius.  `equal`: both axes in one scale.  `down`: y grows downwards.
-    `note`: words in a corner; a panel without series says them in its middle."""
+    `first`: begins a row.  `note`: words in a corner; a panel without series says them in its middle."""
 
-    title: str
+    title: str = ""
     x: Axis = Axis()
     y: Axis = Axis()
     series: Sequence[Series] = ()
@@ -99,7 +99,7 @@ class Panel:
     polar: bool = False
     equal: bool = False
     down: bool = False
-    columns: int = 1
+    first: bool = False
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,11 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
     stacks = _stacks(panels_of(plain(panels)))
     most = ACROSS + (len(stacks) >= MANY)
     across = -(-len(stacks) // -(-len(stacks) // most))
-    rows = [stacks[k : k + across] for k in range(0, len(stacks), across)]
+    rows: list[list] = []
+    for stack in stacks:
+        if not rows or len(rows[-1]) == across or stack[0].first:
+            rows.append([])
+        rows[-1].append(stack)
     alone = ALONE if len(rows) == 1 else IN_ROWS
     heights = [max(_height(stack, alone) for stack in row) for row in rows]
     figure = sheet(WIDTHS[max(map(len, rows)) - 1], 1.1 + sum(heights))

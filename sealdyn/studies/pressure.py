@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import simpson
 
+from ..analysis.film_matrices import State, gap_state
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import Interface
 from ..faces.contact import contact_load
@@ -31,7 +32,6 @@ from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Angle, Quantity, QuantityError, quoted
 from . import Info
-from .coefficients.matrices import State, gap_state
 
 INFO = Info(
     timed=("fms_reference --at tilt=0.15mrad", 1),

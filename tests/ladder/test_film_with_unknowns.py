@@ -22,7 +22,7 @@ from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.solvers.contract import Cause
 from sealdyn.solvers.integrate import solve
-from sealdyn.studies.coefficients.study import Settings, against_frequency
+from sealdyn.studies.coefficients import Settings, against_frequency
 
 PARTS = [geometry.FORCE, geometry.MOMENT_X, geometry.MOMENT_Y, geometry.FLOW_INNER, geometry.FLOW_OUTER,
          geometry.TORQUE]  # fmt: skip

@@ -19,9 +19,8 @@ from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
-from sealdyn.studies import critical_speed, equilibrium
+from sealdyn.studies import coefficients, critical_speed, equilibrium
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.coefficients import study as coefficients
 from sealdyn.studies.stability.grid import Grid
 from sealdyn.studies.transmissibility.in_time import measured
 
@@ -126,7 +125,7 @@ def test_a_secondary_seal_holds_the_ring_beside_its_equilibrium(pump, clearance)
 
 
 def test_coefficients_are_the_slopes_of_film_and_asperities(pump, clearance):
-    found = coefficients.run(pump, coefficients.Settings(points=3), None)
+    found = coefficients.run(pump, coefficients.Settings(points=3), None).numbers
     alone = Model(frozen_at_start(without(pump.scene, ["contact"]), clearance=clearance)).film_matrices()
     stiffness, step = np.array(found["stiffness"]), 1e-4 * clearance
     axial = (rough_force(clearance - step) - rough_force(clearance + step)) / (2 * step)
@@ -140,7 +139,7 @@ def test_coefficients_are_the_slopes_of_film_and_asperities(pump, clearance):
 def test_coefficients_of_tilted_rough_faces(pump, clearance):
     """The same slope about a standing tilt, from forces integrated here."""
     tilt, step = 0.25 * clearance / R_O, 1e-3 * clearance / R_O
-    found = coefficients.run(pump, coefficients.Settings(points=3, tilt=tilt), None)["tilted"]
+    found = coefficients.run(pump, coefficients.Settings(points=3, tilt=tilt), None).numbers["tilted"]
     gap = clearance + found["at"]["axial_opening"]
     slope = -(tilted_rough_moment(gap, tilt + step) - tilted_rough_moment(gap, tilt - step)) / (2 * step)
     assert found["stiffness"][1][1] == pytest.approx(slope, rel=0.01)

@@ -12,10 +12,10 @@ from oracles import opening_force
 
 import sealdyn
 from sealdyn import read_scenario, run_study
+from sealdyn.analysis.film_matrices import State, matrices
 from sealdyn.dynamics.model import Model
 from sealdyn.report.charts import study_vibration
 from sealdyn.scene.scene import SceneError
-from sealdyn.studies.coefficients.matrices import State, matrices
 from sealdyn.studies.vibration import in_time, study
 from sealdyn.studies.vibration.small_motion import ShakenSeal
 from sealdyn.studies.vibration.study import Settings

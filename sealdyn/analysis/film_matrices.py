@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...dynamics.equilibrium import axial_excess, crossing
-from ...dynamics.fluid import set_conditions
-from ...dynamics.model import Model
-from ...faces.film_thickness import h_min
-from ...faces.geometry import (
+from ..dynamics.equilibrium import axial_excess, crossing
+from ..dynamics.fluid import set_conditions
+from ..dynamics.model import Model
+from ..faces.film_thickness import h_min
+from ..faces.geometry import (
     COLLAPSE,
     DZ,
     FLOOR,
