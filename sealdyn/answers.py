@@ -103,9 +103,20 @@ class Panel:
 
 
 @dataclass(frozen=True)
+class Line:
+    """A labelled line of a summary: `parts` (words, value, quantity or SI unit[, digits]) in their order, words alone
+    where the value is None; a `detail` is printed only where all is asked for."""
+
+    label: str
+    parts: Sequence[tuple]
+    detail: bool = False
+
+
+@dataclass(frozen=True)
 class Answer:
     """`numbers` (SI, nested: what `--json` prints), what was `found` in one sentence, `tables`, `panels`, `notes` (what
-    a number cannot say: limits, failed points), and `written` {quantity or SI unit: unit} as the scenario has it."""
+    a number cannot say: limits, failed points), `written` {quantity or SI unit: unit} as the scenario has it,
+    and the `lines` of a run's summary."""
 
     numbers: dict[str, Any]
     found: str
@@ -113,6 +124,7 @@ class Answer:
     panels: Sequence[Panel] = ()
     notes: Sequence[str] = ()
     written: Mapping[str, str] = field(default_factory=dict)
+    lines: Sequence[Line] = ()
 
     def __getitem__(self, key: str) -> Any:
         return self.numbers[key]

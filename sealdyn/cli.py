@@ -203,11 +203,13 @@ def run(
     plot: Annotated[bool, typer.Option("--plot/--no-plot", help="draw the overview figure beside the archive")] = True,
     as_json: AsJson = False,
     resume: Annotated[bool, typer.Option("--continue", help="go on with an interrupted or killed run")] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", help="print all of the summary")] = False,
     yes: Annotated[bool, typer.Option("--yes", help="also a run of days, or of an archive of many gigabytes")] = False,
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
     from .archive import ArchiveError, partial_path
-    from .report.text import lines
+    from .report.summary import run_answer
+    from .report.text import lines, written_units
     from .scene.scene import SceneError
     from .simulation.simulate import simulate
 
@@ -241,7 +243,8 @@ def run(
     if as_json:
         print(json.dumps(summary))
     else:
-        for line in lines(scenario, summary):
+        written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
+        for line in lines(scenario.name, run_answer(summary, written), verbose):
             print(line)
     _left["answered"] = True
     raise typer.Exit(EXIT[result.status])
@@ -504,7 +507,7 @@ def _check_radial(file, scenario, as_json):
 def _of_a_face_seal(file):
     """Ends the verb for an archive of a radial seal."""
     from .archive import is_study, read_info
-    from .report.radial import is_radial
+    from .report.summary import is_radial
 
     if not is_study(file) and is_radial(read_info(file)):
         raise Stop(Status.INVALID, f"{file}: the archive of a radial seal; expected that of a face seal: its figure "

@@ -65,6 +65,8 @@ QUANTITIES = {
     "moment": Quantity("N m", "moment", "N m", 1.0),
     "torque": Quantity("N m", "torque", "N m", 1.0),
     "power": Quantity("W", "power", "W", 1.0),
+    "heat_flux": Quantity("W/m^2", "heat flux", "W/cm^2", 1e-4),
+    "force_per_length": Quantity("N/m", "force per length", "N/m", 1.0),
     "friction_power": Quantity("W", "friction", "W", 1.0),
     "axial_stiffness": Quantity("N/m", "axial stiffness"),
     "axial_damping": Quantity("N s/m", "axial damping", "N s/m", 1.0),
@@ -108,8 +110,10 @@ def shown_in(name: str, values: Iterable = (), written: Mapping[str, str] | None
     sizes = SIZES.get(held.unit)
     if sizes is None:
         return ("" if held.unit in ("", "1", "rad/rad") else held.unit.replace("*", " ")), 1.0
-    # Zeros are read in the unit of everyday.
-    fits = sizes[1:2] or sizes if size == 0.0 else [row for row in sizes if size >= row[0]]
+    # Zeros are read in the unit of everyday, not in the finest.
+    fits = [row for row in sizes if size >= row[0]]
+    if size == 0.0 and sizes[0][1][0] in "nu":
+        fits = sizes[1:2]
     _, unit, factor = fits[-1]
     return unit, factor
 

@@ -6,48 +6,47 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
-from .radial import is_radial
-from .text import BELOW, if_resolved, speed_unit, tilt_resolved
+from ..quantities import in_words, number, shown_in
+from .summary import BELOW, is_radial, tilt_resolved
+from .text import speed_unit
 
 # Of the larger value: what differs by less differs by rounding.
 ROUNDING = 1e-12
 # Of a summary: what tells of the computation and not of the seal.
 OWN = ("wall_time", "counts", "archive", "figure", "model.reasons", "warnings")
-# Quantities that are printed (JSON has all): key, heading, factor.
+# Numbers of a summary that are printed (JSON has all): dotted key, quantity, heading.
 FIRST = (
-    ("h_min.value", "h_min, um", 1e6),
-    ("h_min.steady", "h_min settled, um", 1e6),
-    ("relative_misalignment.max", "misalignment max, urad", 1e6),
-    ("relative_misalignment.steady_max", "misalignment settled, urad", 1e6),
-    ("leakage.mean", "leakage, ml/h", 3.6e9),
-    ("friction.power", "friction, W", 1.0),
-    ("film.clearance", "clearance, um", 1e6),
-    ("film.axial_stiffness", "axial stiffness, N/m", 1.0),
-    ("film.tilt_stiffness", "tilt stiffness, N m/rad", 1.0),
-    ("closing.force", "closing force, N", 1.0),
-    ("stability.whirl_ratio", "whirl ratio", 1.0),
-    ("stability.critical_speed", "critical speed, rad/s", 1.0),
-    ("contact_margin", "margin to contact", 1.0),
-    ("contact.touches", "contacts", 1.0),
-    ("contact.share_of_closing", "contact, % of closing", 100.0),
-    ("contact.force.mean", "contact force, N", 1.0),
-    ("contact.force.max", "contact force max, N", 1.0),
-    ("contact.wear_rate", "wear rate, um/h", 3.6e9),
-    ("settled.contact_share", "on the shaft, %", 100.0),
-    ("whole.largest_gap", "largest gap, um", 1e6),
-    ("settled.load", "load on the shaft, N", 1.0),
-    ("settled.friction_torque", "friction torque, N m", 1.0),
-    ("settled.leakage_estimate", "leakage estimate, ml/h", 3.6e9),
-    ("closed_form.needed_preload", "preload needed of one, N", 1.0),
-    ("closed_form.largest_eccentricity", "followed eccentricity, mm", 1e3),
-    ("contact.lift", "lost contacts", 1.0),
+    ("h_min.value", "h_min", "h_min"),
+    ("h_min.steady", "h_min", "h_min settled"),
+    ("relative_misalignment.max", "misalignment", "misalignment max"),
+    ("relative_misalignment.steady_max", "misalignment", "misalignment settled"),
+    ("leakage.mean", "leakage", "leakage"),
+    ("friction.power", "power", "friction"),
+    ("film.clearance", "clearance", "clearance"),
+    ("film.axial_stiffness", "axial_stiffness", "axial stiffness"),
+    ("film.tilt_stiffness", "tilt_stiffness", "tilt stiffness"),
+    ("closing.force", "force", "closing force"),
+    ("stability.whirl_ratio", "1", "whirl ratio"),
+    ("stability.critical_speed", "speed", "critical speed"),
+    ("contact_margin", "1", "margin to contact"),
+    ("contact.touches", "1", "contacts"),
+    ("contact.share_of_closing", "share", "contact, of closing"),
+    ("contact.force.mean", "force", "contact force"),
+    ("contact.force.max", "force", "contact force max"),
+    ("contact.wear_rate", "wear_rate", "wear rate"),
+    ("settled.contact_share", "share", "on the shaft"),
+    ("whole.largest_gap", "largest_gap", "largest gap"),
+    ("settled.load", "force", "load on the shaft"),
+    ("settled.friction_torque", "torque", "friction torque"),
+    ("settled.leakage_estimate", "leakage", "leakage estimate"),
+    ("closed_form.needed_preload", "force", "preload needed of one"),
+    ("closed_form.largest_eccentricity", "m", "followed eccentricity"),
+    ("contact.lift", "1", "lost contacts"),
 )
 # How many times as much is told as such.
 MANY = 4.0
-# Leakage (m^3/s) from which it is told in l/min, as that of gases; a speed where people wrote it so.
-MUCH, IN_LITRES, IN_RPM = 1e-5, ("leakage, l/min", 6e4), ("critical speed, rpm", 30.0 / math.pi)
-# Series of which the largest difference is told: of face seals, of radial seals; the unit people read them in.
-SERIES = {"h_min": ("um", 1e6), "relative_misalignment": ("urad", 1e6), "largest_gap": ("um", 1e6), "load": ("N", 1.0)}
+# Series of which the largest difference is told, and their quantity.
+SERIES = {"h_min": "h_min", "relative_misalignment": "misalignment", "largest_gap": "largest_gap", "load": "force"}
 # What the accuracy of a run is the error of: films, angles between the faces.
 FILMS, TILTS = ("h_min", "h_min.value", "h_min.steady"), "relative_misalignment"
 UNRESOLVED, ALIKE = "no change that the accuracy resolves", "  (the same to four digits)"
@@ -88,22 +87,25 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
     ]
     out += [] if found["scene"] else ["  scene         the same"]
     rows = {row["key"]: row for row in found["summary"]}
-    shown = [(heading, factor, rows[key]) for key, heading, factor in FIRST if key in rows]
-    for heading, factor, row in shown:
-        if row["key"] == "stability.critical_speed" and found.get("speeds") == "rpm":
-            heading, factor = IN_RPM
-        if row["key"] == "leakage.mean" and max(abs(value or 0.0) for value in row["values"]) >= MUCH:
-            heading, factor = IN_LITRES
-        words = [if_resolved(value, factor, near) for value, near in zip(row["values"], _nears(row), strict=True)]
+    written = {"rad/s": found.get("speeds", "rad/s")}
+    printed = [(heading, quantity, rows[key]) for key, quantity, heading in FIRST if key in rows]
+    for heading, quantity, row in printed:
+        # One unit on both sides.
+        unit, factor = shown_in(quantity, row["values"], written)
+        words = [
+            BELOW + number(near, factor, 3) if value is not None and 0.0 < abs(value) < near else number(value, factor)
+            for value, near in zip(row["values"], _nears(row), strict=True)
+        ]
         alike = words[0] == words[1] and not words[0].startswith(BELOW)
+        heading = ", ".join(filter(None, (heading, unit)))
         out.append(f"  {heading:<28}{' -> '.join(words)}{ALIKE if alike else _change_of(row)}")
-    if not shown:
+    if not printed:
         out.append("  results       the same")
     for row in found["series"]:
-        unit, factor = SERIES.get(row["name"], (row["unit"], 1.0))
-        most = f"differs by up to {factor * row['most']:.3g} {unit}"
+        quantity = SERIES[row["name"]]
+        most = f"differs by up to {in_words(quantity, row['most'], digits=3)}"
         if 0.0 < row["most"] <= sum(_nears(row)):
-            most = f"has {UNRESOLVED} ({factor * sum(_nears(row)):.3g} {unit})"
+            most = f"has {UNRESOLVED} ({in_words(quantity, sum(_nears(row)), digits=3)})"
         out.append(f"  at the same instants {row['name']} {most}")
     return out
 

@@ -12,8 +12,8 @@ from pathlib import Path
 from ..archive import is_study, read_info, read_study
 from ..toml_line import toml_line
 from .charts.page import printed
-from .radial import is_radial
-from .text import question_of, rows_of, speed_unit, study_lines
+from .summary import is_radial, run_answer
+from .text import line_words, question_of, study_lines, written_units
 
 TEMPLATE = Path(__file__).with_name("review.html")
 # Figures of a run and what they show.
@@ -110,7 +110,8 @@ def _title(parts: list[dict], seals: list[list[str]]) -> str:
 def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
-    rows = [(name, told(words)) for name, words in rows_of(summary, speed_unit(info))] if summary else []
+    answer = run_answer(summary, written_units(info)) if summary else None
+    rows = [(line.label, told(line_words(line, answer.written))) for line in answer.lines] if answer else []
     figures = RADIAL_FIGURES if is_radial(info) else dict(FIGURES)
     if summary and summary.get("relative_misalignment", {}).get("max") == 0:
         # Aligned faces have none.
@@ -121,8 +122,8 @@ def _run(path: Path, rules, validation) -> dict:
         **_asked(info),
         "status": str(info["status"]),
         "message": told(info.get("message", "")),
-        "rows": [(name, words) for name, words in rows if name not in ("WARNING", "files")],
-        "warnings": [words for name, words in rows if name == "WARNING"],
+        "rows": [(name, words) for name, words in rows if name != "files"],
+        "warnings": [told(words) for words in answer.notes] if answer else [],
         "figures": [(words, chart, _drawn(path, f"charts.{chart}")) for chart, words in figures.items()],
         "rules": [{**rule, **{name: told(rule[name]) for name in ("said", "source")}} for rule in rules(path, info)]
         if rules

@@ -17,7 +17,7 @@ from ..answers import Answer, as_json, plain
 from ..archive import followed, only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
-from ..report.text import speed_unit
+from ..report.text import written_units
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
 from ..scene import variants
@@ -68,11 +68,6 @@ OLD = {
     "along": "ALONG",
     "timed": "TIMED",
 }
-
-
-def written_units(scenario: Scenario) -> dict[str, str]:
-    """{SI unit: unit} in which a scenario has what may be read in several: its speeds."""
-    return {"rad/s": speed_unit({"scenario": scenario.text, "overrides": scenario.overrides})[0]}
 
 
 @dataclass
@@ -166,7 +161,7 @@ def run_study(
             notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
         if isinstance(answer, Answer):
             panels = plain(answer.panels)
-            written = {**written_units(scenario), **answer.written}
+            written = {**written_units({"scenario": scenario.text, "overrides": scenario.overrides}), **answer.written}
             answer = as_json(replace(answer, notes=[*answer.notes, *notes], written=written))
         else:
             answer = {**answer, "verdict": [*answer["verdict"], *notes]}

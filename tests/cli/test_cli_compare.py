@@ -88,9 +88,9 @@ def test_what_the_accuracy_does_not_resolve_is_no_change():
               {"name": "relative_misalignment", "unit": "rad", "most": 4e-11, "resolved": [1e-9, 1e-9]}]  # fmt: skip
     thin, small, *same = comparison_lines(found | {"summary": [tilt, film], "series": series})[-4:]
     assert thin.endswith("1 -> 1.1  (+10 %)")
-    assert small.endswith("below 0.001 -> below 0.001  (no change that the accuracy resolves)")
+    assert small.endswith("nrad      below 1 -> below 1  (no change that the accuracy resolves)")
     assert same[0].endswith("h_min differs by up to 0.1 um")
-    assert same[1].endswith("relative_misalignment has no change that the accuracy resolves (0.002 urad)")
+    assert same[1].endswith("relative_misalignment has no change that the accuracy resolves (2 nrad)")
 
 
 def test_the_resolution_is_that_of_each_run(folder):

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib import colormaps
 
 from ...archive import ArchiveError
-from ..radial import is_radial
+from ..summary import is_radial
 from . import followers_animation
 from .face import annulus, in_the_middle
 from .film import around, thickness

@@ -5,7 +5,8 @@ from textwrap import wrap
 import numpy as np
 
 from ...archive import FIELD_TIME, field
-from ..radial import radial_rows
+from ..summary import run_answer
+from ..text import line_words
 from .film import scale
 from .page import EVEN, absent, header, look, panels, printed, save, sheet
 from .palette import CONTACT, FILM, LEAK, PRESSURE, THEORY, THICKNESS
@@ -97,7 +98,8 @@ def _numbers(ax, run):
     if "follower" not in run.summary:
         return
     lines, on = [], False
-    for name, words in radial_rows({**run.summary, "wall_time": 0.0}):
+    answer = run_answer(run.summary, {})
+    for name, words in ((line.label, line_words(line, {})) for line in answer.lines):
         on = name in NUMBERS if name else on
         if on:
             lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(printed(words), LETTERS))]

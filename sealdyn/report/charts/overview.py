@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib import rc_context
 
 from ...status import Status
-from ..radial import is_radial
+from ..summary import is_radial
 from ..text import speed_unit
 from . import followers, housing_sweep, orbit, spectrum
 from .page import PAPER, absent, free_side, header, level, look, save, sheet, written
