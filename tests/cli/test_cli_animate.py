@@ -12,7 +12,6 @@ from PIL import Image
 
 from sealdyn.report.charts.animation import OPEN, _enlarged, _panels, _Rows
 from sealdyn.report.charts.moving import stage
-from sealdyn.report.charts.palette import CONTACT, STATUS
 from sealdyn.report.charts.record import Run
 
 TURNS, SAMPLES, PER_TURN = 3, 24, 6
@@ -40,17 +39,6 @@ def test_a_still(folder):
     assert sealdyn("animate", "a.h5", "--out", "still.png", cwd=folder).code == 0
     with Image.open(folder / "still.png") as still:
         assert still.width > 800 and not getattr(still, "is_animated", False)
-
-
-def test_a_mark_of_few_dots_keeps_its_colour(folder):
-    """The ring around the thinnest place, and the green of the status, in a palette for all pictures."""
-    assert sealdyn("animate", "a.h5", "--turns", 0.5, "--per-turn", 4, "--out", "b.gif", cwd=folder).code == 0
-    with Image.open(folder / "b.gif") as film:
-        film.seek(film.n_frames - 1)
-        dots = np.asarray(film.convert("RGB")).astype(int).reshape(-1, 3)
-    for colour in (CONTACT, STATUS["ok"]):
-        wanted = [int(colour[at : at + 2], 16) for at in (1, 3, 5)]
-        assert np.abs(dots - wanted).max(axis=1).min() <= 8
 
 
 def test_a_video(folder):

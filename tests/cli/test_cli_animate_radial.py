@@ -7,12 +7,12 @@ from functools import partial
 import numpy as np
 import pytest
 from command import SCENARIOS, sealdyn
-from drawn import frames, panel, text_trouble
+from drawn import frames, panel
 from PIL import Image
 
 from sealdyn.archive import FIELD_TIME, column, field
 from sealdyn.radial_seals.model import RadialModel, RadialRun
-from sealdyn.report.charts.followers_animation import REACH, Around, body, panels
+from sealdyn.report.charts.followers_animation import REACH, Around, panels
 from sealdyn.report.charts.moving import moments, stage
 from sealdyn.report.charts.palette import CONTACT, FILM
 from sealdyn.report.charts.record import Run
@@ -57,15 +57,6 @@ def test_pictures_of_a_stretch(folder):
     assert all((one != other).any() for one, other in itertools.pairwise(pictures))
 
 
-def test_a_still_and_a_video(folder):
-    assert sealdyn("animate", "rides.h5", "--out", "still.png", cwd=folder).code == 0
-    with Image.open(folder / "still.png") as still:
-        assert still.width > 800 and not getattr(still, "is_animated", False)
-    pytest.importorskip("imageio_ffmpeg", reason="an extra: sealdyn[video]")
-    assert sealdyn("animate", "a.h5", "--out", "a.mp4", "--turns", 1, "--per-turn", 4, cwd=folder).code == 0
-    assert (folder / "a.mp4").read_bytes()[4:8] == b"ftyp"
-
-
 def test_the_shaft_is_that_of_the_equations(folder):
     """Offset, eccentricity and lobes on a shaft that turns backward, at every kept instant."""
     around = Around(Run(folder / "rides.h5"))
@@ -106,15 +97,6 @@ def test_followers_stand_where_the_gap_says(folder):
     assert seen == {(False, colours[0]), (True, colours[1])}
 
 
-@pytest.mark.parametrize("count", [2, 4, 6, 36, 720])
-def test_followers_do_not_touch_each_other(count):
-    """Beside each other at rest, each within its share of the circumference; the foot narrower than the body."""
-    x, y = body(2 * np.pi / count).T
-    angles, radii = np.arctan2(y, x), np.hypot(x, y)
-    assert np.abs(angles).max() < np.pi / count
-    assert np.abs(angles[radii < 1.001]).max() < np.abs(angles).max() and radii.min() == pytest.approx(1.0)
-
-
 @pytest.mark.core
 def test_gap_and_load_are_those_of_the_archive(folder):
     found = Run(folder / "a.h5")
@@ -136,20 +118,6 @@ def test_gap_and_load_are_those_of_the_archive(folder):
                 move(moment)
             drawn = ax.patches[0].get_data()[0]
             assert low <= drawn.min() and drawn.max() <= high
-
-
-def test_a_shaft_that_nothing_leaves_has_no_gap_to_show(folder):
-    figure, *_ = staged(Run(folder / "rides.h5"))
-    assert not [ax for ax in figure.axes if "gap" in ax.get_title("left").lower()]
-    assert [ax for ax in figure.axes if ax.get_ylabel().startswith("least load")]
-
-
-@pytest.mark.parametrize("archive", ["a.h5", "rides.h5"])
-def test_nothing_lies_on_another(folder, archive):
-    figure, movers, at = staged(Run(folder / archive))
-    for move in movers:
-        move(at[-1])
-    assert text_trouble(figure) == ([], [])
 
 
 def test_pictures_are_of_kept_instants_only(tmp_path):
@@ -188,16 +156,3 @@ def test_a_shaft_that_stands_still(tmp_path):
     assert answer.code == 0, answer.err
     with Image.open(tmp_path / "still.gif") as film:
         assert film.n_frames >= 1
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [(["a.h5", "--out", "a.avi"], ".gif"), (["a.h5", "--per-turn", "100000"], "at most"),
-     (["a.h5", "--out", "no/a.h5/x.gif"], "cannot be written")],
-)  # fmt: skip
-def test_bad_input_is_one_line(words, said, folder):
-    (folder / "no").write_text("no folder")
-    before = sorted(folder.iterdir())
-    answer = sealdyn("animate", *words, cwd=folder)
-    assert answer.code == 2 and said in answer.err and len(answer.err.strip().splitlines()) == 1
-    assert sorted(folder.iterdir()) == before

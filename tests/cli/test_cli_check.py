@@ -7,24 +7,15 @@ DAM = SCENARIOS / "gas_dam_reference.toml"
 
 
 def test_check_says_what_the_floor_of_a_pressure_costs(tmp_path):
-    answer = sealdyn("check", SCENARIOS / "ludwig_allen.toml", cwd=tmp_path)
-    assert answer.code == 0 and "# floor of the pressure, on 50 % of the face" in answer.out
     answer = sealdyn("check", SCENARIOS / "ludwig_allen.toml", "--json", cwd=tmp_path)
-    assert "starve" in answer.found["beside_reynolds"]["said"]
-
-
-def test_check_says_which_waves_are_left_of_an_elastic_ring(tmp_path):
-    answer = sealdyn("check", SCENARIOS / "lebeck_elastic.toml", cwd=tmp_path)
-    assert answer.code == 0 and "of its 17.5 um of waves are left at rest" in answer.out
+    assert answer.code == 0 and "starve" in answer.found["beside_reynolds"]["said"]
 
 
 def test_check_prints_gauge_pressures_as_absolute_and_says_so(tmp_path):
     arguments = ["check", SCENARIOS / "axial_only.toml", "--set", "film.outer_pressure=5 barg"]
     answer = sealdyn(*arguments, cwd=tmp_path)
     assert answer.code == 0 and "\nouter_pressure = 601325.0\n" in answer.out
-    assert "# pressures are absolute: film.outer_pressure, given as gauge" in answer.out
     assert sealdyn(*arguments, "--json", cwd=tmp_path).found["gauge"] == ["film.outer_pressure"]
-    assert "gauge" not in sealdyn(*arguments[:2], cwd=tmp_path).out
 
 
 @pytest.mark.core
@@ -37,13 +28,6 @@ def test_check_prints_the_mass_of_a_body(tmp_path):
     answer = sealdyn("check", "seal.toml", "--set", f"{ring}.body={body}", cwd=tmp_path)
     assert answer.code == 0, answer.err
     assert f"[{ring}.body]" in answer.out and "\nmass = 3.14159" in answer.out
-
-
-def test_a_stiffness_that_counts_asperities_says_so(tmp_path):
-    rough = sealdyn("check", SCENARIOS / "run_in.toml", cwd=tmp_path).out
-    smooth = sealdyn("check", SCENARIOS / "axial_only.toml", cwd=tmp_path).out
-    assert "stiffness of film and asperities" in rough and "film stiffness" not in rough
-    assert "film stiffness" in smooth and "asperities" not in smooth
 
 
 def test_tables_of_studies_are_read_whatever_is_asked(tmp_path):
@@ -70,16 +54,12 @@ def test_check_warns_before_a_run_does(tmp_path):
     slips = ["--set", "film.outer_pressure=8", "--set", 'film.vapour_pressure="2 bar"']
     answer = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, cwd=tmp_path)
     assert answer.code == 0
-    assert "# WARNING film.outer_pressure without a unit is read as 8 Pa, which is 8e-05 bar" in answer.out
-    assert "below the vapour pressure of 200 kPa: it boils there" in answer.out
     told = sealdyn("check", SCENARIOS / "pump_seal.toml", *slips, "--json", cwd=tmp_path).found["warnings"]
     assert all(f"# WARNING {sentence}" in answer.out for sentence in told) and len(told) > 1
 
 
 def test_check_warns_of_units_and_a_refusal_names_them(tmp_path):
     """What `run` says of numbers without a unit, before any run; and why there is no balance."""
-    done = sealdyn("check", DAM, "--set", "stator.mass=150", cwd=tmp_path)
-    assert "# WARNING stator.mass without a unit is read as 150 kg, which is 150000 g" in done.out
     told = sealdyn("check", DAM, "--set", "stator.mass=150", "--json", cwd=tmp_path).found["warnings"]
     assert any("stator.mass" in sentence for sentence in told)
     assert sealdyn("check", DAM, "--json", cwd=tmp_path).found["warnings"] == []

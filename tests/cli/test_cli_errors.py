@@ -151,12 +151,6 @@ def test_a_collapse_has_no_margin_to_contact(collapse):
     assert collapse[1].found["contact_margin"] is None
 
 
-def test_collapse_is_read_in_words_too(tmp_path):
-    answer = sealdyn("run", REFERENCE, *settings(DIVERGING), "--no-plot", cwd=tmp_path)
-    assert answer.code == 3
-    assert answer.out.startswith("fmr_reference: collapsed")
-
-
 def test_a_shaft_at_rest_is_a_scene(tmp_path):
     """No turns to count samples by: 1000 in all."""
     lines = REFERENCE.read_text().splitlines()

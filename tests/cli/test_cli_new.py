@@ -37,8 +37,3 @@ def test_nothing_is_overwritten(tmp_path):
     answer = sealdyn("new", "fsm", cwd=tmp_path)
     assert answer.code == 2 and "nearest 'fms'" in answer.err
     assert sealdyn("new", "gas", "--out", "nowhere/a.toml", cwd=tmp_path).code == 2
-
-
-def test_help_says_what_each_is(tmp_path):
-    said = " ".join(sealdyn("new", "--help", cwd=tmp_path).out.replace("│", " ").split())
-    assert "the stator floats" in said and all(f"{kind} (" in said for kind in kinds())

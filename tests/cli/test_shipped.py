@@ -49,13 +49,6 @@ def test_the_version_is_that_of_the_package(tmp_path):
     assert answer == (0, f"sealdyn {version}\n", "") and package.__version__ == version
 
 
-def test_the_shell_completes_verbs(tmp_path):
-    asked = {"COMP_WORDS": "sealdyn s", "COMP_CWORD": "1", "_SEALDYN_COMPLETE": "complete_bash"}
-    code = "import sys; sys.argv = ['sealdyn']; from sealdyn.cli import main; main()"
-    done = subprocess.run([sys.executable, "-c", code], env=os.environ | asked, capture_output=True, text=True)
-    assert done.stdout.split() == ["schema", "show", "study"], done.stderr
-
-
 def test_every_folder_is_a_package_that_is_named():
     named = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]
     folders = {path.parent.relative_to(ROOT) for path in (ROOT / "sealdyn").rglob("*.py")}

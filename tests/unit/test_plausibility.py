@@ -171,13 +171,6 @@ def read_as(key, slip) -> str:
     return f"{slip} {plausibility.USUAL[key].unit}".strip()
 
 
-def test_a_bare_diameter_is_told_as_it_was_written():
-    scenario = read_scenario(PUMP, ["film.inner_diameter=50", "film.outer_diameter=60"])
-    said = plausibility.unit_warnings(scenario)
-    assert "film.inner_diameter without a unit is read as 50 m, which is 50000 mm" in said
-    assert all("radius" not in sentence for sentence in said)
-
-
 def test_wear_of_millimetres_an_hour():
     """1e-6 without a unit is 1e-6 1/Pa, a thousand mm^3/(N m)."""
     rough = ["run.turns=0.5", "run.accuracy=1e-3"]

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from sealdyn.cli import _Progress, app
+from sealdyn.cli import _Progress
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies._runner import StudyContext, run_study
 
@@ -32,11 +31,6 @@ def test_a_run_done_again_begins_again(shown):
     assert line.start_time == begun
 
 
-def test_a_full_bar_says_what_is_waited_for(shown):
-    shown(2.0, 2.0)
-    assert shown.bar.tasks[0].fields["words"] == "t = 2 s: summing up"
-
-
 def test_a_study_says_its_name_and_no_points_that_there_are_none(tmp_path):
     seen = []
     scenario = read_scenario(SCENARIOS / "fms_reference.toml", ["film.model=linear"])
@@ -45,9 +39,3 @@ def test_a_study_says_its_name_and_no_points_that_there_are_none(tmp_path):
     tools = StudyContext(None, None, lambda *now: seen.append(now))
     count = len(seen)
     assert tools.map(len, [], "cost") == [] and len(seen) == count
-
-
-def test_a_check_says_that_it_compiles(monkeypatch):
-    monkeypatch.setattr("sealdyn.kernel_cache.kept_kernels", lambda: [])
-    answer = CliRunner().invoke(app, ["check", str(SCENARIOS / "fms_reference.toml")])
-    assert answer.exit_code == 0 and answer.stderr.startswith("first run on this machine: compiling kernels")
