@@ -11,14 +11,10 @@ SUMMARY = {
     "stability": {"verdict": "stable", "whirl_ratio": 0.49, "critical_speed": 8684.0},
     "h_min": {"value": 2.3e-6, "of_clearance": 0.23, "time": 0.1},
     "relative_misalignment": {"max": 2.4e-4, "min": 3e-5, "mean": 1e-4, "steady_max": 2e-4, "steady_min": None},
-    "closed_form": {"relative_max": 2.1e-4, "relative_min": 4e-5},
-    "leakage": {"mean_ml_per_h": 43219.7},
-    "friction": {"power": 55.6, "torque": 0.0556},
-    "film": {"axial_stiffness": 1.02e7, "tilt_stiffness": 5100.0},
-    "closing": {"force": 725.7, "balance_ratio": 0.802},
-    "contact_margin": 1.6,
-    "energy_residual": 4.7e-8,
-}
+    "closed_form": {"relative_max": 2.1e-4, "relative_min": 4e-5}, "leakage": {"mean_ml_per_h": 43219.7},
+    "friction": {"power": 55.6, "torque": 0.0556}, "film": {"axial_stiffness": 1.02e7, "tilt_stiffness": 5100.0},
+    "closing": {"force": 725.7, "balance_ratio": 0.802}, "contact_margin": 1.6, "energy_residual": 4.7e-8,
+}  # fmt: skip
 
 
 def whirling(samples=3840, turns=60.0, tilt=1e-4, speed=1000.0, ramp=0.0):

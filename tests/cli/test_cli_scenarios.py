@@ -19,14 +19,10 @@ CONTRACT = {
     "model": {"film", "unknowns", "solver", "start", "reasons", "unused"},
     "h_min": {"value", "time", "theta", "radius", "of_clearance"},
     "relative_misalignment": {"max", "min", "mean", "steady_max", "steady_min"},
-    "leakage": {"mean", "max", "mean_ml_per_h"},
-    "friction": {"torque", "power"},
-    "film": {"axial_stiffness", "tilt_stiffness"},
-    "closing": {"force", "balance_ratio"},
-    "closed_form": set(),
-    "stability": {"verdict", "whirl_ratio", "critical_speed", "resonance_speeds"},
-    "counts": {"rhs", "steps"},
-}
+    "leakage": {"mean", "max", "mean_ml_per_h"}, "friction": {"torque", "power"},
+    "film": {"axial_stiffness", "tilt_stiffness"}, "closing": {"force", "balance_ratio"}, "closed_form": set(),
+    "stability": {"verdict", "whirl_ratio", "critical_speed", "resonance_speeds"}, "counts": {"rhs", "steps"},
+}  # fmt: skip
 PLAIN = {"status", "message", "contact_margin", "energy_residual", "wall_time", "archive", "figure"}
 TILT_SCALE = 1e-5 / 0.04
 

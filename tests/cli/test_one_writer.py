@@ -17,18 +17,9 @@ from sealdyn.studies._runner import run_study
 
 SEAL = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 RUN = [
-    sys.executable,
-    "-m",
-    "sealdyn.cli",
-    "run",
-    str(SEAL),
-    "--no-plot",
-    "--set",
-    "run.turns=200000",
-    "--set",
-    "run.samples_per_turn=8",
-    "--out",
-]
+    sys.executable, "-m", "sealdyn.cli", "run", str(SEAL), "--no-plot", "--set", "run.turns=200000", "--set",
+    "run.samples_per_turn=8", "--out",
+]  # fmt: skip
 
 
 def begun(command, there):

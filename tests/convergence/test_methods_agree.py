@@ -6,17 +6,11 @@ from scenes import fmr, fms, fmsr, free_ring, housing_vibration, large_tilt, run
 
 TURNS = dict(turns=6)
 SCENES = {
-    "fmr": (fmr(), TURNS),
-    "fmr-linear": (fmr("linear"), TURNS),
-    "fms": (fms(), TURNS),
-    "fmsr": (fmsr(), TURNS),
-    "fmsr-linear": (fmsr("linear"), TURNS),
-    "large-tilt": (large_tilt(), dict(turns=6, start="steady")),
-    "housing": (housing_vibration(), TURNS),
-    "runup": (runup(), dict(duration=0.03)),
-    "fast-slender-rotor": (fmr("linear", 3.0, speed=8000.0), TURNS),
-    "free-precession": (free_ring(), TURNS),
-}
+    "fmr": (fmr(), TURNS), "fmr-linear": (fmr("linear"), TURNS), "fms": (fms(), TURNS), "fmsr": (fmsr(), TURNS),
+    "fmsr-linear": (fmsr("linear"), TURNS), "large-tilt": (large_tilt(), dict(turns=6, start="steady")),
+    "housing": (housing_vibration(), TURNS), "runup": (runup(), dict(duration=0.03)),
+    "fast-slender-rotor": (fmr("linear", 3.0, speed=8000.0), TURNS), "free-precession": (free_ring(), TURNS),
+}  # fmt: skip
 METHODS = ["adams", "bdf", "ida", "dop853", "radau", "expm"]
 
 

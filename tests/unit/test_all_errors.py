@@ -26,16 +26,10 @@ def keys(text: str, *overrides) -> list[str]:
 
 # What a key may be set to, so that it is wrong by itself and nothing else is.
 SLIPS = {
-    "film.clearance": '"10 kg"',
-    "film.viscosty": '"1 cP"',
-    "film.outer_pressure": '"5 Bar"',
-    "film.outer_diameter": '"80 rpm"',
-    "rotor.mass": "nan",
-    "rotor.support.axial_damping": "true",
-    "run.solver": '"admas"',
-    "shaft.speed": "[1]",
-    "stator.waviness": "[{ order = 2, amplitud = 1 }]",
-}
+    "film.clearance": '"10 kg"', "film.viscosty": '"1 cP"', "film.outer_pressure": '"5 Bar"',
+    "film.outer_diameter": '"80 rpm"', "rotor.mass": "nan", "rotor.support.axial_damping": "true",
+    "run.solver": '"admas"', "shaft.speed": "[1]", "stator.waviness": "[{ order = 2, amplitud = 1 }]",
+}  # fmt: skip
 
 
 @settings(deadline=None)

@@ -20,13 +20,9 @@ def sealed():
 
 
 SCENES = {
-    "fms": fms(),
-    "fmr": fmr("linear"),
-    "fmsr": fmsr(),
-    "shaken": housing_vibration(),
-    "contact": replace(fms(), contact=Contact(roughness=2e-6, compressive_strength=3e8)),
-    "sealed": sealed(),
-}
+    "fms": fms(), "fmr": fmr("linear"), "fmsr": fmsr(), "shaken": housing_vibration(),
+    "contact": replace(fms(), contact=Contact(roughness=2e-6, compressive_strength=3e8)), "sealed": sealed(),
+}  # fmt: skip
 
 
 @pytest.fixture(params=SCENES)

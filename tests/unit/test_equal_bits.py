@@ -16,15 +16,10 @@ SCENARIOS = ROOT / "scenarios"
 DECORATORS = {"njit", "cfunc", "partial", *(name for name in vars(kernel) if name.endswith(("_kernel", "c_function")))}
 # Scene -> what shortens it.
 SCENES = {
-    "fms_reference": "run.turns=3",
-    "rub": "run.turns=3",
-    "massless_ring": "run.turns=2",
-    "fmsr_both_flexible": "run.turns=3",
-    "hang_up": "run.turns=3",
-    "ludwig_allen": "run.turns=1",
-    "squeeze": "run.duration=0.5",
-    "pressure_step": "run.turns=3",
-}
+    "fms_reference": "run.turns=3", "rub": "run.turns=3", "massless_ring": "run.turns=2",
+    "fmsr_both_flexible": "run.turns=3", "hang_up": "run.turns=3", "ludwig_allen": "run.turns=1",
+    "squeeze": "run.duration=0.5", "pressure_step": "run.turns=3",
+}  # fmt: skip
 RUN = """
 import hashlib, sys
 from pathlib import Path

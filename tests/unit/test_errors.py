@@ -17,15 +17,12 @@ from sealdyn.units import QuantityError
 @pytest.mark.parametrize(
     "error",
     [
-        SceneError("film", "none", "a film"),
-        FilmClosed("film.clearance", "0", "more"),
-        ScenarioError("seal.toml", "film.clearance", "0", "more"),
-        QuantityError("0", "more"),
-        NoAverage(Status.FAILED, "it ended early"),
-        FilmCollapsed("the film is gone", Cause.INTERRUPTED),
+        SceneError("film", "none", "a film"), FilmClosed("film.clearance", "0", "more"),
+        ScenarioError("seal.toml", "film.clearance", "0", "more"), QuantityError("0", "more"),
+        NoAverage(Status.FAILED, "it ended early"), FilmCollapsed("the film is gone", Cause.INTERRUPTED),
     ],
     ids=lambda error: type(error).__name__,
-)
+)  # fmt: skip
 def test_an_error_comes_back_whole_from_another_process(error):
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)

@@ -17,16 +17,12 @@ RADII, DEPTHS = (R_I, 0.0335, 0.036, R_O), (0.5e-6, 0.0, 8e-6, 22e-6)
 # Points of the trapezoid between two radii of the grid.
 FINE = 2000
 FACES = {
-    "cone": {},
-    "planar": {"geometry": "planar"},
-    "tilted at the mean radius": {"tilt_radius": "mean"},
-    "planar, mean": {"geometry": "planar", "tilt_radius": "mean"},
-    "diverging": {"coning": -0.1e-3},
-    "floor": {"cavitation_pressure": 1e5},
-    "inertia": {"inertia": True, "density": 8000.0},
+    "cone": {}, "planar": {"geometry": "planar"}, "tilted at the mean radius": {"tilt_radius": "mean"},
+    "planar, mean": {"geometry": "planar", "tilt_radius": "mean"}, "diverging": {"coning": -0.1e-3},
+    "floor": {"cavitation_pressure": 1e5}, "inertia": {"inertia": True, "density": 8000.0},
     "profile": {"model": "profiled", "coning": 0.0, "profile": Profile(RADII, DEPTHS)},
     "planar profile": {"model": "profiled", "geometry": "planar", "profile": Profile(RADII, DEPTHS)},
-}
+}  # fmt: skip
 
 
 def gap_state(share=0.2):

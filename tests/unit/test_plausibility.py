@@ -127,15 +127,12 @@ def test_numbers_without_units():
 @pytest.mark.parametrize(
     "key,slip,fine,shown",
     [
-        ("film.viscosity", "0.8", '"0.8 Pa*s"', 800),
-        ("film.viscosity", "0.8", "0.05", 800),
-        ("film.inner_pressure", "1", '"1 Pa"', 1e-5),
-        ("film.temperature", "400", '"400 K"', 126.85),
-        ("film.coning", "0.05", '"0.05 rad"', 50),
-        ("stator.mass", "120", "0.12", 120_000),
+        ("film.viscosity", "0.8", '"0.8 Pa*s"', 800), ("film.viscosity", "0.8", "0.05", 800),
+        ("film.inner_pressure", "1", '"1 Pa"', 1e-5), ("film.temperature", "400", '"400 K"', 126.85),
+        ("film.coning", "0.05", '"0.05 rad"', 50), ("stator.mass", "120", "0.12", 120_000),
         ("film.density", "0.998", '"0.998 g/cm^3"', 0.000998),
     ],
-)
+)  # fmt: skip
 def test_numbers_without_units_that_no_seal_has(key, slip, fine, shown):
     """Each is told in the unit that may have been meant; none with its unit, or of a usual size."""
     light = ["stator.misalignment=0", "rotor.runout=0", "run.start='rest'"]

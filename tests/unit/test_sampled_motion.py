@@ -219,17 +219,12 @@ def test_csv_and_hdf5_are_the_same(folder):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (None, "no such file"),
-        ("", "an empty file"),
-        ("time, tilt\n" + "0, 0\n" * 6, "time"),
-        ("axial, tilt_x\n" + "0, 0\n" * 6, "axial"),
-        ("time (m), axial\n" + "0, 0\n" * 6, "column time"),
-        ("time, axial\n0, 0\n1, nan\n", "sample 2"),
-        ("time, axial\n0, 0\n1, one\n", "line 3"),
-        ("time, axial\n0, 0\n1\n", "line 3"),
-        ("time, axial, axial\n0, 0, 0\n", "twice"),
+        (None, "no such file"), ("", "an empty file"), ("time, tilt\n" + "0, 0\n" * 6, "time"),
+        ("axial, tilt_x\n" + "0, 0\n" * 6, "axial"), ("time (m), axial\n" + "0, 0\n" * 6, "column time"),
+        ("time, axial\n0, 0\n1, nan\n", "sample 2"), ("time, axial\n0, 0\n1, one\n", "line 3"),
+        ("time, axial\n0, 0\n1\n", "line 3"), ("time, axial, axial\n0, 0, 0\n", "twice"),
     ],
-)
+)  # fmt: skip
 def test_what_is_wrong_with_a_file(folder, text, words):
     (folder / "shaft.csv").unlink() if text is None else (folder / "shaft.csv").write_text(text)
     with pytest.raises(ScenarioError) as error:

@@ -233,15 +233,11 @@ def test_an_override_replaces_its_alternative():
 @pytest.mark.parametrize(
     "override, says",
     [
-        ("rotor.runnout=1", "nearest 'runout'"),
-        ("rotor.runout", "no key=value"),
-        ("=1", "no key=value"),
-        ("shaft.speed.x=1", "a table there"),
-        ("film.clearance=1\nrotor.mass=1", "[film] clearance"),
-        ("a.b.c.d=1", "unknown"),
-        ("..=1", "unknown"),
+        ("rotor.runnout=1", "nearest 'runout'"), ("rotor.runout", "no key=value"), ("=1", "no key=value"),
+        ("shaft.speed.x=1", "a table there"), ("film.clearance=1\nrotor.mass=1", "[film] clearance"),
+        ("a.b.c.d=1", "unknown"), ("..=1", "unknown"),
     ],
-)
+)  # fmt: skip
 def test_bad_overrides(override, says):
     assert says in refusal(FMS, override)
 

@@ -54,13 +54,10 @@ def test_auto_is_the_default_and_needs_no_word_for_an_ordinary_runout():
 CONTACT = ["contact.roughness='0.1 um'", "contact.compressive_strength='1 GPa'"]
 SEALED = ["stator.secondary_seal.friction_force=5 N", "stator.secondary_seal.radius=45 mm"]
 AT_REST = {
-    "not stable": ["shaft.speed=6500 rad/s"],
-    "initial": ["initial.stator.tilt_x=1 urad"],
-    "secondary seal": SEALED,
-    "contact": CONTACT,
-    "speed": ["shaft.speed={time=[0, 1], value=[900, 1000]}"],
+    "not stable": ["shaft.speed=6500 rad/s"], "initial": ["initial.stator.tilt_x=1 urad"], "secondary seal": SEALED,
+    "contact": CONTACT, "speed": ["shaft.speed={time=[0, 1], value=[900, 1000]}"],
     "pressure": ["film.outer_pressure={time=[0, 1], value=['5 bar', '6 bar']}"],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("overrides", AT_REST.values(), ids=AT_REST)

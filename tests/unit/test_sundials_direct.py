@@ -23,13 +23,10 @@ ROOT = Path(__file__).parents[2]
 TURN = 2 * np.pi / SPEED
 MASSLESS = replace(fms(), stator=Stator(support=fms().stator.support, misalignment=25e-6))
 SCENES = {
-    "fmr": fmr(),
-    "fms-linear": fms("linear"),
-    "fmsr": fmsr(),
-    "runup": runup(),
+    "fmr": fmr(), "fms-linear": fms("linear"), "fmsr": fmsr(), "runup": runup(),
     "contact": replace(fms(runout=3e-4), contact=Contact(roughness=1e-7, compressive_strength=3e8)),
     "massless": MASSLESS,
-}
+}  # fmt: skip
 
 
 def end(ready, steps, method, tolerance):

@@ -26,14 +26,11 @@ TURN = 2 * np.pi / SPEED
 MASSLESS = fms(stator=Stator(**ring(mass=0.0, transverse_inertia=0.0, polar_inertia=0.0, misalignment=25e-6)))
 BACK_ENDS = {"compiled loop": "", "scikit-sundae": "python"}
 CASES = {
-    "stator": (fms(), {}),
-    "both rings": (fmsr(), {}),
-    "massless stator": (MASSLESS, {}),
+    "stator": (fms(), {}), "both rings": (fmsr(), {}), "massless stator": (MASSLESS, {}),
     "asperities": (replace(fms(runout=3e-4), contact=Contact(roughness=1e-7, compressive_strength=3e8)), {}),
     "storing": (fms(), {"compressibility": 1e-6}),
-    "by differences": (fmsr(), {"compressibility": 1e-8, "own_derivatives": False}),
-    "changing speed": (runup(), {}),
-}
+    "by differences": (fmsr(), {"compressibility": 1e-8, "own_derivatives": False}), "changing speed": (runup(), {}),
+}  # fmt: skip
 
 
 def on_film(scene, duration=2 * TURN, **more):

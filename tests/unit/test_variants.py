@@ -26,19 +26,12 @@ SHAKEN = replace(fms(), housing=Housing(axial=[AxialVibration(50.0, 1e-6), Axial
 @pytest.mark.parametrize(
     "key, value",
     [
-        ("rotor.runout", 2e-4),
-        ("shaft.speed", RAMP),
-        ("film.model", "profiled"),
-        ("film.floor", 0.01),
-        ("initial.stator.tilt_x", 1e-5),
-        ("stator.support.axial_damping", 12.0),
-        ("housing.axial.1.frequency", 70.0),
-        ("rotor.axial_runout", [AxialRunout(2.0, 1e-6)]),
-        ("contact", ROUGH),
-        ("stator.support", None),
+        ("rotor.runout", 2e-4), ("shaft.speed", RAMP), ("film.model", "profiled"), ("film.floor", 0.01),
+        ("initial.stator.tilt_x", 1e-5), ("stator.support.axial_damping", 12.0), ("housing.axial.1.frequency", 70.0),
+        ("rotor.axial_runout", [AxialRunout(2.0, 1e-6)]), ("contact", ROUGH), ("stator.support", None),
         ("stator.unphysical_inertia", True),
     ],
-)
+)  # fmt: skip
 def test_one_value_changes_and_nothing_else(key, value):
     changed = with_values(SHAKEN, {key: value})
     assert part(changed, key) == value and part(SHAKEN, key) != value
@@ -110,30 +103,19 @@ def test_values_are_those_of_overrides(values):
 @pytest.mark.parametrize(
     "values",
     [
-        {"rotor.runuot": "0.1 mrad"},
-        {"rotor.runout": "0.1 mm"},
-        {"rotor.runout": "much"},
-        {"rotor.runout": "5 um TIR", "film.outer_radius": "5 bar"},
-        {"rotor.runout": float("nan")},
-        {"rotor.runout": "9 mrad"},
-        {"rotor": 3},
-        {"contact.roughness": "0.2 um"},
+        {"rotor.runuot": "0.1 mrad"}, {"rotor.runout": "0.1 mm"}, {"rotor.runout": "much"},
+        {"rotor.runout": "5 um TIR", "film.outer_radius": "5 bar"}, {"rotor.runout": float("nan")},
+        {"rotor.runout": "9 mrad"}, {"rotor": 3}, {"contact.roughness": "0.2 um"},
         {"film.coning": "{ time = [0, 0, 1], value = [1e-3, 2e-3, 2e-3] }"},
-        {"film.density": "{ time = [0, 1], value = [900, 800] }"},
-        {"film.coning_per_kelvin": "1 urad"},
-        {"film.coning_per_kelvin": "1 urad/K"},
-        {"film.model": "raidal"},
-        {"film.inner_radius": "41 mm"},
-        {"closing.spring_force": 50, "closing.balance_ratio": 0.75},
-        {"housing.axial.0.frequency": 50},
-        {"housing.axial.first": 50},
-        {"run.solver": "adam"},
-        {"run.start": "stedy"},
+        {"film.density": "{ time = [0, 1], value = [900, 800] }"}, {"film.coning_per_kelvin": "1 urad"},
+        {"film.coning_per_kelvin": "1 urad/K"}, {"film.model": "raidal"}, {"film.inner_radius": "41 mm"},
+        {"closing.spring_force": 50, "closing.balance_ratio": 0.75}, {"housing.axial.0.frequency": 50},
+        {"housing.axial.first": 50}, {"run.solver": "adam"}, {"run.start": "stedy"},
         {"shaft.speed": 0, "run.samples_per_turn": 8, "run.duration": 1},
         {"stator.support.radius": "1 mm", "stator.support.tilt_stiffness": "-3 N*m/rad"},
     ],
     ids=lambda values: ",".join(values),
-)
+)  # fmt: skip
 def test_errors_are_those_of_overrides(values):
     """The same line, but that structural ones print the override as it was given."""
     text = (
