@@ -1,5 +1,6 @@
 """Radial seals from the command line: run, check, show, plot, go on, the study, and what takes face seals only."""
 
+import copy
 import re
 
 import numpy as np
