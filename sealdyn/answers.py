@@ -54,8 +54,8 @@ class Series:
     the axis on the right."""
 
     kind: str
-    x: Sequence
-    y: Sequence
+    x: Sequence = ()
+    y: Sequence = ()
     z: Sequence | None = None
     label: str = ""
     style: str = ""

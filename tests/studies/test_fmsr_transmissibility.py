@@ -18,14 +18,23 @@ K_F, D_F = 5790.583579096709, 4.082073628553869
 RING = (8e-4, 16e-4, 400.0, 0.24)
 
 
-def answer(file="fmr_reference.toml", overrides=("film.model=linear",), **settings):
+def whole(file="fmr_reference.toml", overrides=("film.model=linear",), **settings):
     return transmissibility.run(read_scenario(SCENARIOS / file, overrides), Settings(**settings), InProcess())
 
 
+def answer(*args, **settings):
+    return whole(*args, **settings).numbers
+
+
 @pytest.fixture(scope="module", params=["fmr_reference.toml", "fms_reference.toml"])
-def greens(request):
+def both(request):
     """Either scenario makes the same three seals."""
-    return answer(request.param, points=41, speed_to=4000.0, time_points=8)
+    return whole(request.param, points=41, speed_to=4000.0, time_points=8)
+
+
+@pytest.fixture
+def greens(both):
+    return both.numbers
 
 
 @pytest.mark.core
@@ -44,7 +53,7 @@ def test_greens_conjecture_and_where_it_fails(greens):
     assert [s["seal"] for s in greens["best"]["static"]] == ["fmsr"]
 
 
-def test_the_critical_misalignment_of_two_floating_rings_is_the_smaller(greens):
+def test_the_critical_misalignment_of_two_floating_rings_is_the_smaller(both, greens):
     """It was that of the stator's alone, the kinder one; and no key was named."""
     rows = {row["quantity"]: row["formula"] for row in greens["table"]}
     static, dynamic = (rows[f"{kind}_transmissibility"]["fmsr"] for kind in ("static", "dynamic"))
@@ -53,10 +62,9 @@ def test_the_critical_misalignment_of_two_floating_rings_is_the_smaller(greens):
     touch = stator + rows["dynamic_transmissibility"]["fmr"]
     sizes = {"stator": (touch - dynamic) / static, "rotor": (touch - static) / dynamic}
     assert rows["critical_misalignment"]["fmsr"] == pytest.approx(min(sizes.values()), rel=1e-9)
-    ring, other = sorted(sizes, key=sizes.get)
-    assert f"FMSR {ring}.misalignment {min(sizes.values()):.5g} beside {other}.misalignment 1" in greens["critical"]
-    assert "FMR stator.misalignment" in greens["critical"] and "FMS rotor.runout" in greens["critical"]
-    assert greens["critical"] in greens["verdict"]
+    ring = min(sizes, key=sizes.get)
+    keys = [row[6] for row in both.tables[0].rows if row[1] == "formula"]
+    assert keys == ["stator.misalignment", "rotor.runout", f"{ring}.misalignment"]
 
 
 def test_lines_and_points_in_time_are_the_rings_in_turning_axes(greens):
@@ -152,7 +160,8 @@ def test_a_seal_of_equal_groups_answers_alike():
         f"rotor.polar_inertia={16e-4 * 16}", f"rotor.support.axial_stiffness={5e5}",
         f"rotor.support.axial_damping={600.0}", "rotor.support.radius=0.08",
     ])  # fmt: skip
-    one, two = (transmissibility.run(s, Settings(points=2, time_points=0), InProcess()) for s in (scenario, other))
+    one, two = (transmissibility.run(s, Settings(points=2, time_points=0), InProcess()).numbers
+                for s in (scenario, other))  # fmt: skip
 
     def flat(groups):
         return {f"{a}.{b}": v for a in ("rotor", "stator") for b, v in groups[a].items()} | {

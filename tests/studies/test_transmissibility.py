@@ -14,7 +14,6 @@ from sealdyn.closed_form import GREEN_1989
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.variants import counterpart, frozen_at_start, with_single_flexible_ring
-from sealdyn.studies._words import speed
 from sealdyn.studies.transmissibility import study as transmissibility
 from sealdyn.studies.transmissibility.study import Settings
 
@@ -22,7 +21,7 @@ SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 def answer(file="fmr_reference.toml", overrides=("film.model=linear",), **settings):
-    return transmissibility.run(read_scenario(SCENARIOS / file, overrides), Settings(**settings), InProcess())
+    return transmissibility.run(read_scenario(SCENARIOS / file, overrides), Settings(**settings), InProcess()).numbers
 
 
 @pytest.mark.parametrize("file, ring", [("fmr_reference.toml", "rotor"), ("fms_reference.toml", "stator")])
@@ -160,14 +159,6 @@ def test_a_turning_stator_carries_the_static_forcing_along():
             assert row[name] == pytest.approx(found[row["seal"]][name][at[row["speed"]]], abs=0.01)
 
 
-def test_words_say_what_is_static_and_that_the_total_is_no_angle():
-    quiet = {"points": 3, "time_points": 0}
-    still, turning = (" ".join(answer(overrides=["film.model=linear", f"stator.speed={w}"], **quiet)["verdict"])
-                      for w in (0, -500))  # fmt: skip
-    assert "static of the stator's (fixed in space)" in still and "static of the stator's (turns with it)" in turning
-    assert "maximum relative misalignment (total, per unit tilts): FMR" in still
-
-
 def test_a_point_without_a_steady_state_is_a_row_with_its_reason():
     found = answer(points=3, speed_to=8000.0, time_points=1)
     failed = [row for row in found["time_domain"] if "failed" in row]
@@ -210,7 +201,7 @@ def test_phases_that_begin_half_a_turn_away_stay_near_zero_and_agree():
             lag = np.array(found[seal][name])
             assert abs(lag[0]) == pytest.approx(180.0) and abs(lag.mean()) < 180.0
             assert np.abs(lag).max() < 270.0
-    assert found["phases_apart"] < 1e-6 and "phases to 3.6e+02" not in " ".join(found["verdict"])
+    assert found["phases_apart"] < 1e-6
 
 
 def test_rings_that_are_neutral_at_rest_have_no_end_of_stability_there():
@@ -220,18 +211,13 @@ def test_rings_that_are_neutral_at_rest_have_no_end_of_stability_there():
     assert all(stretches[0]["to"] > 1.0 for stretches in found["best"].values())
 
 
-def test_the_film_is_told_at_the_speed_in_both_units():
-    found = answer(points=5, time_points=0)
-    assert f"in tilt at {speed(found['own_speed'])}" in found["film"]
-
-
 def test_speeds_end_where_no_film_holds_and_a_gap_that_moves_has_its_points_in_time():
     """The default range was refused, and every point in time failed for a linear film that nobody had asked for."""
     scenario = parse_scenario(BARRIER, "barrier")
-    found = transmissibility.run(scenario, Settings(points=5, time_points=1), InProcess())
-    told, top = " ".join(found["verdict"]), found["speed"][-1]
+    whole = transmissibility.run(scenario, Settings(points=5, time_points=1), InProcess())
+    found, told = whole.numbers, " ".join(whole.notes)
+    top = found["speed"][-1]
     assert top == pytest.approx(found["speeds_held"][1]) and 1600 < top < 1660 < 3 * found["own_speed"]
-    assert f"up to {speed(top)}, beyond which no film holds the closing force" in told
     done = [row for row in found["time_domain"] if "failed" not in row]
     assert {row["speed"] for row in done} >= {found["own_speed"]}
     seals = transmissibility.seals_of(scenario.scene)
@@ -239,9 +225,8 @@ def test_speeds_end_where_no_film_holds_and_a_gap_that_moves_has_its_points_in_t
         _, _, total = seals[row["seal"]].algebra(row["speed"])
         # A hundred thousandths of it, beside the distance of two runs.
         assert row["total"] == pytest.approx(total, rel=1e-3, abs=10 * row["error"]["total"])
-    assert "film.model" not in told
     # The formula of the critical speed knows one gap, and had one where there is none.
     (critical,) = [row for row in found["table"] if row["quantity"] == "critical_speed"]
     assert set(critical["formula"].values()) == {None} == {critical[seal] for seal in ("fmr", "fms", "fmsr")}
     # Linear theory touches at some radians.
-    assert "rad: beyond any small tilt, no limit)" in found["critical"]
+    assert "beyond any small tilt, no limit" in told

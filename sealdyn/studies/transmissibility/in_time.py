@@ -1,15 +1,17 @@
-"""The third road: static, dynamic and total transmissibility of one arrangement, from runs in time."""
+"""Amplitudes and phases of relative tilts over speed; and those of one arrangement, from runs in time."""
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from ...analysis.arrangements import Arrangement, seals_of
+from ...analysis.arrangements import SEALS, Arrangement, seals_of
 from ...dynamics.extrema import MOST
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
+from ...quantities import in_words
 from ...scene.coning import coning_change
 from ...scene.film import Coefficients, aligned_gaps
 from ...scene.scene import Scene
@@ -18,12 +20,27 @@ from ...simulation.selection import choose_method
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
-from .._words import speed as speed_words
-from .curves import PHASES, QUANTITIES, phases
 
+QUANTITIES = ("static", "dynamic", "total")
+PHASES = ("static_phase", "dynamic_phase")
 # Forcing of a time-domain point, as part of the thinnest edge film, and what may be left of its transient.
 AMPLITUDE, LEFT, PER_TURN = 0.2, 1e-9, 64
 COARSER = 100.0
+
+
+def points_in_time(scenario, settings, speeds, own_speed, tools) -> list[dict]:
+    """Rows of a dozen speeds, the scenario's own among them."""
+    if settings.time_points < 1:
+        return []
+    chosen = np.linspace(speeds[0], speeds[-1], settings.time_points + (speeds[0] == 0))
+    chosen = sorted({float(w) for w in [*chosen, own_speed] if w != 0})
+    points = [
+        {"seal": seal, "speed": w, "accuracy": settings.accuracy, "longest": settings.longest}
+        for w in chosen
+        for seal in SEALS
+    ]
+    rows = tools.map(partial(measured, scenario.scene), points, "time domain")
+    return [{"seal": p["seal"], "speed": p["speed"], **row} for p, row in zip(points, rows, strict=True)]
 
 
 def measured(scene, point: dict) -> dict:
@@ -38,7 +55,7 @@ def measured(scene, point: dict) -> dict:
     turn = 2 * math.pi / abs(point["speed"] - seal.stator_speed)
     if decay <= 0:
         kind = "unstable" if decay < 0 else "undamped"
-        raise ValueError(f"{kind} at {speed_words(point['speed'])}: no steady state")
+        raise ValueError(f"{kind} at {in_words('speed', point['speed'])}: no steady state")
     turns = math.ceil(-math.log(LEFT) / decay / turn) + 4
     if turns > point["longest"]:
         raise ValueError(f"the transient takes {turns} turns to die out, more than {point['longest']:g}")
@@ -102,3 +119,31 @@ def _steady(scene: Scene, turns: int, accuracy: float, amplitude: float) -> tupl
     static, dynamic = (np.mean(tilt * np.exp(-1j * w * t)) / amplitude for w in (scene.stator.speed, speed))
     largest = run.extrema.records[1, MOST] / amplitude
     return tuple(float(v) for v in (abs(static), abs(dynamic), largest, *phases(speed, static, dynamic)))
+
+
+def phases(speeds, static, dynamic) -> tuple:
+    """Phases (deg) of the relative tilts (stator minus rotor, in the frame of the forcing) behind their forcings."""
+    sense = np.where(np.asarray(speeds) < 0, -1.0, 1.0)
+    # The rotor carries the dynamic forcing: counted from it, the relative tilt has the other sign.  (+ 0 for no -0.)
+    return tuple(0.0 - sense * np.degrees(np.angle(tilt)) + 0.0 for tilt in (static, -np.asarray(dynamic)))
+
+
+def curves(speeds, tilts) -> dict:
+    """Amplitudes and phases over speed, phases without jumps."""
+    static, dynamic = np.abs(tilts)
+    lags = [_without_jumps(lag).tolist() for lag in phases(speeds, *tilts)]
+    amplitudes = [a.tolist() for a in (static, dynamic, static + dynamic)]
+    return dict(zip((*QUANTITIES, *PHASES), (*amplitudes, *lags), strict=True))
+
+
+def _without_jumps(lag) -> np.ndarray:
+    """Phases (deg) that run on; of those that begin behind and ahead at once, half a turn away, as near to zero as they
+    can be told."""
+    lag = np.unwrap(lag, period=360.0)
+    return lag - 360.0 * np.round(lag.mean() / 360.0) if abs(lag[0]) > 90.0 else lag
+
+
+def phases_apart(one, other) -> float:
+    """Largest distance (deg) of two rows of phases: 359 deg apart is 1 deg apart."""
+    away = np.abs(np.asarray(one) - other) % 360.0
+    return float(np.max(np.minimum(away, 360.0 - away)))
