@@ -14,7 +14,8 @@ from sealdyn.radial_seals.summary import _warnings
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words
 from sealdyn.scenario.reader import parse_scenario, read_scenario
-from sealdyn.scenario.rule_names import RADIAL
+from sealdyn.scenario.rule_names import CIRCUMFERENTIAL
+from sealdyn.scenario.rule_names import LIP as LIP_RULES
 from sealdyn.simulation.simulate import simulate
 
 LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
@@ -159,7 +160,7 @@ def test_a_broken_rule_is_acknowledged_by_its_name(tmp_path):
         assert (
             refused.code == 2 and f"acknowledge.{name}" in refused.err.replace("] ", ".") and "nearest" in refused.err
         )
-    assert {row["rule"] for row in found} == set(RADIAL["circumferential"])
+    assert {row["rule"] for row in found} == set(CIRCUMFERENTIAL)
 
 
 def lip_rules(tmp_path, *values):
@@ -172,7 +173,7 @@ def test_hydrodynamic_lips_have_tables_of_their_own(tmp_path):
     ribbed = "application.hydrodynamic_lip=true"
     usual = lip_rules(tmp_path)
     found = lip_rules(tmp_path, ribbed, "lip.preload='40 N/m'", "shaft.eccentricity='0.02 mm'")
-    assert set(found) == set(RADIAL["lip"]) == set(usual)
+    assert set(found) == set(LIP_RULES) == set(usual)
     load = found["lip_load"]
     assert load["verdict"] == "pass" and (load["least"], load["most"]) == (52.5, 70)
     assert lip_rules(tmp_path, "lip.preload='40 N/m'")["lip_load"]["verdict"] == "note"
