@@ -14,14 +14,29 @@ import numpy as np
 from scipy.constants import g
 from scipy.optimize import brentq, minimize_scalar
 
+from ...answers import Answer, Axis, Level, Panel, Series, Table
+from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scene.variants import arrangement
 from ...units import Acceleration, Frequency
-from .in_time import measured
-from .small_motion import ShakenSeal
+from .. import Info
+from .shaken_seal import ShakenSeal, measured
 
-WITH_WAVES = True
-REFUSES = ("secondary-seal",)
+INFO = Info(
+    timed=("housing_vibration", 3),
+    asks="At which vibration do the faces touch?",
+    refuses=("secondary-seal",),
+    wavy=True,
+    units={
+        "axial_gain": "m/m", "angular_gain": "rad/rad", "axial_per_acceleration": "m/(m/s^2)",
+        "angular_per_acceleration": "rad/(rad/s^2)", "axial_touch": "m/s^2", "axial_touch_aligned": "m/s^2",
+        "angular_touch": "rad/s^2", "angular_touch_aligned": "rad/s^2", "frequency": "Hz", "damped_frequency": "Hz",
+        "growth_rate": "1/s", "damping_ratio": "1", "gain": "1", "touch": "m/s^2", "acceleration": "m/s^2",
+        "lowest": "Hz", "highest": "Hz", "accelerations": "m/s^2", "inside": "1", "margin": "1", "film_left": "m",
+        "deviation": "1", "ratio": "1",
+    },
+    along={"table": ("frequency",), "modes": ("frequency",)},
+)  # fmt: skip
 DIRECTIONS = ("axial", "angular")
 # The gear mesh of the guide (m/s^2), where the scenario's application has no frequencies (Hz) of its own.
 GEAR_MESH, GEAR_MESH_ACCELERATION = (5400.0,), 45.0 * g
@@ -29,17 +44,13 @@ GEAR_MESH, GEAR_MESH_ACCELERATION = (5400.0,), 45.0 * g
 NEAR = (-4.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 4.0)
 # Of the accelerations that are those of a direction.
 OF_DIRECTION = {"axial": "m/s^2", "angular": "rad/s^2"}
-ALONG = {"table": ("frequency",), "modes": ("frequency",)}
-units = {"axial_gain": "m/m", "angular_gain": "rad/rad", "axial_per_acceleration": "m/(m/s^2)",
-         "angular_per_acceleration": "rad/(rad/s^2)", "axial_touch": "m/s^2", "axial_touch_aligned": "m/s^2",
-         "angular_touch": "rad/s^2", "angular_touch_aligned": "rad/s^2", "frequency": "Hz", "damped_frequency": "Hz",
-         "growth_rate": "1/s", "damping_ratio": "1", "gain": "1", "touch": "m/s^2", "acceleration": "m/s^2",
-         "lowest": "Hz", "highest": "Hz", "accelerations": "m/s^2", "inside": "1", "margin": "1",
-         "film_left": "m", "deviation": "1", "ratio": "1"}  # fmt: skip
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("housing_vibration", 3)
+WORDS = {"axial": "axial vibration of the housing", "angular": "angular vibration of the face's outer edge"}
+EDGE = {"axial": "axial", "angular": "angular, at the outer edge"}
+# Colours and marks; curves that lie on each other are seen.
+STYLE = {"axial": ("rotor thick", "rotor circle"), "angular": ("stator", "stator square")}
+# Amplitudes of the housing (m) drawn as lines; room beside the first and last frequency.
+AMPLITUDES = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+ROOM = 1.05
 
 
 @dataclass(frozen=True)
@@ -63,7 +74,7 @@ class Settings:
     """Frequencies in the time domain, beside that of the easiest touch."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """The film over frequency, where it is closed most easily, the gear mesh, and the time domain."""
     if not 0.0 < settings.lowest < settings.highest:
         found = f"{settings.lowest:g} to {settings.highest:g} Hz"
@@ -76,7 +87,7 @@ def run(scenario, settings, tools) -> dict:
         columns |= curves(seal, direction, frequencies)
         tools.say(0.2)
     film, edge = seal.model.scene.film, seal.model.scene.film.outer_radius
-    answer = {
+    numbers = {
         "arrangement": arrangement(scenario.scene),
         "film": seal.model.interface.name,
         "directions": list(directions),
@@ -95,16 +106,16 @@ def run(scenario, settings, tools) -> dict:
         "gear_mesh": gear_mesh(seal, scenario.application, directions, edge),
         "table": columns,
     }  # fmt: skip
-    points = _points(settings, answer)
+    points = _points(settings, numbers)
     if points:
         # What a gas dam takes a minute for is not what everybody asks.
         tools.tell(f"vibration: {len(points)} tones in the time domain; --runs 0 leaves them out")
     rows = tools.map(partial(measured, scenario.scene), points, "time domain") if points else []
-    answer["time_domain"] = [{**point, **row} for point, row in zip(points, rows, strict=True)]
-    apart = [row["deviation"] for row in answer["time_domain"] if "failed" not in row]
-    answer["deviation"] = max(apart, default=None)
-    answer["units"] = dict.fromkeys(("weakest/touch", "time_domain/touch", "linear_touch"), unit_of(directions))
-    return answer | {"verdict": _verdict(answer)}
+    numbers["time_domain"] = [{**point, **row} for point, row in zip(points, rows, strict=True)]
+    apart = [row["deviation"] for row in numbers["time_domain"] if "failed" not in row]
+    numbers["deviation"] = max(apart, default=None)
+    numbers["units"] = dict.fromkeys(("weakest/touch", "time_domain/touch", "linear_touch"), unit_of(directions))
+    return Answer(numbers, _found(numbers), _tables(numbers), _panels(numbers), _notes(numbers))
 
 
 def unit_of(directions) -> str:
@@ -192,104 +203,127 @@ def _points(settings, answer) -> list[dict]:
     return points
 
 
-def tables(answer) -> list:
-    """Modes, the gear mesh, and the time domain."""
-    modes = (("mode", "kind"), ("turns", "direction"), ("natural, Hz", "frequency"), ("damped, Hz", "damped_frequency"),
-             ("damping ratio", "damping_ratio"), ("growth rate, 1/s", "growth_rate"))  # fmt: skip
-    mesh = (("gear mesh", "direction"), ("frequency, Hz", "frequency"), ("touch, g", "touch", 1 / g),
-            ("times 45 g", "margin"), ("film left at 45 g, um", "film_left", 1e6))  # fmt: skip
-    time = (("in time", "direction"), ("frequency, Hz", "frequency"), ("gap per motion", "gain"),
-            ("away from linear", "deviation"), ("touch, g", "in_g"), ("linear, g", "linear_in_g"), ("ratio", "ratio"),
-            ("", "said"))  # fmt: skip
-    rows = []
-    for row in answer["time_domain"]:
-        arm = (answer["outer_radius"] if row["direction"] == "angular" else 1.0) / g
-        rows.append(row | {f"{name}in_g": arm * row[key] for name, key in (("", "touch"), ("linear_", "linear_touch"))
-                           if row.get(key) is not None})  # fmt: skip
-    return [(answer["modes"], modes), (answer["gear_mesh"], mesh), (rows, time)]
+# --- what is shown ---------------------------------------------------------------------------------------
 
 
-# --- what is said ----------------------------------------------------------------------------------------
+def _arm(numbers, direction: str) -> float:
+    """From an acceleration of this direction to one of the housing or of the face's outer edge (m/s^2)."""
+    return numbers["outer_radius"] if direction == "angular" else 1.0
 
-WORDS = {"axial": "Axial", "angular": "Angular"}
+
+def _found(numbers) -> str:
+    """From which acceleration on the film is closed, where most easily."""
+    said = []
+    for found in numbers["weakest"]:
+        touch = in_words("acceleration", _arm(numbers, found["direction"]) * found["touch"])
+        ends = "" if found["inside"] else ", an end of the range"
+        said.append(
+            f"{WORDS[found['direction']]} from {touch} on, at {in_words('frequency_hz', found['frequency'])}{ends}"
+        )
+    if not any(found["touch"] for found in numbers["weakest"]):
+        return "The scene's own runout and misalignment close the film without any vibration."
+    return f"The faces touch in {'; in '.join(said)} (linear theory)."
 
 
-def _verdict(answer) -> list[str]:
-    said = [_weakest(answer, k) for k in range(len(answer["directions"]))]
-    said += _bands(answer)
-    said += [f"Gear mesh, {row['frequency']:.5g} Hz, {row['direction']}: linear touch at {in_g(row['touch'])}, "
-             f"{digits(row['margin'])} times the guide's 45 g." for row in answer["gear_mesh"]]  # fmt: skip
-    said += _in_time(answer)
-    if answer["riding"]:
+def _notes(numbers) -> list[str]:
+    """What touch means, and tones that had none in time."""
+    rows, said = numbers["time_domain"], []
+    if numbers["riding"]:
         said.append("The asperities touch at rest: their stiffness is in the response, and touch is where the faces' "
                     "mean planes meet.")  # fmt: skip
-    return said
-
-
-def _weakest(answer, k: int) -> str:
-    """Where the film is closed most easily, and how it follows there."""
-    found, peak, direction = answer["weakest"][k], answer["peaks"][k], answer["directions"][k]
-    arm = answer["outer_radius"] if direction == "angular" else 1.0
-    where = "of the face's outer edge" if direction == "angular" else "of the housing"
-    ends = "" if found["inside"] else ", an end of the range"
-    if found["touch"] == 0.0:
-        return f"{WORDS[direction]} vibration: the scene's own runout and misalignment close the film without any."
-    amplitude = 1e3 * arm * found["touch"] / (2 * math.pi * found["frequency"]) ** 2
-    return (f"{WORDS[direction]} vibration {where} touches most easily at {found['frequency']:.4g} Hz{ends}: from "
-            f"{in_g(arm * found['touch'])} on, {digits(amplitude)} mm (linear theory); at most "
-            f"{100 * peak['gain']:.3g} % of it moves the gap, at {peak['frequency']:.4g} Hz.")  # fmt: skip
-
-
-def _bands(answer) -> list[str]:
-    """At which frequencies the accelerations asked close the film."""
-    said = []
-    for direction in answer["directions"]:
-        for acceleration in answer["accelerations"]:
-            found = [band for band in answer["bands"]
-                     if (band["direction"], band["acceleration"]) == (direction, acceleration)]  # fmt: skip
-            ranges = " and ".join(f"{band['lowest']:.4g} to {band['highest']:.4g} Hz" for band in found)
-            if not found:
-                where = "leave the film open at every frequency"
-            elif len(found) == 1 and found[0]["lowest"] == answer["table"]["frequency"][0]:
-                top = found[0]["highest"]
-                open_above = top < answer["table"]["frequency"][-1]
-                where = f"leave the film open above {top:.4g} Hz" if open_above else "close the film at every frequency"
-            else:
-                where = f"close the film at {ranges}"
-            said.append(f"{in_g(acceleration)} {direction} {where} (linear theory).")
-    return said
-
-
-def _in_time(answer) -> list[str]:
-    """How far the nonlinear film in time is from linear theory."""
-    rows = answer["time_domain"]
-    done, said = [row for row in rows if "failed" not in row], []
-    if done:
-        said.append(f"In time, {len(done)} tones: small motion within {answer['deviation']:.1e} of linear theory.")
-    ratios = [row["ratio"] for row in done if row["ratio"] is not None]
-    if ratios:
-        more = (
-            "later than linear theory says"
-            if min(ratios) > 1.0
-            else "sooner in places"
-            if max(ratios) > 1.0
-            else "sooner"
-        )
-        ends = dict.fromkeys(f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
-        said[-1] += f" The nonlinear film touches {' to '.join(ends)} times the linear acceleration: {more}."
-    untouched = sorted({row["said"] for row in done if row["said"]})
+    untouched = sorted({row["said"] for row in rows if row.get("said")})
     said += [f"Tones without a touch in time: {'; '.join(untouched)}."] if untouched else []
     lost = [row["failed"] for row in rows if "failed" in row]
-    if lost:
-        said.append(f"{len(lost)} tones failed in time, e.g. {lost[0]}")
-    return said
+    return said + ([f"{len(lost)} tones failed in time, e.g. {lost[0]}"] if lost else [])
 
 
-def in_g(acceleration: float) -> str:
-    """An acceleration (m/s^2) as it is spoken of."""
-    return f"{digits(acceleration / g)} g"
+def _tables(numbers) -> list[Table]:
+    """Touch, bands, modes, gear mesh, and the time domain; accelerations of the housing or the outer edge."""
+    hertz, rows = "frequency_hz", []
+    for found, peak in zip(numbers["weakest"], numbers["peaks"], strict=True):
+        touch = _arm(numbers, found["direction"]) * found["touch"]
+        amplitude = touch / (2 * math.pi * found["frequency"]) ** 2
+        rows.append([found["direction"], found["frequency"], touch, amplitude, peak["gain"], peak["frequency"]])
+    columns = [("1", "direction"), (hertz, "touches most easily at"), ("acceleration", "from"), ("m", "amplitude"),
+               ("share", "at most moves the gap"), (hertz, "at")]  # fmt: skip
+    tables = [Table("touch", columns, rows)]
+    rows = [[band["acceleration"], band["direction"], band["lowest"], band["highest"]] for band in numbers["bands"]]
+    asked = [[a, d, None, None] for a in numbers["accelerations"] for d in numbers["directions"]
+             if not any(row[:2] == [a, d] for row in rows)]  # fmt: skip
+    columns = [("acceleration", "asked"), ("1", "direction"), (hertz, "closes the film from"), (hertz, "to")]
+    tables.append(Table("bands", columns, rows + asked))
+    names = {"kind": ("1", "mode"), "direction": ("1", "turns"), "frequency": (hertz, "natural"),
+             "damped_frequency": (hertz, "damped"), "damping_ratio": ("1", "damping ratio"),
+             "growth_rate": ("growth_rate", "growth rate")}  # fmt: skip
+    tables.append(Table("modes", list(names.values()), [[mode.get(n) for n in names] for mode in numbers["modes"]]))
+    names = {"direction": ("1", "gear mesh"), "frequency": (hertz, "frequency"), "touch": ("acceleration", "touch"),
+             "margin": ("1", "times 45 g"), "film_left": ("h_min", "film left at 45 g")}  # fmt: skip
+    tables.append(Table("gear mesh", list(names.values()), [[row[n] for n in names] for row in numbers["gear_mesh"]]))
+    rows = []
+    for row in numbers["time_domain"]:
+        arm = _arm(numbers, row["direction"])
+        touches = [None if row.get(name) is None else arm * row[name] for name in ("touch", "linear_touch")]
+        rows.append(
+            [row["direction"], row["frequency"], row.get("gain"), row.get("deviation"), *touches, row.get("ratio")]
+        )
+    columns = [("1", "in time"), (hertz, "frequency"), ("1", "gap per motion"), ("1", "away from linear"),
+               ("acceleration", "touch"), ("acceleration", "linear"), ("1", "ratio")]  # fmt: skip
+    return [*tables, Table("in time", columns, rows)]
 
 
-def digits(value: float) -> str:
-    """Four digits, without a power of ten below a million."""
-    return f"{float(f'{value:.4g}'):g}"
+def _panels(numbers) -> list[Panel]:
+    """The acceleration of touch above how much of the motion the gap takes up."""
+    table = numbers["table"]
+    frequency = table["frequency"]
+    axis = Axis(
+        "frequency_hz", "frequency of the housing", scale="log", low=frequency[0] / ROOM, high=ROOM * frequency[-1]
+    )
+    touches = {d: [_arm(numbers, d) * v or None for v in table[f"{d}_touch"]] for d in numbers["directions"]}
+    aligned = {d: [_arm(numbers, d) * v for v in table[f"{d}_touch_aligned"]] for d in numbers["directions"]}
+    # Whether the scene's own runout and misalignment are seen.
+    own = any((v or 0.0) < 0.97 * w for d in touches for v, w in zip(touches[d], aligned[d], strict=True))
+    above, below = [], []
+    for direction in numbers["directions"]:
+        line, mark = STYLE[direction]
+        done = [row for row in numbers["time_domain"] if row["direction"] == direction and "failed" not in row]
+        touched = [row for row in done if row.get("touch") is not None]
+        above.append(Series("line", frequency, touches[direction], label=EDGE[direction], style=line))
+        if own:
+            above.append(Series("line", frequency, aligned[direction], label=f"{direction}, aligned faces",
+                                style=f"{line.split()[0]} dashed thin"))  # fmt: skip
+        if touched:
+            above.append(Series("marks", [row["frequency"] for row in touched],
+                                [_arm(numbers, direction) * row["touch"] for row in touched],
+                                label=f"{direction}, aligned, in time", style=f"{mark} open front"))  # fmt: skip
+        below.append(Series("line", frequency, table[f"{direction}_gain"], style=line))
+        below.append(Series("marks", [row["frequency"] for row in done], [row.get("gain") for row in done],
+                            style=f"{mark} open front"))  # fmt: skip
+    # A mesh outside the range is in the table.
+    meshes = {(row["frequency"], row["acceleration"]) for row in numbers["gear_mesh"]}
+    meshes = [mesh for mesh in meshes if frequency[0] <= mesh[0] <= frequency[-1]]
+    if meshes:
+        above.append(Series("marks", *zip(*meshes, strict=True), label="gear mesh of the guide, 45 g",
+                            style="bad star large front"))  # fmt: skip
+    values = [v for one in above for v in one.y if v] + list(numbers["accelerations"])
+    low, high = 0.5 * min(values), 2.0 * max(values)
+    levels = [Level(a, "asked", style="bad dashed", number=True) for a in numbers["accelerations"]]
+    modes = [Level(mode["frequency"], f"{mode['kind']} mode", upright=True, style="grey dotted")
+             for mode in numbers["modes"] if frequency[0] < mode.get("frequency", 0.0) < frequency[-1]]  # fmt: skip
+    return [
+        Panel("Acceleration at which the faces touch", axis, Axis("acceleration", scale="log", low=low, high=high),
+              [*_amplitudes(frequency, low, high), *above], levels, tall=1.3),
+        Panel("What the gap takes up", axis, Axis("share", "gap's share of the motion", low=0.0), below, modes,
+              below=True),
+    ]  # fmt: skip
+
+
+def _amplitudes(frequency, low: float, high: float) -> list[Series]:
+    """Lines of equal amplitude of the housing, named where they enter the panel."""
+    series = []
+    for amplitude in AMPLITUDES:
+        ends = [max(frequency[0], math.sqrt(low / amplitude) / (2 * math.pi)),
+                min(frequency[-1], math.sqrt(high / amplitude) / (2 * math.pi))]  # fmt: skip
+        if ends[1] > 2.0 * ends[0]:
+            y = [amplitude * (2 * math.pi * at) ** 2 for at in ends]
+            series.append(Series("line", ends, y, style="grey thin faint", names=[in_words("m", amplitude)]))
+    return series
