@@ -14,15 +14,13 @@ from scipy.stats import kstest, multivariate_normal, norm, sobol_indices, truncn
 from sealdyn.dynamics.run_state import FilmClosed
 from sealdyn.numerics import parallel
 from sealdyn.report.charts import study_tolerance
-from sealdyn.report.text import study_lines
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.batch import run_many
-from sealdyn.studies._runner import run_study, study_tables
+from sealdyn.studies._runner import run_study
 from sealdyn.studies.tolerance import study
 from sealdyn.studies.tolerance.estimates import probability, sobol, sobol_intervals
 from sealdyn.studies.tolerance.scatter import SCRAMBLES, points, read_correlations, read_scatter
-from sealdyn.studies.tolerance.verdict import _tighten_sentence, sentences
 
 PATH = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 LINEAR = ["run.turns=2", 'run.start="steady"', "film.model=linear", "stator.misalignment=0"]
@@ -454,7 +452,7 @@ def test_runs_that_are_not_possible_are_counted(tmp_path):
     assert ends["not possible"] > 0 and ends["ok"] > 0 and sum(ends.values()) == 48
     assert risk["unknown"] > 0 and risk["runs"] + risk["unknown"] == 32
     assert risk["high"] > probability(np.zeros(risk["runs"]), np.arange(risk["runs"]) % SCRAMBLES)["high"]
-    assert len(answer["verdict"]) == 3 and "[film] coning" in answer["verdict"][2]
+    assert any("[film] coning" in note for note in answer["notes"])
     assert answer["sobol"]["base_points"]["h_min.value"] <= answer["moments"]["h_min.value"]["count"]
     figure = drawn(study_tolerance, tmp_path / "t.h5", tmp_path / "t.png")
     assert text_trouble(figure) == ([], [])
@@ -500,8 +498,9 @@ def test_a_killed_study_goes_on_without_repeating(tmp_path):
 def test_chart_and_tables_show_the_answer(tmp_path, closed_form):
     closed_form(lambda x, y: x + 0.1 * y, **{"h_min.of_clearance": lambda value: 1 - value / 25e-6})
     answer = tolerance(tmp_path, THREE[:2], samples=64)
-    lines = study_lines(answer, study_tables("tolerance", answer))
-    assert len(answer["verdict"]) <= 3 and any(line.split()[0] == "rotor.runout" for line in lines)
+    spreads, keys, *_ = answer["tables"]
+    assert {row[0] for row in keys["rows"]} == {"rotor.runout", "stator.misalignment"}
+    assert spreads["rows"][0][0] == "h_min.value" and spreads["of_rows"][0]["unit"] == "m"
     figure = drawn(study_tolerance, tmp_path / "t.h5", tmp_path / "t.png")
     assert text_trouble(figure) == ([], [])
     (bars,) = [c for c in panel(figure, "What makes h_min.value scatter").containers if c.get_label() == "total"]
@@ -545,34 +544,3 @@ def test_dependent_normals_are_one_distribution():
     a, _ = points(scatters, 8192, 1, factor)
     exact = multivariate_normal([0, 0], [[1, 0.7], [0.7, 1]]).cdf([-0.5, 0.3])
     assert np.mean((a[:, 0] < -0.5) & (a[:, 1] < 0.3)) == pytest.approx(exact, abs=0.005)
-
-
-def test_an_output_that_hardly_scatters_is_said_to(tmp_path):
-    """It read "2.389 to 2.389 um in nine seals of ten; tighten ... first: its total index is 0.98"."""
-    levels = {"1": 2.3890, "5": 2.3891, "25": 2.3891, "50": 2.3891, "75": 2.3892, "95": 2.3892, "99": 2.3892}
-    answer = {
-        "quantiles": {"h_min.value": {level: 1e-6 * value for level, value in levels.items()}},
-        "output_units": {"h_min.value": "m"},
-        "moments": {"h_min.value": {"count": 512}},
-        "runs": {"distribution": 512},
-    }
-    said = _tighten_sentence(answer, "h_min.value")
-    assert said.startswith("h_min.value hardly scatters: 2.389 um within 0.004 %") and "--outputs" in said
-
-
-def test_indices_of_few_samples_are_said_to_be_rough():
-    """First indices above the total stood there without a word, and "0 of 128 runs" beside 512 that were run."""
-    row = {"total_low": 0.3, "total_high": 0.9, "halved": 0.8, "removed": 0.6, "rank_correlation": 0.7}
-    rows = [row | {"key": "film.coning", "first": 0.81, "total": 0.62}, row | {"key": "b", "first": 0.3, "total": 0.29}]
-    answer = {
-        "quantiles": {"h_min.value": dict(zip(("5", "50", "95"), (1e-6, 2e-6, 3e-6), strict=True))},
-        "output_units": {"h_min.value": "m"},
-        "moments": {"h_min.value": {"count": 128}},
-        "runs": {"distribution": 128, "asked": 512, "unstable": 0, "closed_at_start": 0, "ends": {"ok": 512}},
-        "tighten": {"h_min.value": rows},
-        "outputs": ["h_min.value"],
-        "probability_of_contact": probability(np.zeros(128), np.arange(128) % 2),
-    }
-    touch, tighten = sentences(answer, 512 * [{"status": "ok"}])
-    assert "0 of 128 runs" in touch and "the other 384 runs repeat these" in touch
-    assert "as that of film.coning is here" in tighten and " b " not in tighten.partition("cannot be above")[2]

@@ -5,8 +5,6 @@ import pytest
 from drawn import panel, study, text_trouble
 from test_charts_untuned import RPM, empty, ticks
 
-from sealdyn.studies.tolerance.verdict import listed
-
 QUANTILES = ("1", "5", "25", "50", "75", "95", "99")
 
 
@@ -67,7 +65,3 @@ def test_runs_are_whole_and_what_was_not_asked_takes_no_room(tmp_path):
     assert empty(figure) == [] and "Do the indices settle?" not in [ax.get_title("left") for ax in figure.axes]
     counts = [float(word) for word in ticks(panel(figure, "h_min.value"))[0][1]]
     assert all(count == int(count) for count in counts) and counts[1] in (1.0, 2.0, 5.0)
-
-
-def test_keys_are_listed_as_in_a_sentence():
-    assert [listed(list(words)) for words in ("a", "ab", "abc")] == ["a", "a and b", "a, b and c"]

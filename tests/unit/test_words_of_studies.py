@@ -6,9 +6,6 @@ import pytest
 
 from sealdyn.report.text import study_lines
 from sealdyn.studies._words import frequencies, quantity, shown_in, speed, wear, wearing
-from sealdyn.studies.runup.sentences import load_sentences
-from sealdyn.studies.runup.study import tables as runup_tables
-from sealdyn.studies.tolerance.verdict import _contact_sentence
 from sealdyn.studies.wear import study as wear_study
 
 
@@ -50,28 +47,6 @@ def test_speeds_of_a_table_have_no_exponent():
     rows = [{"w": 5600.0}, {"w": 5.6e6}, {"w": 0.01}]
     cells = [line.strip() for line in study_lines({"verdict": []}, [(rows, (("rpm", "w", 30 / math.pi),))])]
     assert cells == ["rpm", "53480", "5.348e+07", "0.09549"]
-
-
-def test_shares_of_seals_up_to_all_of_them():
-    risk = {"value": 1.0, "count": 32, "runs": 32, "low": 0.888, "high": 1.0}
-    answer = {
-        "probability_of_contact": risk,
-        "runs": {"unstable": 0, "closed_at_start": 0, "asked": 32, "distribution": 32},
-    }
-    assert "88.8 to 100 %" in _contact_sentence(answer)
-
-
-def test_ramps_of_a_pressure_are_told_in_bar_and_flows_of_gas_in_litres():
-    row = {"rate": 2e6, "h_min": 2e-6, "relative_misalignment": 1e-6, "leakage": 4e-4, "leakage_least": 2e-5}
-    slow = {"h_min": [3e-6, 2e-6], "relative_misalignment": [1e-6, 1e-6], "leakage": [4e-4, 2e-5]}
-    rows = [row, {**row, "rate": None, "h_min": 2.5e-6}]
-    answer = {"key": "film.inner_pressure", "begin": 1e6, "end": 4e5, "unit": "Pa", "rate_unit": "Pa/s",
-              "quasi_static": slow, "slowest": -300.0, "rows": rows}  # fmt: skip
-    said = " ".join(load_sentences(answer))
-    assert "at 20 bar/s." in said and "24 l/min at begin" in said and "e+" not in said
-    heading, *rows = study_lines({"verdict": []}, runup_tables(answer))
-    assert "rate, bar/s" in heading and "leakage from, l/min" in heading
-    assert rows[0].split()[0] == "20" and "24" in rows[0].split() and "a step" in rows[1]
 
 
 def test_wear_has_one_unit_and_names_who_wears():

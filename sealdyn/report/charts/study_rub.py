@@ -41,7 +41,7 @@ def draw(archive_path, out_path):
     # One point has its section above its spectrum, several have them side by side.
     right = [[f"section {k}", f"spectrum {k}"] for k in range(len(points))]
     right = [[name] for name in right[0]] if len(right) == 1 else right
-    words = next((v for v in answer["verdict"] if v.startswith(answer["key"])), answer["verdict"][0])
+    words = answer["verdict"][0]
     words = f"{study['name']}: {words}"
     sides = {"mosaic": [[left, right]], "width_ratios": (5, 4)} if right else {"mosaic": left}
     figure, ax = study_page(study, 13.0 if right else 8.0, 8.6, below=words, **sides)

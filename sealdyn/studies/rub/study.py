@@ -12,40 +12,43 @@ import numpy as np
 from ...analysis.continuation import frozen_at_end, sweep_branch
 from ...analysis.whirl import free_model
 from ...analysis.whirl.rubbing import settles
+from ...answers import Answer, Table
 from ...numerics import time_series
 from ...numerics.lyapunov import horizon
 from ...numerics.piecewise_linear import initially
+from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import si_unit, values_in_si
 from ...scene.variants import part
 from ...simulation.stability import critical_speed
 from ...status import Status
 from ...units import Speed
-from .._words import RPM, plain, quantity, shown_in, speed
+from .. import Info
 from .statistics import evaluate_point, touch_level
 
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
-ALONG = {
-    "rows": ("value",), "rows/section": ("rows/kept",), "rows/h_min": ("rows/kept",),
-    "rows/orders": ("rows/line",), "rows/amplitude": ("rows/line",), "separation/apart": ("separation/period",),
-    "whirl/rows": ("speed",), "whirl/rows/amplitudes": ("whirl/rows/turn",),
-}  # fmt: skip
-units = {"apart": "of clearance/outer radius", "h_min": "m", "impulse": "N*s", "wall_time": "s", "speed": "rad/s",
-         "end": "SI", "rows/lines/between": "1"}  # fmt: skip
-units |= dict.fromkeys(("section", "amplitude", "amplitudes", "from"), "rad")
-units |= dict.fromkeys((f"rows/lines/{order}" for order in ("0.5", "1", "1.5", "2", "3", "4")), "rad")
-units |= dict.fromkeys(("contact_power", "friction_power"), "W")
-units |= {f"{name}/{what}": unit for what in ("values", "uncertainties") for name, unit in (
-    *((f"h_min_{n}", "m") for n in ("mean", "std", "median", "q05", "q95")),
-    *((f"section_{n}", "rad") for n in ("x_mean", "y_mean", "x_std", "y_std")), ("impulse", "N*s"))}  # fmt: skip
-units |= dict.fromkeys(("period", "distinct", "contacts", "contact_share", "contact_force", "exponent", "uncertainty",
-                        "multiplier", "orders", "evaluations", "first_contact", "turns", "whirl_ratio", "values",
-                        "uncertainties", "spectrum", "accuracies"), "1")  # fmt: skip
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("rub_chaotic", 82)
+INFO = Info(
+    timed=("rub_chaotic", 82),
+    units={
+        "apart": "of clearance/outer radius", "h_min": "m", "impulse": "N*s", "wall_time": "s", "speed": "rad/s",
+        "end": "SI", "rows/lines/between": "1",
+        **dict.fromkeys(("section", "amplitude", "amplitudes", "from"), "rad"),
+        **dict.fromkeys((f"rows/lines/{order}" for order in ("0.5", "1", "1.5", "2", "3", "4")), "rad"),
+        **dict.fromkeys(("contact_power", "friction_power"), "W"),
+        **{f"{name}/{what}": unit for what in ("values", "uncertainties") for name, unit in (
+            *((f"h_min_{n}", "m") for n in ("mean", "std", "median", "q05", "q95")),
+            *((f"section_{n}", "rad") for n in ("x_mean", "y_mean", "x_std", "y_std")), ("impulse", "N*s"))},
+        **dict.fromkeys(("period", "distinct", "contacts", "contact_share", "contact_force", "exponent", "uncertainty",
+                         "multiplier", "orders", "evaluations", "first_contact", "turns", "whirl_ratio", "values",
+                         "uncertainties", "spectrum", "accuracies"), "1"),
+    },
+    along={
+        "rows": ("value",), "rows/section": ("rows/kept",), "rows/h_min": ("rows/kept",),
+        "rows/orders": ("rows/line",), "rows/amplitude": ("rows/line",), "separation/apart": ("separation/period",),
+        "whirl/rows": ("speed",), "whirl/rows/amplitudes": ("whirl/rows/turn",),
+    },
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,7 @@ class Settings:
     """Speeds of that; empty: 1.02, 1.1 and 1.3 of the critical speed."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Diagram, judgement where it is needed, and the fate of whirl if asked."""
     if scenario.scene.contact is None:
         raise ScenarioError(scenario.name, "contact", "nothing", "a [contact] table: there is no rub without")
@@ -95,13 +98,13 @@ def run(scenario, settings, tools) -> dict:
     found = tools.map(partial(sweep_branch, scenario.scene), chains, "chain")
     failed = [row["failed"] for row in found if "failed" in row]
     rows = [row for part in found for row in part.get("rows", [])]
-    answer = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
-    answer["units"] = {"rows/value": unit}
-    answer |= _judged(base, rows, settings, scenario, tools)
-    answer["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
+    numbers = {"key": key, "touch": touch_level(scenario.scene), "rows": rows, "reason": failed}
+    numbers["units"] = {"rows/value": unit}
+    numbers |= _judged(base, rows, settings, scenario, tools)
+    numbers["whirl"] = _whirled(base, scenario, settings, tools) if settings.whirl else None
     if not any(row["status"] == Status.OK for row in rows):
-        answer["status"] = Status.FAILED
-    return {**answer, "verdict": sentences(answer)}
+        numbers["status"] = Status.FAILED
+    return Answer(numbers, _found(numbers), _tables(numbers), notes=failed)
 
 
 def _values(scenario, key, unit, settings) -> list[float]:
@@ -166,70 +169,56 @@ def whirl(scene, point: dict) -> dict:
     return settles(frozen_at_end(scene), point["speed"], point["accuracy"])
 
 
-# --- in words ---------------------------------------------------------------------------------------------
+# --- what is shown ------------------------------------------------------------------------------------------
 
 
-def tables(answer) -> list:
-    """Points of the diagram, and the whirls let go."""
-    unit, factor = _shown(answer)
-    value = (f"{answer['key']}, {unit}" if unit else answer["key"], "value", factor)
-    share = (("contact, % of time", "contact_share", 100), ("% of closing force", "contact_force", 100))
-    points = (("going", "direction"), value, ("motion", "class"), *share, ("exponent per period", "exponent"),
-              ("+-", "uncertainty"), ("evaluations per turn", "evaluations"))  # fmt: skip
-    whirls = (("speed, rpm", "speed", RPM), ("whirl", "fate"), ("turns", "turns"),
-              ("first touch, turns", "first_contact"), ("whirl ratio", "whirl_ratio"), *share)  # fmt: skip
-    return [(answer["rows"], points), ((answer["whirl"] or {}).get("rows"), whirls)]
-
-
-def sentences(answer) -> list[str]:
-    """The verdict: motion along the path, what can be foretold, what becomes of whirl."""
-    unit, factor = _shown(answer)
-    ways = {w: _classes([row for row in answer["rows"] if row["direction"] == w], factor) for w in ("up", "down")}
-    paths = "; ".join(f"going {way}: {path}" for way, path in ways.items() if path)
-    key = f"{answer['key']} ({unit})" if unit else answer["key"]
-    lines = [f"{key} {paths}." if paths else "No point of the diagram was reached."]
-    if answer["judge"]:
-        lines.append(_foretold(answer, quantity(answer["judge"]["value"], _unit(answer))))
-    if answer["whirl"]:
-        critical, rows = answer["whirl"]["critical_speed"], answer["whirl"]["rows"]
-        fates = ", ".join(f"{row['fate']} at {speed(row['speed'])}" for row in rows if "failed" not in row)
-        where = f"critical speed {speed(critical)}" if critical else "no critical speed"
-        lines.append(f"Small whirls of the unforced seal, {where}: {fates or 'none'}.")
-    return lines
-
-
-def _unit(answer) -> str:
-    """SI unit of the key, none of a pure number."""
-    unit = answer.get("units", {}).get("rows/value", "")
-    return "" if unit in ("SI", "1") else unit
-
-
-def _shown(answer) -> tuple[str, float]:
-    """The unit in which values of the key are shown, and its factor."""
-    return shown_in(_unit(answer), [row["value"] for row in answer["rows"]])
-
-
-def _classes(rows, factor) -> str:
-    """Classes along a path: "no contact to 0.2, period 1 to 0.3, ..."."""
+def _found(numbers) -> str:
+    """The motion along the path: where its kind changes."""
+    rows, unit = [row for row in numbers["rows"] if row["direction"] == "up"], _unit(numbers)
+    if not rows:
+        return "No point of the diagram was reached."
     last = [k + 1 == len(rows) or rows[k + 1]["class"] != row["class"] for k, row in enumerate(rows)]
-    return ", ".join(
-        f"{row['class']} to {plain(factor * row['value'], 4)}" for row, ends in zip(rows, last, strict=True) if ends
-    )
+    ends = [f"{row['class']} to {in_words(unit, row['value'])}" for row, end in zip(rows, last, strict=True) if end]
+    return f"As {numbers['key']} grows: {', '.join(ends)}."
 
 
-def _foretold(answer, where) -> str:
-    """Exponent by two methods, the averages that agree, and the horizon of a chaotic motion."""
-    judged, separation = answer["judge"], answer["separation"]
-    if "failed" in judged:
-        return f"Two methods could not be compared at {where}."
-    entries = answer["methods"]["invariants"]
-    values, bounds = entries["exponent"]["values"], entries["exponent"]["uncertainties"]
-    told = " and ".join(f"{v:.3f} +- {u:.3f}" for v, u in zip(values, bounds, strict=True))
-    wrong = [name for name, entry in entries.items() if not entry["agree"]]
-    line = (f"At {where} the exponent is {told} a period by Adams and DOP853, "
-            f"{len(entries) - len(wrong)} of {len(entries)} averages agree")  # fmt: skip
-    line += f" (not {', '.join(wrong)})" if wrong else ""
-    if min(v - u for v, u in zip(values, bounds, strict=True)) > 0:
-        far = horizon(0.5 * sum(values), max(*separation["apart"][1:6], 1e-16), max(separation["spread"], 1e-16))
-        line += f"; chaos: beyond about {far:.0f} periods only averages mean something"
-    return line + "."
+def _unit(numbers) -> str:
+    """SI unit of the key, "1" of a pure number."""
+    unit = numbers["units"]["rows/value"]
+    return "1" if unit == "SI" else unit
+
+
+def _tables(numbers) -> list[Table]:
+    """Points of the diagram, two methods at one of them, and the whirls let go."""
+    names = (("1", "going", "direction"), (_unit(numbers), numbers["key"], "value"), ("1", "motion", "class"),
+             ("share", "contact, of time", "contact_share"), ("share", "of closing force", "contact_force"),
+             ("1", "exponent per period", "exponent"), ("1", "+-", "uncertainty"),
+             ("1", "evaluations per turn", "evaluations"))  # fmt: skip
+    tables = [_of_rows("diagram", names, numbers["rows"])]
+    if numbers["methods"]:
+        entries, (one, other) = numbers["methods"]["invariants"], numbers["methods"]["names"]
+        columns = [("1", "average"), ("1", one), ("1", "+-"), ("1", other), ("1", "+-"), ("1", "agree")]
+        rows = [[name, e["values"][0], e["uncertainties"][0], e["values"][1], e["uncertainties"][1], e["agree"]]
+                for name, e in entries.items()]  # fmt: skip
+        tables.append(Table("two methods", columns, rows))
+        exponent, apart = entries["exponent"], numbers["separation"]
+        if min(v - u for v, u in zip(exponent["values"], exponent["uncertainties"], strict=True)) > 0:
+            ends = max(*apart["apart"][1:6], 1e-16), max(apart["spread"], 1e-16)
+            far = horizon(0.5 * sum(exponent["values"]), *ends)
+            tables.append(Table("chaos", [("1", "periods that can be foretold")], [[far]]))
+    if numbers["whirl"]:
+        names = (
+            ("speed", "speed", "speed"),
+            ("1", "whirl", "fate"),
+            ("1", "turns", "turns"),
+            ("1", "first touch, turns", "first_contact"),
+            ("1", "whirl ratio", "whirl_ratio"),
+            ("share", "contact, of time", "contact_share"),
+            ("share", "of closing force", "contact_force"),
+        )
+        tables.append(_of_rows("whirl", names, numbers["whirl"]["rows"]))
+    return tables
+
+
+def _of_rows(name: str, names, rows) -> Table:
+    return Table(name, [held[:2] for held in names], [[row.get(key) for *_, key in names] for row in rows])

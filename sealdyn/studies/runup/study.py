@@ -13,15 +13,16 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from ...answers import Answer, Table
 from ...numerics.piecewise_linear import PiecewiseLinear
+from ...quantities import in_words
 from ...scenario.settings import si_unit
 from ...scene.variants import part, with_values
 from ...status import Status
 from ...units import Angle, Time
-from .._words import RPM, shown_in
+from .. import Info
 from .load_ramp import load_trip, memory, overshoot, quasi_static
 from .plan import SPEED, checked, jumps, planned, rate_unit, rates_of, tables_end, value_of, wrong
-from .sentences import WAYS, load_sentences, sentences
 from .speed_ramp import passage, short_pass
 
 # Rates of the curve, over the rate at which linear theory just touches; how closely the touching rate is located.
@@ -29,24 +30,29 @@ CURVE, CLOSE, MOST_CUTS = (0.4, 0.65, 0.85, 1.0, 1.2, 1.6, 2.5, 6.0), 0.01, 14
 # Ramps of a load take so many decay times, from a slow one to a fast one; a step besides.
 RAMPS = (100.0, 10.0, 1.0)
 LISTS = ("time", "value", "film", "tilt", "flow")
-ALONG = {
-    "linear": ("speed",), "curve": ("rate",), "whirl": ("speed",), "quasi_static": ("value",), "rows": ("rate",),
-    "rows/growth/curve": ("instant",), "waterfall/up": ("speed", "orders"), "waterfall/down": ("speed", "orders"),
-} | {f"rows/{name}": ("rows/instant",) for name in LISTS}  # fmt: skip
-# What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
-units = dict.fromkeys(("speed", "frequency", "h_min_speed", "relative_misalignment_speed", "speed_in_window",
-                       "resonances"), "rad/s")  # fmt: skip
-units |= dict.fromkeys(("h_min_time", "time", "until", "time_above", "stages"), "s") | {"growth_rate": "1/s"}
-units |= dict.fromkeys(("h_min", "film"), "m") | dict.fromkeys(("leakage", "leakage_least", "flow"), "m^3/s")
-units |= dict.fromkeys(("phase", "relative_misalignment", "tilt", "growth/from"), "rad")
-units |= dict.fromkeys(("turns", "window", "resolution", "folding", "orders", "driven", "departure", "rows/up/rows",
-                        "rows/down/rows", "rows/time/rows", "foretold", "measured", "integral", "with_factor", "error",
-                        "error_with_factor", "whole"), "1")  # fmt: skip
-units |= {f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment", "leakage")}
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("runup_past_threshold", 6)
+WAYS = ("up", "down")
+# Up to this share of the tilt that touches, a seal is near its aligned film; of the power that may be folded.
+NEAR, FOLDED = 0.5, 1e-4
+INFO = Info(
+    timed=("runup_past_threshold", 6),
+    # What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
+    units={
+        **dict.fromkeys(("speed", "frequency", "h_min_speed", "relative_misalignment_speed", "speed_in_window",
+                         "resonances"), "rad/s"),
+        **dict.fromkeys(("h_min_time", "time", "until", "time_above", "stages"), "s"), "growth_rate": "1/s",
+        **dict.fromkeys(("h_min", "film"), "m"), **dict.fromkeys(("leakage", "leakage_least", "flow"), "m^3/s"),
+        **dict.fromkeys(("phase", "relative_misalignment", "tilt", "growth/from"), "rad"),
+        **dict.fromkeys(("turns", "window", "resolution", "folding", "orders", "driven", "departure", "rows/up/rows",
+                         "rows/down/rows", "rows/time/rows", "foretold", "measured", "integral", "with_factor",
+                         "error", "error_with_factor", "whole"), "1"),
+        **{f"overshoot/{name}": "1" for name in ("h_min", "relative_misalignment", "leakage")},
+    },
+    along={
+        "linear": ("speed",), "curve": ("rate",), "whirl": ("speed",), "quasi_static": ("value",), "rows": ("rate",),
+        "rows/growth/curve": ("instant",), "waterfall/up": ("speed", "orders"),
+        "waterfall/down": ("speed", "orders"), **{f"rows/{name}": ("rows/instant",) for name in LISTS},
+    },
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Settings:
     """Samples of a turn."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Ramps of the shaft speed, or of anything else that may change in time."""
     checked(scenario, settings)
     return speed_ramps(scenario, settings, tools) if settings.key == SPEED else load_ramps(scenario, settings, tools)
@@ -86,7 +92,7 @@ def run(scenario, settings, tools) -> dict:
 # --- shaft speed ------------------------------------------------------------------------------------------
 
 
-def speed_ramps(scenario, settings, tools) -> dict:
+def speed_ramps(scenario, settings, tools) -> Answer:
     """Up and down in speed at every rate, and the rate that just touches."""
     plan = planned(scenario, settings)
     base, mode, crossing = plan["base"], plan["mode"], plan["crossing"]
@@ -115,7 +121,8 @@ def speed_ramps(scenario, settings, tools) -> dict:
     unknown = answer["touch_rate"] is not None and answer["touch_rate"].get("failed")
     if unknown or not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
-    return {**answer, "verdict": sentences(answer)}
+    tables = [_speed_table(answer), *_growth_tables(answer)]
+    return Answer(answer, _passing(answer), tables, notes=_speed_notes(answer))
 
 
 def _whirl(mode, plan, begin, end) -> dict | None:
@@ -172,7 +179,7 @@ def _closer(plan, done, tools):
 # --- anything else ----------------------------------------------------------------------------------------
 
 
-def load_ramps(scenario, settings, tools) -> dict:
+def load_ramps(scenario, settings, tools) -> Answer:
     """There and back at every rate, against the quasi-static answer."""
     key, now = settings.key, part(scenario.scene, settings.key)
     begin, end = value_of(scenario, settings, "begin"), value_of(scenario, settings, "end")
@@ -203,37 +210,121 @@ def load_ramps(scenario, settings, tools) -> dict:
               "units": {"value": unit, "rate": rate_unit(unit)}}  # fmt: skip
     if not any("status" in row for row in rows):
         answer["status"] = Status.FAILED
-    return {**answer, "verdict": load_sentences(answer)}
+    return Answer(answer, _load_found(answer), _load_tables(answer), notes=_load_notes(answer))
 
 
-# --- in numbers --------------------------------------------------------------------------------------------
+# --- what is shown -----------------------------------------------------------------------------------------
+
+ENDS = (("h_min", "thinnest film", "h_min"), ("misalignment", "largest misalignment", "relative_misalignment"),
+        ("1", "touch", "touched"), ("1", "ended", "status"))  # fmt: skip
 
 
-def tables(answer) -> list:
-    """Every ramp with what it met; of the speed also peaks and growth beside linear theory's, of anything else how far
-    it went beyond the quasi-static answer."""
-    ends = (("thinnest film, um", "h_min", 1e6), ("largest misalignment, urad", "relative_misalignment", 1e6),
-            ("touch", "touched"), ("ended", "status"))  # fmt: skip
-    if answer["key"] == SPEED:
-        columns = (("rate, rad/s^2", "rate"), ("turns each way", "turns"), ("peak going up, rpm", "peak.up", RPM),
-                   ("down, rpm", "peak.down", RPM), ("read to, rpm", "read", RPM), ("from linear, %", "departure", 100),
-                   ("ln of growth", "growth.measured"), ("linear", "growth.with_factor"))  # fmt: skip
-        where = (("closest at, rpm", "h_min_speed", RPM), ("going", "h_min_way"))
-        return [([_plain(row) for row in answer["rows"]], (*columns, *where, *ends))]
-    rates, per = shown_in(answer["unit"], [answer["begin"], answer["end"]])
-    flow, factor = shown_in("m^3/s", [row.get("leakage") for row in answer["rows"]])
-    columns = ((f"rate, {rates}/s", "rate"), ("film beyond slow, %", "overshoot.h_min", 100),
-               ("misalignment, %", "overshoot.relative_misalignment", 100),
-               (f"leakage from, {flow}", "leakage_least", factor), ("to", "leakage", factor))  # fmt: skip
-    rows = [{**row, "rate": "a step" if row["rate"] is None else per * row["rate"]} for row in answer["rows"]]
-    return [(rows, (*columns, *ends))]
+def _passing(answer) -> str:
+    """How fast the threshold must be passed; without one how near the faces come."""
+    threshold, touch = answer["threshold"], answer["touch_rate"]
+    if answer["crossing"] is None:
+        films = [(row["h_min"], row["rate"]) for row in answer["rows"] if row.get("h_min") is not None]
+        near = f"; thinnest film {in_words('h_min', min(films)[0])}" if films else ""
+        if threshold is not None:
+            return f"The stability threshold {in_words('speed', threshold)} is not on the way{near}."
+        if not answer["tilting"]:
+            return f"Nothing tilts the rings here, and no whirl is followed{near}."
+        if answer["linear_verdict"] != "stable":
+            return f"No stability threshold: the seal is {answer['linear_verdict']} at every speed{near}."
+        return f"No stability threshold: whirl dies out at every speed{near}."
+    where = f"the threshold {in_words('speed', threshold)}"
+    if touch is None or touch["value"] is None:
+        why = "not looked for" if touch is None else touch["said"]
+        return f"How fast {where} must be passed to stay below touch: {why}."
+    return f"To stay below touch {where} must be passed faster than {in_words('rad/s^2', touch['value'])}."
 
 
-def _plain(row) -> dict:
-    """A ramp of the speed with its peaks' speeds and its largest departure from linear theory."""
-    if "failed" in row:
-        return row
-    far = [row[way]["departure"] for way in WAYS if row[way]["departure"] is not None]
-    peaks = {way: row[way]["peak"][0] for way in WAYS if row[way]["peak"]}
-    read = row["speed_in_window"] / 4 if peaks else None
-    return {**row, "peak": peaks, "read": read, "departure": max(far, default=None)}
+def _speed_table(answer) -> Table:
+    """Every ramp of the speed with what it met."""
+    names = (("rad/s^2", "rate", "rate"), ("1", "turns each way", "turns"), ("speed", "peak going up", "up"),
+             ("speed", "down", "down"), ("speed", "read to", "read"), ("share", "from linear", "departure"),
+             ("speed", "closest at", "h_min_speed"), ("1", "going", "h_min_way"), *ENDS,
+             ("1", "failed", "failed"))  # fmt: skip
+    rows = []
+    for row in answer["rows"]:
+        told = dict(row)
+        if "failed" not in row:
+            far = [row[way]["departure"] for way in WAYS if row[way]["departure"] is not None]
+            told |= {way: row[way]["peak"][0] if row[way]["peak"] else None for way in WAYS}
+            told |= {"departure": max(far, default=None)}
+            told |= {"read": row["speed_in_window"] / 4 if any(row[way]["peak"] for way in WAYS) else None}
+        rows.append([told.get(key) for *_, key in names])
+    return Table("ramps", [name[:2] for name in names], rows)
+
+
+def _growth_tables(answer) -> list[Table]:
+    """The peak of linear theory; growth of the whirl beside the integral of its linear growth rate."""
+    peak, size = answer["linear"]["peak"], "tilt" if answer["tilting"] else "clearance"
+    first = [("1", "order"), ("speed", "from"), ("speed", "to"), ("speed", "linear peak at"), (size, "height"),
+             ("rad/s^2", "linear rate that touches")]  # fmt: skip
+    row = [answer["order"], answer["begin"], answer["end"], *(peak or (None, None)), answer["rate_foretold"]]
+    tables = [Table("linear theory", first, [row])]
+    grown = [row for row in answer["rows"] if row.get("growth")]
+    if answer["crossing"] is not None and grown:
+        columns = [("rad/s^2", "rate"), ("1", "ln of growth"), ("1", "linear"), ("share", "off")]
+        rows = [[row["rate"], *(row["growth"][key] for key in ("measured", "with_factor", "error_with_factor"))]
+                for row in grown]  # fmt: skip
+        tables.append(Table("growth of the whirl", columns, rows))
+    return tables
+
+
+def _speed_notes(answer) -> list[str]:
+    """Limits of the comparison, and warnings of the runs."""
+    good, notes = [row for row in answer["rows"] if "failed" not in row], []
+    if answer["crossing"] is not None and answer["forced_tilt"] > NEAR * answer["touch_tilt"]:
+        forced, closing = (in_words("tilt", answer[name]) for name in ("forced_tilt", "touch_tilt"))
+        notes.append(f"Forced tilt {forced} of {closing} that close the gap: the growth rate tells nothing here.")
+    if answer["chosen"]:
+        notes.append(f"Chosen here: {', '.join(answer['chosen'])}.")
+    warnings = [*answer["warnings"], *(words for row in good for words in row["warnings"])]
+    folded = max((row["folding"] for row in good), default=0.0)
+    if folded > FOLDED:
+        warnings.append(f"aliasing: {in_words('share', folded, digits=2)} of the power: raise samples_per_turn")
+    return [*notes, *dict.fromkeys(warnings)]
+
+
+def _load_found(answer) -> str:
+    """The thinnest film of all ramps."""
+    films = [(row["h_min"], row["rate"]) for row in answer["rows"] if row.get("h_min") is not None]
+    least, rate = min(films, key=lambda film: film[0], default=(None, None))
+    begin, end = (in_words(answer["unit"], answer[name], digits=5) for name in ("begin", "end"))
+    how = "in a step" if rate is None else f"at {in_words(answer['unit'], rate)}/s"
+    film = "no film" if least is None else f"thinnest film {in_words('h_min', least)}, {how}"
+    return f"{answer['key']} from {begin} to {end} and back: {film}."
+
+
+def _load_tables(answer) -> list[Table]:
+    """Every ramp beyond the quasi-static answer, and that answer at both ends."""
+    names = ((answer["rate_unit"], "rate", "rate"), ("share", "film beyond slow", "h_min"),
+             ("share", "misalignment", "relative_misalignment"), ("leakage", "leakage from", "leakage_least"),
+             ("leakage", "to", "leakage"), *ENDS, ("1", "failed", "failed"))  # fmt: skip
+    rows = []
+    for row in answer["rows"]:
+        over = row["overshoot"] or {}
+        beyond = [over.get(key) for key in ("h_min", "relative_misalignment")]
+        rows.append([row["rate"], *beyond, *(row.get(key) for *_, key in names[3:])])
+    slow = answer["quasi_static"]
+    ends = [[answer[where], *(slow[key][k] for key in ("h_min", "relative_misalignment", "leakage"))]
+            for where, k in (("begin", 0), ("end", -1))]  # fmt: skip
+    columns = [(answer["unit"], answer["key"]), ("h_min", "film"), ("misalignment", "misalignment"),
+               ("leakage", "leakage")]  # fmt: skip
+    return [Table("ramps", [name[:2] for name in names], rows), Table("infinitely slowly", columns, ends)]
+
+
+def _load_notes(answer) -> list[str]:
+    """How fast the linear seal forgets, values without a balance, and how runs ended."""
+    slowest, slow, notes = answer["slowest"], answer["quasi_static"], []
+    if slowest < 0:
+        notes.append(f"Disturbances of the linear seal fall to 1/e within {in_words('time', -1 / slowest, digits=3)}.")
+    else:
+        notes.append(f"The linear seal is unstable there: its disturbances grow by {slowest:.3g} 1/s.")
+    if None in slow["h_min"]:
+        notes.append("At some values no gap balances the loads.")
+    if any(row["rate"] is None for row in answer["rows"]):
+        notes.append("The ramp without a rate is a step.")
+    return [*notes, *dict.fromkeys(r["message"] for r in answer["rows"] if r.get("status", Status.OK) != Status.OK)]

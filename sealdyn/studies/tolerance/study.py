@@ -5,33 +5,37 @@ from functools import partial
 
 import numpy as np
 
+from ...answers import Answer, Table
 from ...dynamics.run_state import FilmClosed
 from ...numerics.parallel import Together
+from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
 from ...simulation.batch import run_many
 from ...simulation.result import unit_of
 from ...status import Status
+from .. import Info
+from ..sweep import quantity_of
 from .effects import Sample, convergence, indices, tightened
 from .estimates import moments, number, probability, quantiles
 from .scatter import SCRAMBLES, points, read_correlations, read_scatter
-from .verdict import sentences, tables
 
-__all__ = ["Settings", "run", "tables"]
-
-WITH_WAVES = True
-ALONG = dict.fromkeys(("samples", "samples/keys", "samples/outputs"), ("samples/run",)) | dict.fromkeys(
-    ("convergence", "convergence/quantiles", "convergence/total"), ("convergence/runs",)
+INFO = Info(
+    timed=("tolerance", 48),
+    wavy=True,
+    # Of keys and outputs the answer knows the units; what is left are indices, shares and counts.
+    units={"*": "1"},
+    along={
+        **dict.fromkeys(("samples", "samples/keys", "samples/outputs"), ("samples/run",)),
+        **dict.fromkeys(("convergence", "convergence/quantiles", "convergence/total"), ("convergence/runs",)),
+    },
 )
-# Of keys and outputs the answer knows the units; what is left are indices, shares and counts.
-units = {"*": "1"}
 OUTPUTS = ("h_min.value", "leakage.mean", "relative_misalignment.max", "contact_margin")
 # What every run is asked besides, to know whether the faces touched and whether the seal is stable.
 FILM, THINNEST, TOUCHES, VERDICT = "h_min.value", "h_min.of_clearance", "contact.touches", "stability.verdict"
 
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("tolerance", 48)
+# By how much an estimated first index may be above the total, before neither is settled.
+ROUGHLY = 0.05
 
 
 @dataclass(frozen=True)
@@ -57,7 +61,7 @@ class Settings:
     that touch."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Runs at scrambled Sobol points of the keys: distributions, probability of contact, indices, what to tighten."""
     scatters = read_scatter(scenario, listed(settings.scatter))
     keys = [s.key for s in scatters]
@@ -78,7 +82,7 @@ def run(scenario, settings, tools) -> dict:
     contact = touched(rows, settings.margin).reshape(len(designs), -1)
     # The distribution is that of A and B: the mixed points repeat their values.
     whole = Sample(scatters, np.vstack(designs[:2]), settings.samples, len(designs[:2]))
-    answer = {
+    numbers = {
         "keys": keys,
         "scatter": {s.key: {"words": s.words, "mean": float(s.law.mean()), "sigma": float(s.law.std()), "unit": s.unit}
                     for s in scatters},
@@ -91,13 +95,13 @@ def run(scenario, settings, tools) -> dict:
         "sobol": indices(found, keys, settings.seed) if with_indices else
                  {"first": None, "total": None, "reason": "correlated keys" if settings.indices else "not asked for"},
     }  # fmt: skip
-    answer |= distribution(whole, found, contact, answer["sobol"], factor is None)
-    answer["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
-    of_first = ("standard_deviation", *(f"quantiles/{level}" for level in answer["quantiles"][outputs[0]]))
-    answer["units"] |= {f"convergence/{name}": unit_of(outputs[0]) or "1" for name in of_first}
-    if not any(moment["count"] for moment in answer["moments"].values()):
-        answer["status"] = Status.FAILED
-    return {**answer, "verdict": sentences(answer, rows)}
+    numbers |= distribution(whole, found, contact, numbers["sobol"], factor is None)
+    numbers["convergence"] = convergence(found, contact, settings.samples, outputs[0], keys)
+    of_first = ("standard_deviation", *(f"quantiles/{level}" for level in numbers["quantiles"][outputs[0]]))
+    numbers["units"] |= {f"convergence/{name}": unit_of(outputs[0]) or "1" for name in of_first}
+    if not any(moment["count"] for moment in numbers["moments"].values()):
+        numbers["status"] = Status.FAILED
+    return Answer(numbers, _found(numbers), _tables(numbers), notes=_notes(numbers, rows))
 
 
 def distribution(whole, found, contact, sobol, independent) -> dict:
@@ -221,3 +225,72 @@ def ends(rows) -> dict[str, int]:
     """How many runs ended how."""
     words = [str(row.get("status", "not possible")) for row in rows]
     return {word: words.count(word) for word in sorted(set(words))}
+
+
+# --- what is shown -----------------------------------------------------------------------------------------
+
+
+def _found(numbers) -> str:
+    """How many touch, and which tolerance to tighten first."""
+    risk, name = numbers["probability_of_contact"], numbers["outputs"][0]
+    if risk["value"] is None:
+        return "No run ended, so whether the faces touch is not known."
+    low, high = (in_words("share", risk[end], digits=3) for end in ("low", "high"))
+    touch = f"{in_words('share', risk['value'], digits=3)} of the seals touch (95 % interval {low} to {high})"
+    first = numbers["tighten"][name][0]
+    if first["total"] is None and first["rank_correlation"] is None:
+        return f"{touch}; nothing that scatters changes {name}."
+    if first["total"] is None:
+        return f"{touch}; {name} follows {first['key']} most closely."
+    return f"{touch}; for {name} tighten {first['key']} first."
+
+
+def _notes(numbers, rows) -> list[str]:
+    """What the tables do not say of how far the numbers can be trusted."""
+    runs, name, notes = numbers["runs"], numbers["outputs"][0], []
+    if runs["closed_at_start"]:
+        notes.append(f"{runs['closed_at_start']} touch before anything moves (contact-onset follows the film further).")
+    if runs["unstable"]:
+        notes.append(f"{runs['unstable']} are unstable and may touch later.")
+    first, *others = numbers["tighten"][name]
+    if first["total"] is not None:
+        rivals = [row["key"] for row in others if row["total_high"] > first["total_low"]]
+        notes += [f"May matter as much: {', '.join(rivals)}; more samples tell."] if rivals else []
+        rough = [row["key"] for row in (first, *others) if row["first"] - row["total"] > ROUGHLY]
+        notes += (
+            [f"First index above the total of {', '.join(rough)}: so few samples give tenths only."] if rough else []
+        )
+    elif numbers["sobol"]["total"] is None or not numbers["sobol"]["total"][name]:
+        why = numbers["sobol"]["reason"] or f"only {numbers['sobol']['base_points'][name]} samples have all their runs"
+        notes.append(f"No indices: {why}.")
+    bad = [row for row in rows if row.get("status", Status.FAILED) == Status.FAILED]
+    if bad:
+        why = bad[0].get("failed") or bad[0].get("message")
+        notes.append(f"{len(bad)} of {len(rows)} runs gave no numbers and widen the interval; the first: {why}")
+    return notes
+
+
+def _tables(numbers) -> list[Table]:
+    """The distribution of every output; the keys, as the first output has them; total indices of all outputs."""
+    outputs, first = numbers["outputs"], numbers["outputs"][0]
+    levels = list(numbers["quantiles"][first])
+    columns = [("1", "output"), *(("row", name) for name in ("nominal", "mean", "st. dev.")),
+               *(("row", f"{level} %") for level in levels), ("1", "values")]  # fmt: skip
+    rows = []
+    for name in outputs:
+        moments, spread = numbers["moments"][name], numbers["quantiles"][name]
+        rows.append([name, numbers["nominal"][name], moments["mean"], moments["standard_deviation"],
+                     *(spread[level] for level in levels), moments["count"]])  # fmt: skip
+    shown = (("1", "key", "key"), ("1", "scatter", "scatter"), ("1", "first", "first"), ("1", "total", "total"),
+             ("1", "from", "total_low"), ("1", "to", "total_high"), ("1", "rank corr.", "rank_correlation"),
+             ("share", "sd if halved", "halved"), ("share", "if none", "removed"),
+             ("share", "contact if halved", "contact_halved"))  # fmt: skip
+    keys = [[row[key] for *_, key in shown] for row in numbers["tighten"][first]]
+    tables = [Table("distribution", columns, rows, of_rows=[quantity_of(name) for name in outputs]),
+              Table(f"keys for {first}", [names[:2] for names in shown], keys)]  # fmt: skip
+    total = numbers["sobol"]["total"]
+    if total and len(outputs) > 1 and any(total.values()):
+        rows = [[row["key"], *(total[name] and total[name][row["key"]] for name in outputs)]
+                for row in numbers["tighten"][first]]  # fmt: skip
+        tables.append(Table("total indices", [("1", "total index"), *(("1", name) for name in outputs)], rows))
+    return tables

@@ -14,6 +14,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from ...answers import Answer, Table
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
 from ...simulation.film_error import beside_reynolds
@@ -23,7 +24,7 @@ from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
 from ...solvers.methods import METHODS
 from ...status import Status
-from .._words import plain
+from .. import Info
 from . import film_ladder
 from .errors import WHERE, errors, observe, worst
 from .ranking import curve, mark_slow_runs, rank_methods, time_at
@@ -35,16 +36,19 @@ NAMES = {
     "gauss": "Gauss collocation of order 12", "radau_nodes": "Radau collocation of order 9",
     "trbdf2": "TR-BDF2",
 }  # fmt: skip
-ALONG = {f"methods/{name}": ("tolerance",) for name in NAMES} | {
-    f"methods/{name}/{what}": (f"methods/{name}/tolerance",)
-    for name in NAMES for what in ("error", *(f"observables/{where}" for where in WHERE))
-}  # fmt: skip
-# Errors are shares of a scale.
-units = {"wall": "s", "processor": "s", "*": "1"}
+INFO = Info(
+    timed=("fmr_reference", 33),
+    wavy=True,
+    # Errors are shares of a scale.
+    units={"wall": "s", "processor": "s", "*": "1"},
+    along={f"methods/{name}": ("tolerance",) for name in NAMES} | {
+        f"methods/{name}/{what}": (f"methods/{name}/tolerance",)
+        for name in NAMES for what in ("error", *(f"observables/{where}" for where in WHERE))
+    },
+)  # fmt: skip
 FAST = ("adams", "bdf", "ida", "dop853", "lsoda", "expm", "trbdf2")
 SLOW = ("rk45", "radau", "bdf2", "newmark", "generalised_alpha", "midpoint")
 Method = Literal[*FAST, *SLOW]
-WITH_WAVES = True
 # Far below every judged run; the embedded estimate of the judge is of lower order than the judge itself.
 TIGHT, JUDGE = 1e-11, 1e-11
 ASKED = (1e-3, 1e-6, 1e-9)
@@ -56,10 +60,6 @@ CLOSEST = 3.0
 BRIEF = 0.3
 # Wall over processor time of a busy machine.
 BUSY = 1.1
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 33)
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Settings:
     """Also compare the film models."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Methods, their judge, models, and who is fastest at which accuracy."""
     run = ready(scenario)
     if scenario.run.start == "auto":
@@ -132,7 +132,7 @@ def run(scenario, settings, tools) -> dict:
         "names": {name: NAMES[name] for name in methods},
     }
     answer["fastest"] = [rank_methods(answer, error) for error in ASKED]
-    return {**answer, "verdict": verdict(answer, settings)}
+    return Answer(answer, _found(answer), _tables(answer), notes=_notes(answer, settings))
 
 
 def _can(model, method: str) -> bool:
@@ -282,45 +282,48 @@ def _allowed(point, rows, tolerance) -> tuple[float, float | None]:
     return min(point["limit"], point["slowest"] * least), expected
 
 
-def tables(answer) -> list:
+def _found(answer) -> str:
+    """Who is fastest at which error."""
+    told = [f"to {row['error']:.0e} {NAMES[row['method']] if row['method'] else 'none'}" for row in answer["fastest"]]
+    return f"Fastest to an error {film_ladder.WORDS[answer['where']]}: {', '.join(told)}."
+
+
+def _tables(answer) -> list[Table]:
     """Who is fastest at which error, which runs did not end well, and the film models."""
-    fastest = [{**row, "failed": row.get("why")} for row in answer["fastest"]]
-    methods = [
-        {"method": name, "runs": len(row["status"]), "ended": row["status"].count(Status.OK),
-         "failed": next(filter(None, row["reason"]), None)}
-        for name, row in answer["methods"].items()
+    ranks = (("1", "error", "error"), ("1", "fastest", "method"), ("time", "in", "wall"), ("1", "next", "next"),
+             ("1", "times as long", "factor_next"), ("1", "DOP853, times as long", "factor_dop853"),
+             ("1", "why none", "why"))  # fmt: skip
+    fastest = [[row.get(key) for *_, key in ranks] for row in answer["fastest"]]
+    ends = [[name, len(row["status"]), row["status"].count(Status.OK), next(filter(None, row["reason"]), None)]
+            for name, row in answer["methods"].items()]  # fmt: skip
+    where = film_ladder.looked_at(answer)
+    models = [[row["label"], (row.get("error") or {}).get(where), (row.get("leakage_error") or {}).get(where),
+               row.get("wall"), row.get("failed")] for row in answer["models"]]  # fmt: skip
+    return [
+        Table("fastest", [name[:2] for name in ranks], fastest),
+        Table("methods", [("1", "method"), ("1", "runs"), ("1", "ended"), ("1", "the first that did not")], ends),
+        Table("models", [("1", "film model"), ("1", "error of the motion"), ("1", "of the leakage"), ("time", "in"),
+                         ("1", "failed")], models),
     ]  # fmt: skip
-    ends, where = (("method", "method"), ("runs", "runs"), ("ended", "ended")), film_ladder.looked_at(answer)
-    ranks = (("error", "error"), ("fastest", "method"), ("ms", "wall", 1e3), ("next", "next"),
-             ("times as long", "factor_next"), ("DOP853, times as long", "factor_dop853"))  # fmt: skip
-    models = (("film model", "label"), ("error of the motion", f"error.{where}"),
-              ("of the leakage", f"leakage_error.{where}"), ("ms", "wall", 1e3))  # fmt: skip
-    return [(fastest, ranks), (methods, ends), (answer["models"], models)]
 
 
-def verdict(answer: dict, settings) -> list[str]:
-    """Who is fastest, how much film model the scene needs, and how far both can be trusted."""
-    told = [
-        f"to {row['error']:.0e} "
-        + (f"{NAMES[row['method']]} ({plain(row['wall'] * 1e3, 3)} ms)" if row["method"] else f"none ({row['why']})")
-        for row in answer["fastest"]
-    ]
-    lines = [f"Fastest to an error {film_ladder.WORDS[settings.where]}: {', '.join(told)}."]
-    lines += [film_ladder.sentence(answer)] if answer["models"] else []
-    beside = answer["beside_reynolds"]
-    lines += [f"The film itself, {beside['said']}."] if beside else []
+def _notes(answer: dict, settings) -> list[str]:
+    """How much film model the scene needs, and how far both can be trusted."""
+    lines = [film_ladder.sentence(answer)] if answer["models"] else []
+    if beside := answer["beside_reynolds"]:
+        lines.append(f"The film itself, {beside['said']}.")
     band, judges = (answer["judge_error"] or {}).get(settings.where), answer["judges"]
     if judges["exact"] is None:
-        trust = f"No judge ended, so there are no errors: {judges['reason']}"
+        lines.append(f"No judge ended, so there are no errors: {judges['reason']}.")
     elif band is not None:
-        trust = f"Judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}"
+        lines.append(f"Judged by {judges['exact']}; {judges['second']} differs from it by {band:.1e}.")
     else:
-        trust = f"Judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}"
+        lines.append(f"Judged by {judges['exact']}; no second judge: {judges['reason'] or 'none ended in time'}.")
     if judges.get("least", 0.0) > settings.tightest:
-        trust += f"; tolerances below {judges['least']:.0e} it cannot judge, and they are left out"
-    strained = answer["machine"]["busy"]
-    trust += f"; the machine was busy: wall times are {strained:.2g} times the processor's" if strained > BUSY else ""
-    return [*lines, f"{trust}."]
+        lines.append(f"Tolerances below {judges['least']:.0e} it cannot judge, and they are left out.")
+    if (strained := answer["machine"]["busy"]) > BUSY:
+        lines.append(f"The machine was busy: wall times are {strained:.2g} times the processor's.")
+    return lines
 
 
 def _turns(run) -> float:
