@@ -13,7 +13,7 @@ from sealdyn.analysis import continuation
 from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.analysis.whirl import RotatingWave, free_model, least_damped
-from sealdyn.analysis.whirl.rubbing import settles
+from sealdyn.analysis.whirl.time_domain import settles
 from sealdyn.numerics import time_series
 from sealdyn.report.charts import study_rub
 from sealdyn.scenario.errors import ScenarioError

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...analysis.continuation import frozen_at_end, sweep_branch
 from ...analysis.whirl import free_model
-from ...analysis.whirl.rubbing import settles
+from ...analysis.whirl.time_domain import settles
 from ...answers import Answer, Table
 from ...numerics import time_series
 from ...numerics.lyapunov import horizon
