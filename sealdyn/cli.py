@@ -179,7 +179,7 @@ def _reads(path):
     """What is read and drawn of an archive: errors that a file made or changed elsewhere leads to end here."""
     from numpy import errstate
 
-    from .archive import ODD, ArchiveError
+    from .archive import READING_ERRORS, ArchiveError
 
     try:
         # Numbers of no world, times what makes them micrometres.
@@ -189,7 +189,7 @@ def _reads(path):
         raise Stop(Status.INVALID, str(error)) from None
     except BrokenPipeError:
         raise
-    except ODD as error:
+    except READING_ERRORS as error:
         what = " ".join(str(error).split())[:200]
         line = f"{path}: holds something that sealdyn did not write there ({type(error).__name__}: {what})"
         raise Stop(Status.INVALID, line) from None

@@ -1,17 +1,17 @@
-"""HDF5 files that a stranger can read: run.py for trajectories, study.py for the answers of studies; dataset.py
-shows both to xarray."""
+"""HDF5 files that a stranger can read: run.py and run_writer.py for trajectories, study.py for the answers of studies,
+as xarray datasets in dataset.py; files.py for what all files have."""
 
-from .dataset import answer_as_dataset, answer_tables, as_dataset, columns_of, open_archive, tables_as_dataset
+from .dataset import answer_as_dataset, answer_tables, as_dataset, open_archive, tables_as_dataset
 from .fields import FIELD_TIME, Fields, Series
-from .lock import only_writer
-from .run import ODD, ArchiveWriter, column, field, followed, last_state, partial_path, read_info
-from .soundness import ArchiveError
-from .space import is_full
+from .files import READING_ERRORS, ArchiveError, is_full, link_target, only_writer, partial_path
+from .run import column, field, last_state, read_info
+from .run_writer import ArchiveWriter
 from .study import is_study, read_study, write_study
+from .tables import columns_of
 
 __all__ = [
     "FIELD_TIME",
-    "ODD",
+    "READING_ERRORS",
     "ArchiveError",
     "ArchiveWriter",
     "Fields",
@@ -22,10 +22,10 @@ __all__ = [
     "column",
     "columns_of",
     "field",
-    "followed",
     "is_full",
     "is_study",
     "last_state",
+    "link_target",
     "only_writer",
     "open_archive",
     "partial_path",

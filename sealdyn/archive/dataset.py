@@ -9,7 +9,7 @@ import numpy as np
 
 from .run import open_run
 from .study import is_study, read_study
-from .tables import Variable, long_columns, tables, variables
+from .tables import Variable, answer_variables, grid_variables, long_columns, tables, variables
 
 if TYPE_CHECKING:
     import xarray
@@ -46,14 +46,6 @@ def answer_tables(study: dict) -> dict[str, dict[str, np.ndarray]]:
     return {name: long_columns(members, found, name) for name, members in named.items()}
 
 
-def answer_variables(answer: dict, units: dict, along: dict) -> list[Variable]:
-    """The variables of any answer; of one over a grid those over the grid, and of rows within its rows."""
-    if not {"axes", "rows", "outputs"} <= set(answer):
-        return variables(answer, units, along)
-    within = variables({"rows": answer["rows"]}, units, along)
-    return grid_variables(answer) + [v for v in within if v.table.startswith("rows.")]
-
-
 def as_dataset(answer: dict) -> xarray.Dataset:
     """The answer of a sweep as an `xarray.Dataset`.
 
@@ -72,42 +64,9 @@ def tables_as_dataset(answer: dict, units: dict, along: dict) -> xarray.Dataset:
     return _dataset(answer, variables(answer, units, along))
 
 
-def grid_variables(answer: dict) -> list[Variable]:
-    """The keys that a sweep varied, its outputs, and `status` and `message` of each run."""
-    axes, keys = answer["axes"], tuple(answer["keys"])
-    shape = tuple(len(axis["values"]) for axis in axes)
-    found = []
-    for axis in axes:
-        # Words have no unit.
-        unit = "" if axis["unit"] is None else axis["unit"] or axis.get("si", "SI")
-        found.append(Variable(axis["key"], "", (axis["key"],), (axis["key"],), np.array(axis["values"]), unit, True))
-    # A key that is varied and asked for is the coordinate already.
-    outputs = [output for output in answer["outputs"] if output not in keys]
-    for name, values in columns_of(answer["rows"], outputs).items():
-        unit = "" if values.dtype.kind == "U" else answer["output_units"].get(name) or "1"
-        found.append(Variable(name, "", keys, keys, values.reshape(shape), unit, False))
-    return found
-
-
 def _dataset(answer: dict, found: list[Variable]) -> xarray.Dataset:
     import xarray
 
     held = {v.name: (v.dimensions, v.values, {"units": v.units} if v.units else {}) for v in found}
     attributes = {name: str(answer[name]) for name in ("study", "status", "message") if name in answer}
     return xarray.Dataset(held, attrs=attributes).set_coords([v.name for v in found if v.coordinate])
-
-
-def columns_of(rows: list[dict], outputs: list[str]) -> dict[str, np.ndarray]:
-    """{name: (n,)} of the outputs, and `status` and `message`, of rows (n) of runs: numbers with NaN for what there is
-    not, or words with none for it; a point that failed is "not possible", the message its reason."""
-    columns = {output: _values([row.get(output) for row in rows]) for output in outputs}
-    columns["status"] = _values([str(row.get("status", "not possible")) for row in rows])
-    columns["message"] = _values([row.get("failed", row.get("message", "")) for row in rows])
-    return columns
-
-
-def _values(column: list) -> np.ndarray:
-    """Numbers (n,) with NaN for what there is not, or words with none for it."""
-    if all(value is None or isinstance(value, int | float) for value in column):
-        return np.array([np.nan if value is None else value for value in column], float)
-    return np.array(["" if value is None else str(value) for value in column])

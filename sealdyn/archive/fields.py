@@ -95,12 +95,12 @@ def describe(item, attributes: dict):
     for name, value in attributes.items():
         if h5a.exists(item, name.encode()):
             h5a.delete(item, name.encode())
-        data = np.array(sayable(value), TEXT_TYPE) if isinstance(value, str) else np.array(value)
+        data = np.array(utf8_text(value), TEXT_TYPE) if isinstance(value, str) else np.array(value)
         kind = TEXT if isinstance(value, str) else h5t.py_create(data.dtype)
         h5a.create(item, name.encode(), kind, ONE).write(data)
 
 
-def sayable(text: str) -> str:
+def utf8_text(text: str) -> str:
     """A text as HDF5 takes it: of a name that is no UTF-8 the odd bytes are spelt out."""
     return text.encode("utf-8", "backslashreplace").decode()
 

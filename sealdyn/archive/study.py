@@ -1,4 +1,4 @@
-"""The answer of a study in one HDF5 file, the scenario inside."""
+"""The answer of a study in one netCDF-4 file, the scenario inside: plain `xarray.open_dataset` reads its columns."""
 
 import json
 import os
@@ -6,61 +6,128 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import h5py
+import numpy as np
 
-from .columns import columns
-from .fields import sayable
-from .made_as import is_named, must_be_readable
-from .run import ODD
-from .seal import is_whole, seal
-from .soundness import ArchiveError, is_sound, must_be_sound
-from .space import DATASET, FILE, hdf5_with_room
-from .tables import unit_of, units_of
+from ..quantities import QUANTITIES
+from .fields import utf8_text
+from .files import (
+    DATASET,
+    FILE,
+    READING_ERRORS,
+    ArchiveError,
+    hdf5_with_room,
+    is_named,
+    is_whole,
+    mark_sound,
+    must_be_readable,
+    must_be_sound,
+    seal,
+)
+from .tables import Variable, answer_variables
 
-FORMAT = "sealdyn study 1"
+FORMAT = "sealdyn study 2"
+# How netCDF-4 calls a dimension without values, in the attribute NAME of its scale.
+NO_VALUES = "This is a netCDF dimension but not a netCDF variable.%10d"
+# Root attributes that are text, whatever they begin with.
+TEXTS = ("name", "question", "scenario", "message")
 
 
 def write_study(
     path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=(), panels=()
 ) -> Path:
-    """Write the answer of a study: whole as JSON (`/answer`), and every list of numbers or truths in it as a float64
-    dataset `/data/KEY` (columns.py) with its unit, so that any HDF5 reader can plot it.  `units` and `along` as in
-    `tables.variables` are kept as JSON, so that the archive can be shown without its study.
-    `meta` becomes root attributes; `panels`, plain data, are kept so that the archive draws itself.  Replaces an
-    existing file only when complete; returns its path."""
+    """Write the answer of a study as netCDF-4: each of its columns (`tables.answer_variables`, to which `units` and
+    `along` belong) a dataset of the root group with its dimensions, coordinates, units and long name.  The scenario's
+    text, `resolved`, `meta`, `units` and `along` become root attributes; the answer to the bit and the `panels` (plain
+    data, from which the archive draws itself) stand as JSON in the group `json`.
+    Replaces an existing file only when complete; returns its path."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     fresh = path.with_name(path.name + ".new")
-    texts = {"scenario": scenario_text, "resolved": json.dumps(resolved), "answer": json.dumps(answer)}
-    texts |= {"panels": json.dumps(list(panels))}
-    numbers = [(key, column.values) for key, column in columns(answer).items() if column.values.dtype.kind in "fb"]
-    meta = {**meta, "units": units, "along": dict(along)}
-    size = sum(map(len, texts.values())) + len(json.dumps(meta)) + sum(8 * values.size for _, values in numbers)
+    found = list({v.name: v for v in answer_variables(answer, units, dict(along))}.values())
+    texts = {"answer": json.dumps(answer), "panels": json.dumps(list(panels or ()))}
+    attributes = {
+        "format": FORMAT,
+        "program": "sealdyn",
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        **meta,
+        "scenario": scenario_text,
+        "resolved": resolved,
+        "units": units,
+        "along": dict(along),
+    }
+    # What stands along the dimension of another name is a coordinate only where the file says so.
+    coordinates = [v.name for v in found if v.coordinate and v.dimensions != (v.name,)]
+    attributes |= {"coordinates": " ".join(coordinates)} if coordinates else {}
+    words = sum(map(len, texts.values())) + sum(len(_attribute(value)) for value in attributes.values())
+    size = words + sum(v.values.nbytes + 16 * v.values.size for v in found)
+    objects = sum(1 + v.values.ndim for v in found)
     try:
-        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * len(numbers)) as file:
-            _write(file, meta, texts, numbers, units_of(answer, units))
+        with hdf5_with_room(fresh, 4 * size + FILE + DATASET * objects) as file:
+            for name, value in attributes.items():
+                file.attrs[name] = value if isinstance(value, int | float) else _attribute(value)
+            for name, text in texts.items():
+                file.create_dataset(f"json/{name}", data=text, dtype=h5py.string_dtype())
+            _write_variables(file, found)
+            seal(file)
         os.replace(fresh, path)
     except BaseException:
         fresh.unlink(missing_ok=True)
         raise
-    is_sound(path)
+    mark_sound(path)
     return path
 
 
-def _write(file, meta, texts, numbers, units) -> None:
-    """All of a study, into an open file."""
-    file.attrs["format"] = FORMAT
-    file.attrs["program"] = "sealdyn"
-    file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
-    for name, value in meta.items():
-        value = sayable(value) if isinstance(value, str) else value
-        file.attrs[name] = value if isinstance(value, str | int | float) else json.dumps(value)
-    for name, text in texts.items():
-        file.create_dataset(name, data=sayable(text), dtype=h5py.string_dtype())
-    for key, values in numbers:
-        column = file.create_dataset(f"data/{key}", data=values, dtype="<f8")
-        column.attrs["units"] = unit_of(key, units)
-        column.attrs["long_name"] = key
-    seal(file)
+def _attribute(value) -> str:
+    return utf8_text(value) if isinstance(value, str) else json.dumps(value)
+
+
+def _write_variables(file, found: list[Variable]) -> None:
+    """The variables as datasets of an open file, those without values that are dimensions only, too."""
+    for variable in found:
+        _write_variable(file, variable)
+    for variable in found:
+        if variable.dimensions == (variable.name,):
+            file[variable.name].make_scale(variable.name)
+    for variable in found:
+        if variable.dimensions != (variable.name,):
+            for axis, dimension in enumerate(variable.dimensions):
+                scale = _scale(file, dimension, variable.values.shape[axis], f"{variable.name}.{axis}")
+                file[variable.name].dims[axis].attach_scale(scale)
+
+
+def _write_variable(file, variable: Variable) -> None:
+    values, attributes = variable.values, {"long_name": _long_name(variable.name)}
+    if variable.units:
+        attributes["units"] = variable.units
+    if values.dtype.kind == "b":
+        # NetCDF has no truths; xarray reads them again from numbers of this attribute.
+        values, attributes["dtype"] = values.astype("i1"), "bool"
+    if values.dtype.kind == "U":
+        words = np.array([utf8_text(word) for word in values.ravel().tolist()], object).reshape(values.shape)
+        item = file.create_dataset(variable.name, data=words, dtype=h5py.string_dtype())
+    else:
+        item = file.create_dataset(variable.name, data=values)
+    for name, value in attributes.items():
+        item.attrs[name] = value
+
+
+def _long_name(name: str) -> str:
+    """Of a column "curve.h_min": the quantity's, else its own name in words."""
+    last = name.rpartition(".")[2]
+    known = QUANTITIES[last].name if last in QUANTITIES else ""
+    return known or name.replace(".", " ").replace("_", " ")
+
+
+def _scale(file, name: str, length: int, otherwise: str):
+    """The scale of a dimension, made where there is none; of one that is no dimension of this `length` another name."""
+    for known in (name, otherwise):
+        if known not in file:
+            scale = file.create_dataset(known, (length,), "f4")
+            scale.make_scale(NO_VALUES % length)
+            return scale
+        if file[known].is_scale and file[known].shape == (length,):
+            return file[known]
+    raise ValueError(f"{name} is no dimension of {length}")
 
 
 def is_study(path) -> bool:
@@ -74,33 +141,31 @@ def is_study(path) -> bool:
 
 
 def read_study(path) -> dict:
-    """Everything of a study's file: `answer`, `scenario`, `resolved`, and the meta attributes (JSON ones decoded).
-    Raises ArchiveError."""
+    """Everything of a study's file: `answer`, `panels`, `scenario`, `resolved`, and the other root attributes (JSON
+    ones decoded).  Raises ArchiveError."""
     path = Path(path)
     if not path.is_file():
         raise ArchiveError(f"{path}: no such file")
     try:
         must_be_sound(path)
         with h5py.File(path, "r") as file:
-            must_be_readable(file, path, (FORMAT,), "a sealdyn study")
+            must_be_readable(file, path, FORMAT, "a sealdyn study")
             if not is_whole(file):
                 raise ArchiveError(f"{path}: what it says was altered since it was written")
             info = {}
             for name, value in file.attrs.items():
                 value = value.item() if hasattr(value, "item") else value
-                if isinstance(value, str) and name not in ("name", "question") and value.startswith(("{", "[")):
+                if isinstance(value, str) and name not in TEXTS and value.startswith(("{", "[")):
                     value = json.loads(value)
                 info[name] = value
-            info["scenario"] = file["scenario"].asstr()[()]
-            info["resolved"] = json.loads(file["resolved"].asstr()[()])
-            info["answer"] = json.loads(file["answer"].asstr()[()])
-            info["panels"] = json.loads(file["panels"].asstr()[()])
+            for name in ("answer", "panels"):
+                info[name] = json.loads(file[f"json/{name}"].asstr()[()])
             info["written"] = info["answer"].get("written", {}) if isinstance(info["answer"], dict) else {}
-            if not isinstance(info["answer"], dict) or not isinstance(info["study"], str):
-                raise TypeError("its answer is no table")
+            if not isinstance(info["answer"], dict) or not all(isinstance(info[n], str) for n in ("study", "scenario")):
+                raise TypeError("its answer is no table, or its scenario no text")
             if not all(isinstance(info.get(name, {}), dict) for name in ("units", "along")):
                 raise TypeError("its units or dimensions are no table")
             return info
-    except ODD as error:
+    except READING_ERRORS as error:
         words = " ".join(str(error).split())[:200]
         raise ArchiveError(f"{path}: damaged ({words or type(error).__name__})") from error

@@ -72,7 +72,7 @@ def _in_si(file: str, name: str, values: list[float], unit: str) -> list[float]:
 def _hdf5(path: Path) -> dict[str, tuple[list[float], str]]:
     # Loaded only where such a file is read.
     from ..archive import ArchiveError
-    from ..archive.foreign_columns import read_columns
+    from ..archive.files import read_columns
 
     try:
         return read_columns(path, NAMES, MOST_LISTED)

@@ -14,7 +14,7 @@ from typing import Any
 
 from .. import __version__, studies
 from ..answers import Answer, as_json, plain
-from ..archive import followed, only_writer, write_study
+from ..archive import link_target, only_writer, write_study
 from ..numerics.parallel import Checkpoint, evaluate, processes
 from ..numerics.results import Results
 from ..report.text import written_units
@@ -36,7 +36,7 @@ def study_tables(name: str, answer: dict) -> list:
 
 def archive_of(name: str, scenario, out=None) -> Path:
     """Where study `name` (hyphens or underscores) of a scenario puts its archive, if it is not told (`out`)."""
-    return followed(out if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5")
+    return link_target(out if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5")
 
 
 def journal_of(out: Path) -> Path:

@@ -11,8 +11,8 @@ import pytest
 import xarray
 
 import sealdyn
-from sealdyn.archive import answer_tables, read_study, tables_as_dataset
-from sealdyn.archive.columns import columns
+from sealdyn.archive import answer_tables, read_study, tables_as_dataset, write_study
+from sealdyn.archive.tables import columns
 from sealdyn.studies import study_names
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
@@ -60,8 +60,13 @@ def test_an_archive_of_any_study_is_a_dataset_and_tables(name, tmp_path):
     with sealdyn.open_archive(tmp_path / "s.h5") as data:
         xarray.testing.assert_identical(data.drop_attrs(), found.data.drop_attrs())
         assert data.attrs["name"] == scenario and data.attrs["study"] == name.replace("-", "_")
-        # Any netCDF reader takes it on.
+        # Any netCDF reader takes it on, and reads the archive without this program.
         data.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
+        with xarray.open_dataset(tmp_path / "s.h5") as plain:
+            xarray.testing.assert_identical(plain.drop_attrs(), data.drop_attrs())
+            assert {n: v.attrs.get("units") for n, v in plain.variables.items()} == {
+                n: v.attrs.get("units") for n, v in data.variables.items()
+            }
         for variable in data.variables:
             column = data[variable]
             assert column.dtype.kind in "fbU" and column.size
@@ -117,6 +122,43 @@ def test_rows_within_rows_are_a_table_that_knows_its_rows():
     data = tables_as_dataset({"points": rows}, {"to": "m"}, {})
     assert data["points.ways.to"].values.tolist() == [2.0, 3.0, 6.0] and data["points.ways.to"].attrs["units"] == "m"
     assert data["points.ways.points"].values.tolist() == [0.0, 0.0, 2.0]
+
+
+@pytest.mark.core
+def test_a_stranger_reads_any_answer_with_plain_xarray(tmp_path):
+    """Columns, words, truths, rows of unequal length, and a matrix whose elements have units of their own."""
+    rows = [{"film": [1.0, 2.0], "fate": "decays", "on": True}, {"film": [3.0], "fate": ""}, {"failed": "no film"}]
+    answer = {
+        "study": "some",
+        "speed": [1.0, 2.0],
+        "k": [[1.0, None], [3.0, 4.0]],
+        "rows": rows,
+        "sound": [True, False],
+    }
+    units, along = {"speed": "rad/s", "k": ["N", "N*m"], "film": "m"}, {"k": ["speed"]}
+    meta = {"study": "some", "name": "any", "version": "0"}
+    path = write_study(tmp_path / "s.h5", "[shaft]", {"a": [1]}, meta, answer, units, along, [{"title": "K"}])
+    with xarray.open_dataset(path) as plain:
+        assert plain.k.dims[0] == "speed" and plain.speed.attrs == {"units": "rad/s", "long_name": "shaft speed"}
+        assert plain.sound.dtype == bool and plain["rows.fate"].values.tolist() == ["decays", "", ""]
+        assert plain.attrs["scenario"] == "[shaft]" and np.isnan(plain.k.values[0, 1])
+        with sealdyn.open_archive(path) as data:
+            xarray.testing.assert_identical(plain.drop_attrs(), data.drop_attrs())
+    kept = read_study(path)
+    assert kept["answer"] == answer and kept["panels"] == [{"title": "K"}] and kept["resolved"] == {"a": [1]}
+
+
+@pytest.mark.core
+def test_names_that_stand_in_each_others_way_are_written(tmp_path):
+    """A dimension of the name of another list, and rows that lack points of their grid."""
+    clash = {"x": [[1.0, 2.0], [3.0, 4.0]], "y": [1.0, 2.0, 3.0]}
+    axis = {"key": "a", "unit": "m", "values": [1.0, 2.0]}
+    sweep = {"axes": [axis], "keys": ["a"], "outputs": ["b"], "output_units": {}, "rows": [{"a": 1.0, "b": 2.0}]}
+    for number, answer in enumerate((clash, sweep)):
+        meta = {"study": "some"}
+        path = write_study(tmp_path / f"{number}.h5", "", {}, meta, answer, {}, {"y": ["x"]} if answer is clash else {})
+        with xarray.open_dataset(path) as plain:
+            assert plain.data_vars and read_study(path)["answer"] == answer
 
 
 def test_lists_of_unequal_lengths_stand_one_below_the_other():

@@ -44,7 +44,7 @@ def assert_rows(path, stop):
 @pytest.mark.parametrize("in_place", [1 << 28, 100])
 def test_whatever_room_was_kept_a_finished_file_has_its_rows_alone(tmp_path, monkeypatch, expected, in_place):
     """Shortened where it stands or written anew: no row of room is left, nor anything of a run that goes on."""
-    for module in ("run", "fields"):
+    for module in ("run_writer", "fields"):
         monkeypatch.setattr(f"sealdyn.archive.{module}.MOST_IN_PLACE", in_place)
     run = writer(tmp_path / "run.h5", expected_rows=expected)
     run.append(rows(0, 300))
@@ -201,9 +201,9 @@ def test_a_complete_archive_is_replaced_only_by_a_complete_one(tmp_path):
 
 
 def test_room_grows_for_rows_events_and_state(tmp_path, monkeypatch):
-    monkeypatch.setattr(archive.run, "SMALLEST_ROOM", 1)
-    monkeypatch.setattr(archive.run, "SLOT", 128)
-    monkeypatch.setattr(archive.run, "LOG", 16)
+    monkeypatch.setattr(archive.run_writer, "SMALLEST_ROOM", 1)
+    monkeypatch.setattr(archive.run_writer, "SLOT", 128)
+    monkeypatch.setattr(archive.run_writer, "LOG", 16)
     path = tmp_path / "run.h5"
     run = writer(path, interval=0.0)
     for n in range(60):
@@ -219,7 +219,7 @@ def test_room_grows_for_rows_events_and_state(tmp_path, monkeypatch):
 CHILD = """
     import sys, numpy as np
     from sealdyn import archive
-    archive.run.SMALLEST_ROOM = 2
+    archive.run_writer.SMALLEST_ROOM = 2
     series = {"h_min": archive.Series("m", "film"), "count": archive.Series("1", "row")}
     print("go", flush=True)
     while True:

@@ -10,7 +10,7 @@ import h5py
 import pytest
 
 from sealdyn.archive import ArchiveError
-from sealdyn.archive.soundness import must_be_sound
+from sealdyn.archive.files import must_be_sound
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def test_a_file_in_circles_is_refused(endless):
 @pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 def test_whoever_asked_may_be_gone(endless):
     """It was left behind, and went on for ever."""
-    asks = f"from sealdyn.archive.soundness import must_be_sound; must_be_sound({str(endless)!r})"
+    asks = f"from sealdyn.archive.files import must_be_sound; must_be_sound({str(endless)!r})"
     process = subprocess.Popen([sys.executable, "-c", asks])
     until(lambda: lookers(endless))
     os.kill(process.pid, signal.SIGKILL)
