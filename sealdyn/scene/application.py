@@ -57,7 +57,7 @@ class Reasons(Quantity):
         return 'a table of rules, each with a reason in words: film_thickness = "test rig"'
 
     def read(self, value: Any) -> dict[str, str]:
-        """Reasons by rule.  Raises `QuantityError`.  The rules are in analysis/rules."""
+        """Reasons by rule.  Raises `QuantityError`.  The rules are in analysis/design_rules.py."""
         if not isinstance(value, dict):
             raise QuantityError(quoted(value), self.expected())
         for rule, reason in value.items():

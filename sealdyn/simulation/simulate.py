@@ -291,7 +291,7 @@ def _last_unknowns(start, unknowns) -> np.ndarray:
         raise archive.ArchiveError(f"{start}: holds no last state to start from")
     try:
         names, y = [str(name) for name in state["names"]], np.array(state["y"], float)
-    except archive.ODD as error:
+    except archive.READING_ERRORS as error:
         raise archive.ArchiveError(f"{start}: its last state is none of this program's ({error})") from None
     if names != unknowns.names or y.shape != (unknowns.size,):
         found, wanted = (", ".join(one)[:200] for one in (names, unknowns.names))
@@ -306,7 +306,7 @@ def _own_state(writer):
     """Reading the state that a run goes on from; ArchiveError where it is none of such a run."""
     try:
         yield
-    except archive.ODD as error:
+    except archive.READING_ERRORS as error:
         raise archive.ArchiveError(
             f"{writer.path}: cannot be continued, its state is none of this run ({error})"
         ) from None
