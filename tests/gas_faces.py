@@ -47,4 +47,4 @@ def linear_film(film, s, grading=None):
     f = gas.parameters(film, film.clearance, **({} if grading is None else {"grading": grading}))
     step, pace = 1e-2 * film.clearance, 1e3
     steps = (step, step / film.outer_radius, step * pace, step * pace / film.outer_radius)
-    return LinearFilm.about(FilmDerivatives(gas, gas.unknowns(f), f), s, steady(f, s), steps)
+    return LinearFilm.about(FilmDerivatives(gas.FILM, gas.unknowns(f), f), s, steady(f, s), steps)

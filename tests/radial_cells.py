@@ -12,7 +12,6 @@ integrated exactly over the cell.  Error of second order in the cells; the trape
 """
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 from numba import njit
@@ -46,16 +45,14 @@ from sealdyn.faces.geometry import (
     face_parameters,
     regularised_thickness,
 )
-from sealdyn.films._fields import PRESSURE as PRESSURE_FIELD
-from sealdyn.films._unknowns import FilmUnknowns
+from sealdyn.films._contract import PRESSURE as PRESSURE_FIELD
+from sealdyn.films._contract import Film, FilmUnknowns
 
 # Block after the faces: cells over the radius, angles, compressibility (1/Pa), scale of the pressure (Pa), and the
 # thickness (m) at the inner radius below which it says that it has no solution.
 CELLS, ANGLES, COMPRESSIBILITY, PRESSURE, THINNEST = range(FACE_SIZE, FACE_SIZE + 5)
 
-RUNG = 99
 STATUS = {1: "no pressures: a line of cells is singular", 2: "thinner than this film may be"}
-FIELDS = (PRESSURE_FIELD,)
 
 
 def accepts(film, waves=()) -> str:
@@ -247,9 +244,9 @@ def fields(f, s, x, out):
 
 def film_of(
     cells: int, angles: int, compressibility: float = 0.0, own_derivatives: bool = True, thinnest: float = 0.0
-) -> SimpleNamespace:
+) -> Film:
     """The film with so many cells over the radius and angles, `compressibility` in 1/Pa, without a solution where it is
-    below `thinnest` (m); a Model takes it as it takes a module.  `own_derivatives`: with kernels for its derivatives,
+    below `thinnest` (m); a Model takes it.  `own_derivatives`: with kernels for its derivatives,
     else by differences."""
 
     def parameters(film, clearance, error=None):
@@ -270,11 +267,9 @@ def film_of(
 
         return force
 
-    found = SimpleNamespace(
-        __name__="radial_cells", RUNG=RUNG, STATUS=STATUS, accepts=accepts, parameters=parameters,
+    return Film(
+        name="radial_cells", fidelity=99, status=STATUS, accepts=accepts, parameters=parameters,
         opening_law=opening_law, unknowns=unknowns, start=start, residual=residual, wrench=wrench, flow=flow,
-        FIELDS=FIELDS, grid=grid, fields=fields,
+        quantities=(PRESSURE_FIELD,), grid=grid, fields=fields, jacobian=jacobian if own_derivatives else None,
+        wrench_jacobian=wrench_jacobian if own_derivatives else None,
     )  # fmt: skip
-    if own_derivatives:
-        found.jacobian, found.wrench_jacobian = jacobian, wrench_jacobian
-    return found

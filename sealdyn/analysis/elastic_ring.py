@@ -46,7 +46,7 @@ def released(scene, net: float, start: float, duration: float, steps: int) -> tu
         lay(at)
         code = film.settle(f, s, 1.0 / dt, held, x)
         if code:
-            raise ValueError(film.STATUS[code])
+            raise ValueError(film.status[code])
         film.wrench(f, s, x)
         rough = 0.0
         if interface.contact is not None:

@@ -39,7 +39,7 @@ from ..films.reynolds.mesh import (
     parameters,
     table,
 )
-from ..films.reynolds.wrench import sum_up
+from ..films.reynolds.pressure import sum_up
 from ..numerics.kernel import outer_kernel
 
 

@@ -25,7 +25,7 @@ class Asked:
     """A scene as what a search may be remembered by."""
 
     def __init__(self, scene, film):
-        self.scene, self.film, self.words = scene, film, f"{film.__name__} {scene!r}"
+        self.scene, self.film, self.words = scene, film, f"{film.name} {scene!r}"
 
     def __eq__(self, other):
         return self.words == other.words
@@ -35,7 +35,7 @@ class Asked:
 
 
 def with_cells(scene, film):
-    """The `Film` table of a scene with enough cells for what `film` (a module) is asked for; cells that are given stay.
+    """The `Film` table of a scene with enough cells for what `film` is asked for; cells that are given stay.
     Raises SceneError where the seal has no balance."""
     table = film.prepared(scene)
     return table if film.cells_are_given(scene.film) else _searched(Asked(scene, film))

@@ -57,7 +57,7 @@ class CoupledSegment(Segment):
         if not code:
             return ""
         numberless = "a residual, or a derivative of it, is not a number"
-        sentence = numberless if code == coupled_native.NO_NUMBER else self.model.interface.film.STATUS[code]
+        sentence = numberless if code == coupled_native.NO_NUMBER else self.model.interface.film.status[code]
         return f"{sentence} (at {tau:.6g} s into this segment)"
 
     # --- derivatives --------------------------------------------------------------------------------
@@ -124,7 +124,7 @@ class CoupledSegment(Segment):
     @property
     def settles(self) -> bool:
         """Whether its film settles by itself at a stage."""
-        return hasattr(self.model.interface.film, "settle")
+        return self.model.interface.film.settle is not None
 
     @cached_property
     def _stores(self):

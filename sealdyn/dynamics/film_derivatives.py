@@ -6,7 +6,7 @@ from numba import float64, int64, types
 from scipy.sparse import csc_array
 
 from ..faces.geometry import FORCE
-from ..films._unknowns import FilmUnknowns
+from ..films._contract import Film, FilmUnknowns
 from ..numerics.addresses import (
     MATRIX,
     VECTOR,
@@ -20,21 +20,21 @@ from .function_values import LOAD, Value
 
 # Addresses of a film's kernels, int64; 0 where it has none.
 WRENCH, RESIDUAL, JACOBIAN, WRENCH_JACOBIAN, SETTLE = range(5)
-KINDS = {
-    "wrench": LOAD,
-    "residual": types.FunctionType(int64(VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
-    "jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR)),
-    "wrench_jacobian": types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, MATRIX)),
-    "settle": types.FunctionType(int64(VECTOR, VECTOR, float64, VECTOR, VECTOR)),
-}
+KINDS = (
+    LOAD,
+    types.FunctionType(int64(VECTOR, VECTOR, VECTOR, VECTOR, VECTOR)),
+    types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR)),
+    types.FunctionType(types.void(VECTOR, VECTOR, VECTOR, MATRIX)),
+    types.FunctionType(int64(VECTOR, VECTOR, float64, VECTOR, VECTOR)),
+)
 # Steps of differences, as a share of the unknowns' scales.
 STEP = 1e-4
 
 
-def kernels_of(film) -> np.ndarray:
+def kernels_of(film: Film) -> np.ndarray:
     """Addresses (5,) of a film's kernels."""
-    kernels = ((getattr(film, name, None), kind) for name, kind in KINDS.items())
-    return np.array([Value(kernel, kind).address if kernel else 0 for kernel, kind in kernels])
+    kernels = film.wrench, film.residual, film.jacobian, film.wrench_jacobian, film.settle
+    return np.array([Value(k, kind).address if k else 0 for k, kind in zip(kernels, KINDS, strict=True)])
 
 
 @outer_kernel()
@@ -83,9 +83,9 @@ def wrench_by_unknowns(kernels, f, s, x, scales, rows):
 
 
 class FilmDerivatives:
-    """These derivatives for one film: `film` the module, `unknowns` its FilmUnknowns, `f` its block."""
+    """These derivatives for one film: `unknowns` its FilmUnknowns, `f` its block."""
 
-    def __init__(self, film, unknowns: FilmUnknowns, f: np.ndarray):
+    def __init__(self, film: Film, unknowns: FilmUnknowns, f: np.ndarray):
         self.film, self.unknowns, self.f = film, unknowns, f
         self.kernels, self.scales = kernels_of(film), np.ascontiguousarray(unknowns.scales, dtype=float)
         pattern = unknowns.pattern

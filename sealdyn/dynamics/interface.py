@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..faces import contact
+from ..faces.contact import lay_surfaces
 from ..faces.geometry import (
     CLEARANCE,
     CONING_CHANGE,
@@ -24,8 +25,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
     face_parameters,
 )
-from ..faces.surfaces import lay_surfaces
-from ..films import film_module, film_name, film_of, has_unknowns
+from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
 from ..scene.coning import coned
 from ..scene.contact import contact_thresholds
@@ -52,15 +52,15 @@ STEP, NEAREST = 0.01, 4e-6
 
 
 class Interface:
-    """The film of a scene (`film` its module, `name`, block `f`), its asperities (block `contact`, None without), and
+    """The film of a scene (`film` the Film, `name`, block `f`), its asperities (block `contact`, None without), and
     the aligned equilibrium: `clearance`, `closing`, `equilibria`, `message`.  `opening_force(clearance, p_i, p_o)` (N)
     is that of the aligned faces at rest, film and asperities; `observed`: film and block from which leakage, friction,
-    film force and fields are reported; `unknowns` of the film (films/_unknowns.py), None of an algebraic one."""
+    film force and fields are reported; `unknowns` of the film (films/_contract.py), None of an algebraic one."""
 
     def __init__(self, scene, error: float, film=None):
         self.scene = scene
         self.film = film_of(scene, film)
-        self.name = film_name(self.film)
+        self.name = self.film.name
         self.opening_force = opening_law(scene, self.film)
         self.clearance, self.closing, self.equilibria, self.message = settle(scene, self.opening_force)
         self._table_used = self._table()
@@ -69,9 +69,9 @@ class Interface:
         if self._borrowed() is not self.film:
             # The opening force is linear in both pressures.
             force = self._borrowed().opening_law(coned(scene), *spins(scene))
-            for slot, ends in ((self.film.FORCE_I, (1.0, 0.0)), (self.film.FORCE_O, (0.0, 1.0))):
+            for slot, ends in zip(self.film.opening_slots, ((1.0, 0.0), (0.0, 1.0)), strict=True):
                 self.f[slot] = force(self.clearance, *ends, self.f[FLOOR] if scene.contact else None)
-        self.unknowns = self.film.unknowns(self.f) if has_unknowns(self.film) else None
+        self.unknowns = self.film.unknowns(self.f) if self.film.unknowns else None
         self.observed = self.film, self.f
 
     def _borrowed(self):
@@ -87,7 +87,7 @@ class Interface:
         if table.cavitation_pressure is not None and _clear(table, *edges):
             # Small motion meets no floor.
             table = replace(table, cavitation_pressure=None)
-            source = film_module(film_name(source), table, self.scene.contact is not None)
+            source = film_named(source.name, table, self.scene.contact is not None)
         block = source.parameters(table, self.clearance, FINE)
         lay_surfaces(block, self.scene)
         # Where it does, it is the scene's own motion that says how much.
@@ -110,7 +110,7 @@ class Interface:
     def grid_accuracy(self) -> float | None:
         """Relative error that the cells of the film may have beside the run's accuracy; None where it counts in that,
         or there are none."""
-        return self.film.grid_accuracy(self._table_used) if hasattr(self.film, "grid_accuracy") else None
+        return self.film.grid_accuracy(self._table_used) if self.film.grid_accuracy else None
 
     def halved(self):
         """The Film table with half the cells of this one's."""
@@ -139,11 +139,11 @@ class Interface:
     def whole(self):
         """Block and unknowns of the film over the whole circle, whatever part of it stands for all in a run: what tilts
         that the run does not have do to it."""
-        if not hasattr(self.film, "whole"):
+        if self.film.whole is None:
             return self.f, self.unknowns
         f = self.film.parameters(self.film.whole(self._table_used), self.clearance)
         lay_surfaces(f, self.scene)
-        if hasattr(self.film, "for_modes"):
+        if self.film.for_modes is not None:
             self.film.for_modes(f)
         return f, self.film.unknowns(f)
 
@@ -152,7 +152,7 @@ class Interface:
         x = np.empty(len((self.unknowns if f is self.f else self.film.unknowns(f)).names))
         code = self.film.start(f, s, x)
         if code:
-            raise SceneError("film", self.film.STATUS[code], "a gap at which this film has a solution")
+            raise SceneError("film", self.film.status[code], "a gap at which this film has a solution")
         return x
 
     @cached_property
@@ -179,7 +179,7 @@ class Interface:
     @cached_property
     def _unfloored(self):
         table = replace(self._table_used, cavitation_pressure=None)
-        plain = film_module(self.name, table, self.scene.contact is not None)
+        plain = film_named(self.name, table, self.scene.contact is not None)
         f = plain.parameters(table, self.clearance, FINE)
         lay_surfaces(f, self.scene)
         return plain.wrench, f
@@ -203,7 +203,7 @@ class Interface:
 
     def _film_slopes(self, s, steps, omega, film) -> Slopes:
         """Stiffness and damping of the film alone."""
-        if hasattr(self.film, "matrices"):
+        if self.film.matrices is not None:
             error = np.finfo(float).eps if isinstance(self.scene.film.coefficients, Coefficients) else FORMULA
             own = _known(*self.film.matrices(self.f, s), error)
             if self._borrowed() is self.film:
@@ -259,13 +259,13 @@ def _clear(film, inner_pressure, outer_pressure) -> bool:
 
 def _lender(scene, film):
     """The film whose numbers a scene's `film` has: its own, or the radial film's in a linear film that says so."""
-    borrows = film_name(film) == "linear" and scene.film.coefficients == "radial"
-    return film_module("radial", scene.film, scene.contact is not None) if borrows else film
+    borrows = film.opening_slots is not None and scene.film.coefficients == "radial"
+    return film_named("radial", scene.film, scene.contact is not None) if borrows else film
 
 
 def prepared(scene, film):
-    """The Film table of a scene as its `film` (a module) takes it."""
-    return with_cells(scene, film) if hasattr(film, "prepared") else scene.film
+    """The `Film` table of a scene as its `film` takes it."""
+    return with_cells(scene, film) if film.prepared is not None else scene.film
 
 
 def opening_law(scene, film=None):
@@ -278,13 +278,13 @@ def opening_parts(scene, film=None):
     """Function `forces(clearance, p_i, p_o)` (N, N): opening force of the film, with the floor of rough faces, and of
     the asperities that touch, of a scene's aligned faces at rest; clearance in m, pressures in Pa.  The scene names its
     film, unless a `film` is given."""
-    module = _lender(scene, film_of(scene, film))
-    table, surfaces = coned(replace(scene, film=prepared(scene, module))), {}
-    if waves_of(scene) and getattr(module, "STANDING_WAVES", False):
+    film = _lender(scene, film_of(scene, film))
+    table, surfaces = coned(replace(scene, film=prepared(scene, film))), {}
+    if waves_of(scene) and film.standing_waves:
         surfaces["waves"] = scene.stator.waviness, scene.rotor.waviness
-    if scene.contact and getattr(module, "WAVES_TOUCH", False):
+    if scene.contact and film.waves_touch:
         surfaces["contact"] = scene.contact
-    film_force = module.opening_law(table, *spins(scene), **surfaces)
+    film_force = film.opening_law(table, *spins(scene), **surfaces)
     if not scene.contact:
         return lambda clearance, inner, outer: (film_force(clearance, inner, outer), 0.0)
     s, face = np.zeros(GAP_STATE_SIZE), face_parameters(table, 1.0)

@@ -31,7 +31,7 @@ class Model:
     of the unknowns, `reference_rate` (rad/s) between displacements and rates, `shortest_period` (s) of interest;
     `capture_speed` (m/s) below which a ring on its secondary seal is captured; `algebraic` places of unknowns without
     mass and damping, or of the film's without a rate; `start` the first interval.  The scene names its film, unless a
-    `film` is given: a module or what offers the same (films/__init__.py).  `film_error`: relative, of the film's
+    `film` is given (Film, films/_contract.py).  `film_error`: relative, of the film's
     integrals (default a hundredth of the accuracy).
     """
 

@@ -36,7 +36,7 @@ class RunState:
         self.extrema = ExtremaTracker(model, duration)
         self.contacts = ContactEvents(model, self.extrema)
         self.stick_slip = StickSlip(model) if model.unknowns.coulomb_rings else None
-        remark = getattr(model.interface.film, "REMARK", None)
+        remark = model.interface.film.remark
         self.reasons = [*model.unknowns.reasons, *([remark] if remark else []), *model.scene.housing.remarks(duration)]
         self.cautions = []
         self.last, self.start = (0, 0.0, self.y0), None

@@ -156,7 +156,7 @@ class Segment:
     def failure(self) -> str:
         """What the film says if it had no solution since it was asked last, else ""."""
         code, self.s[REFUSED] = int(self.s[REFUSED]), 0.0
-        return self.model.interface.film.STATUS[code] if code else ""
+        return self.model.interface.film.status[code] if code else ""
 
     def until(self, tau: float) -> "Segment":
         """The same segment, ending at tau (s)."""

@@ -277,8 +277,8 @@ def series_of(at: Samples, tallied=False) -> dict[str, np.ndarray]:
 
 
 def fields_of(model) -> tuple:
-    """Fields (films/_fields.py) of the film that is reported, none of one that declares none."""
-    return getattr(model.observed[0], "FIELDS", ())
+    """Fields (films/_contract.py) of the film that is reported."""
+    return model.observed[0].quantities
 
 
 def field_grid(model) -> tuple[np.ndarray, np.ndarray]:

@@ -28,7 +28,7 @@ class Unknowns:
     `y` = [displacements | velocities | film | impulse | works | sum of absolute works]: slices `film` and `works`, and
     the place of the `impulse` (None without).  `names` of the `n` displacements; `rate_places` where their rates stand,
     -1 for those of which `lacks_inertia` (n,) is true; `n_mechanical` displacements and rates, `size` of y;
-    `film_unknowns` what the film owns (films/_unknowns.py), None of an algebraic one; `has_residual_form` whether they
+    `film_unknowns` what the film owns (films/_contract.py), None of an algebraic one; `has_residual_form` whether they
     obey a residual only, since a ring is massless or the film has unknowns; `ring_block` the constant part of the
     parameters; `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `linear`,
     `constant` (no table anywhere), `extended` (contact or a secondary seal), `reasons`.

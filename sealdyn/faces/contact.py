@@ -6,7 +6,7 @@ law: Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979).
 
 Contact depends on the film thickness alone, so it has a potential: V = int W(h) dA, dW/dh = -p_c, force and moments are
 minus its derivatives, and turning costs nothing but friction.  A face with a profile is a sum of annuli between its
-radii, which faces/contact_annulus.py integrates.  The kernels take `k` this module's block, `f` a film's block (its
+radii, which faces/roughness.py integrates.  The kernels take `k` this module's block, `f` a film's block (its
 leading slots the faces) and `s` the gap state (slots in faces/geometry.py).
 """
 
@@ -17,23 +17,6 @@ import numpy as np
 
 from ..numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ..scene.contact import Contact, contact_thresholds
-from .contact_annulus import (
-    AREA,
-    AROUND,
-    ENERGY,
-    FACE_AREA,
-    LOAD,
-    NODES,
-    RADIAL,
-    SHEAR_OF_AREA,
-    SHEAR_OF_LOAD,
-    SPAN,
-    TOP,
-    WEAR_PER_LOAD,
-    annulus,
-    pressed,
-    touching_radius,
-)
 from .geometry import (
     COLLAPSE,
     CONING_CHANGE,
@@ -64,8 +47,28 @@ from .geometry import (
     node_gap,
     smallest_gap,
 )
-from .roughness import christensen_series, gaussian_series, scaled, stored
-from .waviness import waves
+from .roughness import (
+    AREA,
+    AROUND,
+    ENERGY,
+    FACE_AREA,
+    LOAD,
+    NODES,
+    RADIAL,
+    SHEAR_OF_AREA,
+    SHEAR_OF_LOAD,
+    SPAN,
+    TOP,
+    WEAR_PER_LOAD,
+    annulus,
+    christensen_series,
+    gaussian_series,
+    pressed,
+    scaled,
+    stored,
+    touching_radius,
+)
+from .waviness import lay_waves, waves
 
 # Gauss points of a panel around the circle: error below 1e-10 of the load (tests/convergence).
 ANGLE_POINTS = {"christensen": 12, "greenwood-williamson": 20}
@@ -272,3 +275,10 @@ def hat_areas(face) -> np.ndarray:
     areas[:-1] += math.pi / 3.0 * width * (2.0 * r[:-1] + r[1:])
     areas[1:] += math.pi / 3.0 * width * (r[:-1] + 2.0 * r[1:])
     return areas
+
+
+def lay_surfaces(f, scene) -> np.ndarray | None:
+    """Write the waves and the roughness of a scene's faces into a face block; returns the block of the asperities
+    (contact.py), None for faces without `[contact]`."""
+    lay_waves(f, scene.stator.waviness, scene.rotor.waviness)
+    return lay_asperities(scene.contact, f) if scene.contact else None

@@ -1,20 +1,47 @@
-"""The radial films' parameter block and their Gauss rules over the radius."""
+"""What the radial films share: their parameter block, their Gauss rules over the radius, a radial line of Reynolds'
+equation, and the pressure over the face.
+
+**Source** Reynolds' equation along a radius, as in radial/film.py:
+
+    r h^3 p' = 12 mu (Phi + c),   Phi = integral of f r dr,   f = dh/dt + wm dh/dtheta
+
+(planar: no r; inertia adds g r to p'), integrated from each radius of the grid to the next by the Gauss rule that
+serves the film ratio between them: how fine the grid is does not matter to the pressures on it.
+**Valid** where these films are; between faces without waves.
+"""
 
 import math
 from functools import lru_cache
 
 import numpy as np
 
+from ..faces.film_thickness import film_thickness
 from ..faces.geometry import (
+    CONING_RATE,
+    DZ_RATE,
     FACE_SIZE,
+    FLOOR,
     GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    INNER_PRESSURE,
+    INNER_RADIUS,
     MEAN_SPIN,
+    OUTER_PRESSURE,
+    OUTER_RADIUS,
+    PLANAR,
+    PROFILE,
+    PROFILE_RADII,
     SPIN_DIFFERENCE,
+    TILT_AT_MEAN,
     VISCOSITY,
     face_parameters,
+    regularised_thickness,
 )
-from ..numerics.kernel import inner_kernel
-from ._opening import opening_force
+from ..numerics.kernel import inner_kernel, outer_kernel
+from ._contract import force_over_clearance
 
 # Gauss rules offered.
 RADIAL_POINTS = (4, 8, 12, 16, 24, 32)
@@ -29,7 +56,7 @@ HALF_CIRCLE = tuple(
 TWICE = np.array([1.0, *(MOST_ANGLES // 2 - 1) * [2.0], 1.0])
 
 # At the floor the film's law has a bend of second order, of which the trapezoid leaves LOW/N^3 of the load; and by how
-# many powers of e each Gauss point of a panel between two bends gains (radial/bent_angles.py).
+# many powers of e each Gauss point of a panel between two bends gains (bent_angles in radial/film.py).
 LOW, PANEL_GAIN = 10.0, 2.88
 
 # Block layout after the faces; INERTIA is the density (kg/m^3) of a film with inertia, else 0.
@@ -116,12 +143,12 @@ def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
     return f
 
 
-def opening_law(film, parameters, wrench, mean_spin, spin_difference):
+def opening_law(parameters, wrench, film, mean_spin=0.0, spin_difference=0.0):
     """The function `opening_law` of a radial film's contract (N, m, Pa, rad/s), from the film's `parameters` and kernel
     `wrench`."""
     s = np.zeros(GAP_STATE_SIZE)
     s[VISCOSITY], s[MEAN_SPIN], s[SPIN_DIFFERENCE] = 1.0, mean_spin, spin_difference
-    return opening_force(film, parameters(film, 1.0, 1e-13), s, wrench)
+    return force_over_clearance(film, parameters(film, 1.0, 1e-13), s, wrench)
 
 
 @inner_kernel()
@@ -168,3 +195,130 @@ def angle_count(f, ratio, bent):
         if f[ANGLE_COUNTS + i] >= wanted:
             return int(f[ANGLE_COUNTS + i])
     return MOST_ANGLES
+
+
+@inner_kernel()
+def line_sums(q0, q, r_i, planar, a, b, h_a, h_b, x_k, w_k):
+    """Integrals of Q/h^3, r^2 Q/h^3, r^3 Q/h^3 (over r unless planar) from d = a to b, films h_a to h_b; then
+    the same three of 1/h^3."""
+    h_g = math.sqrt(h_a * h_b)
+    root = math.sqrt(h_g / h_a)
+    t, u_a, u_s = (root - 1.0) / (root + 1.0), 1.0 / root, 1.0 / (root + 1.0 / root)
+    per_h, span = 1.0 / h_g, b - a
+    scale = span * (1.0 - t * t) * u_s * per_h**3
+    reach = 0.5 * (1.0 - t) * u_s * span
+    p_0 = p_2 = p_3 = e_0 = e_2 = e_3 = 0.0
+    for k in range(len(x_k)):
+        tx = t * x_k[k]
+        both = 1.0 / ((1.0 - tx) * (1.0 + tx))
+        back = (1.0 + tx) * both
+        u, v = (1.0 + tx) * back, (1.0 - tx) * (1.0 - tx) * both
+        d = a + reach * (1.0 + x_k[k]) * back * (u + u_a)
+        r = r_i + d
+        weight = w_k[k] * scale * back * back * v**5
+        unit = weight if planar else weight / r
+        slope = unit * (q0 + d * (q[0] + d * (q[1] + d * q[2])))
+        p_0 += slope
+        p_2 += slope * r * r
+        p_3 += slope * r**3
+        e_0 += unit
+        e_2 += unit * r * r
+        e_3 += unit * r**3
+    return p_0, p_2, p_3, e_0, e_2, e_3
+
+
+@inner_kernel()
+def cubic(z_rate, tilt_rate, r_i, r_o, mean, planar):
+    """Coefficients of d, d^2, d^3 in `Phi = int f r dr` (planar: `int f dr`), and the d where f changes sign
+    (-1: nowhere)."""
+    if mean:
+        rate = z_rate + tilt_rate * 0.5 * (r_i + r_o)
+        return ((rate, 0.0, 0.0) if planar else (rate * r_i, 0.5 * rate, 0.0)), -1.0
+    rate = z_rate + tilt_rate * r_i
+    turn = -rate / tilt_rate if tilt_rate != 0.0 else -1.0
+    if planar:
+        return (rate, 0.5 * tilt_rate, 0.0), turn
+    return (rate * r_i, 0.5 * (rate + tilt_rate * r_i), tilt_rate / 3.0), turn
+
+
+# Steps over the radius, at least, and angles of the grid.
+FIELD_STEPS, FIELD_ANGLES = 16, 48
+
+
+def _nodes(f):
+    """Radii (m) between which the film thickness is linear: both edges, or those of the profile."""
+    if f[PROFILE] == 0.0:
+        return np.array([f[INNER_RADIUS], f[OUTER_RADIUS]])
+    return f[PROFILE_RADII : PROFILE_RADII + int(f[PROFILE])].copy()
+
+
+def _steps(nodes):
+    """Equal steps between each node and the next, and how many in all."""
+    steps, total = np.empty(len(nodes) - 1, np.int64), 0
+    for n in range(len(steps)):
+        steps[n] = math.ceil(FIELD_STEPS * (nodes[n + 1] - nodes[n]) / (nodes[-1] - nodes[0]) - 1e-9)
+        total += steps[n]
+    return steps, total
+
+
+def _radii(nodes, steps, total):
+    """Radii (m) of the grid."""
+    r, at = np.empty(total + 1), 0
+    for n in range(len(steps)):
+        for i in range(steps[n]):
+            r[at], at = nodes[n] + (nodes[n + 1] - nodes[n]) * i / steps[n], at + 1
+    r[at] = nodes[-1]
+    return r
+
+
+def grid(f):
+    """Radii (m) of the grid, edges and nodes of a profile among them, and its angles (rad)."""
+    nodes = _nodes(f)
+    return _radii(nodes, *_steps(nodes)), 2.0 * math.pi / FIELD_ANGLES * np.arange(FIELD_ANGLES)
+
+
+@inner_kernel()
+def _thicknesses(f, s, nodes, steps, theta, h):
+    """Film thickness `h` (radii,) at one angle, m; below the floor as the film's force sees it."""
+    at, here = 0, 0.0
+    for n in range(len(nodes)):
+        there = regularised_thickness(film_thickness(f, s, nodes[n], theta), f[FLOOR])
+        for i in range(steps[n - 1] if n > 0 else 0):
+            h[at], at = here + (there - here) * i / steps[n - 1], at + 1
+        here = there
+    h[at] = here
+
+
+def fields(f, s, out):
+    """Pressure (Pa, absolute) of a gap state `s` on the grid, `out` (1, radii, angles); with the film's floor where it
+    has one."""
+    nodes = _nodes(f)
+    steps, total = _steps(nodes)
+    _pressure(f, s, nodes, steps, _radii(nodes, steps, total), out[0])
+
+
+@outer_kernel()
+def _pressure(f, s, nodes, steps, r, out):
+    """As `fields`, `out` (radii, angles), at the radii `r` (m): `steps` of them from one of the `nodes` to the next."""
+    mean, planar = f[TILT_AT_MEAN] != 0.0, f[PLANAR] != 0.0
+    per, p_i, p_o, g = 12.0 * s[VISCOSITY], s[INNER_PRESSURE], s[OUTER_PRESSURE], centrifugal(f, s)
+    # Integrals of Phi / (r h^3) and of 1 / (r h^3) from the inner radius.
+    h, driven, through = np.empty(len(r)), np.zeros(len(r)), np.zeros(len(r))
+    for j in range(FIELD_ANGLES):
+        theta = 2.0 * math.pi / FIELD_ANGLES * j
+        sin, cos = math.sin(theta), math.cos(theta)
+        _thicknesses(f, s, nodes, steps, theta, h)
+        tilt_rate = s[GX_RATE] * sin - s[GY_RATE] * cos + s[MEAN_SPIN] * (s[GX] * cos + s[GY] * sin)
+        # A cone that grows is a tilting of every radius alike.
+        tilt_rate += s[CONING_RATE]
+        q, _ = cubic(s[DZ_RATE] - s[CONING_RATE] * r[0], tilt_rate, r[0], r[-1], mean, planar)
+        for k in range(1, len(r)):
+            rule = RULES + RULE_SIZE * points_for(f, h[k - 1], h[k])
+            first, points = rule + 2, int(f[rule])
+            x_k, w_k = f[first : first + points], f[first + RADIAL_POINTS[-1] : first + RADIAL_POINTS[-1] + points]
+            part = line_sums(0.0, q, r[0], planar, r[k - 1] - r[0], r[k] - r[0], h[k - 1], h[k], x_k, w_k)
+            driven[k], through[k] = driven[k - 1] + part[0], through[k - 1] + part[3]
+        c = ((p_o - p_i - 0.5 * g * (r[-1] ** 2 - r[0] ** 2)) / per - driven[-1]) / through[-1]
+        for k in range(len(r)):
+            p = p_i + per * (driven[k] + c * through[k]) + 0.5 * g * (r[k] ** 2 - r[0] ** 2)
+            out[k, j] = max(p, f[CAVITATION]) if f[HAS_CAVITATION] != 0.0 else p

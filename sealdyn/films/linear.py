@@ -55,8 +55,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.coning import changes
 from ..scene.film import Coefficients
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
-
-RUNG, FLUIDS = 1, ("liquid", "gas")
+from ._contract import Film
 
 
 def accepts(film, waves=()) -> str:
@@ -181,3 +180,17 @@ def flow(f, s):
     s[FLOW_INNER] = s[FLOW_OUTER] = volume
     twist = 0.5 * (s[GX] * s[MOMENT_Y] - s[GY] * s[MOMENT_X])
     s[TORQUE] = s[VISCOSITY] * s[SPIN_DIFFERENCE] * r_m**3 * d_theta * drag + twist
+
+
+FILM = Film(
+    name="linear",
+    fidelity=1,
+    fluids=("liquid", "gas"),
+    accepts=accepts,
+    parameters=parameters,
+    opening_law=opening_law,
+    opening_slots=(FORCE_I, FORCE_O),
+    matrices=matrices,
+    wrench=wrench,
+    flow=flow,
+)

@@ -251,7 +251,7 @@ def certify(
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
     known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
     by_cells = max((error for error in known if error is not None), default=None)
-    if by_cells is None and hasattr(run.model.observed[0], "halved"):
+    if by_cells is None and run.model.observed[0].halved is not None:
         by_cells = math.inf
     grid = run.model.interface.grid_accuracy
     if grid is not None:

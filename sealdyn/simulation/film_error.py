@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..faces.contact import lay_surfaces
 from ..faces.film_thickness import h_min
 from ..faces.geometry import (
     CAVITATED,
@@ -26,8 +27,7 @@ from ..faces.geometry import (
     MOMENT_X,
     MOMENT_Y,
 )
-from ..faces.surfaces import lay_surfaces
-from ..films import film_module, film_name, refused
+from ..films import film_named, limits
 from ..numerics.kernel import outer_kernel
 from ..numerics.piecewise_linear import initially
 from ..scene.reynolds import Reynolds
@@ -62,7 +62,7 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     model, unknowns = run.model, run.model.unknowns
     if unknowns.has_residual_form or not unknowns.constant or not unknowns.linear:
         return None
-    if film_module(higher).accepts(replace(model.scene.film, model=higher), waves_of(model.scene)):
+    if film_named(higher).accepts(replace(model.scene.film, model=higher), waves_of(model.scene)):
         return None
     segment = run.segment(0)
     _, answers, linear = segment.steady_motion()
@@ -74,7 +74,7 @@ def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.nd
     # A ring that nothing brings back has no steady motion.
     if slowest > 0 or np.min(sizes) < HELD * np.max(sizes):
         return None
-    film = film_module(higher, model.scene.film)
+    film = film_named(higher, model.scene.film)
     block = film.parameters(replace(model.scene.film, model=higher), model.clearance, model.accuracy / 10)
     comparison = FilmComparison(segment, linear, film, block)
     # The steady state first: it is cheap, and on it what is left of the start no longer acts.
@@ -239,14 +239,14 @@ def beside_reynolds(run) -> dict | None:
     model = run.model
     scene, (film, f) = model.scene, model.observed
     floor = scene.film.cavitation_pressure is not None
-    if model.unknowns.film_unknowns or waves_of(scene) or film_name(film) == "linear":
+    if model.unknowns.film_unknowns or waves_of(scene) or film.name == "linear":
         return None
     options = Reynolds(cells_r=CELLS[0], cells_theta=CELLS[1], roughness="none", sectors=1,
                        cavitation="mass-conserving" if floor else "none")  # fmt: skip
-    keeps, table = film_module("reynolds"), replace(scene.film, model="reynolds", reynolds=options)
+    keeps, table = film_named("reynolds"), replace(scene.film, model="reynolds", reynolds=options)
     # Of a narrow seal, the two are one.
     table = replace(table, geometry="cylindrical")
-    if refused(keeps, table):
+    if limits(keeps, table):
         return None
     s = _turning_state(run)
     g = keeps.parameters(table, model.clearance)
@@ -307,7 +307,7 @@ def cell_error(run) -> float | None:
     """
     model = run.model
     film, f = model.observed
-    if not hasattr(film, "halved"):
+    if film.halved is None:
         return None
     coarse = film.parameters(model.interface.halved(), model.clearance)
     lay_surfaces(coarse, model.scene)

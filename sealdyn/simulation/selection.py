@@ -86,7 +86,7 @@ STIFF = 60.0
 def choose_method(run) -> tuple[str, str]:
     """The method for a run (RunState), by its name in METHODS, and a sentence why."""
     model = run.model
-    if hasattr(model.interface.film, "settle"):
+    if model.interface.film.settle is not None:
         return "trbdf2", "cells that tear and fill: TR-BDF2, the film settled at each stage"
     if model.unknowns.massless:
         return "ida", "a massless ring has no rates: IDA, on the residual form"
@@ -103,7 +103,7 @@ def choose_method(run) -> tuple[str, str]:
 def check_method(model, method: str) -> None:
     """Raises SceneError where a method cannot integrate a scene."""
     unknowns = model.unknowns
-    settles = hasattr(model.interface.film, "settle")
+    settles = model.interface.film.settle is not None
     if method == "trbdf2" and not settles:
         raise SceneError("run.solver", '"trbdf2"', "another solver: it is for films whose cells tear and fill")
     if unknowns.has_residual_form and method != "ida" and not (settles and method == "trbdf2"):

@@ -310,7 +310,7 @@ def _aligned(segment):
 def _exit_mach(segment):
     """Mach number at which a gas leaves these; None of a film that does not know."""
     film, f = segment.model.observed
-    return film.exit_mach(f, _at_rest(segment))[1] if hasattr(film, "exit_mach") else None
+    return film.exit_mach(f, _at_rest(segment))[1] if film.exit_mach is not None else None
 
 
 def _closing(segment):

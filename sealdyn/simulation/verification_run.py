@@ -77,7 +77,7 @@ class Comparison:
         half of them cannot describe."""
         model = self.run.model
         film = model.observed[0]
-        if not hasattr(film, "halved"):
+        if film.halved is None:
             return None
         try:
             coarse = Model(replace(model.scene, film=model.interface.halved()), model.accuracy, film=model.film)
@@ -104,7 +104,7 @@ class Comparison:
         found = np.full(len(self.times), np.nan)
         if both.any():
             errors = self.scales.errors(self.columns[both], other.columns[both])
-            if hasattr(self.run.model.interface.film, "settle"):
+            if self.run.model.interface.film.settle is not None:
                 errors = beside_jumps(errors)
             found[both] = errors.max(axis=1)
         if outcome.status != Status.OK:
@@ -155,7 +155,7 @@ def beside_jumps(errors: np.ndarray) -> np.ndarray:
 def instants(run) -> np.ndarray:
     """Times (m,) (s) at which runs are compared: evenly over the run, but in step with nothing, and closer after the
     starts of its stretches and before their ends."""
-    least = MANY if hasattr(run.model.interface.film, "settle") else FEW
+    least = MANY if run.model.interface.film.settle is not None else FEW
     count = int(min(max(PER_PERIOD * run.duration / run.model.shortest_period, least), MOST))
     evenly = np.mod(GOLDEN * np.arange(1, count + 1), 1.0) * run.duration
     stretches = run.intervals[:: max(1, len(run.intervals) // 30)]

@@ -114,7 +114,7 @@ def _at(scenario, place) -> tuple[dict, str]:
     interface.film.flow(f, s, *own)
     if not np.all(np.isfinite(s[FORCE : FLOW_OUTER + 1])):
         where = f"a clearance of {interface.clearance:.4g} m and a tilt of {tilt:.4g} rad"
-        why = interface.film.STATUS[int(s[REFUSED])] if s[REFUSED] else "force and leakage are no numbers"
+        why = interface.film.status[int(s[REFUSED])] if s[REFUSED] else "force and leakage are no numbers"
         expected = "a clearance of the size of a film's, and a flow through it"
         raise ScenarioError(scenario.name, "study.pressure.at", f"{where}: {why}", expected)
     p_low, area = min(scene.film.inner_pressure, scene.film.outer_pressure), interface.closing.area
@@ -135,7 +135,7 @@ def _at(scenario, place) -> tuple[dict, str]:
         # Not a zero with a minus.
         "leakage": float(leakage) + 0.0,
         "mass_flow": float(density_of(scene.film) * leakage) + 0.0,
-        "exit_mach": interface.film.exit_mach(f, s)[1] if hasattr(interface.film, "exit_mach") else None,
+        "exit_mach": interface.film.exit_mach(f, s)[1] if interface.film.exit_mach is not None else None,
         "high_pressure": "outer" if interface.closing.outer_is_high else "inner",
         "edges": {side: [float(getattr(scene.film, f"{side}_{what}")) for what in ("radius", "pressure")]
                   for side in ("inner", "outer")},
@@ -143,7 +143,7 @@ def _at(scenario, place) -> tuple[dict, str]:
         "profiles": None,
         "integrated": None,
     }  # fmt: skip
-    if any(field.name == "pressure" for field in getattr(interface.film, "FIELDS", ())):
+    if any(field.name == "pressure" for field in interface.film.quantities):
         numbers |= _over_face(interface, s, own, numbers)
     return numbers, "" if "clearance" in place else interface.message
 
@@ -201,11 +201,12 @@ def _over_face(interface, s, own, answer) -> dict:
     """The field, its profiles and its sums, for an `answer` that has the rest."""
     film, f = interface.film, interface.f
     r, theta = film.grid(f)
-    fields = np.empty((len(film.FIELDS), len(r), len(theta)))
+    fields = np.empty((len(film.quantities), len(r), len(theta)))
     film.fields(f, s, *own, fields)
-    p = fields[[field.name for field in film.FIELDS].index("pressure")]
-    narrow = getattr(film, "MEAN_CIRCUMFERENCE", False)
-    force, moment, centre = sums(r, theta, p, answer["edges"], answer["high_pressure"] == "outer", narrow)
+    p = fields[[field.name for field in film.quantities].index("pressure")]
+    force, moment, centre = sums(
+        r, theta, p, answer["edges"], answer["high_pressure"] == "outer", film.mean_circumference
+    )
     around = np.array([film_thickness(f, s, 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]), angle) for angle in theta])
     middle = int(np.argmin(np.abs(r - 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]))))
     share = weights(theta) / (2 * np.pi)

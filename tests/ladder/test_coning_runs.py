@@ -12,7 +12,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.dynamics.signals import signals
 from sealdyn.faces.geometry import DZ
-from sealdyn.films import film_module
+from sealdyn.films import film_named
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
@@ -151,5 +151,5 @@ def test_rough_faces_meet_where_the_cone_brings_them_together():
 
 def test_which_films_take_it():
     changing = film(coning_per_speed_squared=1e-10)
-    taken = {name: film_module(name).accepts(changing) == "" for name in ("linear", "radial")}
+    taken = {name: film_named(name).accepts(changing) == "" for name in ("linear", "radial")}
     assert taken == {"linear": False, "radial": True}

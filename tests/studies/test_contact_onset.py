@@ -10,7 +10,6 @@ from scenes import started
 import sealdyn
 from sealdyn import closed_form as cf
 from sealdyn.analysis.shooting import Shooter, TooMuchWork
-from sealdyn.films.radial import film as radial
 from sealdyn.report.charts import study_contact_onset
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
@@ -54,7 +53,6 @@ def test_linear_onset_is_the_formula(found):
     else:
         expected = cf.critical_forcing(tilt, cf.fmr_dynamic(**numbers) * 25e-6, cf.fmr_static(**numbers))
     assert answer["formula"] == pytest.approx(expected, rel=1e-8)
-    assert radial.RUNG == 2
 
 
 def test_the_film_postpones_contact_by_forty_per_cent(found):

@@ -25,7 +25,6 @@ from scenes import (
     started,
 )
 
-from sealdyn.films import film_name
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import Run, read_scenario
 from sealdyn.scene.contact import Contact
@@ -296,7 +295,7 @@ def test_an_unstable_scene_is_not_linearised():
 def test_leakage_of_a_chosen_linear_film_is_the_radial_films():
     """The motion may be linear; what leaks at a clearance is not for the narrow-seal formula to say."""
     ready = choose(SCENES["fmsr"], 1e-2)
-    assert ready.model.interface.name == "linear" and film_name(ready.model.observed[0]) == "radial"
+    assert ready.model.interface.name == "linear" and ready.model.observed[0].name == "radial"
 
 
 def test_the_sentence_says_what_was_asked_and_what_was_found():

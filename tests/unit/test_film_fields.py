@@ -9,7 +9,7 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, film
 from scipy.integrate import cumulative_trapezoid, simpson
 
 from sealdyn.faces import geometry
-from sealdyn.films import film_module
+from sealdyn.films import film_named
 from sealdyn.scene.film import Profile
 
 MU, P_I, P_O = 3e-3, 1e5, 6e5
@@ -62,7 +62,7 @@ def pressures(table, s, radii, angles):
 @pytest.mark.parametrize("faces", FACES)
 def test_pressures_are_those_of_reynolds_equation(faces):
     table, s = film(**FACES[faces]), gap_state()
-    module = film_module(table.model, table)
+    module = film_named(table.model, table)
     f = module.parameters(table, CLEARANCE)
     radii, angles = module.grid(f)
     found = np.full((1, len(radii), len(angles)), np.nan)
@@ -77,7 +77,7 @@ def test_pressures_are_those_of_reynolds_equation(faces):
 def test_the_grid_holds_the_edges_and_the_nodes_of_a_profile():
     for faces, nodes in (("cone", (R_I, R_O)), ("profile", RADII)):
         table = film(**FACES[faces])
-        module = film_module(table.model, table)
+        module = film_named(table.model, table)
         radii, angles = module.grid(module.parameters(table, CLEARANCE))
         assert np.all(np.diff(radii) > 1e-6) and 17 <= len(radii) <= 17 + len(nodes) - 2
         assert radii[0] == R_I and radii[-1] == R_O and np.all(np.isin(nodes, radii))
@@ -88,7 +88,7 @@ def test_below_the_floor_the_film_is_as_its_force_sees_it():
     """Faces that overlap: the pressures sum up to the film's force."""
     for faces in ("cone", "profile"):
         table, s = film(floor=0.2, **FACES[faces]), gap_state(share=-0.3)
-        module = film_module(table.model, table)
+        module = film_named(table.model, table)
         f = module.parameters(table, CLEARANCE)
         radii, angles = module.grid(f)
         found = np.empty((1, len(radii), len(angles)))

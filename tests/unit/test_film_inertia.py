@@ -25,7 +25,7 @@ from test_film_radial import random_state as random_state_of
 
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
-from sealdyn.films import film_module, film_names
+from sealdyn.films import film_named, film_names
 from sealdyn.films._radial_quadrature import centrifugal
 from sealdyn.films.profiled import film as profiled
 from sealdyn.films.radial import film as radial
@@ -182,7 +182,7 @@ def test_another_speed_is_another_film():
 
 def test_a_linear_film_has_no_inertia():
     table = replace(heavy(), model="auto")
-    assert film_names(table) == ["radial"] and film_module("linear").accepts(table)
+    assert film_names(table) == ["radial"] and film_named("linear").accepts(table)
     with pytest.raises(SceneError):
         Model(fms(film=replace(table, model="linear")))
     run, error = select_film(fms(film=table), type("Run", (), {"accuracy": 1e-4, "duration": 0.01})(), lambda run: None)

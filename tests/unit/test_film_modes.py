@@ -109,7 +109,7 @@ def test_waves_leave_the_sectors_that_they_leave_alike(order, few):
     s, f = gap_state(film, 1000.0), gas.parameters(film, film.clearance)
     lay_waves(f, [Waviness(order=order, amplitude=1e-6)], [])
     x, steps = steady(f, s), (5e-8, 1e-6, 5e-5, 1e-3)
-    found = LinearFilm.about(FilmDerivatives(gas, gas.unknowns(f), f), s, x, steps)
+    found = LinearFilm.about(FilmDerivatives(gas.FILM, gas.unknowns(f), f), s, x, steps)
     assert (None if found.few is found else len(found.few.scales)) == few
     alone = replace(found, around=None)
     assert found.stiffness(2e3j) == pytest.approx(alone.stiffness(2e3j), rel=1e-9, abs=1e-3)

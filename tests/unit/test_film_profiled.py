@@ -207,5 +207,5 @@ def test_finite_and_smooth_below_the_floor(shape):
 def test_films_for_faces():
     """Of faces with a profile one film is left; "auto" takes it."""
     worn = film("auto", profile=Profile(*BENT["middle"]))
-    assert film_names(worn) == ["profiled"] and film_of(fms(film=worn)) is profiled
-    assert "profiled" not in film_names(film()) and film_of(fms("auto")) is radial
+    assert film_names(worn) == ["profiled"] and film_of(fms(film=worn)) is profiled.FILM
+    assert "profiled" not in film_names(film()) and film_of(fms("auto")) is radial.FILM

@@ -9,7 +9,6 @@ import pytest
 from scipy.optimize import brentq
 
 from sealdyn.faces import geometry
-from sealdyn.films.radial import cavitated_circle
 from sealdyn.films.radial import floored as radial
 from sealdyn.scene.film import Film
 
@@ -153,9 +152,9 @@ def test_smooth_in_the_state(pressures, mean):
 @pytest.mark.core
 def test_the_tables_are_a_gauss_kronrod_pair():
     """Exact for polynomials up to degree 31 and 19, and not beyond."""
-    x = np.concatenate([cavitated_circle.NODES, -cavitated_circle.NODES[-2::-1]])
-    fine = np.concatenate([cavitated_circle.KRONROD, cavitated_circle.KRONROD[-2::-1]])
-    coarse = np.concatenate([cavitated_circle.GAUSS, cavitated_circle.GAUSS[::-1]])
+    x = np.concatenate([radial.NODES, -radial.NODES[-2::-1]])
+    fine = np.concatenate([radial.KRONROD, radial.KRONROD[-2::-1]])
+    coarse = np.concatenate([radial.GAUSS, radial.GAUSS[::-1]])
     for weights, nodes, degree in ((fine, x, 31), (coarse, x[1::2], 19)):
         for power in range(0, degree + 1, 2):
             assert weights @ nodes**power == pytest.approx(2 / (power + 1), abs=2e-15)

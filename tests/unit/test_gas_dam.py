@@ -5,7 +5,6 @@ import pytest
 from marched_dam import Dam, flow
 
 from sealdyn.closed_form import zuk_1972 as zuk
-from sealdyn.films import _friction_flow
 from sealdyn.films import _gas_dam as gas
 
 SEAL = zuk.CRUISE
@@ -291,7 +290,7 @@ def test_equal_pressures_are_no_flow():
 
 def test_blend_is_the_larger_law_far_from_where_they_cross():
     for re in (1.0, 200.0, 2045.0, 2e4, 1e8):
-        blended = _friction_flow.blended_friction(24.0, 0.079, re)
+        blended = gas.blended_friction(24.0, 0.079, re)
         assert blended == pytest.approx(FRICTION["blend"](re), rel=1e-13)
-        assert _friction_flow.blended_friction(24.0, 0.0, re) == pytest.approx(24 / re, rel=1e-15)
-        assert _friction_flow.blended_friction(0.0, 0.079, re) == pytest.approx(0.079 / re**0.25, rel=1e-14)
+        assert gas.blended_friction(24.0, 0.0, re) == pytest.approx(24 / re, rel=1e-15)
+        assert gas.blended_friction(0.0, 0.079, re) == pytest.approx(0.079 / re**0.25, rel=1e-14)

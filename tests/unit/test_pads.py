@@ -99,7 +99,7 @@ def scene(film, **stator):
 
 
 def test_which_films_and_faces_take_them():
-    assert film_of(scene(padded(CLOSED))) is gas
+    assert film_of(scene(padded(CLOSED))) is gas.FILM
     for film in (replace(liquid("radial"), pads=(CLOSED,)), replace(padded(CLOSED), model="gas_dam")):
         with pytest.raises(SceneError, match="pads"):
             film_of(scene(film))

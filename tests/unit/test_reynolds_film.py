@@ -32,7 +32,7 @@ from sealdyn.faces.geometry import (
     face_parameters,
 )
 from sealdyn.faces.waviness import lay_waves
-from sealdyn.films import film_module
+from sealdyn.films import film_named
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import roughness as means
 from sealdyn.scene.contact import Contact
@@ -172,7 +172,7 @@ def test_squeezed_parallel_faces_are_those_of_the_radial_film():
     film, radial = narrow(0.05)
     _, s, _ = settled(film, DZ_RATE=-1e-4)
     other = gap(radial, DZ_RATE=-1e-4)
-    law = film_module("radial", radial)
+    law = film_named("radial", radial)
     law.flow(law.parameters(radial, 1e-5, 1e-10), other)
     for slot in (FORCE, FLOW_INNER, FLOW_OUTER, TORQUE):
         assert s[slot] == pytest.approx(other[slot], rel=5e-4)
@@ -185,7 +185,7 @@ def test_tilted_narrow_faces_tend_to_those_of_the_radial_film():
         tilt = dict(GX=4e-6, GY=1e-6, GX_RATE=1e-4, MEAN_SPIN=50.0)
         _, s, _ = settled(film, **tilt)
         other = gap(radial, **tilt)
-        law = film_module("radial", radial)
+        law = film_named("radial", radial)
         law.flow(law.parameters(radial, 1e-5, 1e-10), other)
         moments = [np.hypot(s[MOMENT_X] - other[MOMENT_X], s[MOMENT_Y] - other[MOMENT_Y])]
         apart.append(moments[0] / np.hypot(other[MOMENT_X], other[MOMENT_Y]))
@@ -218,7 +218,7 @@ def low_pressure(edges):
 def test_beside_the_floored_radial_film_on_a_narrow_seal():
     film, radial = low_pressure(2e4)
     _, s, _ = settled(film, GX=6e-5)
-    other, law = gap(radial, GX=6e-5), film_module("radial", radial)
+    other, law = gap(radial, GX=6e-5), film_named("radial", radial)
     law.flow(law.parameters(radial, 5e-6, 1e-8), other)
     assert 0.03 < s[CAVITATED] < 0.3 and 0.03 < other[CAVITATED] < 0.3
     assert other[FORCE] == pytest.approx(s[FORCE], rel=0.01)

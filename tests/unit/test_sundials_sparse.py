@@ -169,8 +169,7 @@ def test_derivatives_that_fail_end_the_integration():
 @pytest.mark.parametrize("name", ["residual", "wrench", "jacobian", "wrench_jacobian"])
 def test_a_kernel_that_raises_an_error_is_not_believed(monkeypatch, name, choice):
     """Beyond half a turn: its own part of the equations is no number then, which IDA alone would not see."""
-    film = film_of(8, 12)
-    setattr(film, name, RAISING[name])
+    film = replace(film_of(8, 12), **{name: RAISING[name]})
     outcome, _ = ended(prepared(fms(), 2 * TURN, 1e-6, model_class=partial(Model, film=film)), monkeypatch, choice)
     assert outcome.status == "failed" and "not a number" in outcome.message
     assert choice or 0.45 * TURN < outcome.tau < (0.51 if name in ("residual", "wrench") else 1.0) * TURN

@@ -25,7 +25,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, film_thickness_rate, h_min
 from sealdyn.faces.waviness import lay_waves, wave_parts_along
-from sealdyn.films import all_film_names, film_module, linear
+from sealdyn.films import all_film_names, film_named, linear
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.report.charts import film as film_chart
 from sealdyn.report.charts.record import Run
@@ -444,7 +444,7 @@ def test_waves_that_close_the_film_at_the_start():
 def test_films_say_what_faces_they_take():
     cone, worn, waves = film(), film(profile=Profile(*SHAPE)), [Waviness(2, UM)]
     for name in all_film_names():
-        accepts = film_module(name).accepts
+        accepts = film_named(name).accepts
         # Of a face that stands still.
         assert accepts(cone) == "" and bool(accepts(cone, waves)) == (name not in ("gas_reynolds", "reynolds"))
         assert bool(accepts(worn)) == (name not in ("profiled", "gas_reynolds", "reynolds"))

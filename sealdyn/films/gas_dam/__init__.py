@@ -1,3 +1,5 @@
 """The gas dam: compressible flow across the face, at every angle by itself."""
 
-FLUIDS = ("gas",)
+from .._contract import Offer
+
+OFFER = Offer(name="gas_dam", fidelity=2, fluids=("gas",))

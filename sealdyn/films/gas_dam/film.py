@@ -44,17 +44,9 @@ from ...numerics.kernel import inner_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import GasDam, density_of, gas_of, viscosity_of
 from .. import _gas_dam as sector
-from .._fields import PRESSURE
+from .._contract import PRESSURE, Film, force_over_clearance
 from .._gas_dam import STATUS
-from .._opening import opening_force
-from . import FLUIDS
-
-__all__ = ["FIELDS", "FLUIDS", "REMARK", "RUNG", "STATUS", "accepts", "exit_mach", "fields", "flow", "grid",
-           "opening_law", "parameters", "wrench"]  # fmt: skip
-
-RUNG, FIELDS = 2, (PRESSURE,)
-
-REMARK = "a gas dam has no squeeze film: all damping is that of the supports and secondary seals"
+from . import OFFER
 
 # Block after the faces: the sector's (_gas_dam.py), whether viscosity is that of the gap state, density at which
 # volumes are stated (kg/m^3), ln of what sectors may err, how many sectors a bend around the circle takes.
@@ -65,8 +57,6 @@ FEWEST, MOST = 8, 512
 # The friction's Gauss points, and those of the field.
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 RADII, ANGLES = 65, 48
-# Pressure acts on the mean circumference, at whatever radius.
-MEAN_CIRCUMFERENCE = True
 
 
 def accepts(film, waves=()) -> str:
@@ -104,7 +94,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     has no solution.  The spins do not matter."""
     f, s = parameters(film, 1.0), np.zeros(GAP_STATE_SIZE)
     s[TEMPERATURE], s[VISCOSITY] = initially(film.temperature), initially(viscosity_of(film))
-    return opening_force(film, f, s, wrench)
+    return force_over_clearance(film, f, s, wrench)
 
 
 @inner_kernel()
@@ -265,3 +255,20 @@ def exit_mach(f, s) -> tuple[float, float]:
         _solve(f, g, s, edges, cos, out)
         found.append(float(out[sector.EXIT_MACH]))
     return min(found), max(found)
+
+
+FILM = Film(
+    **OFFER._asdict(),
+    remark="a gas dam has no squeeze film: all damping is that of the supports and secondary seals",
+    status=STATUS,
+    accepts=accepts,
+    parameters=parameters,
+    opening_law=opening_law,
+    wrench=wrench,
+    flow=flow,
+    quantities=(PRESSURE,),
+    grid=grid,
+    fields=fields,
+    mean_circumference=True,
+    exit_mach=exit_mach,
+)

@@ -1,6 +1,6 @@
 """Gas film with storage: the unsteady isothermal Reynolds equation over radius and angle, integrated with the rings.
 
-**Source** balance.py; the cells are in cells.py, the steady film in steady.py.
+**Source** balance.py; the cells are in cells.py.
 **Valid** isothermal ideal gas at the film's temperature, laminar, without inertia (no choking: "gas_dam"), with slip
 down to films of some mean free paths; faces with coning, a profile, tilt, pads, and waves that stand still
 (passing ones leave no steady film to start from and to linearise about), in cylindrical geometry.
@@ -33,11 +33,9 @@ from ...faces.waviness import lay_waves
 from ...numerics.kernel import inner_kernel, outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, GasReynolds, viscosity_of
-from .._fields import PRESSURE
-from .._opening import opening_force
-from .._unknowns import FilmUnknowns
-from . import FLUIDS
-from .balance import between, jacobian, pressures, radial_ways, residual
+from .._contract import PRESSURE, Film, FilmUnknowns, force_over_clearance
+from . import OFFER
+from .balance import UNSOLVED, between, jacobian, pressures, radial_ways, residual, start
 from .cells import (
     ANGLES,
     AREA,
@@ -56,13 +54,7 @@ from .cells import (
     table,
     thicknesses,
 )
-from .steady import UNSOLVED, start
 
-__all__ = ["FIELDS", "FLUIDS", "PADS", "RUNG", "STANDING_WAVES", "STATUS", "accepts", "fields", "flow", "grid",
-           "halved", "jacobian", "opening_law", "parameters", "residual", "start", "unknowns", "wrench",
-           "wrench_jacobian"]  # fmt: skip
-
-RUNG, FIELDS, PADS, STANDING_WAVES = 3, (PRESSURE,), True, True
 STATUS = {UNSOLVED: "no steady pressures of the gas film are found"}
 
 
@@ -114,7 +106,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None):
         else:
             wrench(f, s, x)
 
-    return opening_force(film, f, s, solve)
+    return force_over_clearance(film, f, s, solve)
 
 
 @inner_kernel()
@@ -217,3 +209,25 @@ def fields(f, s, x, out):
     """Pressure (Pa, absolute) at the grid's radii and angles, `out` (1, radii, angles)."""
     _, p, _ = _nodes(f, s, x)
     out[0] = p.T
+
+
+FILM = Film(
+    **OFFER._asdict(),
+    status=STATUS,
+    accepts=accepts,
+    parameters=parameters,
+    opening_law=opening_law,
+    pads=True,
+    standing_waves=True,
+    wrench=wrench,
+    flow=flow,
+    quantities=(PRESSURE,),
+    grid=grid,
+    fields=fields,
+    unknowns=unknowns,
+    start=start,
+    residual=residual,
+    jacobian=jacobian,
+    wrench_jacobian=wrench_jacobian,
+    halved=halved,
+)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from ...numerics.kernel import inner_kernel, outer_kernel
-from .._radial_line import cubic, line_sums
+from .._radial_quadrature import cubic, line_sums
 
 # A line's state: bits.
 INNER_DRY, OUTER_DRY, HAS_DRY, HAS_WET = 1, 2, 4, 8

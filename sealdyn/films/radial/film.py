@@ -17,9 +17,15 @@ half circle is enough and turning the tilt turns the moment to rounding.  And th
 
 a rational stand-in for "points in ln h": nothing but one root and divisions, no cancellation for flat
 or diverging faces (t = 0, t < 0), and the nearest singularity of the integrand is at x = -1/t.
+
+Between rough faces, which may meet, the law has a bend at its floor, where even angles would converge as slowly as
+1/N^3: Gauss points between the bends, on panels no longer than their distance from where the law has a pole (in the
+complex plane too).  The error falls as 4.2^(-2 n) with the points of a panel, however thin the film.
 """
 
 import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numba import njit
@@ -55,47 +61,37 @@ from ...faces.geometry import (
     regularised_thickness,
 )
 from ...numerics.kernel import inner_kernel, value_kernel
-from .. import _radial_pressure, _radial_quadrature
+from .. import _radial_quadrature
+from .._contract import PRESSURE, Film
 from .._radial_quadrature import (
     COSINES,
     MOST_ANGLES,
+    PANEL_RULE,
     RADIAL_POINTS,
     RULE_SIZE,
     RULES,
     SINES,
     angle_count,
     centrifugal,
+    fields,
+    grid,
     points_for,
     relative_clearance,
 )
-
-RUNG = 2
-FIELDS, grid, fields = _radial_pressure.FIELDS, _radial_pressure.grid, _radial_pressure.fields
+from . import OFFER
 
 # Angles worked on side by side, and their rows: what their Gauss points need, and the integrals over 1/h^3 of 1, Phi's
 # even and its odd part; the three with r^2; with r^3; the integral of r^3/h.
 LANES, ROWS = 16, 16
 ROW = SINES - COSINES
 T, REACH, SCALE, U_I, H_G, EVEN, A0, AE, A1, B0, BE, B1, C0, CE, C1, D0 = range(ROWS)
+# No panel between two bends of the law is shorter (rad).
+SHORTEST = 1e-9
 
 
 def accepts(film, waves=()) -> str:
     """What faces it takes, "" if it can take these."""
     return "plain cones only" if waves or (film is not None and film.profile is not None) else ""
-
-
-def floored():
-    """The same film for a table with a floor of the pressure, the only one to compile what that takes."""
-    from . import floored
-
-    return floored
-
-
-def rough():
-    """The same film between rough faces, which may meet."""
-    from . import rough
-
-    return rough
 
 
 def parameters(film, clearance: float, error: float = 1e-8) -> np.ndarray:
@@ -110,7 +106,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0):
     """Opening force (N) of the aligned film between still or turning faces (rad/s),
     `force(clearance, inner_pressure, outer_pressure, floor)`: pressures absolute (Pa), clearance and floor of the film
     thickness (without it the film's own) in m."""
-    return _radial_quadrature.opening_law(film, parameters, wrench, mean_spin, spin_difference)
+    return _radial_quadrature.opening_law(parameters, wrench, film, mean_spin, spin_difference)
 
 
 @inner_kernel()
@@ -294,3 +290,102 @@ def flow(f, s):
     """As `wrench`; also flow in +r (m^3/s) at both radii and the friction torque on the rotor (N m):
     `int [mu (W_r - W_s) r^3/h + (h/2) r dp/dtheta] dr dtheta`, what the shaft supplies."""
     even_circle(f, s, True)
+
+
+# --- between rough faces ------------------------------------------------------------------------------
+
+
+@inner_kernel()
+def _bend(h, swing, floor):
+    """The angle from the thinnest place at which an edge with mean film `h` (m) and its swing (m) meets the floor, pi
+    where it does not."""
+    return math.acos((h - floor) / swing) if abs(h - floor) < swing else math.pi
+
+
+@inner_kernel()
+def _room(h, swing, floor, begin, end):
+    """Distance of a panel (rad, between two bends) from the nearest pole of an edge's film law: at h = 0, of its
+    continuation below the floor at h = 2 floor."""
+    if swing <= 0.0:
+        return math.inf
+    low = h - swing * math.cos(0.5 * (begin + end)) < floor
+    cosine = (h - 2.0 * floor if low else h) / swing
+    if abs(cosine) < 1.0:
+        pole = math.acos(cosine)
+        return begin - pole if pole < begin else pole - end
+    apart = begin if cosine > 0.0 else math.pi - end
+    return math.hypot(apart, math.acosh(abs(cosine)))
+
+
+@inner_kernel()
+def bent_angles(f, h_i, h_o, swing_i, swing_o, out):
+    """Write cosines, sines and weights of angles on the half circle into `out` (3 ROW,); returns how many.  `f` the
+    film's block; films and swings (m) of `edges_of`."""
+    floor, rule = f[FLOOR], int(f[PANEL_RULE])
+    points = int(f[rule])
+    first, last = _bend(h_i, swing_i, floor), _bend(h_o, swing_o, floor)
+    if first > last:
+        first, last = last, first
+    begin, count = 0.0, 0
+    for piece in range(3):
+        until = first if piece == 0 else last if piece == 1 else math.pi
+        while begin < until:
+            end = until
+            # There is always room for what is left of each piece; trial states may be anything.
+            while (count + 4 * points <= ROW and end - begin > SHORTEST) and (
+                _room(h_i, swing_i, floor, begin, end) < end - begin
+                or _room(h_o, swing_o, floor, begin, end) < end - begin
+            ):
+                end = 0.5 * (begin + end)
+            for k in range(points):
+                angle = begin + 0.5 * (end - begin) * (1.0 + f[rule + 2 + k])
+                out[count], out[ROW + count] = math.cos(angle), math.sin(angle)
+                # Both halves of the circle.
+                out[2 * ROW + count] = (end - begin) * f[rule + 2 + RADIAL_POINTS[-1] + k]
+                count += 1
+            begin = end
+    return count
+
+
+@inner_kernel()
+def rough_circle(f, s, complete):
+    """`circle` with angles of its own where the film meets its floor."""
+    h_i, h_o, swing_i, swing_o = edges = edges_of(f, s)
+    if abs(h_i - f[FLOOR]) >= swing_i and abs(h_o - f[FLOOR]) >= swing_o:
+        return even_circle(f, s, complete)
+    nodes = np.empty(3 * ROW)
+    half = bent_angles(f, h_i, h_o, swing_i, swing_o, nodes)
+    return circle(f, s, edges, nodes, 0, 1, half, 1.0, complete)
+
+
+@value_kernel()
+def rough_wrench(f, s):
+    """As `wrench`, between rough faces."""
+    rough_circle(f, s, False)
+
+
+@value_kernel()
+def rough_flow(f, s):
+    """As `flow`, between rough faces."""
+    rough_circle(f, s, True)
+
+
+_SMOOTH = Film(
+    **OFFER._asdict(),
+    accepts=accepts,
+    parameters=parameters,
+    opening_law=opening_law,
+    wrench=wrench,
+    flow=flow,
+    quantities=(PRESSURE,),
+    grid=grid,
+    fields=fields,
+    floored=f"{__package__}.floored",
+)
+_ROUGH = replace(
+    _SMOOTH,
+    opening_law=partial(_radial_quadrature.opening_law, parameters, rough_wrench),
+    wrench=rough_wrench,
+    flow=rough_flow,
+)
+FILM = replace(_SMOOTH, rough=_ROUGH)

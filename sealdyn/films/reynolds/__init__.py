@@ -1,9 +1,11 @@
 """Two-dimensional film of a liquid with mass-conserving cavitation: Reynolds' equation on cells over radius and angle.
 
 mesh.py: cells and what the film thickness makes of them; roughness.py: rough faces; pressure.py: the flow balance of
-every cell and its linear system; cavitation.py: which cells are full, at a gap state; balance.py: the same in motion;
-wrench.py: force, moments, leakage, friction; film.py: the film that scenes ask for.
+every cell, its linear system, and what the cells add up to; cavitation.py: which cells are full, at a gap state;
+balance.py: the same in motion; film.py: the film that scenes ask for.
 """
 
+from .._contract import Offer
+
 # Costs more than what "auto" chooses for.
-BY_NAME = True
+OFFER = Offer(name="reynolds", fidelity=4, only_on_request=True)

@@ -1,4 +1,4 @@
-"""The two-dimensional film of a liquid, as scenes ask for it: contract of films/__init__.py.
+"""The two-dimensional film of a liquid, as scenes ask for it.
 
     div( E(H^3)/(12 mu) grad p ) = d(fill E(H))/dt + wm d(fill E(H))/dtheta,   p >= p_cav,   fill <= 1
 
@@ -20,9 +20,8 @@ from ...numerics.piecewise_linear import initially
 from ...scene.reynolds import AROUND, PER_WAVE, Reynolds, cells_of
 from ...scene.symmetry import alike_sectors
 from ...scene.waviness import waves_of
-from .._fields import FILL, PRESSURE
-from .._opening import opening_force
-from .._unknowns import FilmUnknowns
+from .._contract import FILL, PRESSURE, Film, FilmUnknowns, force_over_clearance
+from . import OFFER
 from .balance import driest, jacobian, pattern, residual
 from .cavitation import STATUS, UNSOLVED, between, keep_void, settle, solve, solve_moving
 from .cavitation import unknowns as first_unknowns
@@ -44,14 +43,7 @@ from .mesh import (
     parameters,
     table,
 )
-from .wrench import flow, line_load, sum_up, wrench
-
-__all__ = ["FIELDS", "RUNG", "STANDING_WAVES", "STATUS", "WAVES_TOUCH", "accepts", "between", "cells_are_given",
-           "doubled", "fields", "flow", "for_modes", "grid", "grid_accuracy", "halved", "jacobian", "line_load",
-           "opening_law", "parameters", "prepared", "residual", "settle", "start", "unknowns", "whole", "wrench",
-           "wrench_jacobian"]  # fmt: skip
-
-RUNG, FIELDS, STANDING_WAVES, WAVES_TOUCH = 4, (PRESSURE, FILL), True, True
+from .pressure import flow, line_load, sum_up, wrench
 
 
 def accepts(film, waves=()) -> str:
@@ -143,7 +135,7 @@ def opening_law(film, mean_spin=0.0, spin_difference=0.0, waves=None, contact=No
         else:
             s[FORCE], u[:] = math.nan, 1.0
 
-    return opening_force(film, f, s, force)
+    return force_over_clearance(film, f, s, force)
 
 
 @outer_kernel()
@@ -198,3 +190,34 @@ def fields(f, s, x, out):
             u = x[k % angles * cells + j]
             out[0, j, k] = f[CAVITATION] + f[SCALE] * (max(u, 0.0) if f[CAVITATES] != 0.0 else u)
             out[1, j, k] = 1.0 + (min(u, 0.0) if f[CAVITATES] != 0.0 else 0.0)
+
+
+FILM = Film(
+    **OFFER._asdict(),
+    status=STATUS,
+    accepts=accepts,
+    parameters=parameters,
+    opening_law=opening_law,
+    standing_waves=True,
+    waves_touch=True,
+    wrench=wrench,
+    flow=flow,
+    line_load=line_load,
+    quantities=(PRESSURE, FILL),
+    grid=grid,
+    fields=fields,
+    unknowns=unknowns,
+    start=start,
+    residual=residual,
+    jacobian=jacobian,
+    wrench_jacobian=wrench_jacobian,
+    settle=settle,
+    between=between,
+    for_modes=for_modes,
+    whole=whole,
+    prepared=prepared,
+    cells_are_given=cells_are_given,
+    doubled=doubled,
+    grid_accuracy=grid_accuracy,
+    halved=halved,
+)

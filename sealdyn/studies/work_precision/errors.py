@@ -114,7 +114,7 @@ def _observed(run, status, reason, wall, counts, sink, y) -> Observed:
         scales["leakage"] = float(np.max(np.abs(columns[3])))
     if impulse:
         scales["contact_impulse"] = abs(impulse)
-    jump = hasattr(run.model.interface.film, "settle")
+    jump = run.model.interface.film.settle is not None
     return Observed(status, reason, wall, counts, columns[0], series, steady, impulse, scales, jump=jump)
 
 

@@ -6,7 +6,7 @@ import time as clock
 import numpy as np
 
 from ...dynamics import modes
-from ...films import film_module, film_names, film_of
+from ...films import film_named, film_names, film_of
 from ...scenario.settings import with_values
 from ...scene.film import Coefficients
 from ...scene.waviness import waves_of
@@ -31,8 +31,8 @@ def rungs(scenario) -> list[tuple[str, dict]]:
         return [("linear film, coefficients as given", {"film.model": "linear"})]
     found = []
     scene = scenario.scene
-    for name in sorted(film_names(scene.film, waves_of(scene)), key=lambda n: film_module(n).RUNG):
-        if hasattr(film_module(name), "halved"):
+    for name in sorted(film_names(scene.film, waves_of(scene)), key=lambda n: film_named(n).fidelity):
+        if film_named(name).halved is not None:
             found += _grids(scenario, name)
         elif name == "linear":
             found += [
@@ -47,9 +47,9 @@ def rungs(scenario) -> list[tuple[str, dict]]:
 def _grids(scenario, name: str) -> list[tuple[str, dict]]:
     """(label, overrides) of a film with cells: half of them, its own, and twice as many where it can have them."""
     film = prepare_run(with_values(scenario, {"film.model": name, **AUTO}))[0].model.scene.film
-    module = film_module(name)
-    tables = {"half the cells": module.halved(film), "its cells": film}
-    tables |= {TWICE: module.doubled(film, 1)} if hasattr(module, "doubled") else {}
+    own = film_named(name)
+    tables = {"half the cells": own.halved(film), "its cells": film}
+    tables |= {TWICE: own.doubled(film, 1)} if own.doubled is not None else {}
     return [(f"{name.replace('_', ' ')} film, {words}", {"film.model": name, **_cells(name, table)})
             for words, table in tables.items()]  # fmt: skip
 
@@ -95,7 +95,7 @@ def _highest(scenario, ladder, samples, longest):
             found = observe(run, collocation, "gauss", JUDGE, 2 * longest, samples)
             if found.status not in (Status.OK, Status.COLLAPSED):
                 # A film with unknowns of its own is never exact.
-                own = hasattr(film_of(scenario.scene, film_module(rung[1]["film.model"])), "halved")
+                own = film_of(scenario.scene, film_named(rung[1]["film.model"])).halved is not None
                 accuracy = scenario.run.accuracy / 30.0 if own else 1e-9
                 run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": accuracy, **AUTO}))
                 tolerance = tolerance_for(method, accuracy, run.memory)

@@ -113,7 +113,7 @@ def upstream(films) -> float:
 def meets(scene, run) -> str:
     """A dam that chokes somewhere at the start."""
     film = run.model.interface.film
-    if not hasattr(film, "exit_mach"):
+    if film.exit_mach is None:
         return ""
     mach = film.exit_mach(run.model.f, run.segment(0).gap_state(0.0, run.y0))[1]
     return "its gas is as fast as sound at the exit" if mach >= 1.0 else ""

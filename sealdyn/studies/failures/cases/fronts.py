@@ -114,7 +114,7 @@ def choking() -> dict:
 def meets(scene, run) -> str:
     """A film with a floor of its pressure, or a dam that chokes on a part of the circle."""
     film = run.model.interface.film
-    if hasattr(film, "exit_mach"):
+    if film.exit_mach is not None:
         low, high = film.exit_mach(run.model.f, run.segment(0).gap_state(0.0, run.y0))
         return "its gas is as fast as sound on a part of the circle" if low < 1.0 <= high else ""
     floored = scene.film.cavitation_pressure is not None and run.model.unknowns.film_unknowns is None

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
-from ....films import film_module
+from ....films import film_named
 from ....scene.excitation import Shaft
 from ....scene.film import Film
 from ....scene.gas import GasReynolds
@@ -55,7 +55,7 @@ def no_equilibrium() -> dict:
     scene = reference_scene("FMR")
     film = replace(scene.film, model="radial", clearance=None)
     overloaded = replace(scene, film=film, closing=Closing(balance_ratio=1.3, spring_force=0.0))
-    opening = film_module("radial", film).opening_law(film)
+    opening = film_named("radial", film).opening_law(film)
     area = np.pi * (film.outer_radius**2 - film.inner_radius**2)
     closing = 1.3 * area * film.outer_pressure
 

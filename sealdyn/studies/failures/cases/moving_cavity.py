@@ -115,7 +115,7 @@ def leakage_of_the_mean_cube() -> float:
 
 def meets(scene, run) -> str:
     """A film of cells that tear and fill."""
-    return "cavities that keep their liquid move in its film" if hasattr(run.model.interface.film, "settle") else ""
+    return "cavities that keep their liquid move in its film" if run.model.interface.film.settle is not None else ""
 
 
 def show() -> list[dict]:

@@ -49,7 +49,7 @@ def of_the_film(squeeze_number: float, grading: float = GRADING) -> tuple[comple
         raise RuntimeError("the gas film was not solved")
     step, pace = 1e-2 * CLEARANCE, 1e3
     steps = (step, step / OUTER, step * pace, step * pace / OUTER)
-    linear = LinearFilm.about(FilmDerivatives(gas, unknowns, f), s, x, steps)
+    linear = LinearFilm.about(FilmDerivatives(gas.FILM, unknowns, f), s, x, steps)
     omega = squeeze_number * PRESSURE * CLEARANCE**2 / (12.0 * MU * (OUTER - INNER) ** 2)
     stiff = PRESSURE * math.pi * (OUTER**2 - INNER**2) / CLEARANCE
     both = []
