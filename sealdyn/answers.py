@@ -48,10 +48,10 @@ class Series:
     `kind`: "line"; "marks"; "shade" between y and `z` over x; "bars" at x as high as y (`flat`: lying, at y as long as
     x); "map" of `z` [y][x] in colours; "contour" of `z` [y][x] at zero; "words": `names` at x, y.
     `style`: words in any order: a role that has a colour of its own (film, tilt, leakage, contact, theory, stator,
-    rotor, good, bad, warn, black, grey, pale; first, second ... seventh of a cycle), dashes (dashed, dotted,
-    dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick), open, thin, thick, faint,
-    front (above all else).  `error`: bars of error on y.  `names`: a word at each mark or bar.  `right`: belongs to
-    the axis on the right."""
+    rotor, good, bad, warn, black, grey, pale; first, second ... seventh of a cycle; a number from 0 to 1, early to
+    late), dashes (dashed, dotted, dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick),
+    open, thin, thick, faint, front (above all else).  `error`: bars of error on y.  `names`: a word at each mark or
+    bar.  `right`: belongs to the axis on the right."""
 
     kind: str
     x: Sequence = ()

@@ -265,6 +265,8 @@ def _style(words: str, k: int) -> dict:
             look["ls"] = DASHES[word]
         elif word in MARKS:
             look["marker"] = MARKS[word]
+        elif word[0].isdigit():
+            look["color"] = colormaps[THICKNESS].reversed()(float(word))
         elif word not in ("open", "thin", "thick", "faint", "front", "small", "large"):
             raise ValueError(f"style: found {word!r}")
     if "open" in given:

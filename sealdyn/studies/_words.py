@@ -3,8 +3,6 @@
 import math
 
 RPM, HERTZ = 30 / math.pi, 0.5 / math.pi
-# Depth rates of wear (m/s) are told in this unit and factor.
-WEAR = ("um/h", 3.6e9)
 # What a SI unit is shown in: units and factors from the size (SI) on at which they begin, the smallest first.
 SHOWN = {
     "m": ((0.0, "um", 1e6), (1e-3, "mm", 1e3)),
@@ -39,18 +37,6 @@ def plain(value: float, digits: int = 5) -> str:
 def speed(w: float, digits: int = 5) -> str:
     """A shaft speed (rad/s) in words."""
     return f"{plain(w, digits)} rad/s ({plain(w * RPM, digits)} rpm)"
-
-
-def wear(rate: float) -> str:
-    """A depth rate of wear (m/s) in words, in the unit that a run tells it in."""
-    unit, factor = WEAR
-    return f"{factor * rate:.4g} {unit}"
-
-
-def wearing(coefficients: dict[str, float]) -> str:
-    """Which faces wear, of the wear coefficients of each by its name."""
-    faces = [face for face, coefficient in coefficients.items() if coefficient]
-    return f"the {faces[0]}" if len(faces) == 1 else "both faces together"
 
 
 def no_film_beyond(held) -> str:

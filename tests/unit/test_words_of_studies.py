@@ -5,8 +5,7 @@ import math
 import pytest
 
 from sealdyn.report.text import study_lines
-from sealdyn.studies._words import frequencies, quantity, shown_in, speed, wear, wearing
-from sealdyn.studies.wear import study as wear_study
+from sealdyn.studies._words import frequencies, quantity, shown_in, speed
 
 
 @pytest.mark.parametrize(
@@ -47,16 +46,3 @@ def test_speeds_of_a_table_have_no_exponent():
     rows = [{"w": 5600.0}, {"w": 5.6e6}, {"w": 0.01}]
     cells = [line.strip() for line in study_lines({"verdict": []}, [(rows, (("rpm", "w", 30 / math.pi),))])]
     assert cells == ["rpm", "53480", "5.348e+07", "0.09549"]
-
-
-def test_wear_has_one_unit_and_names_who_wears():
-    assert wear(3.18e-7 / 3600) == "0.318 um/h" and wear(1.82e-6 / 3600) == "1.82 um/h"
-    assert wearing({"stator": 1e-16, "rotor": 0.0}) == "the stator"
-    profile = {"stator": [[1e-7, 2e-7]], "rotor": [[0.0, 0.0]]}
-    answer = {"end": {"kind": "run-in", "said": "run in"}, "history": {"time": [360.0], "wear_rate": [1e-10]},
-              "profile": profile, "coefficients": [1e-16, 0.0], "extrapolated": None, "steps": 1, "not_settled": 0,
-              "coarse": 0, "radius": [1, 2], "tilt_over_roughness": 0.0, "unstable": False}  # fmt: skip
-    said = wear_study.sentences(answer, wear_study.Settings())[1]
-    assert "not computed, 100 h come to 36.16 um of the stator (see" in said
-    later = answer | {"extrapolated": {"time": 3600.0, "stator": [1e-6, 2e-6], "rotor": [0.0, 0.0]}}
-    assert wear_study.sentences(later, wear_study.Settings())[1].endswith("to 1 h: stator 2 um.")

@@ -11,11 +11,13 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from ...answers import Answer, Axis, Panel, Series, Table
+from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scene.coning import coned
 from ...status import Status
 from ...units import Time
-from .._words import wear, wearing
+from .. import Info
 from .averages import ShortRunAverages
 from .rosenbrock import Control, HatBasis, NoAverage, WearState, advance, unevenness
 
@@ -29,17 +31,19 @@ HISTORY = {
     "mean_clearance": "m", "coning": "rad", "wear_rate": "m/s", "stator_volume": "m^3", "rotor_volume": "m^3",
     "unevenness": "1", "travel": "m", "relative_misalignment": "rad", "periods": "1",
 }  # fmt: skip
-ALONG = {"history": ("time",), "profile": ("history/time", "radius"), "pv": ("history/time", "radius")}
-units = {f"history/{name}": unit for name, unit in HISTORY.items()} | {
-    "radius": "m", "profile/stator": "m", "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s",
-    "coefficients": "1/Pa",
-}  # fmt: skip
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("run_in", 7)
-# What a refusal of wavy faces goes on with.
-OF_WAVES = "; how fast crests wear the study equilibrium says, with wear coefficients in [contact]"
+INFO = Info(
+    timed=("run_in", 7),
+    asks="How do the faces wear over the hours?",
+    of_waves="; how fast crests wear the study equilibrium says, with wear coefficients in [contact]",
+    units={
+        **{f"history/{name}": unit for name, unit in HISTORY.items()}, "radius": "m", "profile/stator": "m",
+        "profile/rotor": "m", "profile/gap": "m", "pv": "Pa m/s", "coefficients": "1/Pa",
+    },
+    along={"history": ("time",), "profile": ("history/time", "radius"), "pv": ("history/time", "radius")},
+)  # fmt: skip
+# Profiles drawn of one face; of the depth computed: what is extrapolated further is told, not drawn; of its thickness:
+# a film that changes by less is a flat line.
+LINES, FAR, STILL = 6, 6.0, 0.01
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ class Settings:
     """What then: stop, extrapolate to the duration at a constant rate, or go on."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """The history of both faces, and why it ends."""
     wears = _coefficients(scenario)
     radius = _radii(scenario.scene.film, settings.nodes)
@@ -73,11 +77,11 @@ def run(scenario, settings, tools) -> dict:
     runs = ShortRunAverages(scenario.scene, radius, scenario.run.accuracy, 0.1 * settings.accuracy, settings.turns,
                     settings.patience)  # fmt: skip
     rows, end = _history(runs, hats, Control(rough, settings.accuracy, settings.step * rough), settings, tools)
-    answer = _answer(runs, hats, wears, rows) | {"end": end}
+    numbers = _numbers(runs, hats, wears, rows) | {"end": end}
     if end["kind"] == "run-in" and settings.run_in == "extrapolate":
-        answer["extrapolated"] = _extrapolated(answer, rows[-1], hats, wears, settings.duration)
-    status = end["kind"] if end["kind"] in (Status.COLLAPSED, Status.FAILED) else Status.OK
-    return {**answer, "status": status, "verdict": sentences(answer, settings)}
+        numbers["extrapolated"] = _extrapolated(numbers, rows[-1], hats, wears, settings.duration)
+    numbers["status"] = end["kind"] if end["kind"] in (Status.COLLAPSED, Status.FAILED) else Status.OK
+    return Answer(numbers, _found(numbers), _tables(numbers, settings), _panels(numbers), _limits(numbers, settings))
 
 
 def _coefficients(scenario) -> dict[str, float]:
@@ -128,7 +132,7 @@ def _history(runs, hats, control, settings, tools) -> tuple[list[dict], dict]:
             end = _ended(rows, settings, control)
             # One that ends early is done all the same.
             share = 1.0 if end else worn.time / settings.duration
-            tools.say(share, f"{_hours(worn.time)} of {_hours(settings.duration)}")
+            tools.say(share, f"{_time(worn.time)} of {_time(settings.duration)}")
             if end:
                 return rows, end
     except NoAverage as stop:
@@ -156,15 +160,15 @@ def _ended(rows, settings, control) -> dict | None:
     faded = seen["contact_force"] <= FADED * seen["closing_force"] and rate.max() * left < control.tolerance
     if lift_off or (left > 0.0 and faded):
         before = rows[-2]["time"] if len(rows) > 1 else 0.0
-        when = f"between {_hours(before)} and {_hours(time)}" if time else "from the start"
+        when = f"between {_time(before)} and {_time(time)}" if time else "from the start"
         what = "the film carries the whole load: no contact" if lift_off else "contact has faded to nothing"
         return {"kind": "lift-off", "time": time, "said": f"{what} {when}, and nothing wears any more"}
     if left <= 0.0:
-        return {"kind": "duration", "time": time, "said": f"worn for {_hours(time)}"}
+        return {"kind": "duration", "time": time, "said": f"worn for {_time(time)}"}
     if settings.run_in != "go on" and unevenness(rate) < settings.even:
         said = (
-            f"run in after {_hours(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
-            f"{wear(rate.mean())}"
+            f"run in after {_time(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
+            f"{in_words('wear_rate', rate.mean())}"
         )
         return {"kind": "run-in", "time": time, "said": said}
     return None
@@ -173,7 +177,7 @@ def _ended(rows, settings, control) -> dict | None:
 # --- the answer -------------------------------------------------------------------------------------------
 
 
-def _answer(runs, hats, wears, rows) -> dict:
+def _numbers(runs, hats, wears, rows) -> dict:
     """Histories, profiles and the balance of volume, JSON-ready."""
     rows = [row for row in rows if row["seen"]]
     both = sum(wears.values())
@@ -222,7 +226,7 @@ def _slope(hats, gap) -> float:
     return float(np.linalg.solve(lines @ hats.mass @ lines.T, lines @ hats.mass @ gap)[1])
 
 
-def _extrapolated(answer, row, hats, wears, duration) -> dict:
+def _extrapolated(numbers, row, hats, wears, duration) -> dict:
     """Depths at the asked duration if the rates stay."""
     left, both = duration - row["time"], sum(wears.values())
     depth = np.array(row["depth"]) + left * np.array(row["rate"])
@@ -231,63 +235,163 @@ def _extrapolated(answer, row, hats, wears, duration) -> dict:
     }  # fmt: skip
 
 
-# --- in words ---------------------------------------------------------------------------------------------
+# --- what is shown ----------------------------------------------------------------------------------------
 
 
-def tables(answer) -> list:
-    """The history."""
-    names = ("time", "leakage", "friction_power", "contact_share", "coning", "h_min")
-    values = zip(*(answer["history"].get(name, []) for name in names), strict=True)
-    columns = (("time, h", "time", 1 / 3600), ("leakage, ml/h", "leakage", 3.6e9), ("friction, W", "friction_power"),
-               ("contact, % of absolute closing force", "contact_share", 100),
-               ("coning of the gap, urad", "coning", 1e6), ("smallest film, um", "h_min", 1e6))  # fmt: skip
-    return [([dict(zip(names, row, strict=True)) for row in values], columns)]
+def _time(seconds: float) -> str:
+    return in_words("s", seconds)
 
 
-def sentences(answer, settings) -> list[str]:
-    """The verdict: why the history ends, how deep the faces are worn, and what limits the answer."""
-    said, time, later = answer["end"]["said"], answer["history"]["time"], answer["extrapolated"]
-    lines = [f"{said[0].upper()}{said[1:]}."]
-    if not time:
-        return lines
-    # Rounding is no growth.
-    depths = {face: np.maximum(answer["profile"][face][-1], 0.0) for face in ("stator", "rotor")}
-    coefficients = dict(zip(depths, answer["coefficients"], strict=True))
-    worn = [f"{face} {_length(min(d))} to {_length(max(d))}" for face, d in depths.items() if max(d) > 0.0]
-    told = f"Worn off in {_hours(time[-1])}: {', '.join(worn)}" if worn else "Nothing is worn off"
-    if later:
-        deep = ", ".join(f"{face} {_length(max(later[face]))}" for face, k in coefficients.items() if k)
-        told += f"; extrapolated at the last rates, not computed, to {_hours(later['time'])}: {deep}"
-    elif answer["end"]["kind"] == "run-in":
-        total = max(map(sum, zip(*depths.values(), strict=True)))
-        total += answer["history"]["wear_rate"][-1] * (settings.duration - time[-1])
-        told += (f"; at the rate that is left, not computed, {_hours(settings.duration)} come to {_length(total)} "
-                 f"of {wearing(coefficients)} (see --run-in extrapolate)")  # fmt: skip
-    limits = _limits(answer, settings)
-    return [*lines, f"{told}.", *([f"Mind: {'; '.join(limits)}."] if limits else [])]
+def _worn(numbers) -> dict[str, np.ndarray]:
+    """Depth (n,) m worn off each face at the end; rounding is no growth."""
+    return {face: np.maximum(numbers["profile"][face][-1], 0.0) for face in ("stator", "rotor")}
 
 
-def _limits(answer, settings) -> list[str]:
+def _found(numbers) -> str:
+    """Why the history ends, and how deep the faces are worn."""
+    said = numbers["end"]["said"]
+    said = f"{said[0].upper()}{said[1:]}"
+    if not numbers["history"]["time"]:
+        return f"{said}."
+    worn = [f"{face} by {in_words('depth', max(d))} at most" for face, d in _worn(numbers).items() if max(d) > 0.0]
+    return f"{said}; worn off: {', '.join(worn) or 'nothing'}."
+
+
+def _limits(numbers, settings) -> list[str]:
     """What the answer does not hold for."""
-    profiles, limits = answer["steps"] + 1, []
-    if answer["not_settled"]:
-        limits.append(f"averages of {answer['not_settled']} of {profiles} profiles had not settled in "
-                      f"{settings.patience} x {settings.turns} periods")  # fmt: skip
-    if answer["coarse"] and len(answer["radius"]) > FEW:
+    profiles, limits = numbers["steps"] + 1, []
+    if not numbers["history"]["time"]:
+        return limits
+    if numbers["not_settled"]:
+        limits.append(f"Averages of {numbers['not_settled']} of {profiles} profiles had not settled in "
+                      f"{settings.patience} x {settings.turns} periods.")  # fmt: skip
+    if numbers["coarse"] and len(numbers["radius"]) > FEW:
         limits.append(
-            f"fewer than {FEW} radii touch at {answer['coarse']} of {profiles} profiles: raise study.wear.nodes"
+            f"Fewer than {FEW} radii touch at {numbers['coarse']} of {profiles} profiles: raise study.wear.nodes."
         )
-    if answer["tilt_over_roughness"] > UNEVEN and max(answer["history"]["contact_force"]) > 0.0:
-        limits.append(f"the faces tilt by up to {answer['tilt_over_roughness']:.2g} roughnesses: a face on which the "
-                      "contact patch stands wears deeper")  # fmt: skip
-    if answer["unstable"]:
-        limits.append("the aligned seal is unstable at this speed: its wear holds for the motion seen here only")
+    if numbers["tilt_over_roughness"] > UNEVEN and max(numbers["history"]["contact_force"]) > 0.0:
+        limits.append(f"The faces tilt by up to {numbers['tilt_over_roughness']:.2g} roughnesses: a face on which the "
+                      "contact patch stands wears deeper.")  # fmt: skip
+    if numbers["unstable"]:
+        limits.append("The aligned seal is unstable at this speed: its wear holds for the motion seen here only.")
     return limits
 
 
-def _hours(seconds) -> str:
-    return f"{seconds / 3600:.4g} h" if seconds >= 360.0 or seconds == 0.0 else f"{seconds:.3g} s"
+def _tables(numbers, settings) -> list[Table]:
+    """Depths of the faces, at the end and beyond, and the history."""
+    history, later = numbers["history"], numbers["extrapolated"]
+    if not history["time"]:
+        return []
+    depths = _worn(numbers)
+    rows = [[face, min(d), max(d), later and max(later[face])] for face, d in depths.items() if max(d) > 0.0]
+    if numbers["end"]["kind"] == "run-in" and not later:
+        both = sum(depths.values())
+        left = history["wear_rate"][-1] * (settings.duration - history["time"][-1])
+        rows.append(["both together", float(min(both)), float(max(both)), float(max(both) + left)])
+    columns = [("1", "face"), ("depth", "worn off, least"), ("depth", "most"),
+               ("depth", f"in {_time(settings.duration)} at the last rates, not computed")]  # fmt: skip
+    found = [Table("worn", columns, rows)]
+    names = {
+        "time": ("time", "time"),
+        "leakage": ("leakage", "leakage"),
+        "friction_power": ("power", "friction"),
+        "contact_share": ("share", "contact, of the absolute closing force"),
+        "coning": ("tilt", "coning of the gap"),
+        "h_min": ("h_min", "thinnest film"),
+    }
+    rows = zip(*(history[name] for name in names), strict=True)
+    return [*found, Table("history", list(names.values()), [list(row) for row in rows])]
 
 
-def _length(metres) -> str:
-    return f"{1e6 * metres:.4g} um" if metres >= 1e-7 else f"{1e9 * metres:.3g} nm"
+def _panels(numbers) -> list[Panel]:
+    """What has gone from the faces, the gap and contact pressure times speed over the radius; beside, the course."""
+    history = numbers["history"]
+    if not history["time"]:
+        return [Panel("No profile", note=numbers["end"]["said"])]
+    radius = numbers["radius"]
+    along, gap = Axis("radius", low=radius[0], high=radius[-1]), np.array(numbers["profile"]["gap"])
+    gap -= gap.min(axis=1, keepdims=True)
+    title = "Shape of the gap, from its narrowest place"
+    if len(history["time"]) == 1:
+        # Nothing has a course over the hours.
+        return [Panel(title, along, Axis("m", "gap"), [Series("line", radius, gap[-1], style="film")])]
+    time = np.array(history["time"])
+    shown = np.unique([int(np.argmin(np.abs(time - t))) for t in np.linspace(0.0, time[-1], LINES)])
+
+    def over_radius(rows, quantity):
+        return [
+            Series(
+                "line",
+                radius,
+                rows[k],
+                style=f"{time[k] / time[-1]:.3g}",
+                label=in_words("time", time[k], digits=3) if quantity == "depth" else "",
+            )
+            for k in shown
+        ]
+
+    panels, later = [], numbers["extrapolated"]
+    worn = [face for face in ("stator", "rotor") if np.any(numbers["profile"][face])] or ["stator"]
+    for face in worn:
+        depth = np.array(numbers["profile"][face])
+        note = "" if depth.max() > 0.0 else "does not wear"
+        series = over_radius(depth, "depth" if face == worn[0] else "m") if depth.max() > 0.0 else []
+        if later and max(later[face]) <= FAR * depth.max():
+            series.append(Series("line", radius, later[face], style="grey dotted",
+                                 label=f"{_time(later['time'])} extrapolated"))  # fmt: skip
+        elif later:
+            note = f"extrapolated to {_time(later['time'])}: {in_words('depth', max(later[face]))}, not computed"
+        panels.append(Panel(f"{face.capitalize()}: worn off", along, Axis("depth"), series, note=note, down=True,
+                            below=bool(panels), tall=0.75))  # fmt: skip
+    panels.append(Panel(title, along, Axis("m", "gap"), over_radius(gap, "m"), below=True, tall=0.75))
+    panels.append(_pressed(numbers, along))
+    return [*panels, *_course(history, worn)]
+
+
+def _pressed(numbers, along: Axis) -> Panel:
+    """Contact pressure times sliding speed over the radius, at start and end."""
+    pv, radius = np.array(numbers["pv"]), numbers["radius"]
+    last = max(pv[-1].max(), 1e-300)
+    # A new edge carries far more than the rest: the end must stay visible.
+    top = max(min(pv[0].max(), 8 * last), 1.15 * last) if last > 1e-6 * pv[0].max() else pv[0].max()
+    note = f"start: up to {in_words('Pa*m/s', pv[0].max())}" if pv[0].max() > top else ""
+    series = [Series("line", radius, pv[0], label="start", style="warn thick"),
+              Series("line", radius, pv[-1], label="end", style="film")]  # fmt: skip
+    return Panel(
+        "Contact pressure times sliding speed",
+        along,
+        Axis("Pa*m/s", " ", low=0.0, high=1.08 * top or None),
+        series,
+        note=note,
+        below=True,
+        tall=0.75,
+    )
+
+
+def _course(history, worn) -> list[Panel]:
+    """A panel of each quantity over the hours."""
+    time = history["time"]
+    mark = " circle small" if len(time) <= 80 else ""
+
+    def curves(*rows):
+        return [Series("line", time, history[name], label=label, style=style + mark) for name, label, style in rows]
+
+    shares, film = ("contact_share", "contact_area_fraction"), (history["mean_clearance"], history["h_min"])
+    # A few asperities carry the load: far less of the area than of the force.
+    scale = "log" if all(min(history[name]) > 0.0 for name in shares) else "linear"
+    low, high = min(map(min, film)), max(map(max, film))
+    still = {"low": (1.0 - 5.0 * STILL) * low, "high": (1.0 + 5.0 * STILL) * high} if high - low < STILL * high else {}
+    # With room above what hardly changes.
+    flow, heat = ({"low": min(0.0, *history[name]), "high": 1.12 * max(0.0, *history[name]) or None}
+                  for name in ("leakage", "friction_power"))  # fmt: skip
+    rows = [
+        ("Leakage", Axis("leakage", " ", **flow), curves(("leakage", "", "leakage"))),
+        ("Friction power", Axis("power", " ", **heat), curves(("friction_power", "", "black"))),
+        ("Contact", Axis("share", " ", scale=scale), curves((shares[0], "of the absolute closing force", "contact"),
+                                                            (shares[1], "of the face touches", "warn"))),
+        ("Film", Axis("h_min", " ", **still), curves(("mean_clearance", "mean over the face", "film thick"),
+                                                     ("h_min", "thinnest", "grey"))),
+        ("Worn volume", Axis("volume", " "), curves(*((f"{face}_volume", face, face) for face in worn))),
+    ]  # fmt: skip
+    over = Axis("time", "time of operation", low=0.0, high=time[-1])
+    return [Panel(title, over, y, series, below=k > 0, tall=0.6) for k, (title, y, series) in enumerate(rows)]
