@@ -427,7 +427,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .scene.scene import SceneError
     from .simulation.film_error import beside_reynolds
     from .simulation.plausibility import before_the_run, size_of
-    from .simulation.simulate import prepare_run
+    from .simulation.selection import prepare_run
     from .simulation.summary import model_chosen
 
     scenario = _read(file, set)
@@ -438,7 +438,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     if isinstance(scenario.scene, RadialScene):
         return _check_radial(file, scenario, as_json)
     try:
-        run, method, why, *_ = prepare_run(scenario)
+        run, plan = prepare_run(scenario)
         rules = findings(scenario, run.model)
     except (SceneError, ArchiveError) as error:
         raise Stop(Status.INVALID, f"{file}: {error}") from None
@@ -447,7 +447,7 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "message": "the scene is possible",
         "scene": scenario.resolved(),
         "gauge": sorted(scenario.gauge),
-        "model": model_chosen(scenario, run, method, why),
+        "model": model_chosen(scenario, run, plan),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
         "warnings": [caution.sentence for caution in (*run.cautions, *before_the_run(scenario, run.model))],
@@ -481,10 +481,10 @@ def _check_radial(file, scenario, as_json):
     from .radial_seals.followers import said
     from .report.text import resolved_lines
     from .scene.scene import SceneError
-    from .simulation.radial import prepare_radial
+    from .simulation.selection import prepare_run
 
     try:
-        run, method, why, *_ = prepare_radial(scenario)
+        run, plan = prepare_run(scenario)
     except SceneError as error:
         raise Stop(Status.INVALID, f"{file}: {error}") from None
     followers = run.model.followers
@@ -492,7 +492,7 @@ def _check_radial(file, scenario, as_json):
         "status": Status.OK,
         "message": "the scene is possible",
         "scene": scenario.resolved(),
-        "model": {"followers": followers.count, "solver": method, "reasons": [f"solver: {why}"]},
+        "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"]},
         "closed_form": said(followers, scenario.scene.shaft),
         "design_rules": findings(scenario),
         "equilibria": [],
@@ -786,7 +786,7 @@ def _rules_of(file, info) -> list[dict]:
     from .archive import ArchiveError
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
-    from .simulation.simulate import prepare_run
+    from .simulation.selection import prepare_run
 
     scenario = _read(file, None)
     try:

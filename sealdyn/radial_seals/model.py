@@ -5,12 +5,21 @@ import copy
 import math
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from ..dynamics.intervals import Interval, constant_and_slope, largest_value, modulo_turn, split_at_breaks
+from ..dynamics.intervals import (
+    Interval,
+    constant_and_slope,
+    largest_value,
+    modulo_turn,
+    split_at_breaks,
+    time_of_angle,
+)
 from ..dynamics.native import ARRAYS, BLOCK, Native
 from ..scene.radial import RadialScene
+from ..scene.scene import SceneError
 from . import equations
 from .contact import Contacts
 from .equations import RIDING
@@ -20,6 +29,15 @@ from .observers import Watch
 # Share of the accuracy that a cubic between two steps may err by: where a solver has begun anew nothing better lies
 # between its steps.
 BETWEEN = 0.1
+# Sharpest accuracy that a run is measured with.
+SHARPEST = 1e-13
+
+
+class RadialUnknowns(NamedTuple):
+    """Names of the displacements; the equations change wherever a follower lands (not `constant`)."""
+
+    names: list[str]
+    constant: bool = False
 
 
 class RadialModel:
@@ -39,12 +57,20 @@ class RadialModel:
         self.shortest_period = 2.0 * math.pi / self.reference_rate
         energy = max(found.preload * self.length, found.mass * (self.length * self.reference_rate) ** 2)
         n = found.count
+        self.unknowns = RadialUnknowns([f"u{j}" for j in range(n)])
         self.scales = np.array([self.length] * n + [self.length * self.reference_rate] * n
                                + [n * energy] * (equations.WORKS + 1))  # fmt: skip
 
     def intervals(self, duration: float):
         """Stretches of time on which the shaft's speed is linear."""
         return split_at_breaks(duration, self.scene.shaft.speed, 0.0, [self.scene.shaft.speed])
+
+    def time_of(self, turns: float) -> float:
+        """Time (s) in which the shaft turns so often.  Raises SceneError if it never does."""
+        try:
+            return time_of_angle(self.scene.shaft.speed, 2.0 * math.pi * turns)
+        except ValueError as error:
+            raise SceneError("run.turns", f"{turns:g} turns ({error})", "fewer turns, or a duration") from None
 
     def vector(self, q, rate) -> np.ndarray:
         """Unknowns (size,) of displacements and rates (n,)."""
@@ -166,8 +192,8 @@ def _waves(shaft, interval: Interval) -> list[list[float]]:
 
 class RadialRun:
     """A model over `duration` (s), as dynamics/run_state.py: `intervals`, start `y0` (size,), `last`, and the observers
-    `stick_slip` (which finds the changes of contact), `extrema` and `contacts` (which watch), `seen` (None, or another
-    whose state is kept).
+    `stick_slip` (which finds the changes of contact), `extrema` and `contacts` (which watch); `start` where it begins
+    and why (simulation/selection.py), None if nobody chose.
 
     It begins with all followers on the shaft, wherever that pulls nowhere: the following orbit."""
 
@@ -178,7 +204,7 @@ class RadialRun:
         riding = {"modes": np.full(n, RIDING), "signs": np.zeros(n)}
         here = RadialSegment(model, self.intervals[0], 0, len(self.intervals) == 1, riding).surface(0.0)
         self.y0 = model.vector(here[:, 0], here[:, 1])
-        self.last, self.seen = (0, 0.0, self.y0), None
+        self.last, self.start = (0, 0.0, self.y0), None
 
     def segment(self, index: int = 0, modes=None) -> RadialSegment:
         """The equations over the interval `index`, in the modes of now or in `modes`."""
@@ -186,9 +212,9 @@ class RadialRun:
         modes = modes or self.stick_slip.held()
         return RadialSegment(self.model, self.intervals[index], index, index + 1 == len(self.intervals), modes)
 
-    def anew(self) -> "RadialRun":
-        """The same run before its start."""
-        return RadialRun(self.model, self.duration)
+    def sharper(self, times: float) -> "RadialRun":
+        """The same run before its start, so many times more accurate."""
+        return RadialRun(RadialModel(self.model.scene, max(self.model.accuracy / times, SHARPEST)), self.duration)
 
     @property
     def memory(self) -> float:
@@ -207,7 +233,6 @@ class RadialRun:
         return {
             "sticking": self.stick_slip.state(),
             "late": self.contacts.state(),
-            "seen": self.seen and self.seen.state(),
         }
 
     def restore_modes(self, modes: dict):

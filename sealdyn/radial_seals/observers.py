@@ -6,6 +6,7 @@ import math
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ..archive import Fields, Series
 from ..dynamics.intervals import constant_and_slope, modulo_turn
 from .equations import HELD, RIDING
 
@@ -114,6 +115,32 @@ FIELDS = {
     "gap": ("m", "gap between seal and shaft", "µm", 1e6),
     "follower_load": ("N", "load of a follower on the shaft", "N", 1.0),
 }
+
+
+class RadialErrorScales:
+    """What is compared of two runs, and its scales, as ErrorScales of a face seal: displacements and loads of all
+    followers, over the length of the model and the largest load."""
+
+    def __init__(self, model):
+        self.n, self.length = model.followers.count, model.length
+
+    def of(self, segment, taus, us, vs) -> np.ndarray:
+        """Columns (m, 2 n) at segment times (m,) (s): displacements (m) and loads (N)."""
+        _, around = columns(segment, taus, us, vs)
+        return np.hstack([us, around["follower_load"]])
+
+    def errors(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """How far (m, 2 n) the columns of two runs are apart, over the scales of the second."""
+        loads = np.nanmax(np.abs(other[:, self.n :]), initial=0.0) or 1.0
+        scales = np.concatenate([np.full(self.n, self.length), np.full(self.n, loads)])
+        return np.abs(one - other) / scales
+
+
+def kept_series(model, instants: int) -> tuple[dict[str, Series], Fields]:
+    """Series by name and fields at so many instants, as an archive of this model keeps them."""
+    grid = {"theta": (Series("rad", "angle, from the x axis", "deg", 180 / math.pi), model.followers.angles)}
+    series, fields = ({name: Series(*row) for name, row in table.items()} for table in (SERIES, FIELDS))
+    return series, Fields(fields, grid, instants)
 
 
 def columns(segment, taus, us, vs) -> tuple[dict, dict]:

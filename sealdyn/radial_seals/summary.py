@@ -11,7 +11,7 @@ from .observers import conductance
 AT_ONCE = 1e-9
 
 
-def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
+def summary_of(scenario, run, plan, outcome) -> dict:
     """The numbers of `run --json`, SI; `settled` are those of the second half of the run."""
     scene, followers, contacts = run.model.scene, run.model.followers, run.stick_slip
     speed = fastest(scene.shaft)
@@ -24,7 +24,7 @@ def summary_of(scenario, run, outcome, method: str, why: str) -> dict:
         "status": outcome.status,
         "message": outcome.message,
         "seal": kind,
-        "model": {"followers": followers.count, "solver": method, "reasons": [f"solver: {why}"], "unused": []},
+        "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"], "unused": []},
         "follower": {
             "mass": followers.mass, "stiffness": float(followers.modal_stiffness[1 % followers.count]),
             "damping": followers.damping, "preload": followers.preload, "friction": followers.friction,

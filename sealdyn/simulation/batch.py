@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import closing, suppress
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -24,9 +25,9 @@ from ..scenario.settings import scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
-from .radial import prepare_radial
 from .result import common, missing, output, unit_of, with_speeds
-from .simulate import in_memory, prepare_run
+from .selection import prepare_run
+from .simulate import in_memory
 from .summary import state_names
 
 if TYPE_CHECKING:
@@ -162,7 +163,7 @@ def first_ready(scenario, sets):
         except ScenarioError as error:
             first = error if k == 0 else first
         else:
-            return (prepare_radial if _is_radial(found) else prepare_run)(found)[0]
+            return prepare_run(found)[0]
     raise first
 
 
@@ -240,22 +241,23 @@ OWN = ("energy_residual", "counts.back_end")
 
 
 class LoopedRun:
-    """A scenario made ready: `run`, `method`, `segments`; `structure` is equal for runs that can share a loop, and None
+    """A scenario made ready: `run`, `plan`, `segments`; `structure` is equal for runs that can share a loop, and None
     for one that can be in none.  `outcome` (solvers/integrate.py) is None until it has ended well."""
 
     def __init__(self, scenario, outputs):
         self.scenario, self.outputs, self.outcome = scenario, outputs, None
-        self.run, self.method, self.why, interval, count, _ = prepare_run(scenario)
+        self.run, self.plan = prepare_run(scenario)
         run, unknowns = self.run, self.run.model.unknowns
+        self.method = self.plan.method
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)
         self.structure = None
         self.sampled, self.watched = (any(key.startswith(asked) for key in outputs) for asked in (SAMPLED, EXTREMES))
         self.segments = [run.segment(index) for index in range(len(run.intervals))]
         alone = run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(self.segments[0])
-        heavy = self.sampled and count * unknowns.n > MOST_OUTPUT
+        heavy = self.sampled and self.plan.count * unknowns.n > MOST_OUTPUT
         if alone or heavy or self.method not in ("adams", "bdf"):
             return
-        self.sink = TallySink(run, interval, count)
+        self.sink = TallySink(run, self.plan.interval, self.plan.count)
         thinnest, touching = thinnest_value(run.model.face), run.model.contact is not None
         places = tuple(unknowns.rate_places)
         kernels = thinnest, touching, unknowns.impulse
@@ -264,8 +266,8 @@ class LoopedRun:
     def parts(self) -> dict:
         """The `parts` of its summary (summary.py), once it has ended."""
         tally = self.sink.tally if self.sampled else Unsampled()
-        why = f"{self.why}; one loop for many runs, cautious tolerance"
-        return parts(self.scenario, self.run, self.outcome, tally, self.method, why, with_speeds(self.outputs))
+        plan = replace(self.plan, why=f"{self.plan.why}; one loop for many runs, cautious tolerance")
+        return parts(self.scenario, self.run, plan, self.outcome, tally, with_speeds(self.outputs))
 
     def ends(self, runs, i, touching, output):
         """Take what the loop has left in row `i`."""

@@ -14,16 +14,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..dynamics.run_state import RunState
+from ..scene.radial import RadialScene
 from ..solvers.advance import Advance
 from ..solvers.block import Block
-from ..solvers.contract import TIGHTEST, Cause, Counts, SolverFailure, Status, tolerance_for
+from ..solvers.contract import TIGHTEST, Cause, Counts, Enough, SolverFailure, Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit, missing_energy
 from ..solvers.global_error import GlobalErrorEstimate
 from ..solvers.integrate import Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
-from .verification_run import LEAST_SHARPER, OTHER, ErrorScales
+from .selection import Plan
+from .verification_run import LEAST_SHARPER, OTHER, Comparison, ErrorScales
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -148,6 +150,14 @@ def choose_tolerance(run: RunState, method: str) -> tuple[TrialRun | None, Globa
     return trial, errors
 
 
+def first_steps(run, plan: Plan) -> tuple[TrialRun | None, GlobalErrorEstimate | None]:
+    """What a plan begins with, as `choose_tolerance`: its own tolerance where it has one, since what has been estimated
+    before, and too large, is measured now."""
+    if plan.tolerance is None:
+        return choose_tolerance(run, plan.method)
+    return TrialRun.without_steps(plan.tolerance, f"tolerance {plan.tolerance:.1e}"), None
+
+
 def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun | None:
     model = run.model
     asked, cautious = model.accuracy, tolerance_for(method, model.accuracy, run.memory)
@@ -230,6 +240,30 @@ def _so_many(error: float | None, wanted: float) -> str:
     return f", some {(error / wanted) ** 0.5:.2g} times as many each way" if error and math.isfinite(error) else ""
 
 
+def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None, float | None, str]:
+    """Errors of a film against the next higher model and of its cells, and a sentence."""
+    interface = run.model.interface
+    if by_model is None and interface.name == "linear":
+        by_model = model_error(run)
+    known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
+    by_cells = max((error for error in known if error is not None), default=None)
+    if by_cells is None and run.model.observed[0].halved is not None:
+        by_cells = math.inf
+    if interface.grid_accuracy is not None:
+        return (
+            by_model,
+            by_cells,
+            f"beside it cells {by_cells:.1e} of {interface.grid_accuracy:.0e} asked, by half of them",
+        )
+    if by_cells is not None:
+        return by_cells, by_cells, f"cells {by_cells:.1e}, by half of them"
+    if by_model is not None:
+        return by_model, None, f"model {by_model:.1e} against the radial film"
+    if interface.name == "linear":
+        return None, None, "the linear film's own error not estimated here"
+    return None, None, f"the {interface.name} film has no higher model"
+
+
 def certify(
     run: RunState,
     method: str,
@@ -245,30 +279,19 @@ def certify(
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_solver is not None and method != "expm":
         by_solver = max(by_solver, LEFT_OUT * run.model.accuracy)
-    if by_model is None and run.model.interface.name == "linear":
-        by_model = model_error(run)
     said = f", against a sharper run{_since(*measured)}" if measured else ""
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
-    known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
-    by_cells = max((error for error in known if error is not None), default=None)
-    if by_cells is None and run.model.observed[0].halved is not None:
-        by_cells = math.inf
-    grid = run.model.interface.grid_accuracy
-    if grid is not None:
-        parts.append(f"beside it cells {by_cells:.1e} of {grid:.0e} asked, by half of them")
-    elif by_cells is not None:
-        by_model = by_cells
-        parts.append(f"cells {by_model:.1e}, by half of them")
-    elif by_model is not None:
-        parts.append(f"model {by_model:.1e} against the radial film")
-    elif run.model.interface.name == "linear":
-        parts.append("the linear film's own error not estimated here")
-    else:
-        parts.append(f"the {run.model.interface.name} film is the highest rung")
+    by_cells = grid = None
+    radial = isinstance(run.model.scene, RadialScene)
+    if not radial:
+        by_model, by_cells, sentence = _by_film(run, by_model, cells)
+        grid = run.model.interface.grid_accuracy
+        parts.append(sentence)
     known = [error for error in (by_solver, by_model) if error is not None]
     asked = run.model.accuracy
     sentence = f"asked {asked:.0e}, estimated {sum(known):.1e} ({', '.join(parts)})" if known else ", ".join(parts)
-    until = horizon(*measured, asked) if measured else None
+    # Between landings a radial seal forgets: it has no horizon.
+    until = horizon(*measured, asked) if measured and not radial else None
     if known and sum(known) > asked:
         coarse = by_model and by_model > 0.5 * sum(known)
         since = f" from {until:.4g} s on" if until is not None else ""
@@ -283,6 +306,35 @@ def certify(
     return Certificate(asked, by_solver, by_model, sentence, until, by_cells if grid is not None else None, grid)
 
 
+def certificate(
+    run, plan: Plan, outcome: Outcome, errors, seen: Comparison | None, progress=None, stop=None
+) -> tuple[dict, Outcome]:
+    """How wrong a run by this `plan` is estimated to be, as part of the summary: `asked`, `estimated`,
+    `solver`, `model` (relative errors, None where not estimated), `met`, `horizon` (s) and `said`, a sentence; and the
+    outcome, interrupted if the measuring was."""
+    asked = run.model.accuracy
+    if outcome.status != Status.OK:
+        return without(asked, ended(outcome.status)), outcome
+    measured = cells = None
+    if seen:
+        try:
+            how = {"method": plan.method, "tolerance": outcome.tolerance}
+            apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
+        except Enough:
+            return interrupted(asked, outcome)
+        if seen.failure:
+            why = f"no certificate: {seen.failure}"
+            failed = replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=why)
+            return without(asked, seen.failure) | {"met": False}, failed
+        measured = None if apart is None else (seen.times, apart)
+    found = certify(run, plan.method, outcome.tolerance, errors, plan.film_error, measured, cells)
+    beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
+    unseen = "; the run was done before it was continued, begun anew it is measured"
+    found = replace(found, said=found.said + unseen) if seen and seen.columns is None else found
+    return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
+            "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
+
+
 # Tries in all; the share of the accuracy aimed at, and by how much a tolerance is sharpened at least and at most.
 MOST, AIM, LEAST, SHARPEST = 4, 0.3, 0.1, 1e-3
 # A sharper try that leaves more than this of the error has not helped.
@@ -293,52 +345,39 @@ WHOLE = 0.1
 LONG, SLOW, COMPILED = 1_000_000, 1_000, ("adams", "bdf", "ida")
 
 
-@dataclass(frozen=True)
-class Try:
-    """A method, its tolerance (None: what the run's own choice is) and a sentence why; `last`: nothing is tried after
-    it."""
-
-    method: str
-    tolerance: float | None
-    why: str
-    last: bool = False
-
-    def start(self, run):
-        """What `choose_tolerance` returns: a TrialRun or None, and what follows the run's errors or None."""
-        if self.tolerance is None:
-            return choose_tolerance(run, self.method)
-        # What has been estimated before, and too large, is measured now.
-        return TrialRun.without_steps(self.tolerance, f"tolerance {self.tolerance:.1e}"), None
-
-
-def next_try(run, solver: str, one: Try, outcome, found: dict, tries: list) -> Try | None:
-    """What to try after `one`, whose certificate is `found`; None where it is exact enough, did not end well, or
-    nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Try, tolerance, certificate) of
+def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> Plan | None:
+    """What to try after `plan`, whose certificate is `found`; None where it is exact enough, did not end well, or
+    nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Plan, tolerance, certificate) of
     those before.  Where a sharper one gives up, what those before have is not lost."""
-    if outcome.status == Status.FAILED and tries and not one.last:
-        return _instead(run, solver, one, outcome, tries)
+    if outcome.status == Status.FAILED and tries and not plan.last:
+        return _instead(run, solver, plan, outcome, tries)
     if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
         return None
-    if one.method == "expm" or one.last or outcome.counts.steps > LONG:
+    if plan.method == "expm" or plan.last or outcome.counts.steps > LONG:
         return None
     measured = _measured(tries)
     stuck = bool(measured) and found["solver"] > HELPED * measured[-1][2]["solver"]
     # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
     share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
     sharp = max(outcome.tolerance * share, LEAST_SHARPER * TIGHTEST)
-    why = f"{one.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"
+    why = f"{plan.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"
     if len(tries) + 1 < MOST and not stuck and sharp < HELPED * outcome.tolerance:
-        return Try(one.method, sharp, why)
-    other, tried = OTHER[one.method], {before[0].method for before in tries}
+        return replace(plan, tolerance=sharp, why=why)
+    other, tried = OTHER[plan.method], {before[0].method for before in tries}
     lost = (stuck and found["solver"] > WHOLE) or outcome.counts.steps > SLOW
     free = (
-        solver == "auto" and not lost and not run.model.unknowns.has_residual_form and other not in (one.method, *tried)
+        solver == "auto"
+        and not lost
+        and not run.model.unknowns.has_residual_form
+        and other not in (plan.method, *tried)
     )
     if len(tries) + 1 < MOST and free:
-        return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
+        return replace(
+            plan, method=other, tolerance=tolerance_for(other, run.model.accuracy, run.memory), why=f"{why}; by {other}"
+        )
     best = min(measured, key=lambda before: before[2]["solver"], default=None)
     if best and best[2]["solver"] < HELPED * found["solver"]:
-        return Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
+        return _best_again(best, why)
     return None
 
 
@@ -347,15 +386,23 @@ def _measured(tries: list) -> list:
     return [before for before in tries if before[2]["solver"] is not None]
 
 
-def _instead(run, solver: str, one: Try, outcome, tries: list) -> Try | None:
-    """What to try where a sharper try `one` gave up: the other method, else the best of those before."""
-    other, tried = OTHER[one.method], {before[0].method for before in tries}
-    why = f"{one.why}; at tolerance {outcome.tolerance:.1e} {one.method} gave up"
-    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (one.method, *tried)
+def _instead(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
+    """What to try where a sharper `plan` gave up: the other method, else the best of those before."""
+    other, tried = OTHER[plan.method], {before[0].method for before in tries}
+    why = f"{plan.why}; at tolerance {outcome.tolerance:.1e} {plan.method} gave up"
+    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (plan.method, *tried)
     if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
-        return Try(other, tolerance_for(other, run.model.accuracy, run.memory), f"{why}; by {other}")
+        return replace(
+            plan, method=other, tolerance=tolerance_for(other, run.model.accuracy, run.memory), why=f"{why}; by {other}"
+        )
     best = min(_measured(tries), key=lambda before: before[2]["solver"], default=None)
-    return best and Try(best[0].method, best[1], f"{why}; back to the best of these", last=True)
+    return best and _best_again(best, why)
+
+
+def _best_again(best: tuple, why: str) -> Plan:
+    """The best of those before, for good."""
+    plan, tolerance, _ = best
+    return replace(plan, tolerance=tolerance, why=f"{why}; back to the best of these", last=True)
 
 
 def judged(found: dict, outcome, tries: list):

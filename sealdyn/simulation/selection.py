@@ -1,4 +1,4 @@
-"""The lowest film model that keeps the asked accuracy."""
+"""What a run is to be: its film, method, tolerance and start, chosen once for a scenario and handed down as its Plan."""
 
 import math
 from collections.abc import Callable
@@ -6,14 +6,143 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import archive
 from ..dynamics import modes
-from ..dynamics.intervals import constant_and_slope
+from ..dynamics.cautions import Caution, Concern
+from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
+from ..dynamics.signals import PARTS
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scene.gas import viscosity_of
+from ..scene.radial import RadialScene
+from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
+from ..solvers.contract import attainable
 from .film_error import model_error
+from .plausibility import refuse_large, unit_warnings
+
+# Ratio of the fastest decay to the fastest motion of interest above which an explicit-like method crawls; the same of a
+# radial seal's followers.
+STIFF, STIFF_FOLLOWER = 60.0, 50.0
+STABLE = "on the linear steady response, which is stable"
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a run starts: `taken` "rest", "steady" or an archive; `why` a sentence, empty where it was asked for."""
+
+    taken: str
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What has been chosen for a run: the name of its `film` (empty of a radial seal), its `method` by the name in
+    METHODS, the `tolerance` relative to the scales (None: by a trial, or the cautious one), its `start`, a sentence
+    `why` on method and tolerance, the sample `interval` (s) and the `count` of intervals; `film_error` (relative) of a
+    linear film that was chosen (None: not estimated); `last`: no other method or tolerance is tried after it."""
+
+    film: str
+    method: str
+    tolerance: float | None
+    start: Start
+    why: str
+    interval: float = 0.0
+    count: int = 0
+    film_error: float | None = None
+    last: bool = False
+
+
+def prepare_run(scenario) -> tuple:
+    """A scenario made ready: its run (RunState with its start and windows, or RadialRun) and the Plan for it.
+    Raises SceneError, which names the numbers that may want a unit, or ArchiveError."""
+    refuse_large(scenario, allowed=True)
+    if isinstance(scenario.scene, RadialScene):
+        return _prepared_radial(scenario)
+    try:
+        return _prepared(scenario)
+    except SceneError as error:
+        if not (meant := unit_warnings(scenario)):
+            raise
+        raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
+
+
+def _prepared(scenario):
+    settings = scenario.run
+    chosen = []
+
+    def begin(run):
+        # Once for the scene, by the film it asks for: a simpler film tried for it starts where that one does.
+        if not chosen:
+            chosen.append(choose_start(run, settings.start))
+        set_start(run, scenario.scene, chosen[0])
+
+    run, film_error = select_film(scenario.scene, settings, begin)
+    interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
+    run.check_loads()
+    method, why = settings.solver, "asked for"
+    if method != "auto":
+        check_method(run.model, method)
+    else:
+        method, why = choose_method(run)
+    best = attainable(method, run.memory)
+    if best > settings.accuracy:
+        sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
+        run.cautions.append(Caution(Concern.ACCURACY, sentence))
+    run.watch_last_periods()
+    fastest = run.fastest_forcing()
+    if fastest * interval > math.pi:
+        frequency = fastest / (2 * math.pi)
+        sentence = (
+            f"aliasing: forcing at {frequency:.5g} Hz needs more than {2 * frequency * run.duration:.0f} samples "
+            f"in all, {count} asked: raise run.samples_per_turn"
+        )
+        run.cautions.append(Caution(Concern.ALIASING, sentence))
+    for ring, sampled in motions(scenario.scene).items():
+        if sampled.coarse > COARSE:
+            table, share = ("housing", "shaft")[ring], 100.0 * sampled.coarse
+            sentence = (
+                f"aliasing: {share:.2g} % of the power of the rate of {table}.motion has fewer than {PER_PERIOD} "
+                "samples a period: give it finer"
+            )
+            run.cautions.append(Caution(Concern.ALIASING, sentence))
+    return run, Plan(run.model.interface.name, method, None, chosen[0], why, interval, count, film_error)
+
+
+def _prepared_radial(scenario):
+    """The same of a radial seal, which rides on the shaft as it begins."""
+    # Its kernels are loaded for a radial seal only.
+    from ..radial_seals.model import RadialModel, RadialRun
+
+    settings = scenario.run
+    model = RadialModel(scenario.scene, settings.accuracy)
+    run = RadialRun(model, model.time_of(settings.turns) if settings.duration is None else settings.duration)
+    interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
+    method, why = settings.solver, "asked for"
+    if method == "auto":
+        followers = model.followers
+        stiff = followers.damping / followers.mass > STIFF_FOLLOWER * model.reference_rate
+        method = "radau" if stiff else "dop853"
+        why = "every change of contact is a new start: a one-step method" + (", and the lip is stiff" if stiff else "")
+    run.start = Start("riding", "all followers on the shaft, where that pulls nowhere")
+    return run, Plan("", method, None, run.start, why, interval, count, last=True)
+
+
+def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
+    """Sample interval (s) and number of intervals of a run of `duration` (s), its shaft turning at `fastest` (rad/s) at
+    most; `settings` as the `[run]` table."""
+    if settings.samples is not None:
+        return duration / settings.samples, settings.samples
+    if fastest == 0.0:
+        return duration / 1000, 1000
+    count = max(1, round(duration * fastest / (2 * math.pi) * settings.samples_per_turn))
+    exact = duration * fastest / (2 * math.pi) * settings.samples_per_turn
+    if abs(exact - count) < 1e-6 * count:
+        return duration / count, count
+    interval = 2 * math.pi / fastest / settings.samples_per_turn
+    return interval, int(duration / interval)
 
 
 def select_film(scene, settings, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
@@ -79,10 +208,6 @@ def _why_not_linear(scene, radial: RunState) -> str | None:
     return None
 
 
-# Above this ratio of the fastest decay to the fastest motion of interest, an explicit-like method crawls.
-STIFF = 60.0
-
-
 def choose_method(run) -> tuple[str, str]:
     """The method for a run (RunState), by its name in METHODS, and a sentence why."""
     model = run.model
@@ -124,17 +249,6 @@ def _fastest_decay(run) -> float:
         places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
     scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
     return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)
-
-
-STABLE = "on the linear steady response, which is stable"
-
-
-@dataclass(frozen=True)
-class Start:
-    """Where a run starts: `taken` "rest", "steady" or an archive; `why` a sentence, empty where it was asked for."""
-
-    taken: str
-    why: str = ""
 
 
 def choose_start(run, asked: str) -> Start:
@@ -180,3 +294,48 @@ def _no_steady_response(run) -> str:
         return "no gap at which the film holds the loads"
     verdict = modes.verdict(model.linear_scene().modes())
     return "" if verdict == "stable" else f"the linear steady response is {verdict}"
+
+
+def set_start(run, scene, start: Start) -> None:
+    """Set the initial unknowns of a run: rest, the linear steady state, an archive's last state, and what [initial]
+    gives; followers ride, as they are made.  Raises SceneError where the film is closed there, or ArchiveError."""
+    run.start = start
+    if isinstance(scene, RadialScene):
+        return
+    unknowns, taken = run.model.unknowns, start.taken
+    run.y0 = np.zeros(unknowns.size)
+    if taken == "steady":
+        run.y0, run.extrema.steady = run.steady_start(), True
+    elif taken != "rest":
+        rates = unknowns.n + np.arange(unknowns.n_mechanical - unknowns.n)
+        y = _last_unknowns(taken, unknowns)
+        run.y0[: unknowns.n] = y[: unknowns.n]
+        run.y0[rates] = y[rates]
+    for k, ring in ((0, scene.initial.stator), (1, scene.initial.rotor)):
+        for part in PARTS:
+            given = getattr(ring, part)
+            base = f"{RING_NAMES[k]}_{part.removesuffix('_rate')}"
+            if given is None or base not in unknowns.names:
+                continue
+            place = unknowns.names.index(base)
+            place = unknowns.rate_places[place] if part.endswith("_rate") else place
+            if place >= 0:
+                run.y0[place] = given
+    run.check_start()
+
+
+def _last_unknowns(start, unknowns) -> np.ndarray:
+    """The unknowns (size,) that the archive `start` ends with."""
+    state = archive.last_state(start)
+    if not state:
+        raise archive.ArchiveError(f"{start}: holds no last state to start from")
+    try:
+        names, y = [str(name) for name in state["names"]], np.array(state["y"], float)
+    except archive.READING_ERRORS as error:
+        raise archive.ArchiveError(f"{start}: its last state is none of this program's ({error})") from None
+    if names != unknowns.names or y.shape != (unknowns.size,):
+        found, wanted = (", ".join(one)[:200] for one in (names, unknowns.names))
+        raise SceneError("run.start", f"{start} with unknowns {found}", f"an archive with the unknowns {wanted}")
+    if not np.all(np.isfinite(y)):
+        raise archive.ArchiveError(f"{start}: its last state is no number")
+    return y

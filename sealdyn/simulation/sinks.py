@@ -19,7 +19,9 @@ from ..dynamics.signals import (
     signal_table,
     signals,
 )
+from ..scene.radial import RadialScene
 from ..solvers.contract import Enough
+from ..solvers.energy_audit import EnergyAudit
 
 # Single events kept in an archive; a seal that rubs for hours has more, which are counted.
 MOST_EVENTS = 20_000
@@ -28,6 +30,8 @@ MOST_EVENTS = 20_000
 KEPT = 32
 # And where a film that closes ends the run between two samples.
 MOST_INSTANTS = KEPT + 1
+# Instants at which gap and load around the shaft of a radial seal are kept, at most.
+MOST_RADIAL = 600
 
 
 @dataclass
@@ -55,7 +59,11 @@ class Tally:
 
 
 def what_is_kept(model) -> tuple[dict[str, Series], Fields | None]:
-    """Series by name, and the film's fields if it has any, as an archive of this model keeps them."""
+    """Series by name, and the fields if it has any, as an archive of this model keeps them."""
+    if isinstance(model.scene, RadialScene):
+        from ..radial_seals.observers import kept_series
+
+        return kept_series(model, MOST_RADIAL + 2)
     series = {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
     table = fields_of(model)
     if not table:
@@ -75,7 +83,7 @@ class ArchiveSink:
     def __init__(self, run, writer, dt, count, tally, progress, stop):
         self.run, self.writer, self.dt, self.count = run, writer, dt, count
         self.tally, self.progress, self.stop = tally, progress, stop
-        self.audit = self.errors = None
+        self.audit, self.errors, self.seen = EnergyAudit(), None, None
         self.waiting = self.waiting_fields = None
         self.kept = np.rint(np.linspace(0, count, KEPT))
         self.logged, self.pending = 0, []
@@ -151,6 +159,7 @@ class ArchiveSink:
             "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
             "audit": self.audit.state(),
             "errors": self.errors and self.errors.state(),
+            "seen": self.seen and self.seen.state(),
             "modes": run.modes() | {"logged": self.logged},
             "start": vars(run.start),
             "names": run.model.unknowns.names,
@@ -167,6 +176,27 @@ class ArchiveSink:
 
 def _joined(waiting: dict | None, columns: dict) -> dict:
     return columns if waiting is None else {k: np.concatenate([waiting[k], columns[k]]) for k in columns}
+
+
+class RadialSink(ArchiveSink):
+    """Takes the series of a radial seal, and at a few instants what is around the shaft."""
+
+    def __init__(self, run, writer, dt, count, tally, progress, stop):
+        super().__init__(run, writer, dt, count, tally, progress, stop)
+        self.kept = np.rint(np.linspace(0, count, min(count + 1, MOST_RADIAL)))
+
+    def take(self, segment, taus, q, q_rate, x=None):
+        """Series and fields at segment times (m,) (s) of displacements and rates (m, n)."""
+        from ..radial_seals.observers import columns
+
+        found, around = columns(segment, taus, q, q_rate)
+        self.tally.rows += len(taus)
+        number = found["time"] / self.dt
+        at = np.flatnonzero(np.isin(np.rint(number), self.kept) & (np.abs(number - np.rint(number)) < 1e-6))
+        if len(at):
+            fields = {FIELD_TIME: found["time"][at], **{name: values[at] for name, values in around.items()}}
+            self.waiting_fields = _joined(self.waiting_fields, fields)
+        self.waiting = _joined(self.waiting, found)
 
 
 class TallySink(ArchiveSink):

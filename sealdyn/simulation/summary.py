@@ -15,40 +15,40 @@ from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
+from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.scene import SceneError
 from ..scene.waviness import waves_of
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions
-from .result import plain
 from .stability import stability
 
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
-def model_chosen(scenario, run, method: str, why: str) -> dict:
+def model_chosen(scenario, run, plan) -> dict:
     """What the scene chose: `film`, names of the `unknowns`, `solver`, `start` ("rest", "steady" or an archive),
     `reasons` (sentences), and `unused` keys it does not use."""
     begun = [f"start: {run.start.why}"] if run.start.why else []
     return {
-        "film": run.model.interface.name,
+        "film": plan.film,
         "unknowns": run.model.unknowns.names,
-        "solver": method,
+        "solver": plan.method,
         "start": run.start.taken,
-        "reasons": [*run.reasons, *begun, f"solver: {why}", run.model.interface.message],
+        "reasons": [*run.reasons, *begun, f"solver: {plan.why}", run.model.interface.message],
         "unused": scenario.unused(),
     }
 
 
-def summarise(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
-    """The summary (`run --json`) of a finished run, SI; no value is a NaN or infinite.  `outcome` of `solve`, `tally`
-    of its sink; `speeds`: with critical and resonance speeds, which cost more than a short run."""
-    return plain(parts(scenario, run, outcome, tally, method, why, speeds))
+def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
+    """The summary (`run --json`, SI) of a finished run, in which what costs something is a function that finds it:
+    `plain` of it is JSON-ready.  `plan` as carried out, `outcome` of `solve`, `tally` of its sink; `speeds`: with
+    critical and resonance speeds, which cost more than a short run."""
+    if isinstance(scenario.scene, RadialScene):
+        from ..radial_seals.summary import summary_of
 
-
-def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> dict:
-    """The summary as `summarise` gives it, in which what costs something is a function that finds it."""
+        return summary_of(scenario, run, plan, outcome)
     model, segment = run.model, run.segment(outcome.segment)
     linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
     whole = cache(lambda: run.extrema.extremes()[0])
@@ -57,7 +57,7 @@ def parts(scenario, run, outcome, tally, method, why, speeds: bool = True) -> di
     return {
         "status": outcome.status,
         "message": outcome.message,
-        "model": lambda: model_chosen(scenario, run, method, why),
+        "model": lambda: model_chosen(scenario, run, plan),
         "h_min": lambda: {
             "value": whole()[H],
             "time": run.end_time(int(whole()[H_LEG]), whole()[H_TAU]),

@@ -24,6 +24,8 @@ from ..solvers.integrate import solve
 # where a step is cut short, by decades of its length.
 PER_PERIOD, FEW, MANY, MOST, AFTER, DECADES = 12, 100, 500, 3000, 12, 7
 GOLDEN = 0.6180339887498949
+# Instants of a radial seal.
+RADIAL_INSTANTS = 1000
 # By how much sharper the second run is, and at least.
 SHARPER, LEAST_SHARPER = 30.0, 3.0
 # The same of a method of second order, whose steps grow more slowly with a tolerance.
@@ -41,11 +43,11 @@ OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau
 
 class Comparison:
     """An observer that keeps what is looked at of a run at instants `times` (m,) (s): columns of ErrorScales, NaN where
-    the run has not been."""
+    the run has not been; `failure`: how a second run ended that tells nothing, empty if none did."""
 
     def __init__(self, run: RunState):
         self.scales, self.run, self.times = ErrorScales(run), run, instants(run)
-        self.columns = None
+        self.columns, self.failure = None, ""
 
     def begin(self, segment, tau, y):
         """Nothing to do: instants are of the whole run."""
@@ -91,10 +93,10 @@ class Comparison:
 
     def _apart(self, again, method, tolerance, progress, stop) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
-        other = Comparison(again)
+        other = type(self)(again)
         other.times = self.times
         outcome = solve(
-            again, method, self.run.model.accuracy, Nothing(again, progress, stop), tolerance=tolerance, seen=other
+            again, method, again.model.accuracy, Nothing(again, progress, stop), tolerance=tolerance, seen=other
         )
         if outcome.status == Status.INTERRUPTED:
             raise Enough
@@ -104,17 +106,74 @@ class Comparison:
         found = np.full(len(self.times), np.nan)
         if both.any():
             errors = self.scales.errors(self.columns[both], other.columns[both])
-            if self.run.model.interface.film.settle is not None:
-                errors = beside_jumps(errors)
-            found[both] = errors.max(axis=1)
+            found[both] = self._largest(errors)
+        return self._ended(outcome, again, found)
+
+    def _largest(self, errors: np.ndarray) -> np.ndarray:
+        """The largest error (m,) of all quantities, without those between the jumps of two runs."""
+        return (beside_jumps(errors) if self.run.model.interface.film.settle is not None else errors).max(axis=1)
+
+    def _ended(self, outcome, again, found: np.ndarray) -> np.ndarray:
+        """What was `found`, after a second run that ended with `outcome`."""
         if outcome.status != Status.OK:
             # One run ends well, the other does not: from there on nothing is right.
             found[self.times > again.end_time(outcome.segment, outcome.tau)] = np.inf
         return found
 
+    def state(self) -> dict | None:
+        """What a continued run needs: nothing, what was before it is not compared."""
+        return None
+
+    def restore(self, state: dict | None):
+        """Go on from `state`."""
+
+
+class RadialComparison(Comparison):
+    """The same of a radial seal: displacements and loads of the followers."""
+
+    def __init__(self, run):
+        # Kernels of radial seals are loaded for these only.
+        from ..radial_seals.observers import RadialErrorScales
+
+        self.run, self.scales, self.failure = run, RadialErrorScales(run.model), ""
+        self.times = np.sort(np.mod(GOLDEN * np.arange(1, RADIAL_INSTANTS + 1), 1.0)) * run.duration
+        self.columns = None
+
+    def error_over_time(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+        """How far (m,) this run is from one with sharper steps and sharper events: how long a step may be and what
+        counts as contact follow from the accuracy."""
+        again = self.run.sharper(SHARPER)
+        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
+
+    def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> None:
+        """None: there is no film."""
+
+    def _largest(self, errors):
+        """A load jumps where a follower lands: beside a jump two runs differ by all of it."""
+        largest = errors.max(axis=1)
+        return np.minimum(largest, np.quantile(largest, BESIDE_JUMPS))
+
+    def _ended(self, outcome, again, found):
+        if outcome.status != Status.OK:
+            self.failure = f"a sharper run {outcome.status} ({outcome.message})"
+        return found
+
+    def state(self) -> dict | None:
+        """What a continued run needs."""
+        return None if self.columns is None else {"columns": self.columns[~np.isnan(self.columns[:, 0])].tolist()}
+
+    def restore(self, state):
+        """Go on from `state`."""
+        if state and state["columns"]:
+            rows = np.array(state["columns"])
+            self.columns = np.full((len(self.times), rows.shape[1]), np.nan)
+            self.columns[: len(rows)] = rows
+
 
 class Nothing:
     """A sink that keeps nothing, tells how far it is, and can be stopped."""
+
+    tally = None
 
     def __init__(self, run, progress=None, stop=None):
         self.run, self.progress, self.stop = run, progress, stop
@@ -127,6 +186,9 @@ class Nothing:
         """Nothing is kept."""
 
     def event(self, *anything):
+        """Nothing is kept."""
+
+    def log(self, events):
         """Nothing is kept."""
 
     def state(self, segment, tau, y):

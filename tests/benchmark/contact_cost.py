@@ -19,7 +19,8 @@ CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'
 
 
 def seconds(scenario):
-    ready, method, *_ = prepare_run(scenario)
+    ready, plan = prepare_run(scenario)
+    method = plan.method
     begun = time.perf_counter()
     outcome = solve(ready, method, scenario.run.accuracy, Recorder())
     return time.perf_counter() - begun, outcome, ready

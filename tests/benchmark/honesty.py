@@ -43,9 +43,8 @@ from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
-from sealdyn.simulation.certificate import Try, judged, next_try
+from sealdyn.simulation.certificate import certificate, first_steps, judged, next_plan
 from sealdyn.simulation.selection import choose_method, select_film
-from sealdyn.simulation.simulate import certificate
 from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, beside_jumps
 from sealdyn.solvers.integrate import solve
 
@@ -76,22 +75,22 @@ def automatic(drawn, times):
     begun = time.process_time()
     run, by_model = select_film(drawn.scene, Run(duration=drawn.duration, accuracy=drawn.accuracy), begin(drawn))
     method, why = choose_method(run)
-    one, tries = Try(method, None, why), []
+    plan, tries = Plan("", method, None, run.start, why, film_error=by_model), []
     while True:
         sink = Instants(ErrorScales(run), times)
-        trial, errors = one.start(run)
+        trial, errors = first_steps(run, plan)
         options = {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
-        seen = Comparison(run) if errors is None and one.method != "expm" else None
-        outcome = solve(run, one.method, drawn.accuracy, sink, errors=errors, seen=seen, **options)
-        found, outcome = certificate(run, one.method, outcome, errors, by_model, seen)
-        again = next_try(run, "auto", one, outcome, found, tries)
+        seen = Comparison(run) if errors is None and plan.method != "expm" else None
+        outcome = solve(run, plan.method, drawn.accuracy, sink, errors=errors, seen=seen, **options)
+        found, outcome = certificate(run, plan, outcome, errors, seen)
+        again = next_plan(run, "auto", plan, outcome, found, tries)
         if again is None:
             break
-        tries.append((one, outcome.tolerance, found))
-        run, one = run.anew(), again
+        tries.append((plan, outcome.tolerance, found))
+        run, plan = run.anew(), again
     found, outcome = judged(found, outcome, tries)
     spent = time.process_time() - begun
-    return run, one.method, found, outcome, sink.all(), all_contacts(run, outcome), spent
+    return run, plan.method, found, outcome, sink.all(), all_contacts(run, outcome), spent
 
 
 def in_order(model, reference, columns):

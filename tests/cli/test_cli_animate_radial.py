@@ -137,13 +137,13 @@ def test_a_run_that_failed_or_was_broken_off(tmp_path, monkeypatch):
     assert part.status == "interrupted"
     assert sealdyn("animate", part.archive, "--out", tmp_path / "part.gif", cwd=tmp_path).code == 0
     monkeypatch.setattr(
-        "sealdyn.simulation.radial.solve",
+        "sealdyn.simulation.simulate.solve",
         lambda *args, **more: replace(solve(*args, **more), status=Status.FAILED, message="gave up"),
     )
     failed = simulate(scenario, tmp_path / "failed.h5")
     assert failed.status == "failed"
     assert sealdyn("animate", failed.archive, "--out", tmp_path / "failed.png", cwd=tmp_path).code == 0
-    monkeypatch.setattr("sealdyn.simulation.radial.MOST_INSTANTS", 0)
+    monkeypatch.setattr("sealdyn.simulation.sinks.MOST_RADIAL", 0)
     none = simulate(scenario, tmp_path / "none.h5")
     refused = sealdyn("animate", none.archive, cwd=tmp_path)
     assert refused.code == 2 and "no gap around the shaft" in refused.err and refused.err.strip().count("\n") == 0

@@ -109,7 +109,8 @@ def test_stick_slip_across_from_a_massless_ring():
                 *(f"stator.support.{key}='{value}'" for key, value in support.items()),
                 "stator.secondary_seal={radius='45 mm', friction_force='2 N'}", "stator.misalignment='100 urad'",
                 "rotor.misalignment='60 urad'", "run.turns=4"]  # fmt: skip
-        run, method, *_ = prepare_run(read_scenario(SCENARIOS / "fmr_reference.toml", sets))
+        run, plan = prepare_run(read_scenario(SCENARIOS / "fmr_reference.toml", sets))
+        method = plan.method
         sink = Events()
         assert solve(run, method, 1e-6, sink).status == "ok" and run.model.unknowns.massless == (share == 0.0)
         return [seen for seen in sink.seen if seen[1] > 1e-5]

@@ -44,12 +44,12 @@ SCENES = {
 
 def alone(scenario):
     """The run by itself, at the tolerance of the loop: run, tally, outcome."""
-    run, method, why, interval, count, _ = prepare_run(scenario)
-    sink = TallySink(run, interval, count)
+    run, plan = prepare_run(scenario)
+    method, sink = plan.method, TallySink(run, plan.interval, plan.count)
     outcome = solve(run, method, run.model.accuracy, sink,
                     tolerance=tolerance_for(method, run.model.accuracy, run.memory))  # fmt: skip
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    return plain(parts(scenario, run, outcome, sink.tally, method, why))
+    return plain(parts(scenario, run, plan, outcome, sink.tally))
 
 
 @pytest.mark.parametrize("name", SCENES)

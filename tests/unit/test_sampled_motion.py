@@ -131,7 +131,8 @@ def test_energy_of_a_run_is_accounted_for():
 
 def test_scene_takes_no_steady_response():
     scenario = scenario_of(tone(8000.0, tilt=TILT))
-    ready, method, *_ = prepare_run(scenario)
+    ready, plan = prepare_run(scenario)
+    method = plan.method
     assert ready.start.taken == "rest" and method != "expm" and ready.period(-1) is None
     with pytest.raises(SceneError) as error:
         prepare_run(scenario.with_({"run.start": "steady"}))

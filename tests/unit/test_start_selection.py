@@ -12,7 +12,7 @@ import sealdyn
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.scenario.reader import parse_scenario, read_scenario
-from sealdyn.simulation import simulate as simulation
+from sealdyn.simulation import selection
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.selection import Start, choose_start
 from sealdyn.simulation.simulate import prepare_run, simulate, simulate_in_memory
@@ -117,7 +117,7 @@ def test_a_film_with_unknowns_of_its_own_starts_at_rest():
 def test_all_films_tried_for_a_scene_start_alike(monkeypatch):
     """A film that is not asked for is not asked where to start."""
     asked = []
-    monkeypatch.setattr(simulation, "choose_start", lambda run, start: asked.append(run) or Start("steady", "so"))
+    monkeypatch.setattr(selection, "choose_start", lambda run, start: asked.append(run) or Start("steady", "so"))
     run, *_ = prepare_run(seal("film.model=auto", "run.accuracy=1e-3"))
     assert run.model.interface.name == "linear" and asked[0].model.interface.name == "radial"
     assert len(asked) == 1 and run.start.taken == "steady" and np.any(run.y0)
@@ -139,7 +139,7 @@ def test_a_continued_run_keeps_the_start_it_was_begun_with(tmp_path, monkeypatch
     part = simulate(scenario, tmp_path / "part.h5", stop=lambda: True)
     assert part.status == "interrupted" and part.summary["model"]["start"] == "steady"
     # Whatever would be chosen now.
-    monkeypatch.setattr(simulation, "choose_start", lambda run, asked: Start("rest", "another"))
+    monkeypatch.setattr(selection, "choose_start", lambda run, asked: Start("rest", "another"))
     again = simulate(scenario, tmp_path / "part.h5", resume=True)
     assert again.status == "ok" and again.summary["model"]["start"] == "steady"
     assert "another" not in " ".join(again.summary["model"]["reasons"])
@@ -183,5 +183,5 @@ def test_advice_of_a_closed_film_knows_where_the_run_began(tmp_path):
     """Nobody is told to begin where he has begun."""
     grown = 'rotor.runout={time=["0 s", "0.05 s"], value=["25 urad", "8 mrad"]}'
     for start, advised in (("rest", True), ("steady", False)):
-        found = simulation.simulate(read_scenario(SEAL, [grown, f"run.start={start}"]), tmp_path / "a.h5")
+        found = simulate(read_scenario(SEAL, [grown, f"run.start={start}"]), tmp_path / "a.h5")
         assert found.status == "collapsed" and ("run.start" in found.message) is advised

@@ -237,7 +237,8 @@ def test_neighbouring_methods_agree():
 
 
 def test_steady_starts_and_ends_are_beside_a_sweep():
-    ready, method, *_ = prepare_run(scenario_of(LATE, **{"run.start": "steady"}))
+    ready, plan = prepare_run(scenario_of(LATE, **{"run.start": "steady"}))
+    method = plan.method
     assert ready.start.taken == "steady" and method != "expm" and ready.period(-1) is not None
     assert prepare_run(scenario_of(LATE, **{"run.start": "auto"}))[0].start.taken == "rest"
     with pytest.raises(SceneError) as error:

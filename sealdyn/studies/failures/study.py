@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from ...scenario.errors import ScenarioError
 from ...scene.scene import SceneError
-from ...simulation.simulate import prepare_run
+from ...simulation.selection import prepare_run
 from ...status import Status
 from . import cases
 
@@ -77,13 +77,13 @@ def chosen_for(scenario, exhibits) -> tuple[dict, dict[str, str]]:
     """Method, why, and warnings that the program has for the scenario before it runs; and {exhibit: what of the
     scenario brings it there, or empty}."""
     try:
-        run, method, why, *_ = prepare_run(scenario)
+        run, plan = prepare_run(scenario)
     except SceneError as error:
         return {"refused": str(error)}, {}
     own = {
         "film": run.model.interface.name,
-        "method": method,
-        "why": why,
+        "method": plan.method,
+        "why": plan.why,
         "warnings": [caution.sentence for caution in run.cautions],
     }
     return own, {

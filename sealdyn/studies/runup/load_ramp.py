@@ -25,7 +25,7 @@ from ...faces.geometry import (
 )
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scene.variants import with_values
-from ...simulation.simulate import prepare_run
+from ...simulation.selection import prepare_run
 from ...solvers.integrate import solve
 from ..work_precision.errors import Sampler
 from .plan import tables_end
@@ -126,7 +126,8 @@ def load_trip(scenario, point: dict) -> dict:
     """A ramp (or with `rate` None a step) there and back: extremes, what it settles at, and the series."""
     names = ("key", "begin", "end", "rate", "settle", "hold", "rest")
     trip = RampCycle(**{n: point[n] for n in names})
-    run, method, *_ = prepare_run(trip.on(scenario))
+    run, plan = prepare_run(trip.on(scenario))
+    method = plan.method
     sink = GivenTimesSink(instants(trip))
     outcome = solve(run, method, run.model.accuracy, sink)
     times, film, tilt, leakage = (np.concatenate([p[i] for p in sink.parts]) for i in range(4))

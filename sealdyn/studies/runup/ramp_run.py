@@ -17,7 +17,7 @@ from ...dynamics.run_state import RunState
 from ...faces.geometry import COLLAPSE, DZ, GX, GY, TOUCH
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.settings import with_values
-from ...simulation.simulate import prepare_run
+from ...simulation.selection import prepare_run
 from ...solvers.contract import Status
 from ...solvers.integrate import solve
 
@@ -161,7 +161,8 @@ def run_cycle(
 ) -> Passed:
     """Run a trip.  With a `mode` (ModeOverSpeed) a whirl of it of relative tilt `disturbance` (rad) is added at the
     trip's crossing, and unless `twin` is false the same run without it gives the free whirl."""
-    run, method, *_ = prepare_run(trip.on(scenario))
+    run, plan = prepare_run(trip.on(scenario))
+    method = plan.method
     accuracy = run.model.accuracy
     if mode is None:
         sink = EvenAngleSink(per_turn)

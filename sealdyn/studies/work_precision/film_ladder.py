@@ -10,7 +10,7 @@ from ...films import film_named, film_names, film_of
 from ...scenario.settings import with_values
 from ...scene.film import Coefficients
 from ...scene.waviness import waves_of
-from ...simulation.simulate import prepare_run
+from ...simulation.selection import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for
 from ...solvers.methods import METHODS
@@ -97,7 +97,8 @@ def _highest(scenario, ladder, samples, longest):
                 # A film with unknowns of its own is never exact.
                 own = film_of(scenario.scene, film_named(rung[1]["film.model"])).halved is not None
                 accuracy = scenario.run.accuracy / 30.0 if own else 1e-9
-                run, method, *_ = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": accuracy, **AUTO}))
+                run, plan = prepare_run(with_values(scenario, {**rung[1], "run.accuracy": accuracy, **AUTO}))
+                method = plan.method
                 tolerance = tolerance_for(method, accuracy, run.memory)
                 found = observe(run, METHODS[method], method, tolerance, longest, samples)
         except ValueError:
@@ -124,7 +125,8 @@ def _run(scenario, rung, highest, samples, longest, repeats) -> dict:
     best = None
     try:
         for _ in range(max(1, repeats) + 1):
-            run, method, *_ = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+            run, plan = prepare_run(with_values(scenario, {**overrides, **AUTO}))
+            method = plan.method
             tolerance = tolerance_for(method, scenario.run.accuracy, run.memory)
             found = observe(run, METHODS[method], method, tolerance, longest, samples)
             best = found if best is None or found.wall < best.wall else best

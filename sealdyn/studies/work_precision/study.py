@@ -18,8 +18,7 @@ from ...answers import Answer, Table
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
 from ...simulation.film_error import beside_reynolds
-from ...simulation.selection import check_method, choose_method
-from ...simulation.simulate import prepare_run
+from ...simulation.selection import check_method, choose_method, prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
 from ...solvers.methods import METHODS

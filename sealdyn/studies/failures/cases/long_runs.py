@@ -22,7 +22,7 @@ from ....scene.excitation import AxialVibration, Housing, Shaft
 from ....scene.film import Film
 from ....scene.rings import ROTOR, Rotor, Stator, Support
 from ....scene.scene import Scene
-from ....simulation.simulate import prepare_run
+from ....simulation.selection import prepare_run
 from ._common import row
 
 ITEM = 10
