@@ -24,7 +24,8 @@ def summary_of(scenario, run, plan, outcome) -> dict:
         "status": outcome.status,
         "message": outcome.message,
         "seal": kind,
-        "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"], "unused": []},
+        "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"],
+                  "unused": []},
         "follower": {
             "mass": followers.mass, "stiffness": float(followers.modal_stiffness[1 % followers.count]),
             "damping": followers.damping, "preload": followers.preload, "friction": followers.friction,

@@ -250,11 +250,8 @@ def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None
     if by_cells is None and run.model.observed[0].halved is not None:
         by_cells = math.inf
     if interface.grid_accuracy is not None:
-        return (
-            by_model,
-            by_cells,
-            f"beside it cells {by_cells:.1e} of {interface.grid_accuracy:.0e} asked, by half of them",
-        )
+        asked = f"of {interface.grid_accuracy:.0e} asked, by half of them"
+        return by_model, by_cells, f"beside it cells {by_cells:.1e} {asked}"
     if by_cells is not None:
         return by_cells, by_cells, f"cells {by_cells:.1e}, by half of them"
     if by_model is not None:
@@ -365,16 +362,10 @@ def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -
         return replace(plan, tolerance=sharp, why=why)
     other, tried = OTHER[plan.method], {before[0].method for before in tries}
     lost = (stuck and found["solver"] > WHOLE) or outcome.counts.steps > SLOW
-    free = (
-        solver == "auto"
-        and not lost
-        and not run.model.unknowns.has_residual_form
-        and other not in (plan.method, *tried)
-    )
-    if len(tries) + 1 < MOST and free:
-        return replace(
-            plan, method=other, tolerance=tolerance_for(other, run.model.accuracy, run.memory), why=f"{why}; by {other}"
-        )
+    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (plan.method, *tried)
+    if len(tries) + 1 < MOST and free and not lost:
+        tolerance = tolerance_for(other, run.model.accuracy, run.memory)
+        return replace(plan, method=other, tolerance=tolerance, why=f"{why}; by {other}")
     best = min(measured, key=lambda before: before[2]["solver"], default=None)
     if best and best[2]["solver"] < HELPED * found["solver"]:
         return _best_again(best, why)
@@ -392,9 +383,8 @@ def _instead(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
     why = f"{plan.why}; at tolerance {outcome.tolerance:.1e} {plan.method} gave up"
     free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (plan.method, *tried)
     if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
-        return replace(
-            plan, method=other, tolerance=tolerance_for(other, run.model.accuracy, run.memory), why=f"{why}; by {other}"
-        )
+        tolerance = tolerance_for(other, run.model.accuracy, run.memory)
+        return replace(plan, method=other, tolerance=tolerance, why=f"{why}; by {other}")
     best = min(_measured(tries), key=lambda before: before[2]["solver"], default=None)
     return best and _best_again(best, why)
 

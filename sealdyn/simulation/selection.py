@@ -1,4 +1,4 @@
-"""What a run is to be: its film, method, tolerance and start, chosen once for a scenario and handed down as its Plan."""
+"""What a run is to be: film, method, tolerance and start, chosen once for a scenario and handed down as its Plan."""
 
 import math
 from collections.abc import Callable

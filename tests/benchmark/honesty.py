@@ -44,7 +44,7 @@ from scenes import prepared, set_start
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
 from sealdyn.simulation.certificate import certificate, first_steps, judged, next_plan
-from sealdyn.simulation.selection import choose_method, select_film
+from sealdyn.simulation.selection import Plan, choose_method, select_film
 from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, beside_jumps
 from sealdyn.solvers.integrate import solve
 
