@@ -1,14 +1,25 @@
-"""SIGINT and SIGTERM end a process that hears them and one that does not, and no worker outlives its parent."""
+"""Interruption: processes that hear a signal or do not, workers, a run with contact and stick-slip stopped and continued,
+and files that HDF5 does not come to an end with."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
 
+from sealdyn.archive import ArchiveError, column, read_info
+from sealdyn.archive.files import must_be_sound
+from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.stick_slip import StickSlip
 from sealdyn.numerics.interruption import CODE
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.simulation.simulate import simulate
 
 # Measured: GRACE and some hundredths; a machine under load needs several times as long.
 SOON = 10.0
@@ -87,3 +98,92 @@ def test_workers_do_not_outlive_their_parent(number):
     process.send_signal(number)
     process.wait()
     assert until_gone(process.pid)
+
+
+RUB = Path(__file__).parents[2] / "scenarios" / "rub.toml"
+SEAL = ["stator.secondary_seal.radius=45 mm", "stator.secondary_seal.line_friction=40 N/m", "run.turns=45"]
+
+
+@pytest.mark.parametrize("stop_at", [3, pytest.param(9, marks=pytest.mark.slow)])
+def test_continued_as_if_never_stopped(tmp_path, stop_at):
+    scenario = read_scenario(RUB, SEAL)
+    whole = simulate(scenario, tmp_path / "whole.h5")
+    calls = iter(range(10**9))
+    first = simulate(scenario, tmp_path / "part.h5", stop=lambda: next(calls) == stop_at)
+    assert first.status == "interrupted"
+    again = simulate(scenario, tmp_path / "part.h5", resume=True)
+    assert again.status == "ok"
+    # What was done before the stop is in no comparison, unless the run was done again as a whole.
+    said = again.summary["certificate"]["said"]
+    assert "against a sharper run" in said and (" s on" in said) != any(
+        "again, sharper" in reason for reason in again.summary["model"]["reasons"]
+    )
+    assert again.summary["contact"]["touches"] == whole.summary["contact"]["touches"] > 3
+    assert again.summary["secondary_seal"]["sticks"] == whole.summary["secondary_seal"]["sticks"] >= 1
+    kinds = [[event["kind"] for event in read_info(path)["events"]] for path in (again.archive, whole.archive)]
+    assert kinds[0] == kinds[1]
+    scale = 1e-5
+    for name in ("h_min", "axial_gap_change"):
+        ours, theirs = (column(result.archive, name) for result in (again, whole))
+        assert np.max(np.abs(ours - theirs)) < 10 * scenario.run.accuracy * scale
+
+
+@pytest.mark.core
+def test_a_ring_that_has_just_slipped_is_remembered_as_such():
+    """It may be captured again only once it has been fast: the archive's state says so."""
+    model = Model(read_scenario(RUB, SEAL).scene)
+    before, after = StickSlip(model), StickSlip(model)
+    before.leaving[0] = True
+    after.restore(json.loads(json.dumps(before.state())))
+    assert after.leaving == before.leaving and after.stuck == before.stuck
+
+
+@pytest.fixture
+def endless(tmp_path):
+    """Words of two attributes stand in one heap; behind the first there is nothing, of no length."""
+    path = tmp_path / "endless.h5"
+    with h5py.File(path, "w") as file:
+        file.attrs["one"], file.attrs["two"] = "a" * 64, "b" * 64
+    data = bytearray(path.read_bytes())
+    second = data.index(b"b" * 64) - 16
+    end = data.index(b"GCOL") + int.from_bytes(data[data.index(b"GCOL") + 8 :][:8], "little")
+    data[second:end] = bytes(end - second)
+    path.write_bytes(data)
+    return path
+
+
+def test_a_file_in_circles_is_refused(endless):
+    with pytest.raises(ArchiveError, match="does not come to an end"):
+        must_be_sound(endless)
+
+
+@pytest.mark.core
+@pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
+def test_whoever_asked_may_be_gone(endless):
+    """It was left behind, and went on for ever."""
+    asks = f"from sealdyn.archive.files import must_be_sound; must_be_sound({str(endless)!r})"
+    process = subprocess.Popen([sys.executable, "-c", asks])
+    until(lambda: lookers(endless))
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    until(lambda: not lookers(endless))
+
+
+def lookers(path):
+    """Processes whose words hold this path, but for the one that was asked."""
+    found = []
+    for number in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{number}/cmdline", "rb") as file:
+                words = file.read().split(b"\0")
+        except OSError:
+            continue
+        found += [number] if os.fsencode(path) in words else []
+    return found
+
+
+def until(there):
+    end = time.monotonic() + 60
+    while not there():
+        assert time.monotonic() < end
+        time.sleep(0.05)

@@ -1,5 +1,5 @@
-"""Kernels kept on disk, in a package of two kernels that keeps them as sealdyn does: one kernel takes in a constant and
-calls a kernel of other files, in folders of their own."""
+"""Kernels kept on disk, stale, foreign and damaged, in a package of two kernels that keeps them as sealdyn does: one takes
+in a constant and calls a kernel of other files, in folders of their own."""
 
 import os
 import shutil
@@ -133,3 +133,63 @@ def test_only_what_has_an_address_is_a_function_value():
     assert Value(wrench).address != 0
     with pytest.raises(TypeError, match="without"):
         Value(without)
+
+
+KERNELS = """
+from sealdyn.numerics.kernel import outer_kernel
+
+@outer_kernel
+def twice(x):
+    return 2.0 * x
+
+@outer_kernel
+def thrice(x):
+    return 3.0 * x
+
+print(twice(2.0), thrice(2.0), sum(twice.stats.cache_hits.values()), sum(thrice.stats.cache_hits.values()))
+"""
+
+
+def cut(data):
+    return data[: len(data) // 2]
+
+
+def one_bit(data):
+    """In the machine code: numba would run it."""
+    at = len(data) // 2
+    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]
+
+
+def nonsense(data):
+    return bytes(255 - byte for byte in data)
+
+
+def nothing(data):
+    return b""
+
+
+@pytest.mark.core
+@pytest.mark.parametrize("files", ["*.nbc", "*.nbi"])
+@pytest.mark.parametrize("damage", [cut, one_bit, nonsense, nothing])
+def test_damaged(tmp_path, damage, files):
+    program = tmp_path / "program.py"
+    program.write_text(KERNELS)
+    words = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": os.pathsep.join(sys.path)}
+
+    def call():
+        done = subprocess.run([sys.executable, program], env=words, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.split(), done.stderr
+
+    def kept():
+        return sorted(path for path in (tmp_path / "kept").rglob(files) if "program" in path.name)
+
+    call()
+    assert call() == (["4.0", "6.0", "1", "1"], "")
+    assert len(kept()) == 2
+    for path in kept():
+        path.write_bytes(damage(path.read_bytes()))
+    answer, said = call()
+    assert answer == ["4.0", "6.0", "0", "0"]
+    assert said.count("damaged and are compiled anew") == 1
+    assert call() == (["4.0", "6.0", "1", "1"], "")
