@@ -1,45 +1,48 @@
 """Contact onset: the forcing at which the steady film first touches, by continuation of the periodic orbit."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
 
 from ..analysis.shooting import NoOrbit, Shooter, TooMuchWork
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.steady_extremes import steady_extremes
 from ..numerics.piecewise_linear import points
+from ..quantities import in_words
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import must_be_number, si_unit, with_values
 from ..scene import variants
 from ..scene.checks import unused
 from ..scene.contact import touch_height
 from ..status import Status
-from ._words import quantity, shown_in
+from . import Info
 
-REFUSES = ("secondary-seal",)
+INFO = Info(
+    timed=("fms_reference --set stator.misalignment=0", 14),
+    asks="When do the faces first touch?",
+    refuses=("secondary-seal",),
+    # Of the key itself the answer knows the unit.
+    units={
+        **dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m"), "tilt": "rad",
+        **dict.fromkeys(("contact_force", "closing_force"), "N"),
+        "cavitation_pressure": "Pa", "start": "SI", "beyond_tilt": "rad",
+        **dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1"),
+    },
+    along={"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
+)  # fmt: skip
 # Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
 MOST_WORK = 1_200_000
 # A tilt (rad) that nobody calls small: gap and pressure are then wrong by a thousandth, and no seal runs so far off.
 SMALL_TILT = 0.05
 # Beyond this value of a key, SI, linear theory is not asked any more.
 LARGEST = 1e9
-ALONG = {"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)}
-# Of the key itself the answer knows the unit.
-units = dict.fromkeys(("h_min", "axial", "clearance", "radius", "linear_radius", "touch"), "m") | {"tilt": "rad"}
-units |= dict.fromkeys(("contact_force", "closing_force"), "N") | {
-    "cavitation_pressure": "Pa",
-    "start": "SI",
-    "beyond_tilt": "rad",
-}
-units |= dict.fromkeys(("margin", "times_own", "ratio", "axial_opening", "multiplier", "curve/path/curve"), "1")
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference --set stator.misalignment=0", 14)
+# Onsets further apart than this are seen on a logarithmic axis only.
+APART = 20.0
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,7 @@ class Settings:
     nor is one beyond any small tilt."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Linear and nonlinear onset of the key, the path of orbits to it, and a curve over another key."""
     key = settings.key or acting(scenario.scene)[0]
     must_be_number(scenario, key, "study.contact_onset.key")
@@ -82,14 +85,14 @@ def run(scenario, settings, tools) -> dict:
         {"value": value, **row} | ({"floored": brief(below)} if below else {})
         for value, row, below in zip(settings.values, plain[1:], floored[1:], strict=False)
     ]
-    answer = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
+    numbers = {"key": key, "formula": None, "nonlinear": None, "radius": None, "margin": settings.margin,
               **plain[0], "floored": floored[0], "over": settings.over, "curve": curve}  # fmt: skip
     unit = si_unit(scenario.scene, key)
-    answer["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
-    answer["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
-    if "failed" in answer:
-        answer["status"] = Status.OK if answer.get("beyond_tilt") else Status.FAILED
-    return {**answer, "verdict": _verdict(answer, unit)}
+    numbers["units"] = dict.fromkeys(("forcing", "formula", "nonlinear"), unit)
+    numbers["units"]["value"] = si_unit(scenario.scene, settings.over) if curve else "SI"
+    if "failed" in numbers:
+        numbers["status"] = Status.OK if numbers.get("beyond_tilt") else Status.FAILED
+    return Answer(numbers, _found(numbers, unit), _tables(numbers), _panels(numbers), _notes(numbers))
 
 
 def acting(scene) -> list[str]:
@@ -330,47 +333,132 @@ class Follower:
         raise NoOrbit("the floored onset did not settle")
 
 
-def tables(answer) -> list:
-    """The onset over another key."""
-    found = [row.get(name) for row in answer["curve"] for name in ("formula", "nonlinear")]
-    unit, factor = shown_in(answer.get("units", {}).get("nonlinear", "SI"), found)
-    columns = ((answer["over"], "value"), (f"linear, {unit}", "formula", factor),
-               (f"nonlinear, {unit}", "nonlinear", factor), ("with a floor", "floored.nonlinear", factor))  # fmt: skip
-    return [(answer["curve"], columns)]
+# --- what is shown -----------------------------------------------------------------------------------------
 
 
-def _verdict(answer, unit) -> list[str]:
-    if "failed" in answer:
-        return _undecided(answer, unit)
-    if answer["nonlinear"] == 0.0:
-        return [f"The asperities touch without any {answer['key']}, at r = {answer['radius'] * 1e3:.4g} mm: at rest "
-                f"they carry {answer['contact_force']:.4g} N of {answer['closing_force']:.5g} N."]  # fmt: skip
-    lines = [
-        f"The faces first touch at {answer['key']} = {quantity(answer['nonlinear'], unit, 6)}, at r = "
-        f"{answer['radius'] * 1e3:.4g} mm; linear theory has {quantity(answer['formula'], unit, 6)}: "
-        f"{100 * (answer['ratio'] - 1):+.1f} %.",
-        f"The seal opens axially by {100 * answer['axial_opening']:.3g} % of the clearance at the onset.",
-    ]
-    if answer["multiplier"] > 1:
-        lines[1] += "  The orbit there is unstable: the seal leaves it before it touches."
-    floored = answer["floored"]
-    if floored and "nonlinear" in floored:
-        change = 100 * (floored["nonlinear"] / answer["nonlinear"] - 1)
-        lines.append(
-            f"With the pressure floored at {floored['cavitation_pressure']:.4g} Pa the onset is at "
-            f"{floored['nonlinear']:.6g} {unit}, {change:+.2f} %."
-        )
-    return lines
+def _found(numbers, unit: str) -> str:
+    """The onset, or what linear theory says and why the nonlinear film does not."""
+    key, formula = numbers["key"], numbers["formula"]
+    if "failed" not in numbers:
+        if numbers["nonlinear"] == 0.0:
+            return f"The asperities touch without any {key}."
+        return f"The faces first touch at {key} = {in_words(unit, numbers['nonlinear'], digits=6)}."
+    if formula is None:
+        return numbers["failed"]
+    return f"Linear theory touches at {key} = {in_words(unit, formula)}; undecided beyond: {numbers['failed']}."
 
 
-def _undecided(answer, unit) -> list[str]:
-    """What linear theory says, and why the nonlinear film does not."""
-    if answer["formula"] is None:
-        return [answer["failed"]]
-    margin = f", {answer['times_own']:.4g} times the scenario's own" if answer.get("times_own") else ""
-    if answer.get("beyond_tilt"):
-        onset = f"{answer['key']} = {answer['formula']:.4g} {unit}{margin}"
-        return [f"Linear theory touches at {onset}: {answer['failed']}."]
-    reached = f"; orbits followed to {max(answer['path']['forcing']):.4g} {unit}" if answer.get("path") else ""
-    return [f"Linear theory touches at {answer['key']} = {answer['formula']:.4g} {unit}{margin}.",
-            f"Undecided for the nonlinear film: {answer['failed']}{reached}."]  # fmt: skip
+def _tables(numbers) -> list[Table]:
+    """The onset beside linear theory; with a floored pressure; over another key."""
+    unit, floored = numbers["units"]["forcing"], numbers["floored"] or {}
+    names = (
+        (unit, "onset", "nonlinear"), (unit, "linear theory", "formula"), ("1", "ratio", "ratio"),
+        ("radius", "at radius", "radius"), ("share", "axial opening", "axial_opening"),
+        ("1", "largest multiplier", "multiplier"), ("1", "linear over own", "times_own"),
+        ("force", "contact at rest", "contact_force"), ("force", "closing force", "closing_force"),
+    )  # fmt: skip
+    columns, row = [name[:2] for name in names], [numbers.get(key) for *_, key in names]
+    if floored:
+        columns += [(unit, "with a floor"), ("pressure", "floored at"), ("1", "floored failed")]
+        row += [floored.get(key) for key in ("nonlinear", "cavitation_pressure", "failed")]
+    tables = [Table("onset", columns, [row])]
+    if numbers["curve"]:
+        columns = [(numbers["units"]["value"], numbers["over"]), (unit, "linear"), (unit, "nonlinear"),
+                   (unit, "with a floor"), ("1", "failed")]  # fmt: skip
+        rows = [[row["value"], row.get("formula"), row.get("nonlinear"), row.get("floored", {}).get("nonlinear"),
+                 row.get("failed") or row.get("floored", {}).get("failed")] for row in numbers["curve"]]  # fmt: skip
+        tables.append(Table("over another key", columns, rows))
+    return tables
+
+
+def _notes(numbers) -> list[str]:
+    """Whether the orbit at the onset is one that the seal keeps, and how far orbits were followed."""
+    if (numbers.get("multiplier") or 0.0) > 1.0:
+        return ["The orbit at the onset is unstable: the seal leaves it before it touches."]
+    if "failed" in numbers and numbers.get("path"):
+        reached = in_words(numbers["units"]["forcing"], max(numbers["path"]["forcing"]))
+        return [f"Orbits were followed to {reached}."]
+    return []
+
+
+def _panels(numbers) -> list[Panel]:
+    """The film over the forcing, how the seal lifts, and the onset over another key: those that there are."""
+    unit, path, linear = numbers["units"]["forcing"], numbers.get("path"), numbers.get("linear")
+    forcing, panels = Axis(unit, numbers["key"]), []
+    if numbers["nonlinear"] == 0.0 and numbers.get("closing_force"):
+        shares = [numbers["clearance"] / numbers["touch"], numbers["contact_force"] / numbers["closing_force"]]
+        words = ["film, of where asperities meet", "asperities, of the closing force"]
+        bars = Series("bars", shares, [0, 1], names=[in_words("share", share) for share in shares], style="contact")
+        panels.append(Panel("At rest, nothing out of square", Axis("share"), Axis("1", " ", words=words), [bars]))
+    if path or linear or (numbers["formula"] and numbers.get("clearance")):
+        panels.append(_film_panel(numbers, forcing))
+    if path and any(path["axial"]):
+        x, opening = _from_rest(numbers, "axial", 0.0)
+        levels = [Level(numbers["formula"], "linear onset", True, "theory dashed")]
+        if numbers["nonlinear"] is not None:
+            levels.append(Level(numbers["nonlinear"], "onset", True, "contact"))
+        share = [value / numbers["clearance"] for value in opening]
+        panels.append(Panel("The seal lifts: axial opening", forcing, Axis("share", "opening, of the clearance"),
+                            [Series("line", x, share, style="blue circle small")], levels))  # fmt: skip
+    if numbers["curve"]:
+        panels.append(_curve_panel(numbers))
+    why = "touching when aligned" if numbers["nonlinear"] == 0.0 else numbers.get("failed") or "no orbit followed"
+    return panels or [Panel("Smallest film thickness", note=why)]
+
+
+def _from_rest(numbers, name: str, start: float) -> tuple[list, list]:
+    """Forcing and a column of the path, in the order of the forcing, from where nothing forces."""
+    pairs = sorted(zip(numbers["path"]["forcing"], numbers["path"][name], strict=True))
+    return [0.0, *(at for at, _ in pairs)], [start, *(value for _, value in pairs)]
+
+
+def _film_panel(numbers, forcing: Axis) -> Panel:
+    """Thinnest film of the nonlinear orbit and of linear theory over the forcing."""
+    path, linear, touch = numbers.get("path"), numbers.get("linear"), numbers.get("touch") or 0.0
+    formula, clearance, series, levels = numbers["formula"], numbers["clearance"], [], []
+    own = linear["own"] if linear else numbers.get("times_own") and formula / numbers["times_own"]
+    if path:
+        at, films = _from_rest(numbers, "h_min", clearance)
+        series.append(Series("line", at, films, label="nonlinear orbit", style="film circle small"))
+    if linear:
+        x, films = linear["forcing"], linear["h_min"]
+    else:
+        share = np.r_[0.0, np.geomspace(1e-6, 1.0, 241)]
+        x, films = formula * share, clearance * (1.0 - share) + touch * share
+    if not linear and not path:
+        first = own or 1e-3 * numbers.get("beyond_tilt", formula)
+        if formula > APART * first:
+            forcing = replace(forcing, scale="log", low=0.3 * first, high=2.0 * formula)
+            x, films = x[1:], films[1:]
+            if numbers.get("beyond_tilt"):
+                levels.append(Level(numbers["beyond_tilt"], "no small tilt", True, "grey", to=2.0 * formula))
+    series.append(Series("line", x, films, label="linear theory", style="theory dashed"))
+    levels.append(Level(touch, "asperities meet" if touch else "touch", style="contact"))
+    levels += [Level(own, "the scenario's own", True, "blue dotted", number=True)] if own else []
+    return Panel("Smallest film thickness", forcing, Axis("h_min", "h_min"), series, levels)
+
+
+def _curve_panel(numbers) -> Panel:
+    """The onset over another key; where it was not found a cross on the axis."""
+    rows, unit = numbers["curve"], numbers["units"]
+    words = any(isinstance(row["value"], str) for row in rows)
+    x = Axis("1" if unit["value"] == "SI" else unit["value"], numbers["over"])
+    x = replace(x, quantity="1", words=[str(row["value"]) for row in rows]) if words else x
+    at = list(range(len(rows))) if words else [row["value"] for row in rows]
+    series = []
+    for label, style, values in (
+        ("nonlinear", "tilt circle", [row.get("nonlinear") for row in rows]),
+        ("pressure floored", "fourth open square", [row.get("floored", {}).get("nonlinear") for row in rows]),
+        ("linear theory", "theory dashed", [row.get("formula") for row in rows]),
+    ):
+        if any(value is not None for value in values):
+            series.append(Series("line", at, values, label=label, style=style))
+    seen = [value for one in series for value in one.y if value]
+    lost = [place for place, row in zip(at, rows, strict=True) if "failed" in row or "failed" in row.get("floored", {})]
+    if lost:
+        foot = [min(seen, default=0.0)] * len(lost)
+        series.append(Series("marks", lost, foot, label="an onset was not found", style="contact cross"))
+    apart = len(seen) > 1 and max(seen) > APART * min(seen)
+    y = Axis(unit["forcing"], f"{numbers['key']} at touch")
+    y = replace(y, scale="log") if apart else replace(y, low=0.0)
+    return Panel(f"Onset over {numbers['over']}", x, y, series)

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawn import drawn, text_trouble
 from scenes import started
 
 import sealdyn
 from sealdyn import closed_form as cf
 from sealdyn.analysis.shooting import Shooter, TooMuchWork
-from sealdyn.report.charts import study_contact_onset
+from sealdyn.archive import read_study
+from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
@@ -180,10 +180,10 @@ def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml", ["stator.misalignment=1e-7"])
     answer = run_study("contact-onset", scenario, tmp_path / "c.h5", workers=1)
     assert answer["status"] == "failed" and answer["nonlinear"] is None
-    figure = drawn(study_contact_onset, tmp_path / "c.h5", tmp_path / "c.png")
-    ends = [line.get_xydata()[[0, -1]].tolist() for ax in figure.axes for line in ax.lines]
-    line = [[0.0, pytest.approx(10.0)], [pytest.approx(1e3 * answer["formula"]), pytest.approx(0.0)]]
-    assert line in ends and text_trouble(figure) == ([], [])
+    (panel,) = read_study(tmp_path / "c.h5")["panels"]
+    (line,) = panel["series"]
+    ends = [(line["x"][k], line["y"][k]) for k in (0, -1)]
+    assert ends[0] == pytest.approx((0.0, 1e-5)) and ends[1] == pytest.approx((answer["formula"], 0.0))
 
 
 def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
@@ -222,9 +222,7 @@ class Tools:
 
 
 @pytest.mark.parametrize("floor", [False, True])
-def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
-    from sealdyn.archive import write_study
-
+def test_curve_carries_the_floored_onset_beside_the_plain_one(floor):
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
     settings = Settings(over="film.coning", values=(2.0, 3.0, 4.0), floor=floor)
     answer = contact_onset.run(scenario, settings, Tools())
@@ -238,23 +236,18 @@ def test_curve_carries_the_floored_onset_beside_the_plain_one(floor, tmp_path):
         assert below[1] == {"failed": "no orbit at 3.0, True"}
     else:
         assert not any("floored" in row for row in answer["curve"])
-    meta = {"study": "contact_onset", "name": "x", "question": "?"}
-    path = write_study(tmp_path / "c.h5", scenario.text, {}, meta, answer, contact_onset.units)
-    assert study_contact_onset.draw(path, tmp_path / "c.png").exists()
+    curve = answer.panels[-1]
+    assert any(one.label == "pressure floored" for one in curve.series) == floor
+    assert sheet_of(answer.panels, "x", "", answer.found).axes
 
 
-def test_a_failed_onset_leaves_its_curve(tmp_path):
-    from sealdyn.archive import write_study
-
+def test_a_failed_onset_leaves_its_curve():
     class Broken(Tools):
         def map(self, function, points, what="points"):
             return [{"failed": "no orbit"} if not p["set"] else self.row(2.0, False) for p in points]
 
     scenario = sealdyn.read_scenario(SCENARIOS / "fms_reference.toml")
     answer = contact_onset.run(scenario, Settings(over="film.coning", values=(2.0,)), Broken())
-    assert answer["status"] == "failed" and answer["nonlinear"] is None and answer["verdict"][0] == "no orbit"
+    assert answer["status"] == "failed" and answer["nonlinear"] is None and answer.found == "no orbit"
     assert answer["curve"][0]["nonlinear"] == 4.0
-    path = write_study(
-        tmp_path / "c.h5", "", {}, {"study": "contact_onset", "name": "x", "question": "?"}, answer, contact_onset.units
-    )
-    assert study_contact_onset.draw(path, tmp_path / "c.png").exists()
+    assert sheet_of(answer.panels, "x", "", answer.found).axes

@@ -215,9 +215,7 @@ def test_a_gap_that_follows_the_speed_has_no_formula_and_its_map_says_what_it_ke
     scenario = parse_scenario(FMR.read_text(), "inert", changes)
     answer = stability.run(scenario, Settings(x="shaft.speed=100:9000:20", confirm=0), InProcess())
     assert answer["unconditional"]["limit"] is None
-    said = " ".join(answer["verdict"])
-    assert "The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap." in said
-    assert "Stable at every speed" not in said
+    assert any("the map keeps the gap" in note for note in answer.notes)
 
 
 def test_a_seal_without_a_threshold_has_a_map_of_speeds_it_may_reach():

@@ -6,14 +6,17 @@ from functools import partial
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
+from scipy.ndimage import distance_transform_cdt
 
 from ... import closed_form as cf
 from ...analysis.whirl import free_model, growth_rate
 from ...analysis.whirl.time_domain import pace
+from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics import modes
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
+from ...quantities import in_words
 from ...scenario.errors import ScenarioError, nearest_of
 from ...scenario.errors import tables as keys_of_tables
 from ...scenario.reader import ScenarioFile
@@ -23,20 +26,20 @@ from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
-from .._words import no_film_beyond, speed
+from .. import Info
 from .grid import INERTIA_RATIO, Grid
 
-REFUSES = ("secondary-seal",)
-ALONG = dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x"))
-units = dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain", "uncertainty"), "1/s") | {"turns": "1"}
+INFO = Info(
+    timed=("fmr_reference", 4),
+    asks="Where does the seal whirl by itself?",
+    refuses=("secondary-seal",),
+    units={**dict.fromkeys(("growth_rate", "tilt_growth_rate", "time_domain", "uncertainty"), "1/s"), "turns": "1"},
+    along=dict.fromkeys(("growth_rate", "tilt_growth_rate"), ("axes/y", "axes/x")),
+)
 # A run in time lasts until a small disturbance has grown by this much (e-folds), or decayed; turns as `pace` counts.
 GROWN, DECAYED, FEWEST, MOST = 1.5, 4.0, 4.0, 600.0
 # Accuracy of those runs, and the share of the eigenvalues' growth rate by which theirs may differ beside their doubt.
 ACCURACY, SHARE = 1e-7, 0.01
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fmr_reference", 4)
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Settings:
     """How many points beside the threshold are confirmed in the time domain."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Map, margins at the scenario's own values, and confirmed points."""
     scene = frozen_at_start(scenario.scene)
     wanted = (settings.x or _default_x(scene), settings.y or _default_y(scene))
@@ -69,7 +72,7 @@ def run(scenario, settings, tools) -> dict:
     tools.say(0.3)
     for a in axes:
         a["here"] = _here(scene, a["key"])
-    answer = {
+    numbers = {
         "axes": dict(zip("xy", axes, strict=True)),
         "growth_rate": _listed(total),
         "tilt_growth_rate": _listed(tilt),
@@ -78,7 +81,8 @@ def run(scenario, settings, tools) -> dict:
         "confirmed": _confirmed(scenario, axes, tilt, settings.confirm, tools),
         "units": {f"confirmed/{name}": a["unit"] for name, a in zip("xy", axes, strict=True)},
     }
-    return answer | {"verdict": _verdict(answer, scenario, axes, total)}
+    found = _found(numbers["margins"], scenario.name)
+    return Answer(numbers, found, _tables(numbers, total), [_panel(numbers)], _notes(numbers, scenario, axes, total))
 
 
 def si_axis(scenario, words: str, name: str) -> dict:
@@ -301,56 +305,103 @@ def _scenario_keys(scene, values: dict) -> dict:
     return found
 
 
-def _verdict(answer, scenario, axes, total) -> list[str]:
-    margin, limit = answer["margins"], answer["unconditional"]
+# --- what is shown -----------------------------------------------------------------------------------------
+
+
+def _found(margin, name: str) -> str:
+    """Whether the seal itself is stable, and how far off its threshold is."""
     known = f" +- {margin['growth_rate_uncertainty']:.1g}" if margin["verdict"] == "neutral" else ""
-    said = [f"{scenario.name} itself is {margin['verdict']}, growth rate {margin['growth_rate']:.5g}{known} 1/s"
-            f" (its {margin['least_damped']} motion)."]  # fmt: skip
-    if margin["critical_speed"]:
-        times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
-        said.append(f"Critical speed {speed(margin['critical_speed'])}{times}.")
-    else:
+    itself = f"{name} is {margin['verdict']}, growth rate {margin['growth_rate']:.5g}{known} 1/s"
+    if not margin["critical_speed"]:
         held = margin["speeds_held"]
-        said.append(f"No critical speed{no_film_beyond(held)}.")
-    if moves_with_speed(scenario.scene.film) and scenario.scene.film.clearance is not None:
-        said.append("The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap.")
-    if limit["limit"]:
-        own = f"; its own is {limit['inertia_ratio']:.4g}" if limit["inertia_ratio"] else ""
-        ratio = "transverse over polar inertia c <= 1/nu"
-        said.append(f"Stable at every speed for {ratio} = {limit['limit']:.5g}, nu the whirl ratio{own}.")
+        ends = f" up to {in_words('speed', held[1])}, beyond which no film holds the closing force" if held else ""
+        return f"{itself}; no critical speed{ends}."
+    times = f", {margin['speed_margin']:.3g} times its own" if margin["speed_margin"] else ""
+    return f"{itself}; critical speed {in_words('speed', margin['critical_speed'], digits=5)}{times}."
+
+
+def _tables(numbers, total) -> list[Table]:
+    """Margins at the scenario's own values, shares of the map, and the points run in time."""
+    margin, limit, (x, y) = numbers["margins"], numbers["unconditional"], numbers["axes"].values()
     possible = np.isfinite(total)
-    share = np.mean(total[possible] < 0) if possible.any() else 0.0
-    said.append(
-        f"{100 * share:.3g} % of the map is stable ({axes[0]['key']} by {axes[1]['key']}, {total.size} points)."
+    share = (
+        [float(np.mean(total[possible] < 0)), float(np.mean(total[possible] == 0))] if possible.any() else [None] * 2
     )
-    if np.any(total == 0):
-        said.append(
-            f"{100 * np.mean(total[possible] == 0):.3g} % of it is neutral: nothing damps the least damped mode."
+    own = [margin["verdict"], margin["growth_rate"], margin["least_damped"], margin["whirl_ratio"],
+           margin["critical_speed"], limit["limit"], limit["inertia_ratio"], *share]  # fmt: skip
+    names = [("1", "verdict"), ("growth_rate", "growth rate"), ("1", "of the motion"), ("1", "whirl ratio"),
+             ("speed", "critical speed"), ("1", "stable at every speed to inertia ratio"), ("1", "its own"),
+             ("share", "map stable"), ("share", "neutral")]  # fmt: skip
+    columns = [(x["unit"], x["key"]), (y["unit"], y["key"]), ("growth_rate", "eigenvalues"),
+               ("growth_rate", "in time"), ("growth_rate", "+-"), ("1", "agrees"), ("1", "not confirmed")]  # fmt: skip
+    keys = ("x", "y", "growth_rate", "time_domain", "uncertainty", "agrees", "failed")
+    rows = [[point.get(key) for key in keys] for point in numbers["confirmed"]]
+    return [Table("margins", names, [own]), Table("confirmed in time", columns, rows)]
+
+
+def _notes(numbers, scenario, axes, total) -> list[str]:
+    """What the map keeps, and which of its points cannot be."""
+    notes, possible = [], np.isfinite(total)
+    if moves_with_speed(scenario.scene.film) and scenario.scene.film.clearance is not None:
+        notes.append(
+            "The critical speed keeps the closing force, and the gap follows the speed; the map keeps the gap."
         )
     if not possible.all():
-        said.append(f"{np.sum(~possible)} points cannot be scenes{_reason(scenario, axes, possible)}")
-    good = [p for p in answer["confirmed"] if "failed" not in p]
-    if good:
-        right = sum(p["agrees"] for p in good)
-        far = max(abs(p["time_domain"] - p["growth_rate"]) for p in good)
-        tilt = np.array(answer["tilt_growth_rate"], dtype=float)
-        crossed = np.nanmin(tilt) < 0 < np.nanmax(tilt)
-        where = "points beside the tilts' threshold" if crossed else "points (least damped tilt, no threshold there)"
-        said.append(f"{right} of {len(good)} {where} confirmed in the time domain (growth rates within {far:.2g} 1/s).")
-    for p in answer["confirmed"]:
-        if "failed" in p:
-            said.append(f"Not confirmed at {_place(axes, p)}: {p['failed']}")
-    return said
+        notes.append(f"{np.sum(~possible)} points cannot be scenes{_reason(scenario, axes, possible)}")
+    return notes
 
 
-def _place(axes, point) -> str:
-    """A point of the map in words."""
-    values = [point["x"], point["y"]]
-    return " and ".join(f"{a['key']} {_with_unit(v, a['unit'])}" for a, v in zip(axes, values, strict=True))
+def _panel(numbers) -> Panel:
+    """The map of growth rates, the threshold, the scenario itself, and points confirmed in time."""
+    x, y = numbers["axes"].values()
+    tilt, every = numbers["tilt_growth_rate"], numbers["growth_rate"]
+    rates = np.array(tilt, float)
+    if not np.isfinite(rates).any():
+        return Panel("Growth rate", note="no possible scene on this map")
+    series = [
+        Series("map", x["values"], y["values"], tilt),
+        Series("contour", x["values"], y["values"], every, label="threshold (eigenvalues)", style="black thick"),
+    ]
+    axial = (np.array(every, float) > 0) & (rates <= 0)
+    if axial.any():
+        j, i = (int(np.median(at)) for at in np.nonzero(axial))
+        series.append(Series("words", [x["values"][i]], [y["values"][j]], names=["axially unstable"], style="black"))
+    for word, region in (("stable", np.array(every, float) < 0), ("unstable", np.array(every, float) > 0)):
+        if np.mean(region) >= 0.03:
+            # Steps from each cell to the edge of its region; the map's edge counts.
+            depth = distance_transform_cdt(np.pad(region, 1), "taxicab")[1:-1, 1:-1]
+            inner = np.argwhere(depth == depth.max())
+            j, i = inner[len(inner) // 2]
+            series.append(Series("words", [x["values"][i]], [y["values"][j]], names=[word], style="black"))
+    here = [a["here"] for a in (x, y)]
+    if all(at is not None and min(a["values"]) <= at <= max(a["values"]) for at, a in zip(here, (x, y), strict=True)):
+        series.append(Series("marks", here[:1], here[1:], label="this scenario", style="fifth star large front"))
+    for words, style, points in (
+        ("grows in the time domain", "black open triangle front", [p for p in numbers["confirmed"] if _grows(p, 1)]),
+        ("decays in the time domain", "black open down front", [p for p in numbers["confirmed"] if _grows(p, -1)]),
+        ("not confirmed", "bad cross front", [p for p in numbers["confirmed"] if "failed" in p]),
+    ):
+        if points:
+            at = [[p[name] for p in points] for name in ("x", "y")]
+            series.append(Series("marks", *at, label=words, style=style))
+    limit, levels = numbers["unconditional"]["limit"], []
+    for a, upright in ((x, True), (y, False)):
+        if a["key"] == INERTIA_RATIO and limit and min(a["values"]) < limit < max(a["values"]):
+            levels.append(Level(limit, "stable at every speed up to 1/nu =", upright, "bad dashed", number=True))
+    colour = Axis("growth_rate", "growth rate of the least damped tilt mode", "asinh")
+    return Panel("Growth rate over the map", _axis(x), _axis(y), series, levels, colour=colour, tall=1.2)
 
 
-def _with_unit(value: float, unit: str) -> str:
-    return speed(value, 4) if unit == "rad/s" else f"{value:.4g} {unit}".removesuffix(" 1")
+def _grows(point: dict, sign: int) -> bool:
+    return "failed" not in point and (point["time_domain"] > 0) == (sign > 0)
+
+
+def _axis(a: dict) -> Axis:
+    """An axis of the map: logarithmic where its values are spread evenly in ratio."""
+    values = np.array(a["values"])
+    even = len(values) < 3 or np.any(values <= 0) or np.allclose(np.diff(values), values[1] - values[0])
+    label = "inertia ratio c = I/J (transverse over polar)" if a["key"] == INERTIA_RATIO else a["key"]
+    return Axis(a["unit"], label, "linear" if even else "log")
 
 
 def _reason(scenario, axes, possible) -> str:
