@@ -7,15 +7,12 @@ from functools import partial
 import numpy as np
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.contact import Contact, Waviness
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.scene.film import Film
+from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.gas import GASES, GasDam, GasReynolds
-from sealdyn.scene.reynolds import Reynolds
-from sealdyn.scene.rings import AxialRunout, Rotor, Stator, Support
+from sealdyn.scene.rings import AxialRunout, Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
-from sealdyn.scene.secondary_seal import SecondarySeal
-from sealdyn.scene.waviness import Waviness
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import numpy as np
 from ..dynamics.intervals import largest_value
 from ..numerics.piecewise_linear import initially, points
 from ..scene.application import Application
+from ..scene.contact import HIGHEST_ORDER
 from ..scene.gas import viscosity_of
-from ..scene.waviness import HIGHEST_ORDER
 from ..simulation.result import plain
 from .seal_figures import Finding, Seal, Verdict, followability, missing, note, other_seals, resonances, within
 

@@ -23,9 +23,8 @@ from ..faces.geometry import CLEARANCE, CONTACT_FORCE, CONTACT_TORQUE, FLOW_INNE
 from ..faces.roughness import contact_fraction
 from ..films import film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.coning import coned
 from ..scene.contact import HALF_HEIGHT
-from ..scene.film import aligned_gaps
+from ..scene.film import aligned_gaps, coned
 from ..scene.scene import SceneError
 from .cells import Asked
 from .interface import Interface, flow_at_rest, prepared, rest_state

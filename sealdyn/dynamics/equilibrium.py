@@ -14,11 +14,9 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
-from ..scene.coning import coned
-from ..scene.contact import contact_thresholds
-from ..scene.film import aligned_gaps
+from ..scene.contact import contact_thresholds, waves_of
+from ..scene.film import aligned_gaps, coned
 from ..scene.scene import Scene, SceneError
-from ..scene.waviness import waves_of
 from .fluid import set_conditions
 from .intervals import Interval, constant_and_slope, spins
 

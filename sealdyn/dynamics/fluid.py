@@ -1,7 +1,7 @@
 """The state of fluid and faces at rest: what of a scene goes into which slots of a gap state."""
 
 from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
-from ..scene.coning import coning_change
+from ..scene.film import coning_change
 from ..scene.gas import viscosity_of
 from .intervals import constant_and_slope
 

@@ -27,11 +27,9 @@ from ..faces.geometry import (
 )
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
-from ..scene.coning import coned
-from ..scene.contact import contact_thresholds
-from ..scene.film import Coefficients, aligned_gaps
+from ..scene.contact import contact_thresholds, waves_of
+from ..scene.film import Coefficients, aligned_gaps, coned
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of
 from .cells import with_cells
 from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from ..scene.coning import follows_speed
+from ..scene.contact import waves_of
+from ..scene.film import follows_speed
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of
 from .equilibrium import axial_shift
 from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state

@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from ..faces.geometry import FACE_SIZE
-from ..scene.coning import coning_change
-from ..scene.film import aligned_gaps
+from ..scene.film import aligned_gaps, coning_change
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation

@@ -16,7 +16,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..numerics.kernel import inner_kernel
-from ..scene.motion import Motion
+from ..scene.excitation import Motion
 from ..scene.scene import SceneError
 
 # Coefficients of a piece: of each of three motions.

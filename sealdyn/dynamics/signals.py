@@ -34,7 +34,7 @@ from ..faces.geometry import (
     WEAR,
 )
 from ..faces.waviness import wave_parts_along
-from ..scene.coning import changes
+from ..scene.film import coning_varies
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
@@ -203,7 +203,7 @@ def signal_table(model) -> tuple[Signal, ...]:
         tuple(unknowns.floats[k] for k in range(len(RING_NAMES))),
         tuple(orders),
         model.contact is not None,
-        changes(model.scene.film),
+        coning_varies(model.scene.film),
         tuple(unknowns.seals),
     )
 

@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.coning import follows_speed
+from ..scene.contact import waves_of
+from ..scene.film import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
-from ..scene.symmetry import tilt_is_given, tilt_is_imposed
-from ..scene.waviness import waves_of
+from ..scene.variants import tilt_is_given, tilt_is_imposed
 from . import equations
 from .fluid import fluid_conditions
 from .function_values import SEAL, Value

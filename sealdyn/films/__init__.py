@@ -10,9 +10,9 @@ import pkgutil
 from functools import cache
 
 from ..numerics.piecewise_linear import points
+from ..scene.contact import turning_waves, waves_of, waviness_errors
 from ..scene.film import profile_errors
 from ..scene.scene import SceneError
-from ..scene.waviness import turning_waves, waves_of, waviness_errors
 from ._contract import Film, Offer
 
 

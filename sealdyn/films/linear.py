@@ -52,8 +52,7 @@ from ..faces.geometry import (
 )
 from ..numerics.kernel import value_kernel
 from ..numerics.piecewise_linear import initially
-from ..scene.coning import changes
-from ..scene.film import Coefficients
+from ..scene.film import Coefficients, coning_varies
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE
 from ._contract import Film
 
@@ -64,7 +63,7 @@ def accepts(film, waves=()) -> str:
         return "plain cones only"
     if film is not None and film.inertia:
         return "a fluid without inertia"
-    if film is not None and changes(film):
+    if film is not None and coning_varies(film):
         return "a coning that stays as it is"
     own = film is not None and film.model == "linear" and isinstance(film.coefficients, Coefficients)
     if film is not None and film.gas is not None and not (own and film.clearance is not None):

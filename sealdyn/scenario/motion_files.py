@@ -5,11 +5,11 @@ import math
 import re
 from pathlib import Path
 
-from ..scene.motion import COLUMNS
+from ..scene.excitation import MOTION_COLUMNS
 from ..units import MOST_LISTED, SECONDS, Angle, Length, QuantityError, quoted
 from .errors import ScenarioError
 
-NAMES = ("time", *COLUMNS)
+NAMES = ("time", *MOTION_COLUMNS)
 QUANTITIES = dict(zip(NAMES, (SECONDS, Length.__metadata__[0], *[Angle.__metadata__[0]] * 2), strict=True))
 # "axial", "axial (um)" and "axial [um]".
 TITLE = re.compile(r"\s*(\w+)\s*(?:[(\[]\s*(.*?)\s*[)\]])?\s*")

@@ -1,15 +1,113 @@
-"""Values set at dotted keys before a scenario is read: overrides "rotor.runout=0.2 mrad", and values of any kind."""
+"""Tables before they are read: values set at dotted keys, diameters in place of radii, the version of the keys, and the
+commonest slip, a quantity whose number and unit stand without quotation marks."""
 
+import dataclasses
+import re
 import tomllib
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
+from .. import __version__
 from ..scene.variants import ALTERNATIVES
 from ..toml_line import toml_line
-from ..units import quoted
-from .errors import ScenarioError
+from ..units import Length, QuantityError, quoted
+from .errors import ScenarioError, diameters, table_in, tables, without_indices
+
+# Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
+SCHEMA = 1
+
+
+def refuse_newer(raw: dict, name: str) -> None:
+    """Raises ScenarioError for the tables of a scenario whose `schema` is above SCHEMA: what else is unknown in it is
+    not wrong, only newer."""
+    found = raw.get("schema")
+    if isinstance(found, int) and found > SCHEMA:
+        expected = f"at most {SCHEMA}, all that sealdyn {__version__} reads: install a newer sealdyn for this file"
+        raise ScenarioError(name, "schema", quoted(found), expected)
+
+
+PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
+HEADER = re.compile(r"\s*\[+\s*([\w.\s-]+?)\s*\]+\s*(?:#.*)?")
+KEY = re.compile(r"([\w.-]+)\s*=\s*(?![\s=])")
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+QUANTITY = re.compile(rf"(?<![\w.])({NUMBER}\s*[^\W\d][^,\]}}#\"'=]*)")
+
+
+def unquoted_quantity(text: str, error: str) -> tuple[str, str, str] | None:
+    """Key (dotted), found and expected of the quantity without quotation marks on which the TOML parser stumbled over
+    `text`, by its message `error`; None if it was something else."""
+    if not (place := PLACE.search(error)):
+        return None
+    row, column = int(place[1]), int(place[2]) - 1
+    lines = text.splitlines()[:row]
+    line = lines[-1] if len(lines) == row else ""
+    for quantity in QUANTITY.finditer(line):
+        # The parser stops within it: at the unit, or at the number's first character.
+        if quantity.start() <= column <= quantity.end():
+            written = quantity[1].strip()
+            found = f"{written} without quotation marks (line {row})"
+            return _key(lines, quantity.start()), found, f'a quantity with its unit in quotation marks, "{written}"'
+    return None
+
+
+def _key(lines: list[str], column: int) -> str:
+    """Dotted key of what stands at a column of the last of the lines."""
+    table = next((match[1] for line in reversed(lines[:-1]) if (match := HEADER.fullmatch(line))), "")
+    for line in (lines[-1][:column], *reversed(lines[:-1])):
+        if keys := [match for match in KEY.finditer(line)]:
+            # Of an inline table, its own key first.
+            inline = keys[:1] if "{" in line[: keys[-1].start()] else []
+            parts = [table, *(match[1] for match in (*inline, keys[-1]))]
+            return ".".join(dict.fromkeys(filter(None, parts)))
+    return table
+
+
+LENGTH = Length.__metadata__[0]
+
+
+def radius_key(kind: type, key: str) -> str:
+    """The dotted key of the radius, if `key` is that of its diameter; else `key`.  `kind`: the scenario's dataclass."""
+    table, _, last = key.rpartition(".")
+    twin = diameters(tables(kind).get(without_indices(table), {})).get(last)
+    return f"{table}.{twin}" if twin else key
+
+
+def with_radii(tree: Any, kind: type, name: str, wrong: list, path: str = "") -> tuple[Any, dict[str, str]]:
+    """The tables `tree` of the dataclass `kind` with every diameter halved under the key of its radius, and which were:
+    {dotted key of the radius: key of the diameter}.  To `wrong` are appended ScenarioErrors, of the scenario `name`,
+    for diameters beside their radius and for those that are no length, which are then any."""
+    halved = {}
+    if isinstance(tree, list):
+        entries = [with_radii(entry, kind, name, wrong, f"{path}.{n}") for n, entry in enumerate(tree)]
+        return [entry for entry, _ in entries], {key: twin for _, found in entries for key, twin in found.items()}
+    if not isinstance(tree, dict):
+        return tree, halved
+    keys, tree = {f.name: f.type for f in dataclasses.fields(kind)}, tree.copy()
+    for key in tree:
+        if inner := table_in(keys.get(key)):
+            tree[key], below = with_radii(tree[key], inner, name, wrong, f"{path}.{key}".strip("."))
+            halved |= below
+    for diameter, radius in diameters(keys).items():
+        if diameter in tree:
+            try:
+                tree[radius] = _half(tree, diameter, radius, f"{path}.{diameter}", name)
+            except ScenarioError as error:
+                wrong.append(error)
+                tree[radius] = 1.0
+            del tree[diameter]
+            halved[f"{path}.{radius}"] = diameter
+    return tree, halved
+
+
+def _half(table: dict, diameter: str, radius: str, key: str, name: str) -> float:
+    if radius in table:
+        raise ScenarioError(name, key, f"{diameter} and {radius}", "one of the two")
+    try:
+        return LENGTH.read(table[diameter]) / 2
+    except QuantityError as error:
+        raise ScenarioError(name, key, error.found, error.expected) from None
 
 
 def override_key(raw: dict, override: str, name: str) -> None:

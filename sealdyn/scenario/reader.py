@@ -18,21 +18,25 @@ from pydantic import Field, TypeAdapter, ValidationError
 from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.application import Application, RadialApplication, application_errors
-from ..scene.body import INERTIAL, with_inertia
 from ..scene.checks import scene_errors, unused
-from ..scene.motion import Motion
+from ..scene.excitation import Motion
 from ..scene.radial import RADIAL, RadialScene, radial_errors
-from ..scene.rings import RING_NAMES
+from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
 from ..toml_line import toml_text
 from ..units import Length, QuantityError, Time, is_gauge, quoted
-from .diameters import radius_key, with_radii
-from .errors import ScenarioError, explained, tables, together, without_indices
+from .errors import (
+    CIRCUMFERENTIAL_RULES,
+    LIP_RULES,
+    ScenarioError,
+    explained,
+    tables,
+    together,
+    unknown_rules,
+    without_indices,
+)
 from .motion_files import with_columns
-from .overrides import override_key, without_arrays
-from .rule_names import CIRCUMFERENTIAL, LIP, unknown_rules
-from .unquoted import unquoted_quantity
-from .version import SCHEMA, refuse_newer
+from .overrides import SCHEMA, override_key, radius_key, refuse_newer, unquoted_quantity, with_radii, without_arrays
 
 __all__ = [
     "Run",
@@ -319,7 +323,7 @@ def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> d
     if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
         wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
     if file.application is not None:
-        unknown = unknown_rules(file.application.acknowledge, LIP if file.lip else CIRCUMFERENTIAL)
+        unknown = unknown_rules(file.application.acknowledge, LIP_RULES if file.lip else CIRCUMFERENTIAL_RULES)
         wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
     if wrong:
         raise together(wrong)

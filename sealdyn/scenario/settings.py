@@ -15,9 +15,8 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from ..scene import variants
-from ..scene.body import INERTIAL
 from ..scene.checks import check_scene
-from ..scene.rings import RING_NAMES
+from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted

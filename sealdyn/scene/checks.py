@@ -5,18 +5,13 @@ import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
-from . import coning, contact, secondary_seal
-from . import film as film_table
-from .body import body_errors
-from .elastic_ring import elastic_errors
+from .contact import contact_errors, contact_thresholds, waves_of, waviness_errors
+from .excitation import motion_errors, random_errors
+from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
-from .motion import motion_errors
-from .pads import pads_errors
-from .random_vibration import random_errors
-from .reynolds import reynolds_errors
+from .rings import body_errors, elastic_errors, secondary_seal_errors
 from .scene import SceneError
 from .sweep import sweep_errors
-from .waviness import waves_of, waviness_errors
 
 # Of keys that may not step, if not rad.
 UNITS = {"temperature": "K", "speed": "rad/s"}
@@ -38,7 +33,7 @@ def scene_errors(scene, run) -> list[SceneError]:
     for name, ring in (("stator", scene.stator), ("rotor", scene.rotor)):
         bad += _broken(_ring, name, ring) + _broken(check_no_step, name, ring)
     if scene.contact:
-        bad += [SceneError(f"contact.{key}", *words) for key, *words in contact.contact_errors(scene.contact)]
+        bad += [SceneError(f"contact.{key}", *words) for key, *words in contact_errors(scene.contact)]
     if not (scene.stator.support or scene.rotor.support):
         expected = "[rotor.support] or [stator.support]: the ring that floats"
         bad.append(SceneError("rotor.support", "no support on either ring", expected))
@@ -78,7 +73,7 @@ def _film(scene) -> None:
     if not 0 < film.floor < 0.5:
         raise SceneError("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
     if film.clearance is not None and film.profile is None:
-        slope = coning.coned(scene).coning
+        slope = coned(scene).coning
         outer = film.clearance + slope * (film.outer_radius - film.inner_radius)
         if outer <= film.floor * film.clearance:
             raise SceneError(
@@ -102,7 +97,7 @@ def _coning(scene) -> None:
         found = "a temperature without film.coning_per_kelvin"
         raise SceneError("film.coning_reference_temperature", found, "both of them, or none")
     check_no_step("film", film, ("coning", *(["temperature"] if film.coning_per_kelvin else [])))
-    if coning.follows_speed(film):
+    if follows_speed(film):
         check_no_step("shaft", scene.shaft, ["speed"])
 
 
@@ -157,10 +152,10 @@ def _names(words) -> str:
 
 def _profile(scene) -> None:
     film = scene.film
-    for key, found, expected in film_table.profile_errors(film):
+    for key, found, expected in profile_errors(film):
         raise SceneError(f"film.{key}", found, expected)
     if film.clearance is not None and film.profile is not None:
-        least, radius = min((h, r) for r, h in film_table.aligned_gaps(coning.coned(scene), film.clearance))
+        least, radius = min((h, r) for r, h in aligned_gaps(coned(scene), film.clearance))
         if not least > _lowest(scene):
             raise SceneError("film.profile.depth", f"a film of {least:g} m at r = {radius:g} m", "an open film")
 
@@ -169,7 +164,7 @@ def _lowest(scene) -> float:
     """Film thickness (m) at which a run ends."""
     if scene.contact is None:
         return scene.film.floor * scene.film.clearance
-    return contact.contact_thresholds(scene.contact)[2]
+    return contact_thresholds(scene.contact)[2]
 
 
 def _cavitation(film) -> None:
@@ -245,7 +240,7 @@ def check_no_step(name: str, table, keys=("runout", "misalignment")) -> None:
 
 def _secondary_seal(name: str, ring) -> None:
     key = f"{name}.secondary_seal"
-    for part, found, expected in secondary_seal.secondary_seal_errors(ring.secondary_seal):
+    for part, found, expected in secondary_seal_errors(ring.secondary_seal):
         raise SceneError(f"{key}.{part}", found, expected)
     if ring.support and (ring.mass == 0 or ring.transverse_inertia == 0):
         raise SceneError(key, "a ring without mass or inertia", "mass and transverse_inertia > 0 to stick and slip")
@@ -294,7 +289,7 @@ def _open_at_start(scene) -> None:
         angle, direction = initially(scene.stator.misalignment), scene.stator.misalignment_direction
         stator = (0.0, cmath.rect(angle, direction))
     tilt, gap = abs(stator[1] - rotor[1]), film.clearance + stator[0] - rotor[0]
-    thinnest, radius = min((h - tilt * r, r) for r, h in film_table.aligned_gaps(coning.coned(scene), gap))
+    thinnest, radius = min((h - tilt * r, r) for r, h in aligned_gaps(coned(scene), gap))
     lowest = _lowest(scene)
     if not thinnest > lowest:
         blame = "stator.misalignment" if scene.stator.support is None else "rotor.runout"

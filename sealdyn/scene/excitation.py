@@ -1,11 +1,191 @@
-"""What is imposed on a scene: shaft speed and angle, misalignments, runout, whirl, vibration, tables."""
+"""What is imposed on a scene: shaft speed and angle, misalignments, runout, whirl, vibration, tables.
 
+Motion of a carrier comes by samples, measured or computed by a code of rotor dynamics, or as tones, sweeps and
+band-limited random vibration.  The latter is a sum of tones.  The acceleration has a one-sided spectral density over
+frequency, straight lines in a double logarithmic diagram as test standards draw it.  The band is cut into bins of equal
+width, one tone each, anywhere in its bin: a tone has the power of its bin, whatever its frequency, so the mean square
+over a long time is the integral of the density exactly, and the sum does not come back to its start as it would with
+even spacing.
+**Source** Shinozuka & Jan (1972), J. Sound Vib. 25(1), 111-128: sums of cosines with random phases and frequencies
+jittered about those of even bins.
+**Valid** over times in which the bins are told apart: below `1/(bin width)` the sum is a sample of the band, no more.
+"""
+
+import math
 from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import pairwise
+from random import Random
 
-from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length, Speed, Varying
-from .motion import Motion
-from .random_vibration import AngularRandom, AxialRandom, mean_square, tones_of
+from ..units import (
+    Acceleration,
+    AccelerationDensity,
+    Angle,
+    AngularAcceleration,
+    AngularAccelerationDensity,
+    Frequency,
+    Length,
+    Listed,
+    OneOrListed,
+    Speed,
+    Time,
+    Varying,
+)
 from .sweep import AngularSweep, AxialSweep, Sweep, remark
+
+MOTION_COLUMNS = ("axial", "tilt_x", "tilt_y")
+# A spline of fifth degree has as many coefficients.
+FEWEST_SAMPLES = 6
+# Least share of the median distance of samples: a solver steps as if the motion were everywhere as fast as the nearest
+# two of them can show, and a spline through two values at almost one time overshoots.
+NEAREST_SAMPLES = 1e-3
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, with a smooth curve
+    through them; it adds to runout, whirl and vibration."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    file: str | None = field(default=None, compare=False)
+    """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
+    time: Listed[Time] = ()
+    """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
+    axial: Listed[Length] | None = None
+    """Displacement along the shaft axis; none without it."""
+    tilt_x: Listed[Angle] | None = None
+    """Tilt about the x axis; none without it."""
+    tilt_y: Listed[Angle] | None = None
+    """Tilt about the y axis; none without it."""
+
+    def columns(self) -> list[tuple[float, ...]]:
+        """Axial displacement (m) and tilts (rad) at the times, zeros where none are given."""
+        return [getattr(self, name) or (0.0,) * len(self.time) for name in MOTION_COLUMNS]
+
+
+def motion_errors(motion: Motion) -> list[tuple[str, str, str]]:
+    """(key, found, expected) of what samples cannot be."""
+    times = motion.time
+    if not times:
+        return [("time", "nothing", "a list of times and axial, tilt_x or tilt_y, or a file with such columns")]
+    if len(times) < FEWEST_SAMPLES:
+        return [("time", f"{len(times)} samples", f"at least {FEWEST_SAMPLES}")]
+    if not any(getattr(motion, name) for name in MOTION_COLUMNS):
+        return [("axial", "times without a motion", "axial, tilt_x or tilt_y")]
+    for name in MOTION_COLUMNS:
+        column = getattr(motion, name)
+        if column is not None and len(column) != len(times):
+            return [(name, f"{len(column)} values for {len(times)} times", "one for each time")]
+    for n, (before, after) in enumerate(pairwise(times)):
+        if not after > before:
+            return [("time", f"{after:g} s after {before:g} s, sample {n + 2}", "times that increase")]
+    apart = [after - before for before, after in pairwise(times)]
+    usual, least = sorted(apart)[len(apart) // 2], min(apart)
+    if least < NEAREST_SAMPLES * usual:
+        n = apart.index(least) + 1
+        found = f"{least:g} s between samples {n} and {n + 1}, {usual:g} s between most"
+        return [("time", found, "no two of them as near as that: leave one out, or give the motion evenly")]
+    for name in MOTION_COLUMNS:
+        # A slip of units, or no number at all.
+        if not all(map(math.isfinite, getattr(motion, name) or ())):
+            return [(name, "a value that is no finite number", "finite numbers")]
+    if times[0] > 0.0:
+        return [("time", f"a first sample at {times[0]:g} s", "samples from the start of the run, 0 s or before")]
+    return []
+
+
+# Each tone costs a sine and a cosine whenever the solver looks.
+MOST_TONES = 5000
+
+
+@dataclass(frozen=True)
+class AxialRandom:
+    """Random vibration of the housing along the shaft axis."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    frequency: Listed[Frequency]
+    """Corners of the spectrum, increasing, the first and last those of the band."""
+    density: OneOrListed[AccelerationDensity]
+    """One-sided power spectral density of the acceleration at each corner, log-log straight between; or one for all."""
+    tones: int = 200
+    """Number of tones of which it is made."""
+    seed: int = 0
+    """Of phases and frequencies: the same seed gives the same vibration."""
+
+
+@dataclass(frozen=True)
+class AngularRandom:
+    """Random vibration of the housing about a fixed axis at `direction` (rad) from the x axis."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    frequency: Listed[Frequency]
+    """Corners of the spectrum, increasing, the first and last those of the band."""
+    density: OneOrListed[AngularAccelerationDensity]
+    """One-sided power spectral density of the acceleration at each corner, log-log straight between; or one for all."""
+    direction: Angle = 0.0
+    """Of the axis about which the housing rocks, from the x axis."""
+    tones: int = 200
+    """Number of tones of which it is made."""
+    seed: int = 0
+    """Of phases and frequencies: the same seed gives the same vibration."""
+
+
+def random_errors(vibration: AxialRandom | AngularRandom) -> list[tuple[str, str, str]]:
+    """(key, found, expected) of what a random vibration cannot be."""
+    corners, density = vibration.frequency, vibration.density
+    found = []
+    if len(corners) < 2:
+        found.append(("frequency", f"{len(corners)} of them", "the lowest and the highest frequency, or more corners"))
+    for low, high in pairwise(corners):
+        if not high > low:
+            found.append(("frequency", f"{high:g} Hz after {low:g} Hz", "frequencies that increase"))
+    if isinstance(density, tuple) and len(density) != len(corners):
+        found.append(("density", f"{len(density)} for {len(corners)} frequencies", "one for each, or one for all"))
+    if not 1 <= vibration.tones <= MOST_TONES:
+        found.append(("tones", f"{vibration.tones}", f"1 to {MOST_TONES}"))
+    if vibration.seed < 0:
+        found.append(("seed", f"{vibration.seed}", "a whole number >= 0"))
+    return found
+
+
+def mean_square(vibration: AxialRandom | AngularRandom, low: float | None = None, high: float | None = None) -> float:
+    """Integral of the density from `low` to `high` (Hz), without them over the whole band: the mean square of the
+    acceleration, (m/s^2)^2 or (rad/s^2)^2."""
+    low = vibration.frequency[0] if low is None else low
+    high = vibration.frequency[-1] if high is None else high
+    total = 0.0
+    for (f0, f1), (s0, s1) in zip(pairwise(vibration.frequency), pairwise(_densities(vibration)), strict=True):
+        begin, end = max(low, f0), min(high, f1)
+        if end > begin:
+            # Of s0 (f/f0)^slope, without the cancellation at a slope of -1.
+            slope = math.log(s1 / s0) / math.log(f1 / f0)
+            power, octaves = (slope + 1.0), math.log(end / begin)
+            grown = math.expm1(power * octaves) / power if power else octaves
+            total += s0 * (begin / f0) ** slope * begin * grown
+    return total
+
+
+@lru_cache(maxsize=64)
+def tones_of(vibration: AxialRandom | AngularRandom, place: str) -> tuple[tuple[float, float, float], ...]:
+    """The tones, (frequency (Hz), amplitude of the acceleration, phase (rad)) each.  `place`: which of the housing's
+    random vibrations it is; two with the same numbers and seed are still independent."""
+    drawn = Random(f"{place} {vibration.seed}")
+    low, high = vibration.frequency[0], vibration.frequency[-1]
+    edges = [low + (high - low) * n / vibration.tones for n in range(vibration.tones)] + [high]
+    found = []
+    for begin, end in pairwise(edges):
+        frequency, phase = begin + (end - begin) * drawn.random(), 2 * math.pi * drawn.random()
+        found.append((frequency, math.sqrt(2.0 * mean_square(vibration, begin, end)), phase))
+    return tuple(found)
+
+
+def _densities(vibration) -> tuple[float, ...]:
+    """The density at each corner."""
+    density = vibration.density
+    return density if isinstance(density, tuple) else (density,) * len(vibration.frequency)
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,22 @@
-"""The `[film]` table: faces, fluid and pressures; and the profile of faces that are not plain cones: worn ones, or any
-other shape that is the same all around."""
+"""The `[film]` table: faces, fluid and pressures, its pads and the options of the Reynolds film; the profile of faces
+that are not plain cones; and coning that follows time, the speed of the shaft, which turns a ring inside out, and the
+temperature of the film,
+
+    coning = film.coning(t) + coning_per_speed_squared w^2 + coning_per_kelvin (T - coning_reference_temperature)
+
+**Source** of the coning: Zuk, NASA TM X-68022 (1972), Figs. 2 and 3: sketches of centrifugal and thermal coning,
+without numbers; in linear elasticity the first goes with the square of the speed, the second with the temperature.
+**Valid** rings that deform far slower than they vibrate; both numbers are the user's.
+"""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from ..numerics.piecewise_linear import initially
+import numpy as np
+
+from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..units import (
     Angle,
     AxialFilmDamping,
@@ -28,8 +38,175 @@ from ..units import (
     quoted,
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
-from .pads import Pads
-from .reynolds import Reynolds
+
+
+def follows_speed(film) -> bool:
+    """Whether the coning of a `Film` follows the shaft speed."""
+    return film.coning_per_speed_squared != 0.0
+
+
+def coning_varies(film) -> bool:
+    """Whether the coning of a `Film` may be another than the number of its key."""
+    return isinstance(film.coning, PiecewiseLinear) or follows_speed(film) or film.coning_per_kelvin != 0.0
+
+
+def coning_change(scene, value=initially, speed=None) -> float:
+    """By how much (rad) the coning of a scene differs from what `film.coning` is at time zero; `value` takes the number
+    of a function of time, `speed` (rad/s) is the shaft's in place of the scene's."""
+    film = scene.film
+    if not coning_varies(film):
+        return 0.0
+    speed = value(scene.shaft.speed) if speed is None else speed
+    change = value(film.coning) - initially(film.coning) + film.coning_per_speed_squared * speed**2
+    if film.coning_per_kelvin:
+        change += film.coning_per_kelvin * (value(film.temperature) - film.coning_reference_temperature)
+    return change
+
+
+def coned(scene, value=initially, speed=None):
+    """The `Film` table of a scene with its coning as a number: arguments as of `coning_change`."""
+    film = scene.film
+    if not coning_varies(film):
+        return film
+    coning = initially(film.coning) + coning_change(scene, value, speed)
+    none = dict(coning_per_speed_squared=0.0, coning_per_kelvin=0.0, coning_reference_temperature=None)
+    return replace(film, coning=coning, **none)
+
+
+# Edge of a pad's flank where it is not given, as a share of the pad's shorter side.
+SHARP = 0.05
+
+
+@dataclass(frozen=True)
+class Pads:
+    """One row of equal pads around the face: the film is thicker by `depth` over the angle of each pad and between its
+    radii, with smooth flanks,
+
+        depth/2 [tanh((x - a)/edge) - tanh((x - b)/edge)] over the radius, and the same around the circle
+
+    A pad that reaches to a radius of the face is open there.  **Valid** pads far wider than `edge`, which cells must
+    resolve."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    count: int
+    """Pads to the circle."""
+    depth: Length
+    """By which the film is thicker in the pads."""
+    angle: Angle
+    """Of one pad, between the middles of its flanks."""
+    inner_radius: Radius
+    """Where a pad begins."""
+    outer_radius: Radius
+    """Where it ends."""
+    edge: Length | None = None
+    """Width of its flanks, from an eighth to seven eighths of the depth over twice it; 5 % of its shorter side."""
+    phase: Angle = 0.0
+    """Angle of the middle of the first pad, from the x axis."""
+
+
+def edge_of(pads: Pads) -> float:
+    """Width (m) of the flanks."""
+    sides = pads.outer_radius - pads.inner_radius, pads.angle * 0.5 * (pads.inner_radius + pads.outer_radius)
+    return SHARP * min(sides) if pads.edge is None else pads.edge
+
+
+def depth_of(film, r, theta) -> np.ndarray:
+    """By how much (m) the pads of a `Film` table widen the film at radii `r` (m) and angles `theta` (rad), which
+    broadcast."""
+    total = np.zeros(np.broadcast_shapes(np.shape(r), np.shape(theta)))
+    for pads in film.pads:
+        edge, pitch = edge_of(pads), 2.0 * math.pi / pads.count
+        # A side at the edge of the face has no flank.
+        inner = 1.0 if pads.inner_radius <= film.inner_radius else np.tanh((r - pads.inner_radius) / edge)
+        outer = -1.0 if pads.outer_radius >= film.outer_radius else np.tanh((r - pads.outer_radius) / edge)
+        # From the middle of the nearest pad and of its neighbours, along the mean circle of the pads.
+        way, around = 0.5 * (pads.inner_radius + pads.outer_radius) / edge, 0.0
+        off = np.mod(theta - pads.phase + 0.5 * pitch, pitch) - 0.5 * pitch
+        for turned in (-pitch, 0.0, pitch):
+            x = off + turned
+            around = around + 0.5 * (np.tanh(way * (x + 0.5 * pads.angle)) - np.tanh(way * (x - 0.5 * pads.angle)))
+        total = total + 0.5 * pads.depth * (inner - outer) * around
+    return total
+
+
+def pads_errors(film) -> list[tuple[str, str, str]]:
+    """What the pads of a `Film` cannot have: (key below film, found, expected)."""
+    bad = []
+    for n, pads in enumerate(film.pads):
+        key, turn = f"pads.{n}", 2.0 * math.pi
+        if pads.count < 1:
+            bad.append((f"{key}.count", f"{pads.count}", "a whole number from 1"))
+            continue
+        if not 0.0 <= pads.depth < math.inf:
+            bad.append((f"{key}.depth", f"{pads.depth:g} m", "a finite depth >= 0"))
+        if not 0.0 < pads.angle < turn / pads.count:
+            expected = f"an angle above 0 and below {turn / pads.count:.4g} rad, a pitch of {pads.count} pads"
+            bad.append((f"{key}.angle", f"{pads.angle:g} rad", expected))
+            continue
+        if not film.inner_radius <= pads.inner_radius < pads.outer_radius <= film.outer_radius:
+            found = f"{pads.inner_radius:g} to {pads.outer_radius:g} m"
+            expected = f"radii that increase, between {film.inner_radius:g} and {film.outer_radius:g} m"
+            bad.append((f"{key}.inner_radius", found, expected))
+            continue
+        sides = pads.outer_radius - pads.inner_radius, pads.angle * 0.5 * (pads.inner_radius + pads.outer_radius)
+        if pads.edge is not None and not 0.0 < pads.edge < 0.25 * min(sides):
+            expected = f"a width above 0 and below {0.25 * min(sides):.4g} m, a quarter of the pad's shorter side"
+            bad.append((f"{key}.edge", f"{pads.edge:g} m", expected))
+    return bad
+
+
+# Cells where the table does not say, before they are doubled: over the radius, around the shortest wave, and at least
+# around the circle.
+RADIAL, PER_WAVE, AROUND = 6, 24, 32
+# Most of them.
+MOST_RADIAL, MOST_AROUND = 400, 20000
+
+
+@dataclass(frozen=True)
+class Reynolds:
+    """The `[film.reynolds]` table: options of the film "reynolds"."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    grid_accuracy: float = 0.01
+    """Relative error that the cells may have beside a run's accuracy; decides how many there are if none are given."""
+    cells_r: int | None = None
+    """Cells over the radius."""
+    cells_theta: int | None = None
+    """Cells around the circle."""
+    cavitation: Literal["mass-conserving", "none"] = "mass-conserving"
+    """Where the film tears at `cavitation_pressure`, with its liquid kept; or never."""
+    roughness: Literal["christensen", "none"] = "christensen"
+    """Whether the film flows between the asperities of [contact]."""
+    sectors: int | None = None
+    """Alike sectors of the circle, one of which is computed; without it what waves have in common if nothing tilts."""
+
+
+def reynolds_errors(film) -> list[tuple[str, str, str]]:
+    """What a `Film` table that asks for this film cannot have: (key below film, found, expected)."""
+    options, bad = film.reynolds or Reynolds(), []
+    limits = (("cells_r", 2, MOST_RADIAL), ("cells_theta", 8, MOST_AROUND), ("sectors", 1, MOST_AROUND))
+    for key, least, most in limits:
+        value = getattr(options, key)
+        if value is not None and not least <= value <= most:
+            bad.append((f"reynolds.{key}", f"{value}", f"{least} to {most}"))
+    if not 0.0 < options.grid_accuracy <= 1.0:
+        bad.append(("reynolds.grid_accuracy", f"{options.grid_accuracy:g}", "above 0, at most 1"))
+    if options.cavitation == "mass-conserving" and film.cavitation_pressure is None:
+        expected = 'a pressure, or film.reynolds.cavitation = "none"'
+        bad.append(("cavitation_pressure", 'nothing, with model = "reynolds"', expected))
+    return bad
+
+
+def cells_of(film, orders=()) -> tuple[int, int, int]:
+    """Cells over the radius and around one sector, and sectors, of a `Film` table between faces with waves of these
+    orders."""
+    options = film.reynolds or Reynolds()
+    sectors = options.sectors or 1
+    around = options.cells_theta or max(AROUND, PER_WAVE * max(orders, default=0))
+    return options.cells_r or RADIAL, -(-around // sectors), sectors
+
 
 # Most radii of a profile: kernels keep room for them.
 MOST_NODES = 65

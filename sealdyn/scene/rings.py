@@ -1,12 +1,204 @@
-"""A seal ring on its support: what a scenario says of it, and the numbers its equation of motion needs."""
+"""A seal ring on its support: what a scenario says of it, and the numbers its equation of motion needs; its body from a
+drawing, a ring that bends, and the friction of its O-ring."""
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
-from ..units import Angle, Damping, Inertia, Length, Mass, Radius, Speed, Stiffness, TiltDamping, TiltStiffness, Varying
-from .body import Body
-from .elastic_ring import ElasticRing
-from .secondary_seal import SecondarySeal
-from .waviness import Waviness
+from ..units import (
+    Angle,
+    BendingStiffness,
+    Damping,
+    Density,
+    Force,
+    Inertia,
+    Length,
+    LineForce,
+    Mass,
+    Radius,
+    Speed,
+    Stiffness,
+    TiltDamping,
+    TiltStiffness,
+    Varying,
+    Velocity,
+)
+from .contact import Waviness
+
+# What a body gives its ring.
+INERTIAL = ("mass", "transverse_inertia", "polar_inertia")
+# kg/m^3.  Faces: data sheet of a maker of seal faces, Omegaslate (UK) Ltd, "Physical and mechanical properties of
+# materials" (carbon graphite: resin impregnated; silicon carbide: sintered or reaction bonded; tungsten carbide:
+# cobalt or nickel binder).  Steel: EN 1994-1-2 (2005), 3.4; stainless grades are up to 2 % heavier.
+# Nothing but densities: roughness, strength, friction and wear are those of a pair of faces and of their finish.
+DENSITIES = {
+    "carbon graphite": 1800.0,
+    "antimony carbon graphite": 2500.0,
+    "silicon carbide": 3100.0,
+    "tungsten carbide": 14700.0,
+    "steel": 7850.0,
+}
+Material = Literal["carbon graphite", "antimony carbon graphite", "silicon carbide", "tungsten carbide", "steel"]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A ring as a hollow cylinder of one material: with it mass, transverse and polar inertia of the ring follow.
+
+    **Source** integrals of the density over the cylinder, as in any table of moments of inertia.
+    **Valid** a homogeneous ring of rectangular section, turning about its centre of mass.  Of a stepped ring, or one in
+    a carrier that tilts with it, give mass and inertias themselves.
+    """
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    inner_radius: Radius
+    """Of the bore; 0 of a disk."""
+    outer_radius: Radius
+    """Of the circumference."""
+    length: Length
+    """Along the shaft axis."""
+    material: Material | None = None
+    """Its density: 1800 (carbon graphite), 2500 (with antimony), 3100, 14700 and 7850 kg/m^3; or give `density`."""
+    density: Density | None = None
+    """In place of `material`."""
+
+    def inertia(self) -> tuple[float, float, float]:
+        """Mass m = rho pi (r_o^2 - r_i^2) L (kg), transverse m (3 (r_o^2 + r_i^2) + L^2)/12 and polar inertia
+        m (r_o^2 + r_i^2)/2 (kg m^2), about the centre of mass."""
+        density = DENSITIES[self.material] if self.density is None else self.density
+        inner, outer = self.inner_radius**2, self.outer_radius**2
+        mass = density * math.pi * (outer - inner) * self.length
+        return mass, mass * (3 * (outer + inner) + self.length**2) / 12, mass * (outer + inner) / 2
+
+
+def with_inertia(ring):
+    """The ring (Stator or Rotor) with the mass and inertias of its body; itself, if it has none or an impossible
+    one."""
+    if ring.body is None or body_errors(ring.body):
+        return ring
+    return replace(ring, **dict(zip(INERTIAL, ring.body.inertia(), strict=True)))
+
+
+def body_errors(body: Body) -> list[tuple[str, str, str]]:
+    """What cannot be in a `Body`: (key, found, expected)."""
+    bad = []
+    if body.inner_radius < 0:
+        bad.append(("inner_radius", f"{body.inner_radius:g} m", "a length >= 0"))
+    if body.outer_radius <= body.inner_radius:
+        bad.append(("outer_radius", f"{body.outer_radius:g} m", f"more than inner_radius = {body.inner_radius:g} m"))
+    if body.length <= 0:
+        bad.append(("length", f"{body.length:g} m", "a length > 0"))
+    if (body.material is None) == (body.density is None):
+        found = "neither" if body.density is None else "both"
+        bad.append(("material", found, f"one of density and material ({', '.join(DENSITIES)})"))
+    return bad
+
+
+@dataclass(frozen=True)
+class ElasticRing:
+    """The `[stator.elastic]` table: with it `[[stator.waviness]]` is the wave that the ring was made with, and less is
+    left under load.
+
+    **Source** Lebeck, Teale & Pierce, ONR ME-95(79)ONR-414-1 (1979), eqs. 3-1 to 3-12; re-derived from the strain
+    energy of bending and torsion.
+    **Valid** a ring of uniform section, thin in its radius, waves of order 2 and more, small deflections.
+    """
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    bending_stiffness: BendingStiffness
+    """E J against bending out of the ring's plane."""
+    radius: Radius
+    """Radius of the centroid of the ring's section."""
+    torsion_ratio: float = 1.3
+    """Bending stiffness over torsional stiffness, A = E J/(G J_t); 1.3 for a round bar of steel, 1.5 to 6 for slender
+    sections."""
+
+    def compliance(self, order: int) -> float:
+        """Deflection (m) of the wave `order` per N of its harmonic of the load int p r dr (N), m/N:
+        (n^2 + A) r^3/(E J n^2 (n^2 - 1)^2)."""
+        bends = order**2 * (order**2 - 1) ** 2
+        return (order**2 + self.torsion_ratio) * self.radius**3 / (self.bending_stiffness * bends)
+
+    def largest_waviness(self, order: int, pressure: float, length: float) -> float:
+        """Largest waviness (m) that a pressure (Pa) between two O-rings `length` (m) apart can give the ring, by a
+        couple that follows cos(n theta): eq. 3-12, length^2 (1 + A) r^3 pressure/(8 E J (n^2 - 1)^2)."""
+        couple = 0.125 * length**2 * pressure * self.radius**3 / self.bending_stiffness
+        return couple * (1.0 + self.torsion_ratio) / (order**2 - 1) ** 2
+
+
+def elastic_errors(scene) -> list[tuple[str, str, str]]:
+    """What a scene with such a ring cannot have: (key, found, expected)."""
+    ring, bad = scene.stator.elastic, []
+    if ring is None:
+        return bad
+    for key in ("bending_stiffness", "radius"):
+        if not 0.0 < getattr(ring, key) < math.inf:
+            bad.append((f"stator.elastic.{key}", f"{getattr(ring, key):g}", "a value > 0"))
+    if not 0.0 <= ring.torsion_ratio < math.inf:
+        bad.append(("stator.elastic.torsion_ratio", f"{ring.torsion_ratio:g}", "a ratio >= 0"))
+    if len(scene.stator.waviness) != 1 or scene.rotor.waviness:
+        found = f"{len(scene.stator.waviness)} waves of the stator, {len(scene.rotor.waviness)} of the rotor"
+        bad.append(("stator.elastic", found, "one [[stator.waviness]], which the load levels, and none of the rotor"))
+    if scene.film.model != "reynolds":
+        bad.append(
+            ("stator.elastic", f'film.model = "{scene.film.model}"', '"reynolds", whose pressure bends the ring')
+        )
+    return bad
+
+
+@dataclass(frozen=True)
+class SecondarySeal:
+    """The `[stator.secondary_seal]` or `[rotor.secondary_seal]` table: `radius` (m) of the circle, and `line_friction`
+    (F', N/m) or `friction_force` (axial breakaway force, 2 pi R F', N).  `law = "regularised"` takes the
+    force and moment of Coulomb's law times s/sqrt(s^2 + width^2), where s^2 = v^2 + (R |q|)^2 of the axial speed v and
+    the tilt rate q: it creeps where a real seal sticks."""
+
+    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
+
+    radius: Radius
+    """Radius of the circle on which the O-ring slides."""
+    line_friction: LineForce | None = None
+    """Friction per length of that circle; or give `friction_force`."""
+    friction_force: Force | None = None
+    """Axial breakaway force, in place of `line_friction`."""
+    law: Literal["coulomb", "regularised"] = "coulomb"
+    """Real sticking, or friction that fades with the sliding speed and creeps."""
+    width: Velocity | None = None
+    """Sliding speed below which friction fades, for "regularised"."""
+
+    def line(self) -> float:
+        """Friction per length F' (N/m)."""
+        if self.line_friction is not None:
+            return self.line_friction
+        return self.friction_force / (2 * math.pi * self.radius)
+
+    def breakaway(self) -> tuple[float, float]:
+        """Axial force `2 pi R F'` (N) and moment `4 R^2 F'` (N m) that make a stuck ring slide, each alone.
+
+        **Source** Ludwig & Allen, NASA TN D-8102 (1976); circle integral of -F' sign(v).
+        """
+        return 2 * math.pi * self.radius * self.line(), 4 * self.radius**2 * self.line()
+
+
+def secondary_seal_errors(seal) -> list[tuple[str, str, str]]:
+    """What is wrong with a `SecondarySeal`: (key, found, expected)."""
+    out = []
+    if seal.radius <= 0:
+        out.append(("radius", f"{seal.radius:g} m", "a length > 0"))
+    given = [x is not None for x in (seal.line_friction, seal.friction_force)]
+    if sum(given) != 1:
+        found = "both" if all(given) else "neither"
+        out.append(("line_friction", found, "exactly one of line_friction and friction_force"))
+    elif (seal.line_friction if given[0] else seal.friction_force) < 0:
+        out.append(("friction_force", "a negative friction", "a friction >= 0"))
+    if seal.law == "regularised" and not (seal.width and seal.width > 0):
+        out.append(("width", "nothing", "a sliding speed > 0, over which the regularised law turns"))
+    if seal.law == "coulomb" and seal.width is not None:
+        out.append(("width", f"{seal.width:g} m/s", 'no width, or law = "regularised"'))
+    return out
+
 
 STATOR, ROTOR = 0, 1
 RING_NAMES = ("stator", "rotor")

@@ -30,9 +30,9 @@ from ..faces.geometry import (
 from ..films import film_named, limits
 from ..numerics.kernel import outer_kernel
 from ..numerics.piecewise_linear import initially
-from ..scene.reynolds import Reynolds
+from ..scene.contact import waves_of
+from ..scene.film import Reynolds
 from ..scene.variants import seals_that_stick
-from ..scene.waviness import waves_of
 from .verification_run import ErrorScales
 
 # Steps along which the defect is followed: per fastest period, at once, and in all; points of a steady period.

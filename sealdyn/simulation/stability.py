@@ -7,9 +7,9 @@ import numpy as np
 from ..dynamics import modes, whirl_speeds
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.neutral_speeds import neutral_speeds
+from ..scene.contact import waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of
 
 # Speed (m/s) of the outer edge of a face beyond which there is none: rings burst at some hundreds.
 FASTEST = 1000.0

@@ -14,11 +14,11 @@ from ..dynamics.intervals import constant_and_slope
 from ..dynamics.steady_extremes import steady_extremes
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..scene.contact import waves_of
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions

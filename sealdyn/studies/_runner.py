@@ -21,9 +21,9 @@ from ..report.text import written_units
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
 from ..scene import variants
+from ..scene.contact import waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..scene.waviness import waves_of
 from ..status import Status
 from . import Info
 

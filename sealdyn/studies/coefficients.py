@@ -12,9 +12,9 @@ from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..quantities import in_words
 from ..scenario.settings import values_in_si
+from ..scene.contact import waves_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start, with_values
-from ..scene.waviness import waves_of
 from ..simulation.film_error import steady_tilt
 from ..units import Angle, Length, Speed
 from . import Info

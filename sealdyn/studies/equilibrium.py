@@ -20,12 +20,12 @@ from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_st
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
-from ..scene.coning import coned
+from ..scene.contact import waves_of
+from ..scene.film import coned
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
-from ..scene.waviness import waves_of
 from ..units import Length
 from . import Info
 

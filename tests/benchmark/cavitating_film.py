@@ -26,7 +26,7 @@ from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds.mesh import films
 from sealdyn.films.reynolds.pressure import lay_out, place, room
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scene.reynolds import Reynolds
+from sealdyn.scene.film import Reynolds
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.methods import METHODS
 

@@ -17,9 +17,8 @@ from scenes import started
 import sealdyn
 from sealdyn.report.charts import palette
 from sealdyn.scene.film import Coefficients
-from sealdyn.scene.rings import Rotor
+from sealdyn.scene.rings import Rotor, SecondarySeal
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.recorder import Recorder
 

@@ -13,9 +13,8 @@ from sealdyn import ScenarioError, open_archive
 from sealdyn.radial_seals.summary import _warnings
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words
+from sealdyn.scenario.errors import CIRCUMFERENTIAL_RULES, LIP_RULES
 from sealdyn.scenario.reader import parse_scenario, read_scenario
-from sealdyn.scenario.rule_names import CIRCUMFERENTIAL
-from sealdyn.scenario.rule_names import LIP as LIP_RULES
 from sealdyn.simulation.simulate import simulate
 
 LIP, SEGMENTS = (SCENARIOS / "radial" / f"{name}_reference.toml" for name in ("lip", "circumferential"))
@@ -160,7 +159,7 @@ def test_a_broken_rule_is_acknowledged_by_its_name(tmp_path):
         assert (
             refused.code == 2 and f"acknowledge.{name}" in refused.err.replace("] ", ".") and "nearest" in refused.err
         )
-    assert {row["rule"] for row in found} == set(CIRCUMFERENTIAL)
+    assert {row["rule"] for row in found} == set(CIRCUMFERENTIAL_RULES)
 
 
 def lip_rules(tmp_path, *values):

@@ -12,9 +12,8 @@ from sealdyn.faces import contact
 from sealdyn.faces.geometry import CONTACT_ENERGY
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
-from sealdyn.scene.rings import Stator
+from sealdyn.scene.rings import SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.scene.secondary_seal import SecondarySeal
 
 HARD = Contact(roughness=1e-7, compressive_strength=3e8)
 GAUSSIAN = Contact(

@@ -10,9 +10,8 @@ from scenes import CLEARANCE, NOTHING, SUPPORT, Sink, film, fmr, fms, free_ring,
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.scene.rings import Rotor, SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.solvers.collocation import GAUSS, RADAU, collocation, rule
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.fixed_step import REFERENCE_METHODS

@@ -9,9 +9,8 @@ from scenes import NOTHING, SPEED, film, prepared
 from scipy.integrate import solve_ivp
 
 from sealdyn.scene.excitation import AxialVibration, Housing, Shaft
-from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.rings import Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Scene
-from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.simulation.selection import choose_method
 from sealdyn.simulation.verification_run import Comparison, ErrorScales
 from sealdyn.solvers.integrate import solve

@@ -12,8 +12,7 @@ from sealdyn.faces.geometry import DZ, FLOW_INNER, FLOW_OUTER, GAP_STATE_SIZE, I
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, table
 from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scene.film import Film
-from sealdyn.scene.reynolds import Reynolds
+from sealdyn.scene.film import Film, Reynolds
 from sealdyn.solvers.contract import Counts
 from sealdyn.solvers.trbdf2 import D, W, trbdf2
 

@@ -16,9 +16,8 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
 from sealdyn.films.radial import film as radial
 from sealdyn.scene.contact import Contact
-from sealdyn.scene.rings import Stator
+from sealdyn.scene.rings import SecondarySeal, Stator
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.solvers.contract import Cause
 from sealdyn.solvers.integrate import solve

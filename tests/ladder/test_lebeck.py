@@ -20,10 +20,9 @@ from sealdyn.films.reynolds import film as reynolds_film
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
-from sealdyn.scene.film import Film
-from sealdyn.scene.reynolds import Reynolds
+from sealdyn.scene.contact import Waviness
+from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.scene import SceneError
-from sealdyn.scene.waviness import Waviness
 from sealdyn.simulation.selection import check_method, choose_method
 from sealdyn.simulation.verification_run import Nothing
 from sealdyn.solvers.contract import Counts, SolverFailure, Status

@@ -14,9 +14,8 @@ from sealdyn.closed_form import released_ring as rr
 from sealdyn.dynamics.model import Model
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
-from sealdyn.scene.rings import Rotor, Stator, Support
+from sealdyn.scene.rings import Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Closing, Scene, SceneError
-from sealdyn.scene.secondary_seal import SecondarySeal
 from sealdyn.studies.sealing_number import released as free
 from sealdyn.studies.sealing_number.released import film_on, released, ring_of, started, with_force_ratio
 

@@ -14,9 +14,8 @@ from scenes import CLEARANCE, SUPPORT, film, fms, ring, run
 from scipy.optimize import brentq
 
 from sealdyn.scene.film import Coefficients
-from sealdyn.scene.rings import AxialRunout, Rotor, Stator
+from sealdyn.scene.rings import AxialRunout, Rotor, SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.scene.secondary_seal import SecondarySeal
 
 MASS, PRESSED, RUNOUT = 1.0, 2e6, 4e-6
 K = SUPPORT.axial_stiffness + PRESSED

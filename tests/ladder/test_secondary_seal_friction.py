@@ -10,9 +10,8 @@ from scenes import CLEARANCE, INERTIA, NOTHING, R_O, SUPPORT, film, fmr, fms, ri
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing
 from sealdyn.scene.film import Coefficients
-from sealdyn.scene.rings import Rotor, Stator
+from sealdyn.scene.rings import Rotor, SecondarySeal, Stator
 from sealdyn.scene.scene import Initial, RingStart
-from sealdyn.scene.secondary_seal import SecondarySeal
 
 STIFFNESS, MASS, RADIUS = SUPPORT.axial_stiffness, 1.0, 0.04
 UNDAMPED = replace(SUPPORT, axial_damping=0.0)

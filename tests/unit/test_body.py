@@ -11,7 +11,7 @@ from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
-from sealdyn.scene.body import DENSITIES, INERTIAL, Body
+from sealdyn.scene.rings import DENSITIES, INERTIAL, Body
 from sealdyn.studies.stability.study import si_axis
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()

@@ -20,9 +20,8 @@ from sealdyn.films.radial import film as radial
 from sealdyn.films.radial import floored
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.checks import check_scene
-from sealdyn.scene.coning import coned, coning_change
 from sealdyn.scene.excitation import Shaft
-from sealdyn.scene.film import Profile
+from sealdyn.scene.film import Profile, coned, coning_change
 from sealdyn.scene.scene import SceneError
 
 MU, P_I, P_O = 0.5e-3, 1e5, 6e5

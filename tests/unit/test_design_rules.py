@@ -13,7 +13,7 @@ from sealdyn.analysis.design_rules import RULES, findings
 from sealdyn.analysis.seal_figures import Verdict
 from sealdyn.dynamics.interface import flow_at_rest, rest_state
 from sealdyn.faces.geometry import CONTACT_FORCE
-from sealdyn.scenario import rule_names
+from sealdyn.scenario import errors
 from sealdyn.scenario.errors import tables
 from sealdyn.scenario.reader import ScenarioFile, parse_scenario
 from sealdyn.scene.application import Application
@@ -91,9 +91,9 @@ TOLD = {"heat", "pressure_velocity"}
 
 
 def test_every_rule_may_be_acknowledged():
-    assert [*rule_names.FACE] == sorted(RULES)
-    assert {*rule_names.LIP} == {*radial_rules.LIP} == {*radial_rules.RIBBED_LIP}
-    assert {*rule_names.CIRCUMFERENTIAL} == {*radial_rules.CIRCUMFERENTIAL}
+    assert [*errors.FACE_RULES] == sorted(RULES)
+    assert {*errors.LIP_RULES} == {*radial_rules.LIP} == {*radial_rules.RIBBED_LIP}
+    assert {*errors.CIRCUMFERENTIAL_RULES} == {*radial_rules.CIRCUMFERENTIAL}
 
 
 def test_every_rule_is_kept_here_and_broken_there():

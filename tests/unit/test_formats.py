@@ -9,10 +9,10 @@ import pytest
 import sealdyn
 from sealdyn.archive import ArchiveError, ArchiveWriter, is_study, read_info, read_study, run, study, write_study
 from sealdyn.archive.fields import Series
+from sealdyn.scenario.overrides import SCHEMA
 from sealdyn.scenario.reader import Scenario, ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
 from sealdyn.scenario.templates import kinds, template
-from sealdyn.scenario.version import SCHEMA
 
 FMS = template("fms")
 (SAID,) = [line for line in FMS.splitlines(keepends=True) if line.startswith("schema")]

@@ -13,11 +13,11 @@ from sealdyn.dynamics.film_derivatives import FilmDerivatives
 from sealdyn.faces import geometry, waviness
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
+from sealdyn.scene.contact import Waviness
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Profile
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
-from sealdyn.scene.waviness import Waviness
 
 R_I, R_O, CLEARANCE = 0.032, 0.040, 5e-6
 NORMAL = 273.15 / (TEMPERATURE * 101325.0)

@@ -16,7 +16,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas
-from sealdyn.scene.pads import Pads, depth_of, pads_errors
+from sealdyn.scene.film import Pads, depth_of, pads_errors
 from sealdyn.scene.rings import Stator
 from sealdyn.scene.scene import SceneError
 from sealdyn.studies._runner import run_study

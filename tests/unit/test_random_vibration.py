@@ -16,8 +16,7 @@ from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import PER_RING, TILT_Y_ACCELERATION, Z_ACCELERATION, imposed_state
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scene.excitation import Housing
-from sealdyn.scene.random_vibration import AngularRandom, AxialRandom, mean_square, tones_of
+from sealdyn.scene.excitation import AngularRandom, AxialRandom, Housing, mean_square, tones_of
 from sealdyn.simulation.simulate import prepare_run
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()

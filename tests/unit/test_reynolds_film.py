@@ -35,10 +35,8 @@ from sealdyn.faces.waviness import lay_waves
 from sealdyn.films import film_named
 from sealdyn.films.reynolds import film as reynolds
 from sealdyn.films.reynolds import roughness as means
-from sealdyn.scene.contact import Contact
-from sealdyn.scene.film import Film
-from sealdyn.scene.reynolds import Reynolds
-from sealdyn.scene.waviness import Waviness
+from sealdyn.scene.contact import Contact, Waviness
+from sealdyn.scene.film import Film, Reynolds
 
 SPIN, VISCOUS = 300.0, 1e-3
 

@@ -24,8 +24,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.sampled_motion import sampled
 from sealdyn.dynamics.step_bounds import imposed_gap
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
-from sealdyn.scene.excitation import AxialVibration, Housing, Shaft
-from sealdyn.scene.motion import Motion
+from sealdyn.scene.excitation import AxialVibration, Housing, Motion, Shaft
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.run import evaluate

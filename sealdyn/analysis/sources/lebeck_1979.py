@@ -10,13 +10,11 @@ from dataclasses import dataclass
 
 from ...dynamics.interface import Interface, flow_at_rest, rest_state
 from ...faces.geometry import CONTACT_TORQUE, FLOW_INNER, FORCE, TORQUE
-from ...scene.contact import HALF_HEIGHT, Contact
+from ...scene.contact import HALF_HEIGHT, Contact, Waviness
 from ...scene.excitation import Shaft
-from ...scene.film import Film
-from ...scene.reynolds import Reynolds
+from ...scene.film import Film, Reynolds
 from ...scene.rings import Stator, Support
 from ...scene.scene import Closing, Scene
-from ...scene.waviness import Waviness
 
 TITLE = "Lebeck, Teale & Pierce (1979), ONR ME-95(79)ONR-414-1, wavy rough seal at balance; reynolds, 24 x 180 a wave"
 FILM = "reynolds"

@@ -4,9 +4,8 @@ import math
 
 from scipy.optimize import brentq
 
-from ...scene.film import Film
-from ...scene.reynolds import Reynolds
-from ...scene.waviness import Waviness
+from ...scene.contact import Waviness
+from ...scene.film import Film, Reynolds
 from ..truncated_heights import carried, plateaus
 from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
 

@@ -17,9 +17,9 @@ from ...faces.geometry import CLEARANCE, FORCE, GAP_STATE_SIZE, MEAN_SPIN, SPIN_
 from ...faces.waviness import lay_waves
 from ...numerics.kernel import outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
-from ...scene.reynolds import AROUND, PER_WAVE, Reynolds, cells_of
-from ...scene.symmetry import alike_sectors
-from ...scene.waviness import waves_of
+from ...scene.contact import waves_of
+from ...scene.film import AROUND, PER_WAVE, Reynolds, cells_of
+from ...scene.variants import alike_sectors
 from .._contract import FILL, PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .balance import driest, jacobian, pattern, residual

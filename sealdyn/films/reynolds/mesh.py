@@ -33,7 +33,7 @@ from ...faces.geometry import (
 from ...faces.waviness import waves, waves_rate, waves_turn
 from ...numerics.kernel import inner_kernel
 from ...numerics.piecewise_linear import points
-from ...scene.reynolds import Reynolds, cells_of
+from ...scene.film import Reynolds, cells_of
 from .roughness import contact_share, mean_cube, mean_film, open_height, open_slope
 
 # Block after the faces: cells over the radius, angles of a sector, sectors of the circle, steps in ln r and theta, the

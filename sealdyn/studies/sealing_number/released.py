@@ -18,7 +18,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...numerics.piecewise_linear import initially
-from ...scene.coning import coned
+from ...scene.film import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...simulation.selection import choose_method

@@ -18,8 +18,8 @@ from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import with_values
-from ...scene.coning import changes
 from ...scene.contact import HALF_HEIGHT
+from ...scene.film import coning_varies
 from ...scene.scene import SceneError
 from ...scene.variants import frozen_at_start
 
@@ -103,7 +103,7 @@ class Grid:
             or not isinstance(own, str)
             or film.tilt_radius != "local"
             or self.scene.contact
-            or changes(film)
+            or coning_varies(film)
         ):
             return None
         formula, more = (cf.film_coefficients, {}) if own == "green" else (

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 from scipy.stats import norm, qmc, truncnorm, uniform
 
-from ...scenario.diameters import radius_key
 from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, tables, without_indices
+from ...scenario.overrides import radius_key
 from ...scene import variants
 from ...scene.scene import Scene
 from ...units import Length, Quantity, QuantityError, quoted

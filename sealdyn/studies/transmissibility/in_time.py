@@ -12,8 +12,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...quantities import in_words
-from ...scene.coning import coning_change
-from ...scene.film import Coefficients, aligned_gaps
+from ...scene.film import Coefficients, aligned_gaps, coning_change
 from ...scene.scene import Scene
 from ...scene.variants import frozen_at_start
 from ...simulation.selection import choose_method

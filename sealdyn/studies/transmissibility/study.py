@@ -23,9 +23,8 @@ from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
 from ...quantities import in_words
 from ...report.text import speed_unit
-from ...scene.coning import coned, coning_change
 from ...scene.contact import touch_height
-from ...scene.film import aligned_gaps
+from ...scene.film import aligned_gaps, coned, coning_change
 from ...scene.gas import viscosity_of
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.stability import critical_speed, held_speeds

@@ -24,12 +24,11 @@ from ...dynamics.run_state import RunState
 from ...dynamics.steady_extremes import steady_extremes
 from ...faces.geometry import DZ, GX, GY
 from ...quantities import in_words
-from ...scene.contact import touch_height
+from ...scene.contact import touch_height, waves_of
 from ...scene.excitation import AngularVibration, AxialVibration, Housing
 from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced
-from ...scene.waviness import waves_of
 from ...simulation.selection import choose_method
 from ...solvers.contract import MANY, Enough, SolverFailure, Status
 from ...solvers.integrate import solve

@@ -14,7 +14,7 @@ from pydantic import Field
 from ...answers import Answer, Axis, Panel, Series, Table
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
-from ...scene.coning import coned
+from ...scene.film import coned
 from ...status import Status
 from ...units import Time
 from .. import Info

@@ -8,8 +8,8 @@ import numpy as np
 from ...dynamics import modes
 from ...films import film_named, film_names, film_of
 from ...scenario.settings import with_values
+from ...scene.contact import waves_of
 from ...scene.film import Coefficients
-from ...scene.waviness import waves_of
 from ...simulation.selection import prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.contract import tolerance_for

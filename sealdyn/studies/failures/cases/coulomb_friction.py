@@ -4,8 +4,7 @@ import math
 from dataclasses import replace
 
 from ....analysis.sources.green_1989 import reference_scene
-from ....scene.rings import RING_NAMES, Rotor
-from ....scene.secondary_seal import SecondarySeal
+from ....scene.rings import RING_NAMES, Rotor, SecondarySeal
 from ._common import ZERO_FILM, integrated, row, run_from
 
 ITEM = 4

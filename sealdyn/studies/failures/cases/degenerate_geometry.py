@@ -11,7 +11,7 @@ from ....analysis.sources.green_1989 import reference_scene
 from ....closed_form import film_coefficients
 from ....faces.geometry import DZ_RATE, FORCE, GAP_STATE_SIZE, VISCOSITY
 from ....films.radial import film as radial
-from ....scene.waviness import waves_of
+from ....scene.contact import waves_of
 from ._common import integrated, row, run_from
 
 ITEM = 5

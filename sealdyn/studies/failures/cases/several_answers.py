@@ -11,7 +11,7 @@ from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.elastic_ring import operating_point, operating_points
 from ....dynamics.model import Model
 from ....scene.contact import Contact
-from ....scene.elastic_ring import ElasticRing
+from ....scene.rings import ElasticRing
 from ....scene.scene import Closing
 from ._common import cruise_dam, row
 
