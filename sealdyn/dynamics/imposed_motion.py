@@ -71,11 +71,12 @@ def harmonics_of_segment(shaft, housing, rotor, stator, interval: Interval) -> n
         add(ROTOR, TURNING, whirl.angle, whirl.phase, order=whirl.ratio)
     for runout in rotor.axial_runout:
         add(ROTOR, AXIAL, runout.amplitude, runout.phase, order=runout.order)
-    for source, kind in [(s, AXIAL) for s in housing.axial_tones] + [(s, FIXED_AXIS) for s in housing.angular_tones]:
+    tones = [(tone, AXIAL, 0.0) for tone in housing.axial_tones]
+    tones += [(tone, FIXED_AXIS, tone.direction) for tone in housing.angular_tones]
+    for source, kind, direction in tones:
         amplitude = source.displacement
         if amplitude is None:
             amplitude = -source.acceleration / (2 * math.pi * source.frequency) ** 2
-        direction = getattr(source, "direction", 0.0)
         add(STATOR, kind, amplitude, source.phase, frequency=source.frequency, direction=direction)
     return np.array(rows, dtype=np.float64).reshape(-1, ROW)
 

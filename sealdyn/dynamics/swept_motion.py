@@ -34,8 +34,8 @@ CORNER_SLOPES = (2.0, CORNER, 0.77 * CORNER**2, 2.0 * CORNER**3)
 
 def sweeps_of(scene) -> list[tuple[str, object]]:
     """All sweeps of a scene that move anything, with their dotted keys."""
-    found = [(f"housing.{kind}.{n}", sweep) for kind in ("axial_sweep", "angular_sweep")
-             for n, sweep in enumerate(getattr(scene.housing, kind))]  # fmt: skip
+    kinds = {"axial_sweep": scene.housing.axial_sweep, "angular_sweep": scene.housing.angular_sweep}
+    found = [(f"housing.{kind}.{n}", sweep) for kind, sweeps in kinds.items() for n, sweep in enumerate(sweeps)]
     return [(key, sweep) for key, sweep in found if level(sweep)[0]]
 
 

@@ -199,8 +199,8 @@ class Unknowns:
         for sweep in scene.housing.sweeps:
             amplitude = max(amplitude, largest_amplitude(sweep) / (tilt if tilts(sweep) else length))
         for start in (scene.initial.stator, scene.initial.rotor):
-            for name, scale in (("z", length), ("tilt_x", tilt), ("tilt_y", tilt)):
-                amplitude = max(amplitude, abs(getattr(start, name) or 0.0) / scale)
+            for given, scale in ((start.z, length), (start.tilt_x, tilt), (start.tilt_y, tilt)):
+                amplitude = max(amplitude, abs(given or 0.0) / scale)
         stiffness, _ = model.film_matrices()
         blocks = [self.ring_block[equations.RING * k : equations.RING * (k + 1)] for k in range(2)]
         spring_z, spring_t = (sum(block[i] for block in blocks) for i in (equations.AXIAL_K, equations.TILT_K))

@@ -320,6 +320,7 @@ def unit_warnings(scenario) -> list[str]:
 def _held(scene, key: str) -> float | None:
     """The value at a dotted key, of a table its first one; None where there is none."""
     for name in key.split("."):
+        # A dotted key says which attribute; tables of one kind of seal only are absent in the other.
         scene = getattr(scene, name, None)
     return None if scene is None else initially(scene)
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
-from ..dynamics.signals import PARTS
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scene.gas import viscosity_of
 from ..scene.radial import RadialScene
@@ -312,8 +311,7 @@ def set_start(run, scene, start: Start) -> None:
         run.y0[: unknowns.n] = y[: unknowns.n]
         run.y0[rates] = y[rates]
     for k, ring in ((0, scene.initial.stator), (1, scene.initial.rotor)):
-        for part in PARTS:
-            given = getattr(ring, part)
+        for part, given in asdict(ring).items():
             base = f"{RING_NAMES[k]}_{part.removesuffix('_rate')}"
             if given is None or base not in unknowns.names:
                 continue

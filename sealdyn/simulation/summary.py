@@ -217,7 +217,7 @@ def _contact(run, tally):
         "max_area_fraction": lambda: largest("contact_area_fraction"),
         "max_pressure": lambda: largest("contact_pressure"),
         "wear_rate": lambda: tally.mean("wear_rate"),
-        "wears": any(getattr(model.scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES),
+        "wears": any((model.scene.contact.stator_wear_coefficient, model.scene.contact.rotor_wear_coefficient)),
     }
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from .. import closed_form
 from ..analysis.whirl import (
     TOO_SLOW,
     bounded_or_not,
@@ -24,6 +23,7 @@ from ..analysis.whirl import (
     linear_growth,
     tipping_disturbance,
 )
+from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
@@ -108,13 +108,14 @@ def by_formula(model) -> tuple[float | None, str]:
         return None, "both rings float: no published formula"
     if scene.stator.speed != 0.0:
         return None, "the stator turns: no published formula"
-    kind, ring = ("fmr", scene.rotor) if model.unknowns.floats[ROTOR] else ("fms", scene.stator)
+    fmr = model.unknowns.floats[ROTOR]
+    formula, ring = (fmr_critical_speed, scene.rotor) if fmr else (fms_critical_speed, scene.stator)
     if ring.transverse_inertia == 0.0:
         return None, "a ring without inertia has no threshold"
     stiffness, damping = ring.support.tilt()
     film_k, film_d = model.film_matrices()
     try:
-        speed = getattr(closed_form, f"{kind}_critical_speed")(
+        speed = formula(
             transverse_inertia=ring.transverse_inertia,
             polar_inertia=ring.polar_inertia,
             support_stiffness=stiffness,
@@ -124,7 +125,7 @@ def by_formula(model) -> tuple[float | None, str]:
         )
     except ValueError as error:
         return None, str(error)
-    return speed, "" if speed is not None else f"{kind.upper()}: stable at every speed"
+    return speed, "" if speed is not None else f"{'FMR' if fmr else 'FMS'}: stable at every speed"
 
 
 def growth(scene, point: dict) -> dict:

@@ -23,7 +23,6 @@ from ..quantities import in_words
 from ..scene.contact import waves_of
 from ..scene.film import coned
 from ..scene.gas import density_of
-from ..scene.rings import RING_NAMES
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length
@@ -138,7 +137,7 @@ def kept_waves(scene):
 def breakaway(scene) -> float:
     """Axial force (N) that the secondary seals hold of film against closing force: both floating rings carry the same
     one, so that of the ring that slides first; 0 if one of them slides freely."""
-    floating = [getattr(scene, name) for name in RING_NAMES if getattr(scene, name).support]
+    floating = [ring for ring in (scene.stator, scene.rotor) if ring.support]
     return min((ring.secondary_seal.breakaway()[0] if ring.secondary_seal else 0.0 for ring in floating), default=0.0)
 
 
@@ -192,7 +191,9 @@ def _wear(scene, s, radius) -> dict:
 
 def _wears(scene) -> dict[str, float]:
     """Wear coefficient (1/Pa) of each face by its name; none without contact."""
-    return {face: getattr(scene.contact, f"{face}_wear_coefficient") for face in RING_NAMES} if scene.contact else {}
+    if not scene.contact:
+        return {}
+    return {"stator": scene.contact.stator_wear_coefficient, "rotor": scene.contact.rotor_wear_coefficient}
 
 
 def _held(root, excess, friction) -> list:

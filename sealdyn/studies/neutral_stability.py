@@ -136,7 +136,7 @@ def free_ring(scene):
         raise SceneError("rotor.transverse_inertia", "no floating ring with inertia", "one that can precess")
     speed = scene.shaft.speed if isinstance(scene.shaft.speed, float | int) else max(scene.shaft.speed.value, key=abs)
     still = unforced(scene, float(speed))
-    ring = getattr(still, name)
+    ring, held = (still.rotor, still.stator) if name == "rotor" else (still.stator, still.rotor)
     support = replace(ring.support, axial_damping=0.0, tilt_damping=None if ring.support.radius is not None else 0.0)
     if support.tilt()[0] <= 0.0 or speed == 0.0:
         raise SceneError(f"{name}.support", "no tilt stiffness, or a shaft at rest", "a ring that can precess")
@@ -145,7 +145,7 @@ def free_ring(scene):
     film = replace(still.film, model="linear", coefficients=NOTHING, cavitation_pressure=None,
                    clearance=still.film.clearance or 1e-5)  # fmt: skip
     parts = {name: replace(ring, support=support, secondary_seal=None),
-             other: replace(getattr(still, other), support=None, secondary_seal=None)}  # fmt: skip
+             other: replace(held, support=None, secondary_seal=None)}  # fmt: skip
     return replace(still, film=film, closing=Closing(), contact=None, **parts), name
 
 
@@ -157,7 +157,7 @@ def drifted(scene, point: dict) -> dict:
     scene, name = free_ring(scene)
     turn = 2 * math.pi / abs(scene.shaft.speed)
     run = RunState(Model(scene, point["accuracy"]), point["turns"] * turn)
-    ring, side = getattr(scene, name), ROTOR if name == "rotor" else STATOR
+    ring, side = (scene.rotor, ROTOR) if name == "rotor" else (scene.stator, STATOR)
     spin = scene.shaft.speed if side == ROTOR else (scene.stator.speed or 0.0)
     inertia, gyro, stiffness = ring.transverse_inertia, ring.polar_inertia * spin, ring.support.tilt()[0]
     roots = np.roots([-inertia, gyro, stiffness])

@@ -137,8 +137,8 @@ def _at(scenario, place) -> tuple[dict, str]:
         "mass_flow": float(density_of(scene.film) * leakage) + 0.0,
         "exit_mach": interface.film.exit_mach(f, s)[1] if interface.film.exit_mach is not None else None,
         "high_pressure": "outer" if interface.closing.outer_is_high else "inner",
-        "edges": {side: [float(getattr(scene.film, f"{side}_{what}")) for what in ("radius", "pressure")]
-                  for side in ("inner", "outer")},
+        "edges": {"inner": [float(scene.film.inner_radius), float(scene.film.inner_pressure)],
+                  "outer": [float(scene.film.outer_radius), float(scene.film.outer_pressure)]},
         "pressure": None,
         "profiles": None,
         "integrated": None,

@@ -61,10 +61,11 @@ class Settings:
 
 def run(scenario, settings, tools) -> Answer:
     """Orbit, multipliers, verdict on the nonlinear orbit; against harmonic balance; cost near the threshold."""
-    for key, least in (("turns", 1), ("samples", 2), ("longest", 1)):
-        if getattr(settings, key) < least:
-            found, expected = str(getattr(settings, key)), f"{least} or more"
-            raise ScenarioError(scenario.name, f"study.steady_state.{key}", found, expected)
+    for key, given, least in (
+        ("turns", settings.turns, 1), ("samples", settings.samples, 2), ("longest", settings.longest, 1),
+    ):  # fmt: skip
+        if given < least:
+            raise ScenarioError(scenario.name, f"study.steady_state.{key}", str(given), f"{least} or more")
     try:
         shooter = Shooter(scenario.scene, scenario.run.accuracy, settings.turns)
     except NoOrbit as reason:

@@ -91,7 +91,8 @@ def run(scenario, settings, tools) -> Answer:
     except (AttributeError, KeyError):
         raise ScenarioError(scenario.name, "study.rub.key", f'"{key}"', "a quantity of the scene") from None
     values = _values(scenario, key, unit, settings)
-    base = {"key": key} | {n: getattr(settings, n) for n in ("ramp", "drop", "keep", "exponent_turns", "accuracy")}
+    base = {"key": key, "ramp": settings.ramp, "drop": settings.drop, "keep": settings.keep,
+            "exponent_turns": settings.exponent_turns, "accuracy": settings.accuracy}  # fmt: skip
     chains = [{**base, "direction": "up", "values": values}]
     if settings.down:
         chains.append({**base, "direction": "down", "values": values[::-1]})

@@ -57,7 +57,7 @@ def rate_unit(unit: str) -> str:
 
 def value_of(scenario, settings, name: str) -> float | None:
     """`begin` or `end` in SI.  Raises ScenarioError."""
-    given = getattr(settings, name)
+    given = settings.begin if name == "begin" else settings.end
     if given is None:
         return None
     try:

@@ -211,8 +211,9 @@ def released(scene, turns: float = 80, last: float = 4, accuracy: float = 1e-3, 
     ring = ring_of(scene)
     turn = 2 * math.pi / ring.shaft_speed
     run = RunState(Model(scene, accuracy), turns * turn)
-    for part in ("z", "tilt_x", "tilt_y"):
-        run.y0[run.model.unknowns.names.index(f"rotor_{part}")] = getattr(scene.initial.rotor, part) or 0.0
+    start = scene.initial.rotor
+    for part, given in (("z", start.z), ("tilt_x", start.tilt_x), ("tilt_y", start.tilt_y)):
+        run.y0[run.model.unknowns.names.index(f"rotor_{part}")] = given or 0.0
     run.check_start()
     sink = Kept(turn / SAMPLES)
     outcome = solve(run, method or choose_method(run)[0], accuracy, sink)

@@ -56,7 +56,7 @@ def run(scenario, settings, tools) -> dict:
     """Closed form, static root, quasi-static and released films over the force ratio."""
     scene = scenario.scene
     ring = free.ring_of(scene)
-    how = {name: getattr(settings, name) for name in ("turns", "last", "accuracy")}
+    how = {"turns": settings.turns, "last": settings.last, "accuracy": settings.accuracy}
     ratios, starts, inertias = (
         np.atleast_1d(x).tolist() for x in (settings.force_ratios, settings.starts, settings.inertia)
     )

@@ -158,8 +158,8 @@ class Grid:
             return True
         ends = [self.model.linear_scene(speed=float(w)) for w in self.axes["shaft.speed"][[0, -1]]]
         return not all(
-            np.allclose(getattr(ends[0], m)[i, i], getattr(ends[1], m)[i, i], rtol=1e-6)
-            for m in ("film_k", "film_d")
+            np.allclose(first[i, i], last[i, i], rtol=1e-6)
+            for first, last in ((ends[0].film_k, ends[1].film_k), (ends[0].film_d, ends[1].film_d))
             for i in range(2)
         )
 
@@ -214,8 +214,8 @@ def _open(given, clearance):
 def _possible(given, clearance) -> np.ndarray:
     """Where the scene can be, by the rules a scenario is read by."""
     good = _open(given, clearance)
-    for ring in ("stator", "rotor"):
-        if getattr(given.scene, ring).support is None:
+    for ring, body in (("stator", given.scene.stator), ("rotor", given.scene.rotor)):
+        if body.support is None:
             continue
         transverse, polar = given(f"{ring}.transverse_inertia"), given.polar(ring)
         # Rounding of J = 2 (I / c) c must not exclude the thin disk itself.

@@ -298,9 +298,9 @@ def confirmed(scenario, point: dict) -> dict:
 def _scenario_keys(scene, values: dict) -> dict:
     """Axis values as keys of a scenario."""
     found = {key: value for key, value in values.items() if key != INERTIA_RATIO}
-    for ring in ("stator", "rotor"):
-        if INERTIA_RATIO in values and getattr(scene, ring).support:
-            inertia = values.get(f"{ring}.transverse_inertia", getattr(scene, ring).transverse_inertia)
+    for ring, body in (("stator", scene.stator), ("rotor", scene.rotor)):
+        if INERTIA_RATIO in values and body.support:
+            inertia = values.get(f"{ring}.transverse_inertia", body.transverse_inertia)
             found[f"{ring}.polar_inertia"] = min(inertia / values[INERTIA_RATIO], 2 * inertia)
     return found
 

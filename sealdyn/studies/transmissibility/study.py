@@ -299,8 +299,8 @@ def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     drop = film.outer_pressure - film.inner_pressure
     coefficients = {"film_stiffness": stiffness, "film_damping": damping}
     found = cf.film_groups(**face, coning=film.coning, pressure_drop=drop, **coefficients)
-    for name in ("rotor", "stator"):
-        found[name] = cf.ring_groups(**face, **tilting(getattr(seal.scene, name))._asdict())
+    for name, ring in (("rotor", seal.scene.rotor), ("stator", seal.scene.stator)):
+        found[name] = cf.ring_groups(**face, **tilting(ring)._asdict())
         if not np.isfinite(found[name]["inertia_ratio"]):
             found[name]["inertia_ratio"] = None
     return found

@@ -89,7 +89,7 @@ def _coefficients(scenario) -> dict[str, float]:
     scene = scenario.scene
     if scene.contact is None:
         raise ScenarioError(scenario.name, "contact", "nothing", "a [contact] table: there is no wear without")
-    wears = {face: getattr(scene.contact, f"{face}_wear_coefficient") for face in ("stator", "rotor")}
+    wears = {"stator": scene.contact.stator_wear_coefficient, "rotor": scene.contact.rotor_wear_coefficient}
     if not any(wears.values()):
         raise ScenarioError(
             scenario.name, "contact.stator_wear_coefficient", "no wear coefficient on either face",

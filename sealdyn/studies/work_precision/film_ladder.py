@@ -2,6 +2,7 @@
 
 import math
 import time as clock
+from dataclasses import asdict
 
 import numpy as np
 
@@ -56,13 +57,10 @@ def _grids(scenario, name: str) -> list[tuple[str, dict]]:
 
 def _cells(name: str, film) -> dict:
     """Overrides that ask for the cells of a `Film` table; none for those that it has without a word."""
+    # The table [film.NAME] is called as its film is.
     options = getattr(film, name)
-    if options is None:
-        return {}
-    if hasattr(options, "cells"):
-        return {f"film.{name}.cells": list(options.cells)}
-    cells = {f"film.{name}.cells_r": options.cells_r, f"film.{name}.cells_theta": options.cells_theta}
-    return {key: count for key, count in cells.items() if count is not None}
+    cells = {} if options is None else {key: v for key, v in asdict(options).items() if key.startswith("cells")}
+    return {f"film.{name}.{key}": list(v) if isinstance(v, tuple) else v for key, v in cells.items() if v is not None}
 
 
 def compare(scenario, samples: int, longest: float, repeats: int, exact=None) -> tuple[list[dict], str | None]:
