@@ -101,7 +101,7 @@ def traits(item):
 
 
 def durations():
-    return json.loads(DURATIONS.read_text()) if DURATIONS.exists() else {"seconds_a_file": 0.0, "files": {}}
+    return json.loads(DURATIONS.read_text()) if DURATIONS.exists() else {"seconds_a_file": 1.0, "files": {}}
 
 
 class Cases:
@@ -109,7 +109,7 @@ class Cases:
 
     def __init__(self, config):
         self.config, self.clock, self.shared = config, 0.0, {}
-        self.found, self.dropped, self.workers = 0, 0, 0.0
+        self.found, self.dropped, self.workers, self.measured = 0, 0, 0.0, ""
         self.files, self.seconds = defaultdict(dict), defaultdict(Counter)
 
     @pytest.hookimpl(trylast=True)
@@ -193,10 +193,14 @@ class Cases:
         else:
             cheap = sum(spent for seconds in self.seconds.values() for spent in seconds.values() if spent < CHEAP)
             allowed = allowed_per_file(self.files, files, SECONDS - cheap)
+            plain = [affordable(cases, files[file], allowed) for file, cases in self.files.items()]
+            least = sum(affordable(cases, files[file], 0.0)[1] for file, cases in self.files.items())
+            count, spent = sum(len(chosen) for chosen, _ in plain), cheap + sum(spent for _, spent in plain)
+            self.measured = f"a plain run: {count} cases in {spent:.0f} s, {cheap + least:.0f} s of them in any case; "
         lines = [f"{json.dumps(file)}: {json.dumps(files[file])}" for file in sorted(files) if files[file]]
         DURATIONS.write_text(f'{{"seconds_a_file": {allowed}, "files": {{\n' + ",\n".join(lines) + "\n}}\n")
 
     def pytest_terminal_summary(self, terminalreporter):
         own = time.process_time() + self.workers if self.workers else processor_time()
         words = f"{self.dropped} of {self.found} cases left out (pytest --all runs them); " if self.dropped else ""
-        terminalreporter.write_line(f"{words}{own:.0f} s of processor time")
+        terminalreporter.write_line(f"{self.measured}{words}{own:.0f} s of processor time")

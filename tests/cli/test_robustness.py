@@ -23,6 +23,7 @@ def test_archives(tmp_path):
     assert ledger.counts["archive crafted: refused"] > 5 and ledger.counts["archive corrupted: refused"] > 5
 
 
+@pytest.mark.slow
 def test_full_disks(tmp_path):
     """The first by the limit of a file's size, the other on a disk of that size where one may be made."""
     ledger = Ledger()

@@ -30,6 +30,7 @@ IMPORTS = os.pathsep.join([str(Path(sealdyn.__file__).parents[1]), str(Path(__fi
 LIMIT = 60
 
 distributed = pytest.importorskip("distributed")
+pytestmark = pytest.mark.slow
 
 
 # --- what workers evaluate ------------------------------------------------------------------------------
@@ -227,7 +228,6 @@ def test_ctrl_c_of_the_command_cancels_what_waits(scheduler, tmp_path):
         until(lambda: tasks_of(client) == 0)
 
 
-@pytest.mark.slow
 def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path):
     """SIGKILL: nothing is lost, nothing is there twice, and the rows are those of a local run."""
     points = [{"outputs": list(COMMON), "set": {"rotor.runout": f"{x} urad"}} for x in range(10, 22)]
@@ -258,7 +258,6 @@ def test_a_worker_killed_in_the_middle_costs_nothing(tmp_path):
     assert len(log.read_text().splitlines()) == len(lines) + len(points)
 
 
-@pytest.mark.slow
 def test_a_scheduler_that_dies_ends_a_study_in_one_line(tmp_path, capfd):
     with cluster(tmp_path, "--no-nanny") as (address, (scheduler, *_)):
 
@@ -274,7 +273,6 @@ def test_a_scheduler_that_dies_ends_a_study_in_one_line(tmp_path, capfd):
     assert len(list((tmp_path / "kept").iterdir())) == 2
 
 
-@pytest.mark.slow
 def test_a_point_that_kills_its_workers_is_a_row(tmp_path):
     """Those that waited behind it are answered; it is not kept, for another day it may be the machine."""
     with (

@@ -235,6 +235,7 @@ CHILD = """
 """
 
 
+@pytest.mark.slow
 def test_a_run_killed_at_any_instant_is_readable_to_its_last_row(tmp_path):
     pick = random.Random(2)
     broken_off = 0

@@ -131,6 +131,7 @@ def test_turns_count_through_wraps_blocks_and_changing_speed(tmp_path, monkeypat
     np.testing.assert_allclose(Run(write(tmp_path / "b.h5", rare)).turns, np.linspace(0, 60, 41), atol=1e-9)
 
 
+@pytest.mark.core
 def test_thinning_loses_no_extreme(tmp_path):
     columns = whirling(samples=300_000, turns=3000)
     spikes = {7: 3e-6, 123_456: 1e-6, 299_990: 2e-6}
@@ -150,6 +151,7 @@ def at_order(orders, amplitude, order):
     return amplitude[np.abs(orders - order).argmin()]
 
 
+@pytest.mark.core
 def test_the_spectrum_gives_orders_amplitudes_and_directions():
     turns = np.arange(64 * 20 + 1) / 64
     angle = 2 * np.pi * turns

@@ -144,6 +144,7 @@ def whirl(order, at):
     return np.exp(2j * np.pi * order * at)
 
 
+@pytest.mark.core
 def test_an_order_between_the_lines_is_located():
     _, (orders, amplitude, *_) = spectrum_of(lambda at: 3e-6 * whirl(2 / 3, at) + 1e-6 * whirl(-2, at), 8)
     found = [located(orders, amplitude, at) for at in peaks(orders, amplitude)]

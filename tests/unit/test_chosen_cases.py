@@ -130,3 +130,10 @@ def test_measured_times_choose_the_next_plain_run(suite, processes):
         again["seconds_a_file"] == found["seconds_a_file"]
         and again["files"]["test_a.py"] == found["files"]["test_a.py"]
     )
+
+
+def test_every_file_of_physics_has_a_core_case():
+    """Rooms whose files each hold one claim; elsewhere a file may be of sentences or of looks alone."""
+    rooms = ("closed_form", "convergence", "failure", "ladder")
+    files = [path for room in rooms for path in sorted((CONFTEST.parent / room).glob("test_*.py"))]
+    assert [path.name for path in files if "@pytest.mark.core" not in path.read_text()] == [] != files

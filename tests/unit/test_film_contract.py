@@ -28,6 +28,7 @@ def variants(film):
         yield film_named(film.name, table(cavitation_pressure=0.0))
 
 
+@pytest.mark.core
 def test_every_film_has_a_contract_whose_absent_fields_are_none():
     optional = {f.name: f.default for f in fields(Film) if f.default is not MISSING}
     for name in all_film_names():

@@ -57,6 +57,7 @@ def test_program_of_the_readme_runs_and_prints_what_it_says(tmp_path, monkeypatc
     assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.svg", "pump.toml"]
 
 
+@pytest.mark.core
 def test_every_study_has_its_question_in_the_readme():
     for module in pkgutil.iter_modules(studies.__path__):
         if not module.name.startswith("_"):

@@ -1,5 +1,5 @@
-"""Interruption: processes that hear a signal or do not, workers, a run with contact and stick-slip stopped and continued,
-and files that HDF5 does not come to an end with."""
+"""Interruption: processes that hear a signal or do not, workers, a run with contact and stick-slip stopped and
+continued, and files that HDF5 does not come to an end with."""
 
 import json
 import os

@@ -1,5 +1,5 @@
-"""Kernels kept on disk, stale, foreign and damaged, in a package of two kernels that keeps them as sealdyn does: one takes
-in a constant and calls a kernel of other files, in folders of their own."""
+"""Kernels kept on disk, stale, foreign and damaged, in a package of two kernels that keeps them as sealdyn does: one
+takes in a constant and calls a kernel of other files, in folders of their own."""
 
 import os
 import shutil

@@ -34,6 +34,7 @@ EVERY = [
 ]  # fmt: skip
 
 
+@pytest.mark.core
 def test_panels_survive_an_archive_to_the_bit():
     held = json.loads(json.dumps(plain(EVERY)))
     back = panels_of(held)
