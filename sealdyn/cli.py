@@ -732,7 +732,7 @@ def report(
     title: Annotated[str, typer.Option(help="its heading")] = "",
 ):
     """Write one page for a design review: it opens anywhere, without a network."""
-    from .analysis.validation import of_film
+    from .analysis.validation import sources_of_film
     from .report.review import review
     from .studies._runner import study_tables
 
@@ -744,7 +744,7 @@ def report(
     _say_compiling(file=sys.stderr)
     with _Progress() as bar, _reads(files[0]):
         try:
-            review(files, out, title, _rules_of, study_tables, of_film, progress=bar)
+            review(files, out, title, _rules_of, study_tables, sources_of_film, progress=bar)
         except OSError as error:
             raise _not_written(error, out, "the archives are whole") from None
     print(out)

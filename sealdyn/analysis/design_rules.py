@@ -12,12 +12,24 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..dynamics.intervals import largest_value
+from ..dynamics.model import Model
 from ..numerics.piecewise_linear import initially, points
+from ..scenario.reader import Scenario
 from ..scene.application import Application
 from ..scene.contact import HIGHEST_ORDER
 from ..scene.gas import viscosity_of
 from ..simulation.result import plain
-from .seal_figures import Finding, Seal, Verdict, followability, missing, note, other_seals, resonances, within
+from .seal_figures import (
+    Finding,
+    Seal,
+    Verdict,
+    followability,
+    limit_finding,
+    missing_keys,
+    note,
+    other_seals,
+    resonances,
+)
 
 GUIDE = "Hayden & Keller, NASA CR-120997 (1974)"
 CC_PER_H = 1e-6 / 3600
@@ -47,7 +59,7 @@ class Rule:
     command: str = ""
 
 
-def findings(scenario, model) -> list[dict]:
+def findings(scenario: Scenario, model: Model) -> list[dict]:
     """What every rule finds of a scenario and its `model`, one dict a rule: `rule`, `verdict` ("pass" | "fail" | "note"
     | "acknowledged" | "not applicable"), `value`, `unit`, `least` and `most` (SI, None where there are none), `guide`
     and `source` in it, `said` (a sentence), `command` that tests it ("" if none does), `reason` with which it is
@@ -95,24 +107,24 @@ def _sliding_speed(seal: Seal, limit) -> Finding:
     suited = [f"{name} (up to {60 * most:.0f} m/min)" for name, most in OTHER_SEALS.items() if speed <= most]
     if suited:
         sentence += f"; this speed would also suit {', '.join(suited)}"
-    return within(sentence, speed, most=limit, beyond=Verdict.NOTE, also_suited=suited)
+    return limit_finding(sentence, speed, most=limit, beyond=Verdict.NOTE, also_suited=suited)
 
 
 def _runout(seal: Seal, limit) -> Finding:
     """Pass up to the runout of its row; beyond the table's last speed no more than in its last row, and a note."""
     runout = seal.application.shaft_runout
     if runout is None:
-        return missing("application.shaft_runout")
+        return missing_keys("application.shaft_runout")
     speed = 60 * seal.sliding_speed
     most = next((allowed for fastest, allowed in limit if speed <= fastest), None)
     sentence = f"shaft runout {1e3 * runout:.4g} mm TIR at {speed:.4g} m/min"
     if most is not None:
-        return within(f"{sentence}, {1e3 * most:.4g} mm allowed", runout, most=most)
+        return limit_finding(f"{sentence}, {1e3 * most:.4g} mm allowed", runout, most=most)
     last, most = limit[-1]
     sentence += f", beyond the table, which ends with {1e3 * most:.4g} mm at {last:.0f} m/min"
     if runout > most:
-        return within(sentence, runout, most=most)
-    return within(sentence, runout, most=0.0, beyond=Verdict.NOTE)
+        return limit_finding(sentence, runout, most=most)
+    return limit_finding(sentence, runout, most=0.0, beyond=Verdict.NOTE)
 
 
 def _misalignment(seal: Seal, limit) -> Finding:
@@ -126,9 +138,9 @@ def _misalignment(seal: Seal, limit) -> Finding:
     tilts["application.face_runout"] = (seal.application.face_runout or 0.0) / seal.outer_diameter
     worst = max(tilts, key=tilts.get)
     if tilts[worst] == 0.0:
-        return missing(*tilts)
+        return missing_keys(*tilts)
     sentence = f"{worst} tilts a face by {1e6 * tilts[worst]:.4g} urad, up to {1e6 * limit:.0f} urad are usual"
-    return within(sentence, tilts[worst], most=limit)
+    return limit_finding(sentence, tilts[worst], most=limit)
 
 
 def _face_width(seal: Seal, limit) -> Finding:
@@ -136,7 +148,7 @@ def _face_width(seal: Seal, limit) -> Finding:
     and no limit.  Beyond the table a note."""
     bore, width = seal.application.bore, seal.face_width
     if bore is None:
-        return missing("application.bore")
+        return missing_keys("application.bore")
     bores, widths = limit
     sentence = f"face {1e3 * width:.4g} mm wide at a bore of {1e3 * bore:.4g} mm"
     if not bores[0] <= bore <= bores[-1]:
@@ -146,7 +158,7 @@ def _face_width(seal: Seal, limit) -> Finding:
     sentence += f"; {1e3 * usual:.4g} mm is usual"
     if width > (1 + NEAR) * usual:
         sentence += ": a wider face makes more heat"
-    return within(sentence, width, (1 - NEAR) * usual, (1 + NEAR) * usual, beyond=Verdict.NOTE, usual=usual)
+    return limit_finding(sentence, width, (1 - NEAR) * usual, (1 + NEAR) * usual, beyond=Verdict.NOTE, usual=usual)
 
 
 def _flatness(seal: Seal, limit) -> Finding:
@@ -154,9 +166,9 @@ def _flatness(seal: Seal, limit) -> Finding:
     heights = {"stator": _height(seal.scene.stator), "rotor": _height(seal.scene.rotor)}
     worst = max(heights, key=heights.get)
     if heights[worst] == 0.0:
-        return missing("stator.waviness", "rotor.waviness")
+        return missing_keys("stator.waviness", "rotor.waviness")
     sentence = f"the {worst}'s face is wavy by {1e6 * heights[worst]:.4g} um, faces are flat within {1e6 * limit:g} um"
-    return within(sentence, heights[worst], most=limit)
+    return limit_finding(sentence, heights[worst], most=limit)
 
 
 def _height(ring) -> float:
@@ -169,17 +181,17 @@ def _finish(seal: Seal, limit) -> Finding:
     """Pass up to 0.14 um: two faces of 0.1 um have sqrt(2) times as much together.  The scene's roughness is an rms
     one; a guide that averages reads some tenths less."""
     if seal.scene.contact is None:
-        return missing("contact.roughness")
+        return missing_keys("contact.roughness")
     roughness, most = seal.scene.contact.roughness, math.sqrt(2) * limit
     sentence = f"both faces are rough by {1e6 * roughness:.4g} um together; two of 0.1 um have {1e6 * most:.2g} um"
-    return within(sentence, roughness, most=most)
+    return limit_finding(sentence, roughness, most=most)
 
 
 def _film_thickness(seal: Seal, limit) -> Finding:
     """Pass from 1.25 to 2.5 um at the mean radius of the aligned faces; else a note: typical is no limit."""
     film = seal.film_thickness
     sentence = f"film {1e6 * film:.4g} um at the mean radius, typical are {1e6 * limit[0]:g} to {1e6 * limit[1]:g} um"
-    return within(sentence, film, *limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, film, *limit, beyond=Verdict.NOTE)
 
 
 def _leakage(seal: Seal, limit) -> Finding:
@@ -188,7 +200,7 @@ def _leakage(seal: Seal, limit) -> Finding:
         return other_seals("the film is a gas")
     film, own = seal.scene.film, seal.application.leakage_limit
     if initially(film.outer_pressure) == initially(film.inner_pressure):
-        return missing("film.outer_pressure", "film.inner_pressure")
+        return missing_keys("film.outer_pressure", "film.inner_pressure")
     goal, most = limit
     leakage, most = seal.leakage, most if own is None else own
     goal = min(goal, most)
@@ -198,8 +210,8 @@ def _leakage(seal: Seal, limit) -> Finding:
         f"the goal {goal / CC_PER_H:.4g} cc/h"
     )
     if leakage > most:
-        return within(sentence, leakage, most=most)
-    return within(sentence, leakage, most=goal, beyond=Verdict.NOTE)
+        return limit_finding(sentence, leakage, most=most)
+    return limit_finding(sentence, leakage, most=goal, beyond=Verdict.NOTE)
 
 
 def _lubricant_side(seal: Seal, limit) -> Finding:
@@ -210,14 +222,14 @@ def _lubricant_side(seal: Seal, limit) -> Finding:
         return other_seals("the film is a gas")
     rise = initially(film.outer_pressure) - initially(film.inner_pressure)
     if rise == 0.0:
-        return missing("film.outer_pressure", "film.inner_pressure")
+        return missing_keys("film.outer_pressure", "film.inner_pressure")
     if rise > limit:
         sentence = "sealed at the outer diameter: the centrifugal force keeps the lubricant there"
     else:
         sentence = (
             "sealed at the inner diameter: the centrifugal force throws the lubricant through the film, it may starve"
         )
-    return within(sentence, rise, least=limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, rise, least=limit, beyond=Verdict.NOTE)
 
 
 def _heat(seal: Seal, limit) -> Finding:
@@ -236,7 +248,7 @@ def _heat(seal: Seal, limit) -> Finding:
     sentence += f" at {60 * speed:.4g} m/min; faces that run dry would make {dry[0]:.4g} to {dry[1]:.4g} W"
     if full > dry[1] > 0.0:
         sentence += f": more than without it, {1e-4 * full / seal.face_area:.4g} W/cm^2 of face"
-        return within(sentence, full, most=dry[1], dry=dry, asperities=rough)
+        return limit_finding(sentence, full, most=dry[1], dry=dry, asperities=rough)
     return note(sentence, full, dry=dry, asperities=rough)
 
 
@@ -256,25 +268,25 @@ def _pressure_velocity(seal: Seal, limit) -> Finding:
 def _face_pressure(seal: Seal, limit) -> Finding:
     """Pass from 6.89 to 20.7 N/cm^2, spring force over the whole face."""
     if seal.spring_force is None:
-        return missing("closing.spring_force")
+        return missing_keys("closing.spring_force")
     (least, most), pressure = limit, seal.spring_force / seal.face_area
     sentence = f"the spring presses the faces with {pressure / 1e4:.4g} N/cm^2"
     sentence += f", usual are {least / 1e4:g} to {most / 1e4:g}"
-    return within(sentence, pressure, least, most)
+    return limit_finding(sentence, pressure, least, most)
 
 
 def _balance(seal: Seal, limit) -> Finding:
     """Pass up to 68.9 N/cm^2 with a balance (closing area over face area) of 1 or more, 689 N/cm^2 below."""
     pressure, balance = seal.sealed_pressure, seal.model.closing.balance_ratio
     if pressure == 0.0:
-        return missing("film.outer_pressure", "film.inner_pressure", "application.highest_pressure")
+        return missing_keys("film.outer_pressure", "film.inner_pressure", "application.highest_pressure")
     most, kind = (limit[0], "unbalanced") if balance >= 1.0 else (limit[1], "balanced")
     why = "" if seal.scene.closing.balance_ratio is not None else ", as the clearance asks for"
     sentence = (
         f"{pressure / 1e4:.4g} N/cm^2 sealed by a seal of balance {balance:.4g}{why}; {kind} seals take up to "
         f"{most / 1e4:.4g} N/cm^2"
     )
-    return within(sentence, pressure, most=most, balance=balance)
+    return limit_finding(sentence, pressure, most=most, balance=balance)
 
 
 def _hang_up(seal: Seal, limit) -> Finding:
@@ -283,14 +295,14 @@ def _hang_up(seal: Seal, limit) -> Finding:
     if scene.rotor.support or not scene.stator.support:
         return other_seals("the rotor floats, which carries its axial runout itself")
     if not scene.rotor.axial_runout:
-        return missing("rotor.axial_runout")
+        return missing_keys("rotor.axial_runout")
     if scene.closing.spring_force is None:
-        return missing("closing.spring_force")
+        return missing_keys("closing.spring_force")
     balance = followability(seal.model)
     numbers = {key: balance[key] for key in ("ring", "available", "needed", "friction", "inertia", "holds")}
     # To be equal is not enough.
     least = math.nextafter(balance["needed"], math.inf)
-    return within(balance["sentence"], balance["available"], least=least, **numbers)
+    return limit_finding(balance["sentence"], balance["available"], least=least, **numbers)
 
 
 def _axial_travel(seal: Seal, limit) -> Finding:
@@ -298,11 +310,11 @@ def _axial_travel(seal: Seal, limit) -> Finding:
     them take passes and what none of them does fails."""
     travel, kind = seal.application.axial_displacement, seal.application.spring
     if travel is None:
-        return missing("application.axial_displacement")
+        return missing_keys("application.axial_displacement")
     sentence = f"axial travel {1e3 * travel:.4g} mm"
     least_of_all, most_of_all = min(limit.values()), max(limit.values())
     if kind is None and least_of_all < travel <= most_of_all:
-        return missing("application.spring")
+        return missing_keys("application.spring")
     if kind is None:
         most, words = least_of_all if travel <= least_of_all else most_of_all, "springs take"
     else:
@@ -310,7 +322,7 @@ def _axial_travel(seal: Seal, limit) -> Finding:
     sentence += f", {words} up to {1e3 * most:.4g} mm"
     if travel > most_of_all:
         sentence += ": beyond it a seal that rides on the shaft"
-    return within(sentence, travel, most=most)
+    return limit_finding(sentence, travel, most=most)
 
 
 def _shaft_resonance(seal: Seal, limit) -> Finding:
@@ -318,7 +330,7 @@ def _shaft_resonance(seal: Seal, limit) -> Finding:
     the stator's carrier, where that turns."""
     bands = [tuple(speed / (2 * math.pi) for speed in seal.shaft_speeds)]
     if bands[0][1] == 0.0:
-        return missing("shaft.speed", "application.highest_speed")
+        return missing_keys("shaft.speed", "application.highest_speed")
     turning = [abs(speed) / (2 * math.pi) for speed in points(seal.scene.stator.speed)]
     if any(turning):
         bands.append((min(turning), max(turning)))
@@ -336,7 +348,7 @@ def _gear_resonance(seal: Seal, limit) -> Finding:
     bands += [(r.frequency[0], r.frequency[-1]) for r in (*housing.axial_random, *housing.angular_random)]
     bands += [(min(sweep.frequency), max(sweep.frequency)) for sweep in housing.sweeps]
     if not bands:
-        return missing("application.gear_mesh_frequency", "housing.axial")
+        return missing_keys("application.gear_mesh_frequency", "housing.axial")
     return resonances(seal.scene, bands, "what surrounds it")
 
 
@@ -347,18 +359,18 @@ def _seal_temperature(seal: Seal, limit) -> Finding:
     """Pass up to the material's temperature; a note where the guide's own numbers leave it open."""
     material, temperature = seal.application.secondary_seal_material, seal.highest_temperature
     if material is None:
-        return missing("application.secondary_seal_material")
+        return missing_keys("application.secondary_seal_material")
     if material not in limit:
         return other_seals("the rule knows nitrile and fluoroelastomer")
     if temperature is None:
-        return missing("application.highest_temperature")
+        return missing_keys("application.highest_temperature")
     sure, most = limit[material]
     sentence = f"{temperature:.4g} K at a secondary seal of {material}, good to {sure:g} K"
     if most > sure:
         sentence += f", at most {most:g} K"
     if sure < temperature <= most:
-        return within(sentence, temperature, most=sure, beyond=Verdict.NOTE)
-    return within(sentence, temperature, most=most)
+        return limit_finding(sentence, temperature, most=sure, beyond=Verdict.NOTE)
+    return limit_finding(sentence, temperature, most=most)
 
 
 def _coking(seal: Seal, limit) -> Finding:
@@ -367,17 +379,17 @@ def _coking(seal: Seal, limit) -> Finding:
         return other_seals("the film is a gas")
     temperature = seal.highest_temperature
     if temperature is None:
-        return missing("application.highest_temperature")
-    return within(f"{temperature:.4g} K, lubricants coke near {limit:g} K", temperature, most=limit)
+        return missing_keys("application.highest_temperature")
+    return limit_finding(f"{temperature:.4g} K, lubricants coke near {limit:g} K", temperature, most=limit)
 
 
 def _life(seal: Seal, limit) -> Finding:
     """Pass up to 1500 h, what seals were asked for; more is a note."""
     life = seal.application.life
     if life is None:
-        return missing("application.life")
+        return missing_keys("application.life")
     sentence = f"asked for {life / 3600:.4g} h between overhauls, seals of the guide for {limit / 3600:g} h"
-    return within(sentence, life, most=limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, life, most=limit, beyond=Verdict.NOTE)
 
 
 RUN, LOAD_SUPPORT, WEAR = "sealdyn run FILE", "sealdyn study load-support FILE", "sealdyn study wear FILE"

@@ -16,6 +16,7 @@ from ..faces import contact
 from ..faces.geometry import CLEARANCE, CONTACT_FORCE, DZ, FORCE
 from ..faces.waviness import lay_waves
 from ..numerics.piecewise_linear import initially
+from ..scene.scene import Scene
 
 # Newton's iterations of a step at most, their differences and what counts as solved, in the wave.
 MOST, APART, SOLVED = 25, 1e-5, 1e-8
@@ -23,7 +24,7 @@ MOST, APART, SOLVED = 25, 1e-5, 1e-8
 HALVINGS = 10
 
 
-def released(scene, net: float, start: float, duration: float, steps: int) -> tuple[np.ndarray, ...]:
+def release(scene: Scene, net: float, start: float, duration: float, steps: int) -> tuple[np.ndarray, ...]:
     """What becomes of an operating point when its wave is another one, `start` (m) in place of `net`: times (s), net
     waves (complex, m) and clearances (m), shapes (steps + 1,); implicit Euler's method with `steps` that grow towards
     the `duration` (s).

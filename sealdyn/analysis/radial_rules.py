@@ -6,9 +6,11 @@ import numpy as np
 
 from ..dynamics.intervals import largest_value
 from ..radial_seals.followers import followers_of
+from ..scenario.reader import Scenario
 from ..scene.application import RadialApplication
+from ..scene.radial import RadialScene
 from .design_rules import Rule, rows
-from .seal_figures import Finding, Verdict, other_seals, within
+from .seal_figures import Finding, Verdict, limit_finding, other_seals
 
 FOOT_PER_MINUTE, PSI = 0.3048 / 60.0, 6894.757
 # Table 3.2: total eccentricity (m) of lip seals without pressure, and the speed (m/s) that it allows.
@@ -26,14 +28,14 @@ SEGMENT_RUNOUT = np.array([0.0254e-3, 0.127e-3, 0.254e-3, 0.381e-3, 0.508e-3])
 SEGMENT_SPEED = np.array([4550.0, 3660.0, 2440.0, 1830.0, 1220.0]) / 60.0
 
 
-def findings(scenario) -> list[dict]:
+def findings(scenario: Scenario) -> list[dict]:
     """What every rule finds of the scenario of a radial seal: dicts as design_rules.findings."""
     scene, application = scenario.scene, scenario.application or RadialApplication()
     rules = CIRCUMFERENTIAL if scene.circumferential else RIBBED_LIP if application.hydrodynamic_lip else LIP
     return rows(rules, scene, application.acknowledge)
 
 
-def surface_speed(scene) -> float:
+def surface_speed(scene: RadialScene) -> float:
     """Of the shaft (m/s), at its fastest."""
     return largest_value(scene.shaft.speed) * scene.shaft.radius
 
@@ -46,19 +48,21 @@ def _lip_speed(scene, limit) -> Finding:
     sentence = f"{60 * speed:.4g} m/min with {1e3 * total:.3g} mm of offset and eccentricity"
     sentence += f"; experience allows {60 * allowed:.4g} m/min"
     if total > eccentricities[0]:
-        return within(f"{sentence}; the table ends at {1e3 * eccentricities[0]:.3g} mm", speed, most=0.0)
-    return within(sentence, speed, most=allowed)
+        return limit_finding(f"{sentence}; the table ends at {1e3 * eccentricities[0]:.3g} mm", speed, most=0.0)
+    return limit_finding(sentence, speed, most=allowed)
 
 
 def _lip_eccentricity(scene, limit) -> Finding:
     total = scene.shaft.eccentricity + scene.shaft.offset
-    return within(f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * limit:.3g} mm", total, most=limit)
+    return limit_finding(
+        f"{1e3 * total:.3g} mm of offset and eccentricity, below {1e3 * limit:.3g} mm", total, most=limit
+    )
 
 
 def _lip_load(scene, limit) -> Finding:
     load = _preload(scene)
     sentence = f"the lip presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
-    return within(sentence, load, *limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
 def _preload(scene) -> float:
@@ -73,9 +77,9 @@ def _lip_pressure(scene, limit) -> Finding:
     allowed = float(np.interp(pressure, pressures, speeds))
     if pressure > pressures[-1]:
         sentence = f"{1e-5 * pressure:.3g} bar; the table ends at 5 psi, 0.345 bar"
-        return within(sentence, pressure, most=float(pressures[-1]), unit="Pa")
+        return limit_finding(sentence, pressure, most=float(pressures[-1]), unit="Pa")
     sentence = f"{60 * speed:.4g} m/min at {1e-5 * pressure:.3g} bar; experience allows {60 * allowed:.4g} m/min"
-    return within(sentence, speed, most=allowed)
+    return limit_finding(sentence, speed, most=allowed)
 
 
 def _segment_speed(scene, limit) -> Finding:
@@ -84,31 +88,31 @@ def _segment_speed(scene, limit) -> Finding:
     allowed = float(np.interp(runout, runouts, speeds))
     sentence = f"{60 * speed:.4g} m/min with {1e3 * runout:.3g} mm TIR; experience allows {60 * allowed:.4g} m/min"
     if runout > runouts[-1]:
-        return within(sentence + "; the table ends at 0.508 mm", runout, most=float(runouts[-1]), unit="m")
-    return within(sentence, speed, most=allowed)
+        return limit_finding(sentence + "; the table ends at 0.508 mm", runout, most=float(runouts[-1]), unit="m")
+    return limit_finding(sentence, speed, most=allowed)
 
 
 def _segment_runout(scene, limit) -> Finding:
     runout, most = 2.0 * scene.shaft.eccentricity, limit * 2.0 * scene.shaft.radius
     sentence = f"{1e3 * runout:.3g} mm TIR, {limit:g} of the diameter are {1e3 * most:.3g} mm"
-    return within(sentence, runout, most=most, beyond=Verdict.NOTE)
+    return limit_finding(sentence, runout, most=most, beyond=Verdict.NOTE)
 
 
 def _garter_load(scene, limit) -> Finding:
     load = _preload(scene)
     sentence = f"the garter spring presses with {load:.4g} N/m, usual are {limit[0]:g} to {limit[1]:g}"
-    return within(sentence, load, *limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
 def _axial_load(scene, limit) -> Finding:
     load = scene.circumferential.axial_force / (2.0 * math.pi * scene.shaft.radius)
     sentence = f"axial springs press with {load:.4g} N/m, usual are about 70 (here {limit[0]:g} to {limit[1]:g})"
-    return within(sentence, load, *limit, beyond=Verdict.NOTE)
+    return limit_finding(sentence, load, *limit, beyond=Verdict.NOTE)
 
 
 def _segment_pressure(scene, limit) -> Finding:
     pressure = scene.circumferential.pressure_difference
-    return within(f"{1e-4 * pressure:.3g} N/cm^2, below {1e-4 * limit:.3g} (1 psi)", pressure, most=limit)
+    return limit_finding(f"{1e-4 * pressure:.3g} N/cm^2, below {1e-4 * limit:.3g} (1 psi)", pressure, most=limit)
 
 
 def _hang_up(scene, limit) -> Finding:
@@ -116,7 +120,7 @@ def _hang_up(scene, limit) -> Finding:
     sentence = f"the garter spring presses a segment with {followers.preload:.3g} N"
     sentence += f", its flange holds it with up to {followers.friction:.3g} N"
     # To be equal is not enough.
-    return within(sentence, followers.friction, most=followers.preload * (1.0 - 1e-12))
+    return limit_finding(sentence, followers.friction, most=followers.preload * (1.0 - 1e-12))
 
 
 def _other_lips(sentence: str):

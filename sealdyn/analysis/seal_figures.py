@@ -9,6 +9,7 @@ import numpy as np
 
 from ..dynamics.interface import rest_state
 from ..dynamics.intervals import constant_and_slope, largest_value
+from ..dynamics.model import Model
 from ..faces.contact import contact_load_and_friction
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, FLOW_OUTER, SPIN_DIFFERENCE
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
@@ -51,7 +52,7 @@ class Finding:
     numbers: dict = field(default_factory=dict)
 
 
-def within(
+def limit_finding(
     sentence: str, value: float, least=None, most=None, beyond: Verdict = Verdict.FAIL, unit=None, **numbers
 ) -> Finding:
     """A figure against its limits, `beyond` which it gets that verdict."""
@@ -64,7 +65,7 @@ def note(sentence: str, value: float, **numbers) -> Finding:
     return Finding(Verdict.NOTE, sentence, value, numbers=numbers)
 
 
-def missing(*keys: str) -> Finding:
+def missing_keys(*keys: str) -> Finding:
     """No verdict without one of these keys."""
     return Finding(Verdict.NOT_APPLICABLE, f"needs {' or '.join(keys)}", numbers={"needs": [*keys]})
 
@@ -80,7 +81,7 @@ class Seal:
 
     scene: Scene
     application: Application
-    model: object
+    model: Model
 
     @property
     def outer_diameter(self) -> float:
@@ -190,7 +191,7 @@ def _at(quantity, t: float) -> float:
 # --- rings on their springs and dampers, without the film ------------------------------------------------
 
 
-def ring_modes(scene) -> list[dict]:
+def ring_modes(scene: Scene) -> list[dict]:
     """Modes of the floating rings at rest: `ring`, `motion` ("axial" | "tilt"), `frequency` (Hz) and `damping_ratio`;
     none of a ring without inertia or springs."""
     modes = []
@@ -208,14 +209,14 @@ def ring_modes(scene) -> list[dict]:
     return modes
 
 
-def resonances(scene, bands: list[tuple[float, float]], what: str) -> Finding:
+def resonances(scene: Scene, bands: list[tuple[float, float]], what: str) -> Finding:
     """Fail if a mode that has a resonance lies in or near one of the `bands` (Hz, Hz) of `what` shakes the seal; an
     undamped mode elsewhere is a note, since flexibly mounted parts shall be damped."""
     modes = ring_modes(scene)
     if not modes:
         keys = ("mass", "transverse_inertia", "support")
         floating = [n for n, ring in zip(RING_NAMES, (scene.stator, scene.rotor), strict=True) if ring.support]
-        return missing(*(f"{name}.{key}" for name in floating for key in keys))
+        return missing_keys(*(f"{name}.{key}" for name in floating for key in keys))
     distance, nearest, band = min(
         ((_distance(mode["frequency"], band), mode, band) for mode in modes for band in bands),
         key=lambda one: (one[1]["damping_ratio"] >= NO_PEAK, one[0]),
@@ -244,7 +245,7 @@ def _distance(frequency: float, band: tuple[float, float]) -> float:
 # --- hang-up ---------------------------------------------------------------------------------------------
 
 
-def followability(model) -> dict | None:
+def followability(model: Model) -> dict | None:
     """Whether the spring keeps a flexible stator on a rotor that runs out axially (hang-up).
 
     The ring follows z_r = sum of a_n cos(n phi + e_n) if what closes it beats the friction of its secondary seal, its

@@ -60,7 +60,7 @@ def plateaus(roughness, truncation, strength, shear) -> Plateaus:
     return Plateaus(truncation * own, float(ndtr(-truncation)) ** 2, strength, shear)
 
 
-def carried(film, waves, speed, faces: Plateaus, clearance) -> dict[str, float]:
+def load_shares(film, waves, speed, faces: Plateaus, clearance) -> dict[str, float]:
     """Forces `film_force` and `contact_force` (N), `torque` (N m) and `leakage` (m^3/s, outer to inner radius) of a
     `Film` table between these faces at a clearance (m), the rotor turning at `speed` (rad/s) below a `waves`
     (Waviness) of the stator.  Raises ValueError where no cavities are found."""

@@ -30,22 +30,22 @@ def brief(name: str, rows: list[dict]) -> list[dict]:
     """What results.json keeps of the rows of a source: `where` in it and the columns KEPT, deviations to two digits."""
     source = source_module(name)
     return [
-        {"where": source.about(row), **{key: row[key] for key in KEPT},
+        {"where": source.place(row), **{key: row[key] for key in KEPT},
          "deviation": None if row["deviation"] is None else float(f"{row['deviation']:.2g}")}
         for row in rows
     ]  # fmt: skip
 
 
-def kept() -> dict[str, list[dict]]:
+def stored_rows() -> dict[str, list[dict]]:
     """The rows of every source as they were last computed (`brief`)."""
     return json.loads(files(sources).joinpath("results.json").read_text(encoding="utf-8"))
 
 
-def of_film(film: str) -> list[dict]:
+def sources_of_film(film: str) -> list[dict]:
     """Sources that a film was held against: name, title, what of a seal each `covers`, `command` that computes it anew,
-    `counts` of its verdicts and its rows (`kept`)."""
+    `counts` of its verdicts and its rows (`stored_rows`)."""
     found = []
-    for name, rows in kept().items():
+    for name, rows in stored_rows().items():
         source, verdicts = source_module(name), [row["verdict"] for row in rows]
         if film == source.FILM:
             counts = {verdict: verdicts.count(verdict) for verdict in dict.fromkeys(verdicts)}
@@ -64,4 +64,4 @@ def report(found: dict[str, list[dict]]) -> None:
         for line in cells:
             print("  ".join(text.ljust(width) for text, width in zip(line, widths, strict=True)).rstrip())
         for remark in dict.fromkeys(row["remark"] for row in rows if row["remark"]):
-            print(f"{', '.join(source.about(row) for row in rows if row['remark'] == remark)}: {remark}")
+            print(f"{', '.join(source.place(row) for row in rows if row['remark'] == remark)}: {remark}")

@@ -30,7 +30,7 @@ def open_archive(path: str | os.PathLike) -> xarray.Dataset:
     if not is_study(path):
         return open_run(path)
     study = read_study(path)
-    data = answer_as_dataset(study["answer"], study.get("units", {}), study.get("along", {}))
+    data = answer_as_dataset(study["answer"], study["units"], study["along"])
     return data.assign_attrs({name: study[name] for name in ("name", "version", "scenario")})
 
 
@@ -41,7 +41,7 @@ def answer_as_dataset(answer: dict, units: dict, along: dict) -> xarray.Dataset:
 
 def answer_tables(study: dict) -> dict[str, dict[str, np.ndarray]]:
     """Every table of what `read_study` returns, {table: {"h_min [m]": column}}, columns of equal length (tables.py)."""
-    found = answer_variables(study["answer"], study.get("units", {}), study.get("along", {}))
+    found = answer_variables(study["answer"], study["units"], study["along"])
     named = tables(found, study["study"].replace("_", "-"))
     return {name: long_columns(members, found, name) for name, members in named.items()}
 

@@ -71,13 +71,13 @@ class ArchiveError(Exception):
     """
 
 
-def link_target(path) -> Path:
+def link_target(path: str | os.PathLike) -> Path:
     """Where an archive really is: of a symlink its target."""
     path = Path(path)
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
-def partial_path(path) -> Path:
+def partial_path(path: str | os.PathLike) -> Path:
     """Where a run that is to become `path` lives until it is complete."""
     path = link_target(path)
     return path.with_name(path.stem + ".partial.h5")
@@ -86,7 +86,7 @@ def partial_path(path) -> Path:
 # --- soundness -------------------------------------------------------------------------------------------
 
 
-def mark_sound(path) -> None:
+def mark_sound(path: str | os.PathLike) -> None:
     """Note that this process wrote the file, and wrote it well."""
     _sound.add(_identity(path))
 
@@ -101,7 +101,7 @@ def end_writing(file) -> None:
     _writing.discard(_identity(file.fileno())[:2])
 
 
-def must_be_sound(path) -> None:
+def must_be_sound(path: str | os.PathLike) -> None:
     """Raises ArchiveError for a file that holds links to elsewhere, datasets in other files, types or sizes that no
     archive has, or that HDF5 cannot read; FileNotFoundError for one that is not there (any more)."""
     identity = _identity(path)
@@ -137,7 +137,7 @@ class Unsound(Exception):
     """What is wrong, in words."""
 
 
-def look_through(path) -> None:
+def look_through(path: str | os.PathLike) -> None:
     """All of a file that is not the values of its series; raises Unsound, or whatever HDF5 raises."""
     with h5py.File(path, "r") as file:
         _look(file, "", set(), 0)
@@ -282,7 +282,7 @@ def _plain(value):
 
 
 @contextmanager
-def only_writer(path):
+def only_writer(path: str | os.PathLike):
     """While the block lasts nobody else writes the archive `path`, its partial file or its journal, in this process or
     another one of this machine; gives where it really is.  Raises ArchiveError where somebody does, and where no file
     can be."""
@@ -352,7 +352,7 @@ def _assure(path: Path, size: int) -> None:
 # --- files of anybody's ----------------------------------------------------------------------------------
 
 
-def read_columns(path, names: tuple[str, ...], most: int) -> dict[str, tuple[list[float], str]]:
+def read_columns(path: str | os.PathLike, names: tuple[str, ...], most: int) -> dict[str, tuple[list[float], str]]:
     """{name: (values, unit)} of those of the `names` that are datasets at the root of an HDF5 file; `unit` is their
     attribute `units`, empty without.  Raises ArchiveError for another shape than one row of at most `most` numbers."""
     found = {}

@@ -4,6 +4,7 @@ A file that is still written, or was left by a killed run, holds rows up to its 
 """
 
 import json
+import os
 import zlib
 from contextlib import contextmanager
 from pathlib import Path
@@ -38,7 +39,7 @@ def from_json(text: str):
 
 
 @contextmanager
-def opened_run(path):
+def opened_run(path: str | os.PathLike):
     """The file at `path` (or the run that is still to become it) and its newest whole record."""
     with _open_file(Path(path)) as file:
         must_be_readable(file, path, FORMAT, "a sealdyn archive")
@@ -124,7 +125,7 @@ def _read_events(group) -> list[dict]:
     return [dict(zip(columns, row, strict=True)) | json.loads(d) for row, d in zip(rows, details, strict=True)]
 
 
-def read_info(path) -> dict:
+def read_info(path: str | os.PathLike) -> dict:
     """Everything but the series and fields: status, message, summary, scenario, resolved, rows, instants, restart,
     events, series and fields (name -> `Series`), grid (dimension of the fields -> length) and the other root
     attributes.  Works while the run is written."""
@@ -150,13 +151,13 @@ def _series(attributes) -> Series:
     return Series(*(attributes[name] for name in Series._fields))
 
 
-def last_state(path) -> dict:
+def last_state(path: str | os.PathLike) -> dict:
     """What a continued run starts from: the state given with the last row that counts.  Raises `ArchiveError`."""
     with opened_run(path) as (_, record):
         return record["state"]
 
 
-def column(path, name: str, rows: slice = slice(None)) -> np.ndarray:
+def column(path: str | os.PathLike, name: str, rows: slice = slice(None)) -> np.ndarray:
     """One series (rows,), float64, SI, or a slice of it, without loading the rest.  Raises `ArchiveError`."""
     with opened_run(path) as (file, record):
         if scale_of(file, name) != "time":
@@ -164,7 +165,7 @@ def column(path, name: str, rows: slice = slice(None)) -> np.ndarray:
         return file[name][slice(*rows.indices(record["rows"]))]
 
 
-def field(path, name: str) -> np.ndarray:
+def field(path: str | os.PathLike, name: str) -> np.ndarray:
     """One field (instants, ...), the `field_time` of its instants (instants,) or a coordinate of its grid; SI."""
     with opened_run(path) as (file, record):
         scale = scale_of(file, name)
@@ -173,7 +174,7 @@ def field(path, name: str) -> np.ndarray:
         return file[name][: record["instants"]] if scale == FIELD_TIME else file[name][()]
 
 
-def open_run(path):
+def open_run(path: str | os.PathLike):
     """The archive as a lazily loaded `xarray.Dataset`: series over `time` with units, fields over `field_time` and
     their grid; `attrs` hold the scenario text, status, message, and `resolved` and `summary` as JSON."""
     import xarray

@@ -33,7 +33,14 @@ TEXTS = ("name", "question", "scenario", "message")
 
 
 def write_study(
-    path, scenario_text: str, resolved: dict, meta: dict, answer: dict, units: dict, along=(), panels=()
+    path: str | os.PathLike,
+    scenario_text: str,
+    resolved: dict,
+    meta: dict,
+    answer: dict,
+    units: dict,
+    along=(),
+    panels=(),
 ) -> Path:
     """Write the answer of a study as netCDF-4: each of its columns (`tables.answer_variables`, to which `units` and
     `along` belong) a dataset of the root group with its dimensions, coordinates, units and long name.  The scenario's
@@ -130,7 +137,7 @@ def _scale(file, name: str, length: int, otherwise: str):
     raise ValueError(f"{name} is no dimension of {length}")
 
 
-def is_study(path) -> bool:
+def is_study(path: str | os.PathLike) -> bool:
     """Whether there is the file of a study at `path`, of this format or another."""
     try:
         must_be_sound(path)
@@ -140,7 +147,7 @@ def is_study(path) -> bool:
         return False
 
 
-def read_study(path) -> dict:
+def read_study(path: str | os.PathLike) -> dict:
     """Everything of a study's file: `answer`, `panels`, `scenario`, `resolved`, and the other root attributes (JSON
     ones decoded).  Raises ArchiveError."""
     path = Path(path)
@@ -160,12 +167,11 @@ def read_study(path) -> dict:
                 info[name] = value
             for name in ("answer", "panels"):
                 info[name] = json.loads(file[f"json/{name}"].asstr()[()])
-            info["written"] = info["answer"].get("written", {}) if isinstance(info["answer"], dict) else {}
             if not isinstance(info["answer"], dict) or not all(isinstance(info[n], str) for n in ("study", "scenario")):
                 raise TypeError("its answer is no table, or its scenario no text")
-            if not all(isinstance(info.get(name, {}), dict) for name in ("units", "along")):
+            if not all(isinstance(info[name], dict) for name in ("units", "along")):
                 raise TypeError("its units or dimensions are no table")
-            return info
+            return {**info, "written": info["answer"].get("written", {})}
     except READING_ERRORS as error:
         words = " ".join(str(error).split())[:200]
         raise ArchiveError(f"{path}: damaged ({words or type(error).__name__})") from error

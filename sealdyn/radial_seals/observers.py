@@ -105,7 +105,7 @@ SERIES = {
     "shaft_angle": ("rad", "shaft angle", "deg", 180 / math.pi),
     "shaft_speed": ("rad/s", "shaft speed", "rpm", 30 / math.pi),
     "largest_gap": ("m", "largest gap between seal and shaft", "µm", 1e6),
-    "contact_share": ("", "share of the followers that ride on the shaft", "%", 100.0),
+    "contact_share": ("1", "share of the followers that ride on the shaft", "%", 100.0),
     "least_load": ("N", "least load of a follower that rides, 0 if none does", "N", 1.0),
     "load": ("N", "load of all followers on the shaft", "N", 1.0),
     "friction_torque": ("N m", "friction torque on the shaft", "mN m", 1e3),

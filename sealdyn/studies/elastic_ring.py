@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from ..analysis.elastic_ring import released
+from ..analysis.elastic_ring import release
 from ..dynamics.elastic_ring import OperatingPoint, operating_point, operating_points, order_of, with_cells_of
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
@@ -92,7 +92,7 @@ def _let_go(scene, settings, point, holds) -> dict:
     ways = []
     for share in (1.0 - settings.disturbance, 1.0 + settings.disturbance):
         try:
-            time, wave, clearance = released(scene, point.net, share * point.net, settings.duration, STEPS)
+            time, wave, clearance = release(scene, point.net, share * point.net, settings.duration, STEPS)
         except ValueError as reason:
             ways.append({"from": share * point.net, "failed": str(reason)})
             continue

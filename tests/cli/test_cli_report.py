@@ -8,7 +8,7 @@ import pytest
 from command import REFERENCE, sealdyn
 from PIL import Image
 
-from sealdyn.analysis.validation import of_film
+from sealdyn.analysis.validation import sources_of_film
 from sealdyn.report.review import told
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -79,7 +79,7 @@ def test_it_says_what_the_program_says(folder):
 def test_it_shows_what_the_film_was_held_against(folder):
     """The reference run has the radial film: Ludwig and Allen, number by number."""
     text = " ".join(Page((folder / "review.html").read_text()).text.split())
-    (source,) = of_film("radial")
+    (source,) = sources_of_film("radial")
     assert "Validation of the film radial" in text and source["command"] in text
     assert f"{len(source['rows'])} numbers" in text and text.count("Validation of the film") == 1
     assert all(" ".join(row["where"].split()) in text for row in source["rows"])

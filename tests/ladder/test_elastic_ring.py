@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from sealdyn.analysis.elastic_ring import released
+from sealdyn.analysis.elastic_ring import release
 from sealdyn.analysis.sources import lebeck_1979
 from sealdyn.dynamics.elastic_ring import at_rest, operating_point, operating_points
 from sealdyn.scene.rings import ElasticRing
@@ -78,7 +78,7 @@ def test_let_go_they_do_what_the_slope_says(three_waves):
     scene, found = three_waves
     nets = [point.net for point, _ in found]
     for (point, holds), share in zip(found, (1.3, 0.97, 0.8), strict=True):
-        time, wave, clearance = released(scene, point.net, share * point.net, 1.0, 60)
+        time, wave, clearance = release(scene, point.net, share * point.net, 1.0, 60)
         end, others = abs(wave[-1]), [net for net in nets if net != point.net]
         assert time[-1] == 1.0 and clearance[-1] > 0.0
         near = [point.net] if holds else others

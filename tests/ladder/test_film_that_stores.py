@@ -11,7 +11,7 @@ from radial_cells import film_of
 from scenes import CLEARANCE, R_I, R_O, SPEED, SUPPORT, TILT_SCALE, film, fmr, fms, fmsr, ring, run
 from scipy.linalg import eig
 
-from sealdyn.analysis.whirl.time_domain import fitted
+from sealdyn.analysis.whirl.time_domain import fit_growth
 from sealdyn.dynamics import modes, whirl_speeds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic
@@ -149,7 +149,7 @@ def test_whirl_between_the_two_thresholds_goes_as_the_film_at_its_frequency_has_
     found = run(scene, 16, 1e-8, "ida", model_class=partial(Model, film=film_of(12, 8, STORING)))
     linear = found.model.linear_scene()
     assert modes.verdict(linear.modes()) != modes.verdict(linear.at_frequency(0.0).modes())
-    rate, spread = fitted(found.times, found.tilt("stator"))
+    rate, spread = fit_growth(found.times, found.tilt("stator"))
     assert rate == pytest.approx(linear.modes()[0].value.real, rel=1e-4) and spread < 1e-4 * abs(rate)
 
 

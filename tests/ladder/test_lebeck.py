@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
-from sealdyn.analysis.truncated_heights import carried, plateaus
+from sealdyn.analysis.truncated_heights import load_shares, plateaus
 from sealdyn.dynamics.cells import with_cells
 from sealdyn.dynamics.film_modes import even
 from sealdyn.dynamics.interface import opening_parts
@@ -86,7 +86,7 @@ def test_plane_faces_with_plateaus(clearance, share, lowest):
         cavitation_pressure=0.0, model="reynolds", reynolds=Reynolds(cells_r=40, cells_theta=8, sectors=8),
     )  # fmt: skip
     faces = plateaus(1.66e-7, 1.5, 1e8, 1e7)
-    found = carried(film, Waviness(order=3, amplitude=1e-15), 100.0, faces, clearance)
+    found = load_shares(film, Waviness(order=3, amplitude=1e-15), 100.0, faces, clearance)
     log, area = math.log(0.05 / 0.045), math.pi * (0.05**2 - 0.045**2)
     touching = share * (0.5 * math.erfc(1.5 / 2**0.5)) ** 2
     force = 1e5 * math.pi * (0.05**2 - (0.05**2 - 0.045**2) / (2.0 * log))

@@ -13,7 +13,7 @@ from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
-from sealdyn.analysis.whirl.mode_over_speed import along
+from sealdyn.analysis.whirl.mode_over_speed import tilt_mode
 from sealdyn.dynamics import whirl_speeds
 from sealdyn.dynamics.whirl_speeds import one_by_one
 from sealdyn.numerics.order_tracking import centres, tracked
@@ -61,7 +61,7 @@ def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     """The trip past the threshold and back, and the mode along it."""
     ready = free_model(asked.scene, 1000.0)
     crossing = whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
-    mode = along(ready, 0.9 * crossing, 1.05 * crossing, crossing)
+    mode = tilt_mode(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
     return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
 
@@ -154,7 +154,7 @@ def test_what_forcing_adds_goes_with_its_square():
 def test_the_factor_of_one_ring_is_a_square_root():
     """(2 lambda + D/I)**(-1/2) of the flexible stator, whose damping does not change with the speed."""
     ready = free_model(scenario().scene, 1000.0)
-    mode = along(ready, 4000.0, 8000.0, 5890.0)
+    mode = tilt_mode(ready, 4000.0, 8000.0, 5890.0)
     speeds = np.linspace(4000.0, 8000.0, 9)
     d = (SUPPORT_D + FILM_D) / INERTIA
     roots = [np.log(abs(2 * whirl(stator, w) + d)) for w in speeds]

@@ -10,7 +10,7 @@ import pytest
 from sealdyn import closed_form
 from sealdyn import films as films_there_are
 from sealdyn.analysis.sources import green_1989, ludwig_allen, zuk_1972
-from sealdyn.analysis.validation import brief, kept, of_film, report, source_module, source_names
+from sealdyn.analysis.validation import brief, report, source_module, source_names, sources_of_film, stored_rows
 from sealdyn.closed_form import zuk_1972 as zuk
 
 COMMON = {"source", "quantity", "published", "deviation", "roads_apart", "verdict", "remark"}
@@ -153,15 +153,17 @@ def test_another_group_is_not_the_print(monkeypatch):
 
 
 def test_every_source_is_kept_for_pages_with_its_film():
-    assert list(kept()) == source_names()
+    assert list(stored_rows()) == source_names()
     films = {source_module(name).FILM for name in source_names()}
     assert films <= {module.name for module in pkgutil.iter_modules(films_there_are.__path__)}
-    assert sum(len(of_film(film)) for film in films) == len(source_names()) and of_film("profiled") == []
+    assert (
+        sum(len(sources_of_film(film)) for film in films) == len(source_names()) and sources_of_film("profiled") == []
+    )
 
 
 def same_as_kept(name, rows):
     """Whether what is kept of a source is what was just computed; deviations to a thousandth."""
-    now, before = brief(name, rows), kept()[name]
+    now, before = brief(name, rows), stored_rows()[name]
     for new, old in zip(now, before, strict=True):
         assert {**new, "deviation": 0, "remark": ""} == {**old, "deviation": 0, "remark": ""}
         assert (new["deviation"] is None) == (old["deviation"] is None)

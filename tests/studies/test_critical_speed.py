@@ -11,7 +11,7 @@ from oracles import tilt_roots
 from scenes import BARRIER, INERTIA, SUPPORT, fmr, fms
 
 from sealdyn.analysis.whirl import free_model, growth_rate, time_domain, tipping_disturbance
-from sealdyn.analysis.whirl.time_domain import followed
+from sealdyn.analysis.whirl.time_domain import tilt_in_time
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import critical_speed
@@ -159,11 +159,11 @@ COUNTER = ["stator.speed=-5000"]
 def test_growth_is_measured_over_turns_of_the_whirl_where_it_is_faster():
     path = Path(__file__).parents[2] / "scenarios" / "fmsr_both_flexible.toml"
     scene = parse_scenario(path.read_text(), "fmsr", COUNTER).scene
-    run = followed(scene, 72.0, 20, "adams", 1e-7, 1e-7)[3]
+    run = tilt_in_time(scene, 72.0, 20, "adams", 1e-7, 1e-7)[3]
     whirl = max(run.model.linear_scene().modes(), key=lambda m: m.value.real).value.imag
     assert run.duration == pytest.approx(20 * 2 * math.pi / abs(whirl), rel=1e-6) and abs(whirl) > 1400
     # A shaft at rest has a whirl, too.
-    assert followed(scene, 0.0, 2, "adams", 1e-7, 1e-7)[1][-1] < 0.01
+    assert tilt_in_time(scene, 0.0, 2, "adams", 1e-7, 1e-7)[1][-1] < 0.01
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from sealdyn.analysis import continuation
 from sealdyn.analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from sealdyn.analysis.shooting import Shooter
 from sealdyn.analysis.whirl import RotatingWave, free_model, least_damped
-from sealdyn.analysis.whirl.time_domain import settles
+from sealdyn.analysis.whirl.time_domain import whirl_fate
 from sealdyn.numerics import time_series
 from sealdyn.report.charts import study_rub
 from sealdyn.scenario.errors import ScenarioError
@@ -127,7 +127,7 @@ def test_tangents_are_differences_of_the_map():
 def test_whirl_beyond_the_critical_speed_ends_in_contact():
     """Below 5588.7 rad/s it dies; above it grows into the faces, and the reference seal's asperities give way."""
     scene = continuation.frozen_at_end(read("rub").scene)
-    below, above = settles(scene, 5400.0), settles(scene, 6200.0)
+    below, above = whirl_fate(scene, 5400.0), whirl_fate(scene, 6200.0)
     assert below["fate"] == "decays"
     assert below["first_contact"] is None
     assert above["fate"] == "collapse"
@@ -140,7 +140,7 @@ def test_whirl_that_settles_in_a_rub_is_a_relative_equilibrium():
     as a point at rest in the frame that turns with the whirl, has this shaft speed and is stable."""
     hard = 'contact={roughness="1 um", compressive_strength="5 GPa"}'
     scene, speed = read("fms_reference", hard).scene, 5700.0
-    found = settles(scene, speed)
+    found = whirl_fate(scene, speed)
     assert found["fate"] == "rub"
     assert found["contact_share"] == 1.0
     low, high = found["amplitude"]

@@ -18,7 +18,7 @@ What every source offers:
             and what else tells the rows of this source apart.
 `HEAD`      headings of its table.
 `cells(row)`  a line of it, a str per heading.
-`about(row)`  which line a remark speaks of, a few words.
+`place(row)`  which line a remark speaks of, a few words.
 
 results.json keeps the rows for pages that must be quick: tests/benchmark/validation_results.py writes it.
 """

@@ -186,7 +186,7 @@ def cells(row: dict) -> tuple[str, ...]:
     )
 
 
-def about(row: dict) -> str:
+def place(row: dict) -> str:
     """Which line a remark speaks of."""
     return f"{row['arrangement']} c={row['inertia_ratio'] or '-'} {row['quantity'].replace('_', ' ')}"
 

@@ -117,6 +117,6 @@ def cells(row: dict) -> tuple[str, ...]:
     )
 
 
-def about(row: dict) -> str:
+def place(row: dict) -> str:
     """Which line a remark speaks of."""
     return f"{row['order']} waves, {row['quantity'].replace('_', ' ')}"

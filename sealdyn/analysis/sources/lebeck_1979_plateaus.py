@@ -6,7 +6,7 @@ from scipy.optimize import brentq
 
 from ...scene.contact import Waviness
 from ...scene.film import Film, Reynolds
-from ..truncated_heights import carried, plateaus
+from ..truncated_heights import load_shares, plateaus
 from .lebeck_1979 import BALANCE, INNER, OUTER, SPEED, TOLERANCE, UNEXPLAINED, VISCOSITY
 
 TITLE = "Lebeck, Teale & Pierce (1979), Table 2-7, wavy seal, Gaussian heights with plateaus; film of 24 x 180 a wave"
@@ -47,7 +47,7 @@ def balances(truncation: float, cells=CELLS) -> list[dict[str, float]]:
     closing = BALANCE * film.outer_pressure * math.pi * (OUTER**2 - INNER**2)
 
     def at(clearance):
-        return carried(film, waves, SPEED, faces, clearance * ROUGHNESS)
+        return load_shares(film, waves, SPEED, faces, clearance * ROUGHNESS)
 
     def excess(clearance):
         found = at(clearance)
@@ -112,6 +112,6 @@ def cells(row: dict) -> tuple[str, ...]:
     )
 
 
-def about(row: dict) -> str:
+def place(row: dict) -> str:
     """Which line a remark speaks of."""
     return f"{row['truncation']:.2f}, {row['quantity'].replace('_', ' ')}"

@@ -94,6 +94,6 @@ def cells(row: dict) -> tuple[str, ...]:
     )
 
 
-def about(row: dict) -> str:
+def place(row: dict) -> str:
     """Which line a remark speaks of."""
     return f"F_s/F_d={row['force_ratio']:g} {row['quantity'].replace('_', ' ')}"

@@ -164,7 +164,7 @@ def cells(row: dict) -> tuple[str, ...]:
     )
 
 
-def about(row: dict) -> str:
+def place(row: dict) -> str:
     """Which line a remark speaks of."""
     tilt, film, quantity, *_ = cells(row)
     return f"{tilt} mrad {film} mil {quantity.split(',')[0]}"

@@ -2,7 +2,7 @@
 (time_domain.py)."""
 
 from .rotating_wave import RotatingWave, Whirl, branch, contact_tilt_aligned, free_model, least_damped
-from .time_domain import TOO_SLOW, bounded_or_not, followed, growth_rate, linear_growth, tipping_disturbance
+from .time_domain import TOO_SLOW, bounded_or_not, growth_rate, linear_growth, tilt_in_time, tipping_disturbance
 
 __all__ = [
     "TOO_SLOW",
@@ -11,10 +11,10 @@ __all__ = [
     "bounded_or_not",
     "branch",
     "contact_tilt_aligned",
-    "followed",
     "free_model",
     "growth_rate",
     "least_damped",
     "linear_growth",
+    "tilt_in_time",
     "tipping_disturbance",
 ]

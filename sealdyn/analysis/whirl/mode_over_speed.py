@@ -20,6 +20,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.linalg import eig
 
+from ...dynamics.model import Model
+
 POINTS = 121
 
 
@@ -63,7 +65,7 @@ class ModeOverSpeed:
         return self._factor(high) - self._factor(low)
 
 
-def along(model, low: float, high: float, at: float, interval=None) -> ModeOverSpeed:
+def tilt_mode(model: Model, low: float, high: float, at: float, interval=None) -> ModeOverSpeed:
     """The tilt mode that is least damped at the speed `at` (rad/s), over speeds from low to high.
     Raises ValueError for a scene with a massless ring or a film that stores."""
     if not np.all(np.diag(model.linear_scene(interval).mass) > 0):
@@ -105,7 +107,7 @@ def _turning(linear):
     return [np.array(part) for part in zip(*found, strict=True)]
 
 
-def modal_disturbance(model, mode: ModeOverSpeed, speed: float, amplitude: float) -> np.ndarray:
+def modal_disturbance(model: Model, mode: ModeOverSpeed, speed: float, amplitude: float) -> np.ndarray:
     """Change of the unknowns (size,) that adds a whirl of this mode with the relative tilt `amplitude` (rad)."""
     k = int(np.argmin(np.abs(mode.speeds - speed)))
     vector, value, kept = mode.vectors[k], mode.values[k], model.unknowns.among_three()

@@ -18,6 +18,7 @@ from ...dynamics.imposed_motion import ROTOR_SPEED
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...faces.geometry import smallest_gap
+from ...scene.scene import Scene
 from ...scene.variants import frozen_at_start, unforced
 
 SPEED_AT = equations.LEG_AT + ROTOR_SPEED
@@ -41,7 +42,7 @@ class Whirl:
     y: np.ndarray
 
 
-def free_model(scene, speed: float, accuracy: float = 1e-8) -> Model:
+def free_model(scene: Scene, speed: float, accuracy: float = 1e-8) -> Model:
     """Model of the unforced scene at a speed (rad/s), its film evaluated to `accuracy`, displacements counted from
     where the film holds the closing force: a gap that moves with the speed has moved."""
     scene = unforced(scene, speed)
@@ -148,7 +149,7 @@ class RotatingWave:
         return np.array(shape), frequency, speed
 
 
-def least_damped(model: Model, speed: float):
+def least_damped(model: Model, speed: float) -> tuple[float, np.ndarray]:
     """Whirl frequency (rad/s, positive forward) and shape of the least damped tilt mode at a speed (rad/s): the
     displacements (n,) of a circular whirl whose relative tilt is 1 along the x axis."""
     linear = model.linear_scene(speed=speed)

@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 
+from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
+from ...scene.scene import Scene
 from ...simulation.selection import choose_method
 from ...solvers.contract import Enough, attainable
 from ...solvers.integrate import solve
@@ -50,13 +52,15 @@ class Until(Recorder):
             raise Enough
 
 
-def pace(model, speed: float) -> float:
+def pace(model: Model, speed: float) -> float:
     """What turns are counted of (rad/s): the shaft at its speed (rad/s), or the least damped whirl where that turns
     faster, as on a slow shaft in a stator that runs the other way."""
     return max(abs(speed), abs(least_damped(model, speed)[0]))
 
 
-def followed(scene, speed, turns, method, accuracy, start, least=0.0, interval=math.inf):
+def tilt_in_time(
+    scene: Scene, speed: float, turns: float, method: str, accuracy: float, start, least: float = 0.0, interval=math.inf
+) -> tuple:
     """Relative tilt in time over `turns` (as `pace` counts them) at a shaft speed (rad/s), from a start `(q (n,),
     frequency (rad/s))`, or the least damped mode at relative tilt `start` (rad); ends when it falls below `least`
     (rad), kept at least every `interval` (s).
@@ -80,7 +84,7 @@ def _method(model) -> str:
     return choose_method(RunState(model, 1.0))[0]
 
 
-def fitted(t, tilt) -> tuple[float, float]:
+def fit_growth(t: np.ndarray, tilt: np.ndarray) -> tuple[float, float]:
     """Growth rate (1/s) of |tilt| (m,) over the last three quarters of the times `t` (m,) (s), and how far its two
     halves differ from it."""
     late = t > 0.25 * t[-1]
@@ -91,12 +95,12 @@ def fitted(t, tilt) -> tuple[float, float]:
     return whole, max(abs(first - whole), abs(second - whole))
 
 
-def linear_growth(model) -> float:
+def linear_growth(model: Model) -> float:
     """Growth rate (1/s) of the least damped tilt mode, by eigenvalues."""
     return float(max(mode.value.real for mode in model.linear_scene().modes() if mode.kind == "tilt"))
 
 
-def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
+def growth_rate(scene: Scene, speed: float, turns: int, method: str, accuracy: float) -> dict:
     """Growth rate (1/s) of a small whirl at a speed (rad/s), the accuracy tightened until its uncertainty is a tenth of
     it or the method can do no better.
 
@@ -111,14 +115,14 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
     interval = 0.2 / max(abs(linear), 1e-300)
 
     def rate_at(accuracy):
-        _, t, tilt, run = followed(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
+        _, t, tilt, run = tilt_in_time(scene, speed, turns, method, accuracy, start, 1e-4 * start, interval)
         # A disturbance that sinks into the tolerance, or is no longer small, says nothing more.
         fit = (np.abs(tilt) > 1e-3 * start) & (np.abs(tilt) < 10 * start)
         upto = len(t) if fit.all() else max(int(np.argmin(fit)), 16)
         t, tilt = t[:upto], tilt[:upto]
         scale = run.model.clearance / run.model.face[1]
         allowed = accuracy * scale / np.min(np.abs(tilt)) / (0.75 * t[-1])
-        return *fitted(t, tilt), allowed, attainable(method, run.memory)
+        return *fit_growth(t, tilt), allowed, attainable(method, run.memory)
 
     rate, *_ = rate_at(accuracy)
     while True:
@@ -139,7 +143,9 @@ def growth_rate(scene, speed: float, turns: int, method: str, accuracy: float) -
     }
 
 
-def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1e-7, most_turns: int = 4000) -> dict:
+def tipping_disturbance(
+    scene: Scene, speed: float, parting: float, accuracy: float = 1e-7, most_turns: int = 4000
+) -> dict:
     """Smallest circular whirl in the shape of the least damped mode (gap not opened) that grows to contact, by
     bisection between decay and contact; and the whirl both last runs linger at before they part.  `speed` in rad/s,
     `parting` the growth rate (1/s) with which runs leave that whirl.
@@ -156,7 +162,7 @@ def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1
     low, high, runs = 0.0, 0.985 * unit, {}
 
     def tips(amplitude):
-        outcome, t, tilt, _ = followed(scene, speed, most_turns, method, accuracy, amplitude, 0.3 * amplitude)
+        outcome, t, tilt, _ = tilt_in_time(scene, speed, most_turns, method, accuracy, amplitude, 0.3 * amplitude)
         runs[amplitude] = (t, tilt)
         return outcome.status == Status.COLLAPSED
 
@@ -180,7 +186,9 @@ def tipping_disturbance(scene, speed: float, parting: float, accuracy: float = 1
     return {"disturbance": 0.5 * (low + high), "whirl": whirl, "frequency": frequency, "apart": float(apart[last])}
 
 
-def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000) -> dict:
+def bounded_or_not(
+    scene: Scene, speed: float, start: str, shape, frequency, accuracy: float = 1e-7, most: int = 8000
+) -> dict:
     """What becomes of a whirl at a speed (rad/s): `fate` "decays", "bounded" (with its amplitude `whirl` and `drift`,
     rad), "grows" or "contact"; the relative tilt `from` (rad) which it starts, and `turns` run (as `pace` counts them).
     TOO_SLOW: not run, as a small one with its growth `rate` (1/s) goes nowhere in these `turns`, which is `said`.
@@ -205,7 +213,7 @@ def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: 
     turns = min(most, whole)
     begin = 0.1 * unit if start == "small" else (np.array(shape), frequency)
     least = 0.03 * unit
-    outcome, t, tilt, _ = followed(scene, speed, turns, method, accuracy, begin, least)
+    outcome, t, tilt, _ = tilt_in_time(scene, speed, turns, method, accuracy, begin, least)
     size = np.abs(tilt)
     row = {"from": float(size[0]), "whirl": None, "turns": float(t[-1] * frequency_of_turns)}
     if outcome.status == Status.COLLAPSED:
@@ -218,7 +226,7 @@ def bounded_or_not(scene, speed: float, start: str, shape, frequency, accuracy: 
     return {"fate": "decays" if late[-1] < late[0] else "grows", **row}
 
 
-def settles(scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> dict:
+def whirl_fate(scene: Scene, speed: float, accuracy: float = 1e-6, most: int = 3000) -> dict:
     """Fate of a small whirl at a shaft speed (rad/s): "decays", "limit cycle" (no touch), "rub", "collapse", "failed",
     or "unsettled" after `most` turns.
 

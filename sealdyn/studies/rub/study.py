@@ -11,7 +11,7 @@ import numpy as np
 
 from ...analysis.continuation import frozen_at_end, sweep_branch
 from ...analysis.whirl import free_model
-from ...analysis.whirl.time_domain import settles
+from ...analysis.whirl.time_domain import whirl_fate
 from ...answers import Answer, Table
 from ...numerics import time_series
 from ...numerics.lyapunov import horizon
@@ -167,7 +167,7 @@ def _whirled(base, scenario, settings, tools) -> dict:
 
 def whirl(scene, point: dict) -> dict:
     """Fate of a small whirl at one speed."""
-    return settles(frozen_at_end(scene), point["speed"], point["accuracy"])
+    return whirl_fate(frozen_at_end(scene), point["speed"], point["accuracy"])
 
 
 # --- what is shown ------------------------------------------------------------------------------------------

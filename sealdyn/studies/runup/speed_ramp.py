@@ -8,7 +8,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
-from ...analysis.whirl.mode_over_speed import along
+from ...analysis.whirl.mode_over_speed import tilt_mode
 from ...dynamics.cautions import Concern
 from ...dynamics.model import Model
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
@@ -86,7 +86,7 @@ def followed_mode(scene, low: float, high: float, crossing: float | None):
     if crossing is None:
         return None
     free = free_model(frozen_at_end(scene), crossing)
-    return along(free, min(low, BELOW * crossing), high, crossing)
+    return tilt_mode(free, min(low, BELOW * crossing), high, crossing)
 
 
 def predicted_growth(mode, trip: RampCycle, times):
