@@ -9,7 +9,6 @@ import pytest
 from sealdyn.dynamics.cautions import Concern
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import with_values
-from sealdyn.scene.scene import SceneError
 from sealdyn.simulation import plausibility, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -142,30 +141,6 @@ def test_numbers_without_units_that_no_seal_has(key, slip, fine, shown):
     told = [s for s in cautions(*light, f"{key}={slip}").get(Concern.UNITS, []) if s.startswith(key)]
     assert len(told) == 1 and numbers(told[0])[0] == float(slip) and shown in numbers(told[0])
     assert Concern.UNITS not in cautions(*light, f"{key}={fine}")
-
-
-PUMP = SCENARIOS / "pump_seal.toml"
-
-
-@pytest.mark.parametrize(
-    "key, slip, shown",
-    [
-        ("contact.compressive_strength", 250, "0.00025 MPa"),
-        ("contact.roughness", 0.15, "150000 um"),
-        ("stator.body.length", 15, "15000 mm"),
-        ("stator.support.radius", 28, "28000 mm"),
-        ("closing.balance_ratio", 75, "7500 %"),
-    ],
-)
-def test_a_seal_that_cannot_be_for_want_of_a_unit_says_so(key, slip, shown):
-    """The refusal was of a closing force or a closed film alone, far from the number that was wrong."""
-    with pytest.raises(SceneError) as refused:
-        simulate.prepare_run(read_scenario(PUMP, [f"{key}={slip}"]))
-    assert refused.value.expected.endswith(f"; {key} without a unit is read as {read_as(key, slip)}, which is {shown}")
-
-
-def read_as(key, slip) -> str:
-    return f"{slip} {plausibility.USUAL[key].unit}".strip()
 
 
 def test_wear_of_millimetres_an_hour():

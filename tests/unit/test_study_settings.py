@@ -132,9 +132,3 @@ def test_every_setting_is_described_wherever_it_is_asked_for(name):
         assert table["properties"][field.name]["description"].startswith(told.meaning)
         if isinstance(field.default, float | bool | int):
             assert table["properties"][field.name]["default"] == field.default
-
-
-def test_units_of_settings_are_told():
-    told = {setting.key: setting for setting in settings_of("equilibrium")}
-    assert told["clearance_from"].holds == "length, m" and told["points"].default == "241"
-    assert [s.holds for s in settings_of("rub") if s.key == "whirl_speeds"] == ["list of speed of rotation, rad/s"]
