@@ -425,8 +425,8 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     from .report.text import resolved_lines
     from .scene.radial import RadialScene
     from .scene.scene import SceneError
-    from .simulation.film_error import beside_reynolds
-    from .simulation.plausibility import before_the_run, size_of
+    from .simulation.film_error import reynolds_comparison
+    from .simulation.plausibility import scene_cautions, size_of
     from .simulation.selection import prepare_run
     from .simulation.summary import model_chosen
 
@@ -450,9 +450,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         "model": model_chosen(scenario, run, plan),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "warnings": [caution.sentence for caution in (*run.cautions, *before_the_run(scenario, run.model))],
+        "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model))],
         "design_rules": rules,
-        "beside_reynolds": beside_reynolds(run),
+        "beside_reynolds": reynolds_comparison(run),
         "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
     }
     if as_json:
@@ -478,7 +478,7 @@ def _refuse_settings(scenario):
 def _check_radial(file, scenario, as_json):
     """The same of a radial seal."""
     from .analysis.radial_rules import findings
-    from .radial_seals.followers import said
+    from .radial_seals.followers import closed_form_sentences
     from .report.text import resolved_lines
     from .scene.scene import SceneError
     from .simulation.selection import prepare_run
@@ -493,7 +493,7 @@ def _check_radial(file, scenario, as_json):
         "message": "the scene is possible",
         "scene": scenario.resolved(),
         "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"]},
-        "closed_form": said(followers, scenario.scene.shaft),
+        "closed_form": closed_form_sentences(followers, scenario.scene.shaft),
         "design_rules": findings(scenario),
         "equilibria": [],
     }

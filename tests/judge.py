@@ -17,7 +17,7 @@ from scipy.sparse import csc_matrix
 
 from sealdyn.faces.film_thickness import h_min_of
 from sealdyn.faces.geometry import COLLAPSE
-from sealdyn.simulation.verification_run import beside_jumps
+from sealdyn.simulation.verification_run import clip_jumps
 from sealdyn.solvers.contract import absolute_tolerances
 from sealdyn.solvers.integrate import solve
 
@@ -238,7 +238,7 @@ def truth_by_steps(make, scales, times, accuracy, method, budget=60.0) -> Truth 
     (others, _), (columns, contacts) = found
     if not len(columns) or not len(others):
         return None
-    known = _agreed(scales, columns, others, accuracy, 0.1, beside_jumps)
+    known = _agreed(scales, columns, others, accuracy, 0.1, clip_jumps)
     return Truth(columns, known, contacts, f"{method} twice, sharper")
 
 

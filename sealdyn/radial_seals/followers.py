@@ -142,7 +142,7 @@ def largest_eccentricity(followers, shaft, speed: float) -> float:
     return left / per_metre if per_metre else math.inf
 
 
-def held_between(stiffness: float, mass: float, preload: float, eccentricity: float) -> tuple[float, float]:
+def riding_speeds(stiffness: float, mass: float, preload: float, eccentricity: float) -> tuple[float, float]:
     """Speeds (rad/s) between which an undamped follower without friction rides: m w^2 = k -+ preload / e; the lower one
     is 0 where it rides at rest."""
     low, high = stiffness - preload / eccentricity, stiffness + preload / eccentricity
@@ -154,7 +154,7 @@ def hangs_up(followers) -> bool:
     return 0.0 < followers.friction >= followers.preload
 
 
-def said(followers, shaft) -> list[str]:
+def closed_form_sentences(followers, shaft) -> list[str]:
     """The closed forms at the shaft's largest speed, in sentences."""
     speed = fastest(shaft)
     needed, largest = needed_preload(followers, shaft, speed), largest_eccentricity(followers, shaft, speed)

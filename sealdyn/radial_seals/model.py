@@ -199,7 +199,7 @@ class RadialRun:
 
     def __init__(self, model: RadialModel, duration: float):
         self.model, self.duration, self.intervals = model, duration, model.intervals(duration)
-        self.stick_slip, self.extrema, self.contacts = Contacts(model), Watch(model), Late(model, 0.5 * duration)
+        self.stick_slip, self.extrema, self.contacts = Contacts(model), Watch(model), SecondHalf(model, 0.5 * duration)
         n = model.followers.count
         riding = {"modes": np.full(n, RIDING), "signs": np.zeros(n)}
         here = RadialSegment(model, self.intervals[0], 0, len(self.intervals) == 1, riding).surface(0.0)
@@ -241,7 +241,7 @@ class RadialRun:
         self.contacts.restore(modes["late"])
 
 
-class Late(Watch):
+class SecondHalf(Watch):
     """The second half of a run: what is settled."""
 
     def tell(self, log, end=None):

@@ -25,7 +25,7 @@ from ..scenario.settings import scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
-from .result import common, missing, output, unit_of, with_speeds
+from .result import asks_speeds, common_outputs, missing_outputs, output, unit_of
 from .selection import prepare_run
 from .simulate import in_memory
 from .summary import state_names
@@ -79,7 +79,7 @@ def simulate_many(
     sets = [dict(values) for values in sets]
     first = first_ready(scenario, sets)
     names = [] if _is_radial(scenario) else state_names(first.model.unknowns)
-    outputs = _asked(scenario, outputs)
+    outputs = _output_list(scenario, outputs)
     outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in names)])]
     rows = rows_of(scenario, sets, outputs, workers, progress)
     units = {name: unit_of(name) for name in outputs}
@@ -110,7 +110,7 @@ def sweep(
     import pandas
 
     scenario = scenario_of(source)
-    outputs = _asked(scenario, outputs)
+    outputs = _output_list(scenario, outputs)
     axes = {key: list(without_arrays(values)) for key, values in grid.items()}
     if not axes or not all(axes.values()):
         empty = next((key for key in axes if not axes[key]), "")
@@ -134,7 +134,7 @@ def _is_radial(scenario) -> bool:
     return isinstance(scenario.scene, RadialScene)
 
 
-def _asked(scenario, outputs) -> list[str]:
+def _output_list(scenario, outputs) -> list[str]:
     """Outputs as a list; the usual ones of the kind of seal where none are told."""
     if outputs is None:
         return [*(RADIAL_OUTPUTS if _is_radial(scenario) else OUTPUTS)]
@@ -170,14 +170,14 @@ def first_ready(scenario, sets):
 def refuse_outputs(scenario, sets: list[dict], outputs, where: str) -> None:
     """Raises ScenarioError, which names `where`, for outputs that no summary of these runs has: found before any is
     run, by a moment of the first that can be one."""
-    if set(outputs) <= {"status", "message", *common(scenario.scene)}:
+    if set(outputs) <= {"status", "message", *common_outputs(scenario.scene)}:
         return
     for values in sets:
         try:
-            parts = in_memory(with_values(scenario, {**values, "run.duration": MOMENT}), with_speeds(outputs))
+            parts = in_memory(with_values(scenario, {**values, "run.duration": MOMENT}), asks_speeds(outputs))
         except (ScenarioError, SceneError):
             continue
-        if wrong := missing(parts, outputs):
+        if wrong := missing_outputs(parts, outputs):
             raise ScenarioError(scenario.name, where, ", ".join(wrong), f"others: {'; '.join(wrong.values())}")
         return
 
@@ -185,10 +185,10 @@ def refuse_outputs(scenario, sets: list[dict], outputs, where: str) -> None:
 def run_many(scenario, points: list[dict]) -> list:
     """Of each point {"set": {dotted key: value}, "outputs": dotted keys of the summary}: a row of its outputs, status,
     and message when the run did not end well; or the exception why it cannot be."""
-    return [row for k in range(0, len(points), AT_ONCE) for row in _at_once(scenario, points[k : k + AT_ONCE])]
+    return [row for k in range(0, len(points), AT_ONCE) for row in _rows_in_loop(scenario, points[k : k + AT_ONCE])]
 
 
-def _at_once(scenario, points) -> list:
+def _rows_in_loop(scenario, points) -> list:
     rows, alike = [None] * len(points), {}
     for k, point in enumerate(points):
         try:
@@ -205,21 +205,21 @@ def _at_once(scenario, points) -> list:
         integrate([run for _, run in some])
         for k, run in some:
             if run.outcome:
-                row = _caught(_row, run.parts(), points[k])
+                row = _row_or_error(_row, run.parts(), points[k])
                 # What is made of samples after all, or is not there, is a matter for the whole summary.
                 rows[k] = None if isinstance(row, NotSampled) else row
-    return [row if row is not None else _caught(_alone, scenario, points[k]) for k, row in enumerate(rows)]
+    return [row if row is not None else _row_or_error(_single_run, scenario, points[k]) for k, row in enumerate(rows)]
 
 
-def _caught(function, *given):
+def _row_or_error(function, *given):
     try:
         return function(*given)
     except Exception as error:
         return error
 
 
-def _alone(scenario, point) -> dict:
-    return _row(in_memory(with_values(scenario, point["set"]), with_speeds(point["outputs"])), point)
+def _single_run(scenario, point) -> dict:
+    return _row(in_memory(with_values(scenario, point["set"]), asks_speeds(point["outputs"])), point)
 
 
 def _row(parts, point) -> dict:
@@ -267,7 +267,7 @@ class LoopedRun:
         """The `parts` of its summary (summary.py), once it has ended."""
         tally = self.sink.tally if self.sampled else Unsampled()
         plan = replace(self.plan, why=f"{self.plan.why}; one loop for many runs, cautious tolerance")
-        return parts(self.scenario, self.run, plan, self.outcome, tally, with_speeds(self.outputs))
+        return parts(self.scenario, self.run, plan, self.outcome, tally, asks_speeds(self.outputs))
 
     def ends(self, runs, i, touching, output):
         """Take what the loop has left in row `i`."""
@@ -315,19 +315,19 @@ def integrate(alike: list[LoopedRun]):
     from ..solvers.sundials_objects import words_for
 
     first = alike[0]
-    runs, touching, output = _stacked(alike, loop)
+    runs, touching, output = _loop_arrays(alike, loop)
     told, y, absolute = np.zeros(2, dtype=np.int64), np.empty(runs.y.shape[1]), np.ones(runs.y.shape[1])
     words = words_for(first.segments[0], first.segments[0].native.rates)
     with cvode_for(y, absolute, words, first.method) as (memory, vector, tolerances):
         cvode = loop.Integrator(memory.value, vector.value, tolerances.value, y, absolute, words)
         given = cvode, runs, thinnest_value(first.run.model.face), touching, output, told
-        _in_a_thread(loop.integrate_many, given, told)
+        _call_in_thread(loop.integrate_many, given, told)
     for i, one in enumerate(alike):
         if runs.status[i] == loop.DONE:
             one.ends(runs, i, touching, output)
 
 
-def _in_a_thread(loop, given, told):
+def _call_in_thread(loop, given, told):
     """Call the loop where it does not keep Python from seeing a KeyboardInterrupt; told of one it stops, and only then
     is this left, since others own what it works on."""
     failures, ended = [], Event()
@@ -353,7 +353,7 @@ def _in_a_thread(loop, given, told):
         raise failures[0]
 
 
-def _stacked(alike, loop):
+def _loop_arrays(alike, loop):
     """The runs as the loop takes them."""
     models, count = [one.run.model for one in alike], len(alike)
     stretches = np.cumsum([0, *(len(one.segments) for one in alike)])

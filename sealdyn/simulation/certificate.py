@@ -145,7 +145,7 @@ def choose_tolerance(run: RunState, method: str) -> tuple[TrialRun | None, Globa
     if errors is None or run.memory * run.model.shortest_period > 0.5 * run.duration:
         return None, errors
     before = errors.state()
-    trial = _tried(run, method, errors)
+    trial = _trial(run, method, errors)
     errors.restore(before)
     return trial, errors
 
@@ -158,7 +158,7 @@ def first_steps(run, plan: Plan) -> tuple[TrialRun | None, GlobalErrorEstimate |
     return TrialRun.without_steps(plan.tolerance, f"tolerance {plan.tolerance:.1e}"), None
 
 
-def _tried(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun | None:
+def _trial(run: RunState, method: str, errors: GlobalErrorEstimate) -> TrialRun | None:
     model = run.model
     asked, cautious = model.accuracy, tolerance_for(method, model.accuracy, run.memory)
     tolerance, counts = min(LOOSER * cautious, asked), Counts()
@@ -217,22 +217,22 @@ def _since(times, apart) -> str:
     return "" if not len(seen) or seen[0] == 0 else f" from {times[seen[0]]:.4g} s on"
 
 
-def without(asked: float, why: str) -> dict:
+def no_certificate(asked: float, why: str) -> dict:
     """The certificate of a run that has none, and why, as part of its summary."""
     none = dict.fromkeys(("estimated", "solver", "model", "met", "horizon"))
     return {"asked": asked, **none, "said": f"no certificate: {why}"}
 
 
-def ended(status: Status) -> str:
+def _ending(status: Status) -> str:
     """How a run ended that has none, in words."""
     return f"the run {'was ' if status == Status.INTERRUPTED else ''}{status}"
 
 
-def interrupted(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
+def _interruption(asked: float, outcome: Outcome) -> tuple[dict, Outcome]:
     """The certificate and the outcome of a run that was interrupted while it was measured."""
     cause = Cause.INTERRUPTED
     outcome = replace(outcome, status=Status.INTERRUPTED, cause=cause, message=str(cause))
-    return without(asked, "interrupted while the run was done once more"), outcome
+    return no_certificate(asked, "interrupted while the run was done once more"), outcome
 
 
 def _so_many(error: float | None, wanted: float) -> str:
@@ -311,18 +311,18 @@ def certificate(
     outcome, interrupted if the measuring was."""
     asked = run.model.accuracy
     if outcome.status != Status.OK:
-        return without(asked, ended(outcome.status)), outcome
+        return no_certificate(asked, _ending(outcome.status)), outcome
     measured = cells = None
     if seen:
         try:
             how = {"method": plan.method, "tolerance": outcome.tolerance}
             apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
         except Enough:
-            return interrupted(asked, outcome)
+            return _interruption(asked, outcome)
         if seen.failure:
             why = f"no certificate: {seen.failure}"
             failed = replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=why)
-            return without(asked, seen.failure) | {"met": False}, failed
+            return no_certificate(asked, seen.failure) | {"met": False}, failed
         measured = None if apart is None else (seen.times, apart)
     found = certify(run, plan.method, outcome.tolerance, errors, plan.film_error, measured, cells)
     beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
@@ -347,12 +347,12 @@ def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -
     nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Plan, tolerance, certificate) of
     those before.  Where a sharper one gives up, what those before have is not lost."""
     if outcome.status == Status.FAILED and tries and not plan.last:
-        return _instead(run, solver, plan, outcome, tries)
+        return _plan_after_failure(run, solver, plan, outcome, tries)
     if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
         return None
     if plan.method == "expm" or plan.last or outcome.counts.steps > LONG:
         return None
-    measured = _measured(tries)
+    measured = _measured_tries(tries)
     stuck = bool(measured) and found["solver"] > HELPED * measured[-1][2]["solver"]
     # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
     share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
@@ -372,12 +372,12 @@ def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -
     return None
 
 
-def _measured(tries: list) -> list:
+def _measured_tries(tries: list) -> list:
     """Those of `tries` that did not give up."""
     return [before for before in tries if before[2]["solver"] is not None]
 
 
-def _instead(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
+def _plan_after_failure(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
     """What to try where a sharper `plan` gave up: the other method, else the best of those before."""
     other, tried = OTHER[plan.method], {before[0].method for before in tries}
     why = f"{plan.why}; at tolerance {outcome.tolerance:.1e} {plan.method} gave up"
@@ -385,7 +385,7 @@ def _instead(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
     if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
         tolerance = tolerance_for(other, run.model.accuracy, run.memory)
         return replace(plan, method=other, tolerance=tolerance, why=f"{why}; by {other}")
-    best = min(_measured(tries), key=lambda before: before[2]["solver"], default=None)
+    best = min(_measured_tries(tries), key=lambda before: before[2]["solver"], default=None)
     return best and _best_again(best, why)
 
 
@@ -395,7 +395,7 @@ def _best_again(best: tuple, why: str) -> Plan:
     return replace(plan, tolerance=tolerance, why=f"{why}; back to the best of these", last=True)
 
 
-def judged(found: dict, outcome, tries: list):
+def judgement(found: dict, outcome, tries: list):
     """Certificate and outcome of the last try: "inaccurate" where energy is missing, or where the solver erred by
     more than was asked, unless errors grow so fast that sharper tries only put off when they show (chaos): then the
     certificate has a horizon."""

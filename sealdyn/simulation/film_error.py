@@ -1,7 +1,7 @@
 """How far a film is from a better one, without a run of that.
 
 Of a linear film its motion from that with the next higher film model (`model_errors`), of a film by lines of radius the
-film over radius and angle (`beside_reynolds`), of a film of cells itself with half of them (`cell_error`).
+film over radius and angle (`reynolds_comparison`), of a film of cells itself with half of them (`cell_error`).
 """
 
 import math
@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..dynamics.model import Model
+from ..dynamics.run_state import RunState
 from ..faces.contact import lay_surfaces
 from ..faces.film_thickness import h_min
 from ..faces.geometry import (
@@ -41,13 +43,13 @@ FOLLOWED, AT_ONCE, MOST, STEADY = 16, 125, 250, 32
 HELD = 1e-12
 
 
-def model_error(run, higher: str = "radial", enough: float = math.inf) -> float | None:
+def model_error(run: RunState, higher: str = "radial", enough: float = math.inf) -> float | None:
     """The larger of `model_errors` (relative), or None."""
     found = model_errors(run, higher, enough)
     return None if found is None else float(found.max())
 
 
-def model_errors(run, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
+def model_errors(run: RunState, higher: str = "radial", enough: float = math.inf) -> np.ndarray | None:
     """Estimated difference of a linear film's scene from that with the film model `higher` over the run.
 
     On the states the linear film visits, the higher film pushes differently; that difference, as a force on the
@@ -223,7 +225,7 @@ CELLS, TORN = (40, 96), 1e-3
 FINE, STARVED = 3e-3, 1e-6
 
 
-def beside_reynolds(run) -> dict | None:
+def reynolds_comparison(run: RunState) -> dict | None:
     """Force, moment and leakage of a run's film over those of the film "reynolds", less 1, at the start or at its
     linear steady tilt, whichever tilts it more: `tilt` (rad), `force`, `moment`, `leakage` (None where nothing leaks or
     turns), `cavitated` shares of the face, by either film, and a sentence, `said`.  None where the film has no lines of
@@ -297,7 +299,7 @@ def _turning_state(run) -> np.ndarray:
 RICHARDSON = 3.0
 
 
-def cell_error(run) -> float | None:
+def cell_error(run: RunState) -> float | None:
     """Relative error of the film's cells, the largest of force, moment and leakage on the scales of the certificate, of
     the film at rest at the gap where the run began and where it ended; None of a film that has none to halve, or no
     steady pressures there.
@@ -326,7 +328,7 @@ def cell_error(run) -> float | None:
     return float(worst) / RICHARDSON
 
 
-def steady_tilt(model) -> tuple[complex, float, str]:
+def steady_tilt(model: Model) -> tuple[complex, float, str]:
     """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
     if seals_that_stick(model.scene):
         return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"

@@ -11,14 +11,17 @@ import numpy as np
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
 from ..dynamics.cautions import Caution, Concern
 from ..dynamics.intervals import largest_value
+from ..dynamics.model import Model
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
+from ..scenario.reader import Scenario
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
+from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from .film_error import TORN, beside_reynolds
+from .film_error import TORN, reynolds_comparison
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
 LAMINAR, WARM = 1000.0, 10.0
@@ -43,26 +46,26 @@ def cautions(scenario, run, outcome, leakage, heat, h_min, wear=0.0) -> list[Cau
     scene, model = scenario.scene, run.model
     found = [
         *_units(scenario, model),
-        *_thin(scene, h_min),
-        *_rough(model, h_min),
-        *_arm(scene),
+        *_thin_film(scene, h_min),
+        *_roughness_leakage(model, h_min),
+        *_contact_arm(scene),
         *_heat(*heat),
-        *_worn(scenario, wear),
+        *_wear(scenario, wear),
     ]
     found += _flash(run, outcome)
     if scene.film.gas is not None:
         found += _gas_flow(model, leakage)
     elif _is_liquid(model):
-        found += [*_turbulence(model, leakage), *_inertia(scene), *_floored(run)]
+        found += [*_turbulence(model, leakage), *_inertia(scene), *_pressure_floor(run)]
     return found
 
 
-def before_the_run(scenario, model) -> list[Caution]:
+def scene_cautions(scenario: Scenario, model: Model) -> list[Caution]:
     """The cautions that need no run: bare numbers, the film's inertia, turbulence of the sliding, edges that boil."""
-    found, scene = [*_units(scenario, model), *_arm(model.scene)], model.scene
+    found, scene = [*_units(scenario, model), *_contact_arm(model.scene)], model.scene
     if _is_liquid(model):
         found += [*_turbulence(model, math.nan), *_inertia(scene)]
-    return [*found, *_boils(scene.film, _least_edge(scene.film))]
+    return [*found, *_boiling(scene.film, _least_edge(scene.film))]
 
 
 def _is_liquid(model) -> bool:
@@ -71,9 +74,9 @@ def _is_liquid(model) -> bool:
     return film.gas is None and not (isinstance(film.coefficients, Coefficients) and model.interface.name == "linear")
 
 
-def _floored(run):
+def _pressure_floor(run):
     """A floor of the pressure where cavities that keep their liquid would push, tilt or leak otherwise."""
-    beside = beside_reynolds(run) if run.model.scene.film.cavitation_pressure is not None else None
+    beside = reynolds_comparison(run) if run.model.scene.film.cavitation_pressure is not None else None
     if beside is None or beside["cavitated"][0] <= TORN:
         return
     off = [abs(beside[part]) for part in ("force", "moment", "leakage") if beside[part] is not None]
@@ -90,14 +93,14 @@ def _units(scenario, model):
         yield Caution(Concern.UNITS, sentence)
 
 
-def _worn(scenario, rate):
+def _wear(scenario, rate):
     """Faces that are gone within hours."""
     if math.isfinite(rate) and rate > GONE:
         how = "is the unit of the wear coefficient right, 1/Pa or mm^3/(N*m)?"
         yield Caution(Concern.WEAR, f"the faces wear {3.6e6 * rate:.4g} mm/h, and are gone in hours: {how}")
 
 
-def _thin(scene, h_min):
+def _thin_film(scene, h_min):
     """Films thinner than the roughness, and of nanometres."""
     rough = SMOOTH if scene.contact is None else scene.contact.roughness
     if not math.isfinite(h_min) or h_min >= max(rough, CONTINUUM):
@@ -111,7 +114,7 @@ def _thin(scene, h_min):
     yield Caution(Concern.THIN_FILM, f"the film thins to {h_min * 1e9:.4g} nm: {why}")
 
 
-def _rough(model, h_min):
+def _roughness_leakage(model, h_min):
     """Roughness that lets more through than a film between smooth faces does."""
     scene = model.scene
     if scene.contact is None or model.interface.name == "reynolds" or not h_min > 0.0:
@@ -125,7 +128,7 @@ def _rough(model, h_min):
         yield Caution(Concern.ROUGH_FILM, f"leakage is that of smooth faces: {how}, after Christensen{counts}")
 
 
-def _arm(scene):
+def _contact_arm(scene):
     film = scene.film
     if scene.contact is not None and film.tilt_radius == "mean":
         off = (film.outer_radius - film.inner_radius) / (film.outer_radius + film.inner_radius)
@@ -234,10 +237,10 @@ def _flash(run, outcome):
     least = _least_edge(film)
     if fields_of(run.model):
         least = min(least, _least_pressure(run.segment(outcome.segment), outcome.tau, outcome.y))
-    yield from _boils(film, least)
+    yield from _boiling(film, least)
 
 
-def _boils(film, least):
+def _boiling(film, least):
     """A pressure (Pa) below the vapour pressure."""
     if film.vapour_pressure is not None and least < film.vapour_pressure:
         vapour = f"below the vapour pressure of {film.vapour_pressure / 1e3:.4g} kPa"
@@ -298,7 +301,7 @@ USUAL = {
 }  # fmt: skip
 
 
-def unit_warnings(scenario) -> list[str]:
+def unit_warnings(scenario: Scenario) -> list[str]:
     """Sentences on the bare numbers of a Scenario where a unit is usual, or of another size than seals have."""
     said, scene = [], scenario.scene
     for ring, speed in (("shaft", scene.shaft.speed), ("stator", scene.stator.speed)):
@@ -308,7 +311,7 @@ def unit_warnings(scenario) -> list[str]:
             said.append(f"{ring}.speed without a unit is read as {read}")
     for key, usual in USUAL.items():
         written = next((name for name in (key, key.replace("_radius", "_diameter")) if name in scenario.bare), None)
-        value = _held(scene, key) if written else None
+        value = _value_at(scene, key) if written else None
         if value is not None and not usual.least <= value <= usual.most:
             value *= 1.0 if written == key else 2.0
             shown = (value - usual.zero) * usual.factor
@@ -317,7 +320,7 @@ def unit_warnings(scenario) -> list[str]:
     return said
 
 
-def _held(scene, key: str) -> float | None:
+def _value_at(scene, key: str) -> float | None:
     """The value at a dotted key, of a table its first one; None where there is none."""
     for name in key.split("."):
         # A dotted key says which attribute; tables of one kind of seal only are absent in the other.
@@ -362,11 +365,11 @@ class Size:
         )
 
 
-def size_of(scenario) -> Size:
+def size_of(scenario: Scenario) -> Size:
     """What a run of a scenario takes; instant, whatever its numbers."""
     shaft = largest_value(scenario.scene.shaft.speed)
     # A radial seal has no ring that turns beside the shaft.
-    stator = largest_value(scenario.scene.stator.speed) if hasattr(scenario.scene, "stator") else 0.0
+    stator = largest_value(scenario.scene.stator.speed) if not isinstance(scenario.scene, RadialScene) else 0.0
     settings = scenario.run
     turns = settings.turns
     if turns is None:
@@ -378,7 +381,7 @@ def size_of(scenario) -> Size:
     return Size(float(turns), float(min(rows, 10**300)))
 
 
-def refuse_large(scenario, allowed: bool = False):
+def refuse_large(scenario: Scenario, allowed: bool = False) -> None:
     """Raises SceneError for a run beyond any machine, and for a large one that is not `allowed`."""
     size, settings = size_of(scenario), scenario.run
     if size.possible and (allowed or (size.bytes <= LARGE and size.seconds <= LONG)):

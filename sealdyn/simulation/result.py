@@ -125,7 +125,7 @@ RADIAL = (
 )
 
 
-def common(scene) -> tuple[str, ...]:
+def common_outputs(scene) -> tuple[str, ...]:
     """What every summary of a seal of this kind has."""
     return RADIAL if isinstance(scene, RadialScene) else COMMON
 
@@ -146,7 +146,7 @@ def output(parts: dict, key: str):
     return place
 
 
-def missing(parts: dict, keys) -> dict[str, str]:
+def missing_outputs(parts: dict, keys) -> dict[str, str]:
     """The dotted keys that a summary, or its `parts` (summary.py), has no value of, each with the sentence why."""
     found = {}
     for key in keys:
@@ -165,7 +165,7 @@ def leaves(tree: dict, key: str = "") -> list[str]:
     return found
 
 
-def with_speeds(keys) -> bool:
+def asks_speeds(keys) -> bool:
     """Whether one of the keys asks for critical or resonance speeds."""
     return any(name in key for key in keys for name in SPEEDS)
 

@@ -14,10 +14,11 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
+from ..scenario.reader import Run, Scenario
 from ..scene.gas import viscosity_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
-from ..scene.scene import SceneError
+from ..scene.scene import Scene, SceneError
 from ..solvers.contract import attainable
 from .film_error import model_error
 from .plausibility import refuse_large, unit_warnings
@@ -54,16 +55,16 @@ class Plan:
     last: bool = False
 
 
-def prepare_run(scenario) -> tuple:
-    """A scenario made ready: its run (RunState with its start and windows, or RadialRun) and the Plan for it.
+def prepare_run(scenario: Scenario, allow_large: bool = True) -> tuple[RunState, Plan]:
+    """A scenario made ready: its run (RunState with its start and windows, or RadialRun) and the Plan for it;
+    `allow_large` also one of a day or of gigabytes.
     Raises SceneError, which names the numbers that may want a unit, or ArchiveError."""
-    refuse_large(scenario, allowed=True)
-    if isinstance(scenario.scene, RadialScene):
-        return _prepared_radial(scenario)
+    radial = isinstance(scenario.scene, RadialScene)
     try:
-        return _prepared(scenario)
+        refuse_large(scenario, allow_large)
+        return _prepared_radial(scenario) if radial else _prepared(scenario)
     except SceneError as error:
-        if not (meant := unit_warnings(scenario)):
+        if radial or not (meant := unit_warnings(scenario)):
             raise
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 
@@ -129,7 +130,7 @@ def _prepared_radial(scenario):
     return run, Plan("", method, None, run.start, why, interval, count, last=True)
 
 
-def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
+def sampling(duration: float, fastest: float, settings: Run) -> tuple[float, int]:
     """Sample interval (s) and number of intervals of a run of `duration` (s), its shaft turning at `fastest` (rad/s) at
     most; `settings` as the `[run]` table."""
     if settings.samples is not None:
@@ -144,7 +145,7 @@ def sampling(duration: float, fastest: float, settings) -> tuple[float, int]:
     return interval, int(duration / interval)
 
 
-def select_film(scene, settings, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
+def select_film(scene: Scene, settings: Run, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
     """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
     that was chosen for it (None: not estimated).  `settings` as the `[run]` table: `accuracy`, and `duration` (s) or
     `turns`; `start(run)` sets the run's unknowns.
@@ -207,7 +208,7 @@ def _why_not_linear(scene, radial: RunState) -> str | None:
     return None
 
 
-def choose_method(run) -> tuple[str, str]:
+def choose_method(run: RunState) -> tuple[str, str]:
     """The method for a run (RunState), by its name in METHODS, and a sentence why."""
     model = run.model
     if model.interface.film.settle is not None:
@@ -224,7 +225,7 @@ def choose_method(run) -> tuple[str, str]:
     return "adams", f"fastest decay {max(ratio, 0):.2g} times the fastest motion: not stiff, CVODE Adams"
 
 
-def check_method(model, method: str) -> None:
+def check_method(model: Model, method: str) -> None:
     """Raises SceneError where a method cannot integrate a scene."""
     unknowns = model.unknowns
     settles = model.interface.film.settle is not None
@@ -250,7 +251,7 @@ def _fastest_decay(run) -> float:
     return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)
 
 
-def choose_start(run, asked: str) -> Start:
+def choose_start(run: RunState, asked: str) -> Start:
     """The start of a run (RunState, still at rest) whose scenario says `asked` (`run.start`)."""
     if asked != "auto":
         return Start(asked)
@@ -295,7 +296,7 @@ def _no_steady_response(run) -> str:
     return "" if verdict == "stable" else f"the linear steady response is {verdict}"
 
 
-def set_start(run, scene, start: Start) -> None:
+def set_start(run, scene: Scene | RadialScene, start: Start) -> None:
     """Set the initial unknowns of a run: rest, the linear steady state, an archive's last state, and what [initial]
     gives; followers ride, as they are made.  Raises SceneError where the film is closed there, or ArchiveError."""
     run.start = start

@@ -21,13 +21,12 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
-from .certificate import TrialRun, certificate, first_steps, judged, next_plan
-from .plausibility import refuse_large
+from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
-from .sinks import ArchiveSink, RadialSink, Tally, TallySink, what_is_kept
+from .sinks import ArchiveSink, RadialSink, Tally, TallySink, archived_series
 from .summary import parts
-from .verification_run import Comparison, Nothing, RadialComparison
+from .verification_run import Comparison, ProgressSink, RadialComparison
 
 
 def simulate(
@@ -52,18 +51,17 @@ def simulate(
     True
     """
     out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
-    refuse_large(scenario, allow_large)
     with only_writer(out) as out:
-        return _simulate(scenario, out, progress, stop, resume)
+        return _simulate(scenario, out, progress, stop, resume, allow_large)
 
 
-def _simulate(scenario, out, progress, stop, resume) -> Result:
+def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
     """The same, while nobody else writes there."""
     begun = clock.perf_counter()
-    run, plan = prepare_run(scenario)
+    run, plan = prepare_run(scenario, allow_large)
     radial = isinstance(scenario.scene, RadialScene)
     kind_of_sink, compared = (RadialSink, RadialComparison) if radial else (ArchiveSink, Comparison)
-    series, fields = what_is_kept(run.model)
+    series, fields = archived_series(run.model)
     tries = []
     while True:
         writer = ArchiveWriter(
@@ -77,7 +75,7 @@ def _simulate(scenario, out, progress, stop, resume) -> Result:
             expected_rows=plan.count,
         )
         sink = kind_of_sink(run, writer, plan.interval, plan.count, Tally(), progress, stop)
-        restart = _resumed(run, scenario.scene, writer, sink) if resume and writer.rows else None
+        restart = _resume(run, scenario.scene, writer, sink) if resume and writer.rows else None
         trial, sink.errors = first_steps(run, plan)
         sink.seen = compared(run) if sink.errors is None and plan.method != "expm" else None
         if restart:
@@ -85,7 +83,7 @@ def _simulate(scenario, out, progress, stop, resume) -> Result:
         try:
             outcome = solve(
                 run, plan.method, run.model.accuracy, sink, audit=sink.audit, errors=sink.errors, seen=sink.seen,
-                resume=restart, **_found(trial),
+                resume=restart, **_solve_options(trial),
             )  # fmt: skip
             found, outcome = certificate(run, plan, outcome, sink.errors, sink.seen, progress, stop)
         except KeyboardInterrupt:
@@ -103,8 +101,8 @@ def _simulate(scenario, out, progress, stop, resume) -> Result:
         # What an interrupted run has not written yet it will meet again.
         run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
         sink.write_events()
-    found, outcome = judged(found, outcome, tries)
-    summary = plain(parts(scenario, run, _carried_out(plan, trial, outcome), outcome, sink.tally))
+    found, outcome = judgement(found, outcome, tries)
+    summary = plain(parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, sink.tally))
     summary["certificate"] = found
     if found["met"] is False:
         summary["warnings"].append(f"accuracy {found['said']}")
@@ -118,12 +116,12 @@ def _simulate(scenario, out, progress, stop, resume) -> Result:
     return Result(str(outcome.status), outcome.message, summary, path)
 
 
-def _found(trial: TrialRun | None) -> dict:
+def _solve_options(trial: TrialRun | None) -> dict:
     """What a trial asks of `solve`."""
     return {"tolerance": trial.tolerance, "steps": trial.steps} if trial else {}
 
 
-def _carried_out(plan: Plan, trial: TrialRun | None, outcome: Outcome) -> Plan:
+def _completed_plan(plan: Plan, trial: TrialRun | None, outcome: Outcome) -> Plan:
     """The plan with all reasons that a run has had."""
     slow = outcome.counts.slow
     return replace(plan, why="; ".join([plan.why, *([trial.said] if trial else []), *([slow] if slow else [])]))
@@ -141,11 +139,11 @@ def in_memory(scenario, speeds: bool = False) -> dict:
     """The same, as its `parts` (summary.py)."""
     run, plan = prepare_run(scenario)
     radial = isinstance(scenario.scene, RadialScene)
-    sink = Nothing(run) if radial else TallySink(run, plan.interval, plan.count)
+    sink = ProgressSink(run) if radial else TallySink(run, plan.interval, plan.count)
     trial, errors = first_steps(run, plan)
-    outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, **_found(trial))
+    outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, **_solve_options(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    return parts(scenario, run, _carried_out(plan, trial, outcome), outcome, sink.tally, speeds)
+    return parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, sink.tally, speeds)
 
 
 @contextmanager
@@ -159,7 +157,7 @@ def _own_state(writer):
         ) from None
 
 
-def _resumed(run, scene, writer, sink):
+def _resume(run, scene, writer, sink):
     """Where a run goes on: segment, time in it (s), unknowns (size,)."""
     state = writer.state
     with _own_state(writer):

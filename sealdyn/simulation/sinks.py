@@ -58,12 +58,12 @@ class Tally:
         return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
 
 
-def what_is_kept(model) -> tuple[dict[str, Series], Fields | None]:
+def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
     """Series by name, and the fields if it has any, as an archive of this model keeps them."""
     if isinstance(model.scene, RadialScene):
-        from ..radial_seals.observers import kept_series
+        from ..radial_seals.observers import archived_series
 
-        return kept_series(model, MOST_RADIAL + 2)
+        return archived_series(model, MOST_RADIAL + 2)
     series = {signal.name: Series(signal.unit, signal.long_name, *signal.display) for signal in signal_table(model)}
     table = fields_of(model)
     if not table:

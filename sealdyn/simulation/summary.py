@@ -46,7 +46,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
     `plain` of it is JSON-ready.  `plan` as carried out, `outcome` of `solve`, `tally` of its sink; `speeds`: with
     critical and resonance speeds, which cost more than a short run."""
     if isinstance(scenario.scene, RadialScene):
-        from ..radial_seals.summary import summary_of
+        from ..radial_seals.observers import summary_of
 
         return summary_of(scenario, run, plan, outcome)
     model, segment = run.model, run.segment(outcome.segment)

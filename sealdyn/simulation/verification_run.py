@@ -32,7 +32,7 @@ SHARPER, LEAST_SHARPER = 30.0, 3.0
 SHARPER_AT_SECOND = 8.0
 # Of films whose cells tear and fill, each with a jump of the loads: the share of the instants of which loads are
 # compared, without those that lie between the jumps of two runs.
-BESIDE_JUMPS = 0.99
+JUMP_QUANTILE = 0.99
 # The share of its film's error that the second run has, where faces touch.
 SHARPER_FILM = 0.1
 # Share of what halving the cells changes that counts as their error: a third of it is, of cells small enough.
@@ -96,7 +96,7 @@ class Comparison:
         other = type(self)(again)
         other.times = self.times
         outcome = solve(
-            again, method, again.model.accuracy, Nothing(again, progress, stop), tolerance=tolerance, seen=other
+            again, method, again.model.accuracy, ProgressSink(again, progress, stop), tolerance=tolerance, seen=other
         )
         if outcome.status == Status.INTERRUPTED:
             raise Enough
@@ -111,7 +111,7 @@ class Comparison:
 
     def _largest(self, errors: np.ndarray) -> np.ndarray:
         """The largest error (m,) of all quantities, without those between the jumps of two runs."""
-        return (beside_jumps(errors) if self.run.model.interface.film.settle is not None else errors).max(axis=1)
+        return (clip_jumps(errors) if self.run.model.interface.film.settle is not None else errors).max(axis=1)
 
     def _ended(self, outcome, again, found: np.ndarray) -> np.ndarray:
         """What was `found`, after a second run that ended with `outcome`."""
@@ -151,7 +151,7 @@ class RadialComparison(Comparison):
     def _largest(self, errors):
         """A load jumps where a follower lands: beside a jump two runs differ by all of it."""
         largest = errors.max(axis=1)
-        return np.minimum(largest, np.quantile(largest, BESIDE_JUMPS))
+        return np.minimum(largest, np.quantile(largest, JUMP_QUANTILE))
 
     def _ended(self, outcome, again, found):
         if outcome.status != Status.OK:
@@ -170,7 +170,7 @@ class RadialComparison(Comparison):
             self.columns[: len(rows)] = rows
 
 
-class Nothing:
+class ProgressSink:
     """A sink that keeps nothing, tells how far it is, and can be stopped."""
 
     tally = None
@@ -207,11 +207,13 @@ def sharper(method: str, tolerance: float, run) -> tuple[str, float]:
     return other, tolerance_for(other, max(run.model.accuracy / SHARPER, 2 * attainable(other, run.memory)), run.memory)
 
 
-def beside_jumps(errors: np.ndarray) -> np.ndarray:
+def clip_jumps(errors: np.ndarray) -> np.ndarray:
     """Errors of ErrorScales (m, 6) with those of loads and flows that so few instants have cut to what the rest has."""
     if not len(errors):
         return errors
-    return np.column_stack([errors[:, :2], np.minimum(errors[:, 2:], np.quantile(errors[:, 2:], BESIDE_JUMPS, axis=0))])
+    return np.column_stack(
+        [errors[:, :2], np.minimum(errors[:, 2:], np.quantile(errors[:, 2:], JUMP_QUANTILE, axis=0))]
+    )
 
 
 def instants(run) -> np.ndarray:
@@ -253,7 +255,7 @@ class ErrorScales:
         self.lengths, self.outer_radius = model.scales[: self.n], model.scene.film.outer_radius
         ends = [end for interval in run.intervals.few for end in self._ends(model, interval)]
         self.force, self.leakage, self.torque = (max(one[k] for one in ends) for k in range(3))
-        swept = self._held(model) * self.rate
+        swept = self._gap_volume(model) * self.rate
         self.leakage = swept if self.leakage < NOTHING * swept else self.leakage
 
     def _ends(self, model, interval):
@@ -270,7 +272,7 @@ class ErrorScales:
             observed.flow(f, s, *own)
             yield closing[0] + closing[1] * tau - min(at) * area, abs(s[FLOW_INNER]), abs(s[TORQUE])
 
-    def _held(self, model) -> float:
+    def _gap_volume(self, model) -> float:
         """Volume (m^3, of a gas at normal conditions) between the faces."""
         film, gas = model.scene.film, gas_of(model.scene.film)
         volume = math.pi * (film.outer_radius**2 - film.inner_radius**2) * model.clearance

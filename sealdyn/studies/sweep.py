@@ -16,7 +16,7 @@ from ..scenario.settings import MOST, axis, with_own_unit
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..simulation.batch import first_ready, refuse_outputs, run_many
-from ..simulation.result import common, unit_of
+from ..simulation.result import common_outputs, unit_of
 from ..status import Status
 from . import Info
 
@@ -53,7 +53,7 @@ def run(scenario, settings, tools) -> Answer:
     vary = [settings.vary] if isinstance(settings.vary, str) else list(settings.vary)
     if not vary:
         raise ScenarioError(scenario.name, "study.sweep.vary", "nothing to vary", '--vary "rotor.runout=0:1 mrad:21"')
-    outputs = settings.outputs or common(scenario.scene)
+    outputs = settings.outputs or common_outputs(scenario.scene)
     outputs = [w.strip() for w in outputs.split(",")] if isinstance(outputs, str) else list(outputs)
     axes = [axis(words, scenario.name, "study.sweep.vary") for words in vary]
     keys = [a["key"] for a in axes]

@@ -43,9 +43,9 @@ from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
 from sealdyn.scenario.reader import Run
-from sealdyn.simulation.certificate import certificate, first_steps, judged, next_plan
+from sealdyn.simulation.certificate import certificate, first_steps, judgement, next_plan
 from sealdyn.simulation.selection import Plan, choose_method, select_film
-from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, beside_jumps
+from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, clip_jumps
 from sealdyn.solvers.integrate import solve
 
 SEED, TIMES = 20_26, 3
@@ -88,7 +88,7 @@ def automatic(drawn, times):
             break
         tries.append((plan, outcome.tolerance, found))
         run, plan = run.anew(), again
-    found, outcome = judged(found, outcome, tries)
+    found, outcome = judgement(found, outcome, tries)
     spent = time.process_time() - begun
     return run, plan.method, found, outcome, sink.all(), all_contacts(run, outcome), spent
 
@@ -118,7 +118,7 @@ def hindsight(make, drawn, times, scales, true, rows):
             if outcome.status != "ok":
                 continue
             errors = scales.errors(sink.all()[:rows], true[:rows])
-            if np.all((beside_jumps(errors) if method == "trbdf2" else errors) <= drawn.accuracy):
+            if np.all((clip_jumps(errors) if method == "trbdf2" else errors) <= drawn.accuracy):
                 best = min(best, spent)
                 break
     return best
@@ -173,7 +173,7 @@ def judge(number, family="wide"):
         rows = min(rows, int(np.searchsorted(times, found["horizon"])))
     true = in_order(run.model, reference.model, known.columns)
     errors = ErrorScales(run).errors(columns[:rows], true[:rows])
-    errors = (beside_jumps(errors) if chosen == "trbdf2" else errors).max(axis=0, initial=0.0)
+    errors = (clip_jumps(errors) if chosen == "trbdf2" else errors).max(axis=0, initial=0.0)
     if drawn.scene.film.model == "gas_reynolds":
         fine = in_finer_cells(drawn, scales, times, chosen)
         if fine is None:

@@ -10,7 +10,7 @@ from PIL import Image
 
 import sealdyn as package
 from sealdyn import ScenarioError, open_archive
-from sealdyn.radial_seals.summary import _warnings
+from sealdyn.radial_seals.observers import _warnings
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words
 from sealdyn.scenario.errors import CIRCUMFERENTIAL_RULES, LIP_RULES

@@ -6,7 +6,7 @@ import pytest
 
 from sealdyn import read_scenario
 from sealdyn.simulation import film_error as module
-from sealdyn.simulation.film_error import beside_reynolds
+from sealdyn.simulation.film_error import reynolds_comparison
 from sealdyn.simulation.simulate import prepare_run, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -15,7 +15,7 @@ LOW = ["film.cavitation_pressure=0", "film.outer_pressure=0.2 bar", "film.coning
 
 
 def found(name, *overrides):
-    return beside_reynolds(prepare_run(read_scenario(SCENARIOS / f"{name}.toml", overrides))[0])
+    return reynolds_comparison(prepare_run(read_scenario(SCENARIOS / f"{name}.toml", overrides))[0])
 
 
 def test_ludwig_and_allens_film_carries_half_as_much_again_by_its_floor(monkeypatch):

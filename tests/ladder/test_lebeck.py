@@ -24,7 +24,7 @@ from sealdyn.scene.contact import Waviness
 from sealdyn.scene.film import Film, Reynolds
 from sealdyn.scene.scene import SceneError
 from sealdyn.simulation.selection import check_method, choose_method
-from sealdyn.simulation.verification_run import Nothing
+from sealdyn.simulation.verification_run import ProgressSink
 from sealdyn.solvers.contract import Counts, SolverFailure, Status
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS
@@ -205,7 +205,7 @@ def test_a_run_with_an_observer_ends_well():
     model = Model(scenario.scene, 1e-3)
     run = RunState(model, 5e-3)
     run.y0[0] = 0.3e-6
-    outcome = solve(run, "trbdf2", 1e-3, Nothing(run), tolerance=1e-4)
+    outcome = solve(run, "trbdf2", 1e-3, ProgressSink(run), tolerance=1e-4)
     assert outcome.status == Status.OK
     assert len(run.contacts.state()) > 0
 

@@ -14,10 +14,10 @@ from sealdyn.radial_seals.followers import (
     fastest,
     followers_of,
     hangs_up,
-    held_between,
     largest_eccentricity,
     lip_line,
     needed_preload,
+    riding_speeds,
 )
 from sealdyn.radial_seals.model import RadialModel, RadialRun, RadialSegment
 from sealdyn.scenario.reader import read_scenario
@@ -79,7 +79,7 @@ def test_contact_is_lost_at_the_preload_of_the_closed_form(speed, eta, offset):
 def test_a_soft_preload_rides_between_two_speeds():
     """With preload < e k contact is lost at rest and held between m w^2 = k -+ preload / e."""
     k, m, preload = 5e4, 0.03 / (2 * math.pi * R), 2.0
-    low, high = held_between(k, m, preload, E)
+    low, high = riding_speeds(k, m, preload, E)
     assert low == pytest.approx(math.sqrt((k - preload / E) / m)) and high > low > 0
     found = [lifts(lip(preload, w)) for w in (low * 0.9999, low * 1.0001, high * 0.9999, high * 1.0001)]
     assert [n > 0 for n in found] == [True, False, False, True]

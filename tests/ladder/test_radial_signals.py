@@ -15,16 +15,16 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.radial_seals import observers
 from sealdyn.radial_seals.contact import Contacts
 from sealdyn.radial_seals.followers import (
+    closed_form_sentences,
     fastest,
     followers_of,
     hangs_up,
-    held_between,
     largest_eccentricity,
     needed_preload,
-    said,
+    riding_speeds,
 )
 from sealdyn.radial_seals.model import RadialModel, RadialRun, RadialSegment
-from sealdyn.radial_seals.summary import _warnings
+from sealdyn.radial_seals.observers import _warnings
 from sealdyn.report.summary import run_answer
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
@@ -450,7 +450,7 @@ def test_closed_forms_in_words_and_at_their_edges():
     scene = ramped("segments")
     followers, shaft = followers_of(scene), scene.shaft
     preload, needed, largest = (
-        words for words in re.findall(r"[\d.e+-]+(?= N/m| mm)", " ".join(said(followers, shaft)))
+        words for words in re.findall(r"[\d.e+-]+(?= N/m| mm)", " ".join(closed_form_sentences(followers, shaft)))
     )
     arc = 2 * math.pi * R / 12
     assert float(preload) == pytest.approx(4 * math.sin(math.pi / 12) / arc, rel=1e-3)
@@ -466,7 +466,7 @@ def test_closed_forms_in_words_and_at_their_edges():
     # A lip whose offset alone takes all of its preload.
     slack = followers_of(RadialScene(shaft, lip=Lip(0.03, 12, 1.0, 5e4)))
     assert largest_eccentricity(slack, shaft, 500.0) == 0.0
-    low, high = held_between(100.0, 0.01, 0.02, 1e-4)
+    low, high = riding_speeds(100.0, 0.01, 0.02, 1e-4)
     assert low == 0.0 and high == pytest.approx(math.sqrt(300.0 / 0.01))
     held = replace(followers, preload=0.025, friction=0.025)
     assert hangs_up(held) and not hangs_up(replace(held, preload=0.0250001))

@@ -36,7 +36,7 @@ from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, er
 from sealdyn.simulation.film_error import model_error, model_errors
 from sealdyn.simulation.selection import select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
-from sealdyn.simulation.verification_run import Comparison, Nothing
+from sealdyn.simulation.verification_run import Comparison, ProgressSink
 from sealdyn.solvers.contract import Counts, tolerance_for
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
@@ -106,7 +106,9 @@ def test_model_error_does_not_depend_on_how_many_steps_are_taken_at_once(start, 
 def measured(ready, method, tolerance):
     """A run, and how far it is from a sharper one at the instants where they are compared."""
     seen = Comparison(ready)
-    assert solve(ready, method, ready.model.accuracy, Nothing(ready), tolerance=tolerance, seen=seen).status == "ok"
+    assert (
+        solve(ready, method, ready.model.accuracy, ProgressSink(ready), tolerance=tolerance, seen=seen).status == "ok"
+    )
     return seen, seen.error_over_time(method=method, tolerance=tolerance)
 
 
@@ -119,7 +121,7 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     tolerance = tolerance_for(method, accuracy, ready.memory)
     seen, apart = measured(ready, method, tolerance)
     sharp = Comparison(ready.anew())
-    assert solve(sharp.run, "dop853", accuracy, Nothing(ready), tolerance=1e-12, seen=sharp).status == "ok"
+    assert solve(sharp.run, "dop853", accuracy, ProgressSink(ready), tolerance=1e-12, seen=sharp).status == "ok"
     true = float(seen.scales.errors(seen.columns, sharp.columns).max())
     estimate = solver_error(method, tolerance, apart)
     assert true / 3 < estimate + 1e-10 and estimate < accuracy

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
-from ...simulation.verification_run import BESIDE_JUMPS
+from ...simulation.verification_run import JUMP_QUANTILE
 from ...solvers.contract import Counts, SolverFailure, Status
 from ...solvers.integrate import solve
 from ...solvers.recorder import Recorder
@@ -132,7 +132,7 @@ def errors(found: Observed, exact: Observed) -> dict:
             continue
         away = np.abs(found.series[name] - exact.series[name]) / scale
         # Where loads jump, two runs never jump at one instant.
-        largest = np.quantile(away, BESIDE_JUMPS) if exact.jump and name == "leakage" else away.max()
+        largest = np.quantile(away, JUMP_QUANTILE) if exact.jump and name == "leakage" else away.max()
         out["end"][name], out["over_time"][name] = float(away[-1]), float(largest)
         if found.steady and exact.steady and name in found.steady and name in exact.steady:
             pairs = zip(found.steady[name], exact.steady[name], strict=True)

@@ -17,7 +17,7 @@ from pydantic import Field
 from ...answers import Answer, Table
 from ...scenario.settings import with_values
 from ...scene.scene import SceneError
-from ...simulation.film_error import beside_reynolds
+from ...simulation.film_error import reynolds_comparison
 from ...simulation.selection import check_method, choose_method, prepare_run
 from ...solvers.collocation import collocation
 from ...solvers.fixed_step import REFERENCE_METHODS
@@ -126,7 +126,7 @@ def run(scenario, settings, tools) -> Answer:
         "methods": methods,
         "models": rungs,
         "models_unjudged": unjudged,
-        "beside_reynolds": beside_reynolds(run),
+        "beside_reynolds": reynolds_comparison(run),
         "machine": {**machine(), "back_end": back_end(methods), "busy": busy(methods)},
         "names": {name: NAMES[name] for name in methods},
     }
