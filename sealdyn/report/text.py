@@ -19,7 +19,7 @@ def lines(name: str, answer, verbose: bool = False) -> list[str]:
 
 
 # With these words a part goes on with the one before it.
-JOINED = ("to", "at", "of", "or", "times", "(")
+JOINED = ("to", "at", "or", "times")
 
 
 def line_words(line, written) -> str:

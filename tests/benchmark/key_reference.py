@@ -18,6 +18,8 @@ from sealdyn.studies._settings import about, settings_of, time_of
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PAGE = SCENARIOS / "README.md"
+# Design rules, vibration and radial seals, in words.
+GUIDE = Path(__file__).parent / "guide.md"
 HEAD = """# Scenario files
 
 One TOML file describes a seal and a run.  This page is written by `python tests/benchmark/key_reference.py` from the
@@ -42,8 +44,8 @@ JSON schema (`sealdyn schema`), which editors read too.
 - `schema = 1` at the head of a file says which version of these keys it is written in; without it the present one.  A
   file of a newer version is refused in a line that says so.
 - An unknown key is refused; a known key that this seal does not use is listed as `not used`.
-- `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` ([README](../README.md)): no
-  number of a run hangs on it.
+- `[application]` is what the seal is asked to do, for the design rules of `sealdyn check` (below); it
+  changes no number of a run.
 - Axes: the shaft axis z points from the rotor to the stator; angles are counted from the x axis.
 """
 
@@ -60,7 +62,7 @@ def page() -> str:
     # `[run]` is that of face seals.
     parts += keys({**radial, "properties": {k: v for k, v in radial["properties"].items() if k != "run"}})
     parts += ["## Settings of studies\n", "Keys of `[study.NAME]`, or flags `--key value` of `sealdyn study`.\n"]
-    parts += map(settings, study_names())
+    parts += [*map(settings, study_names()), GUIDE.read_text()]
     return "\n".join(parts)
 
 

@@ -135,8 +135,9 @@ def test_the_spring_that_hangs_up_is_found_before_the_run(tmp_path):
 
 
 def test_check_prints_the_lines_of_the_readme(tmp_path):
-    page = (SCENARIOS.parent / "README.md").read_text()
-    seal, application = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)[:2]
+    page = (SCENARIOS / "README.md").read_text()
+    (seal,) = re.findall(r"```toml\n(.*?)```", (SCENARIOS.parent / "README.md").read_text(), re.DOTALL)
+    application = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)[0]
     (tmp_path / "pump.toml").write_text(seal + application)
     printed = sealdyn("check", "pump.toml", cwd=tmp_path).out.splitlines()
     said = re.search(r"```text\n(# design rules.*?)```", page, re.DOTALL)[1].splitlines()
