@@ -9,7 +9,9 @@ from functools import partial
 import numpy as np
 
 from ..analysis import radial_rules
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.intervals import largest_value
+from ..quantities import in_words, number
 from ..radial_seals.followers import followers_of, largest_eccentricity
 from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
@@ -18,18 +20,23 @@ from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from ..solvers.integrate import solve
 from ..solvers.recorder import Recorder
+from . import Info
 
-RADIAL = True
-ALONG = {"curves": "speed"}
+INFO = Info(
+    timed=("circumferential_reference", 7),
+    asks="Up to which runout is the shaft followed?",
+    seals="radial",
+    units={
+        "speed": "rad/s", "eccentricity": "m", "radius": "m", "most": "m", "surface_speed": "m/s", "curve": "1",
+        "apart": "1", "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m",
+    },
+    along={"curves": "speed"},
+)  # fmt: skip
 # Turns of a run; its accuracy; and by how much eccentricities straddle the limit.
 TURNS, ACCURACY = 3.0, 1e-6
 # Largest eccentricity that counts, of the radius.
 MOST = 0.2
-RPM = 30.0 / math.pi
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("circumferential_reference", 7)
+CYCLE = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 
 @dataclass(frozen=True)
@@ -44,11 +51,7 @@ class Settings:
     """At so many speeds of each curve the limit is found by runs, to 1e-4."""
 
 
-units = {"speed": "rad/s", "eccentricity": "m", "radius": "m", "most": "m", "surface_speed": "m/s", "curve": "1",
-         "apart": "1", "closed_form": "m", "stiffness_over_preload": "1/m", "mass_over_preload": "s^2/m"}  # fmt: skip
-
-
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """The curves, the runs that confirm them, and the guide's table."""
     own = largest_value(scenario.scene.shaft.speed)
     if not own:
@@ -72,7 +75,7 @@ def run(scenario, settings, tools) -> dict:
     ]
     found = tools.map(partial(confirmed, [dataclasses.asdict(scene) for scene in scenes]), points, "runs")
     runs = [{**point, **row} for point, row in zip(points, found, strict=True)]
-    answer = {
+    numbers = {
         "names": names,
         "speed": own,
         "eccentricity": scenario.scene.shaft.eccentricity,
@@ -83,7 +86,8 @@ def run(scenario, settings, tools) -> dict:
         "runs": runs,
         "guide": guide(scenario.scene),
     }  # fmt: skip
-    return answer | {"verdict": _verdict(scenario, answer)}
+    found, written = _found(scenario, numbers), {"rad/s": "rpm"}
+    return Answer(numbers, found, _tables(numbers), _panels(numbers), _notes(numbers), written)
 
 
 def _aligned(scene):
@@ -128,7 +132,7 @@ def confirmed(scenes, point) -> dict:
     low, high = 0.9 * limit, 1.1 * limit
     for wanted, rides in ((low, True), (high, False)):
         if follows(_at(scene, speed, wanted)) != rides:
-            found = f"at {RPM * speed:.5g} rpm the runs do not lose contact within 10 % of the closed form"
+            found = f"at {in_words('speed', speed)} the runs do not lose contact within 10 % of the closed form"
             return {"eccentricity": None, "closed_form": limit, "apart": None, "failed": found}
     while high - low > 5e-5 * limit:
         middle = 0.5 * (low + high)
@@ -161,33 +165,61 @@ def guide(scene) -> dict:
     }  # fmt: skip
 
 
-def tables(answer) -> list:
-    """The runs beside the closed form."""
-    rows = [{**row, "name": answer["names"][row["curve"]]} for row in answer["runs"]]
-    columns = (("curve", "name"), ("speed, rpm", "speed", RPM), ("by runs, mm", "eccentricity", 1e3),
-               ("closed form, mm", "closed_form", 1e3), ("apart", "apart"))  # fmt: skip
-    return [(rows, columns)]
+# --- what is shown --------------------------------------------------------------------------------------
 
 
-def _verdict(scenario, answer) -> list[str]:
-    own, speed = _aligned(scenario.scene), answer["speed"]
-    at, limit = f"At {RPM * speed:.5g} rpm", largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
+def _found(scenario, numbers) -> str:
+    """The largest eccentricity at the scenario's speed."""
+    own, speed = _aligned(scenario.scene), numbers["speed"]
+    limit = largest_eccentricity(followers_of(_at(own, speed)), own.shaft, speed)
+    at = f"At {in_words('speed', speed, digits=5)}"
     if limit == 0.0:
-        said = [f"{at} nothing is followed: friction and offset take all of the preload."]
-    elif limit < own.shaft.radius:
-        said = [
-            f"{at} the shaft is followed up to an eccentricity of {1e3 * limit:.4g} mm; this one has "
-            f"{1e3 * answer['eccentricity']:.4g} mm."
-        ]
-    else:
-        said = [f"{at} any eccentricity is followed."]
-    apart = [abs(row["apart"]) for row in answer["runs"] if row.get("apart") is not None]
-    if apart:
-        said.append(f"Runs from the following orbit lose contact within {max(apart):.1e} of the closed form.")
-    known, impossible = answer["guide"], ", which is negative: inertia is not what limits these seals"
-    said.append(
-        f"The guide's {known['words']}, is experience: a mass on a spring that fits it would have "
-        f"{1e-3 * known['stiffness_over_preload']:.3g} per mm of stiffness over preload"
-        f"{impossible if known['stiffness_over_preload'] < 0 else ''}."
-    )
-    return said
+        return f"{at} nothing is followed: friction and offset take all of the preload."
+    if limit >= own.shaft.radius:
+        return f"{at} any eccentricity is followed."
+    this = in_words("m", numbers["eccentricity"])
+    return f"{at} the shaft is followed up to an eccentricity of {in_words('m', limit)}; this one has {this}."
+
+
+def _notes(numbers) -> list[str]:
+    """What the guide's experience is not."""
+    stiffness = numbers["guide"]["stiffness_over_preload"]
+    impossible = ", which is negative: inertia is not what limits these seals" if stiffness < 0 else ""
+    return [f"The guide's {numbers['guide']['words']}, is experience: a mass on a spring that fits it would have "
+            f"{number(stiffness, digits=3)} per m of stiffness over preload{impossible}."]  # fmt: skip
+
+
+def _tables(numbers) -> list[Table]:
+    """The runs beside the closed form."""
+    columns = [("1", "curve"), ("speed", "speed"), ("m", "by runs"), ("m", "closed form"), ("1", "apart")]
+    names = ("speed", "eccentricity", "closed_form", "apart")
+    rows = [[numbers["names"][row["curve"]], *(row.get(name) for name in names)] for row in numbers["runs"]]
+    return [Table("runs", columns, rows)]
+
+
+def _panels(numbers) -> list[Panel]:
+    """Limits over the speed: below a curve the element rides all the way round.  Where a limit is beyond what was
+    looked for the curve runs along that bound."""
+    most, series, levels = numbers["most"], [], []
+    if any(e is None for line in numbers["curves"] for e in line["eccentricity"]):
+        levels = [Level(most, "a fifth of the shaft's radius: no limit is looked for beyond")]
+    for k, line in enumerate(numbers["curves"]):
+        limit, colour = [most if e is None else e for e in line["eccentricity"]], CYCLE[k % len(CYCLE)]
+        held = "" if any(limit) else ": nothing is followed"
+        # A logarithmic axis has no place for nothing.
+        series.append(
+            Series("line", line["speed"], [e or None for e in limit], label=line["name"] + held, style=colour)
+        )
+        points = [row for row in numbers["runs"] if row["curve"] == k and row.get("eccentricity")]
+        if points:
+            at = ([row[name] for row in points] for name in ("speed", "eccentricity"))
+            series.append(Series("marks", *at, label="limit found by runs", style=f"{colour} circle open"))
+    guide = numbers["guide"]
+    speeds = [speed / numbers["radius"] for speed in guide["surface_speed"]]
+    series.append(Series("line", speeds, guide["eccentricity"], label=f"guide, {guide['words']}",
+                         style="grey dashed square"))  # fmt: skip
+    if numbers["eccentricity"] > 0:
+        series.append(Series("marks", [numbers["speed"]], [numbers["eccentricity"]], label="this scenario",
+                             style="bad star large front"))  # fmt: skip
+    return [Panel("Contact is lost above the curve", Axis("speed"),
+                  Axis("m", "largest eccentricity followed", scale="log"), series, levels)]  # fmt: skip
