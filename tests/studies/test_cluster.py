@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -29,8 +30,10 @@ VARY = "rotor.runout=10:60 urad:6"
 IMPORTS = os.pathsep.join([str(Path(sealdyn.__file__).parents[1]), str(Path(__file__).parent)])
 LIMIT = 60
 
-distributed = pytest.importorskip("distributed")
-pytestmark = pytest.mark.slow
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("distributed") is None, reason="an extra: sealdyn[dask]"),
+]
 
 
 # --- what workers evaluate ------------------------------------------------------------------------------
@@ -112,7 +115,9 @@ def ended(process):
 
 
 def client_of(address):
-    return distributed.Client(address, set_as_default=False)
+    from distributed import Client
+
+    return Client(address, set_as_default=False)
 
 
 @pytest.fixture(scope="module")
