@@ -17,8 +17,7 @@ from typing import Annotated
 import typer
 from typer.core import TyperCommand
 
-from .numerics.interruption import CODE, Interruption, deafen
-from .numerics.threads import VARIABLES
+from .numerics.interruption import CODE, VARIABLES, Interruption, deafen
 from .status import Status
 
 # Before anything loads a BLAS.

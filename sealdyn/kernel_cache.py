@@ -16,7 +16,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parent
 STAMP = "kernels.stamp"
 # What a kernel has above its first line.
-KERNEL = re.compile(rb"^@(njit|cfunc|outer_kernel|value_kernel|inner_kernel|c_function)\b", re.MULTILINE)
+KERNEL = re.compile(rb"^@(njit|cfunc|(outer|value|inner|lazy)_kernel|c_function)\b", re.MULTILINE)
 # Relative imports at the left margin: dots, module, names.
 IMPORT = re.compile(rb"^from (\.+)([\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from sealdyn.dynamics.condensation import LinearFilm
-from sealdyn.dynamics.film_derivatives import FilmDerivatives
+from sealdyn.dynamics.condensation import FilmDerivatives, LinearFilm
 from sealdyn.faces import geometry
 from sealdyn.films.gas_reynolds import film as gas
 from sealdyn.scene.film import Film

@@ -13,8 +13,8 @@ from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, 
 from sealdyn.scene.film import Coefficients, Film
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 CLEARANCE, R_I, R_O, SPEED = 1e-5, 0.032, 0.040, 1000.0
 INERTIA, MISALIGNMENT = 8e-4, 25e-6

@@ -51,7 +51,7 @@ class Arrangement:
         """The same by the quotients of Green (1989) whose amplitudes `closed_form` gives, of two floating rings by
         fmsr_relative_tilts; complex, shape (2, n), at speeds (n,) (rad/s).
 
-        **Source**, **Valid** closed_form/response.py, closed_form/both_rings.py.
+        **Source**, **Valid** closed_form/response.py, closed_form/response.py.
         """
         if self.name == "fmsr":
             rotor, stator = map(tilting, (self.scene.rotor, self.scene.stator))

@@ -8,13 +8,12 @@ from ..dynamics.interface import Interface
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..numerics import time_series
-from ..numerics.lyapunov import two_trajectories
 from ..numerics.piecewise_linear import PiecewiseLinear
+from ..numerics.time_series import two_trajectories
 from ..scene.scene import Closing
 from ..scene.variants import part, tables_at_end, with_values
-from ..solvers.contract import Cause, Status
+from ..solvers.contract import Cause, Recorder, Status
 from ..solvers.integrate import solve
-from ..solvers.recorder import Recorder
 from .poincare_map import SAMPLES, PeriodMap
 
 # What is ramped to its new value in time; anything else changes between two turns.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..dynamics.equilibrium import axial_excess, crossing
-from ..dynamics.fluid import set_conditions
+from ..dynamics.imposed_motion import set_conditions
 from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
 from ..faces.geometry import (

@@ -17,10 +17,9 @@ from ..dynamics.signals import signals
 from ..scene.rings import RING_NAMES
 from ..scene.scene import SceneError
 from ..simulation.selection import choose_method
-from ..solvers.contract import Counts, SolverFailure, Status, tolerance_for
+from ..solvers.contract import Counts, Recorder, SolverFailure, Status, tolerance_for
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
-from ..solvers.recorder import Recorder
 
 # Periods integrated at a time; samples of a period.
 PIECE, SAMPLES = 250, 64

@@ -15,10 +15,9 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..faces.film_thickness import h_min
 from ..simulation.selection import choose_method
-from ..solvers.contract import Counts, SolverFailure, Status
+from ..solvers.contract import Counts, Recorder, SolverFailure, Status
 from ..solvers.integrate import solve
 from ..solvers.methods import METHODS
-from ..solvers.recorder import Recorder
 
 TIGHT = 1e-13
 # Differences of the flow: steps in units of the scales.  The error is the fourth power of the step plus the

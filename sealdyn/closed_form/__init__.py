@@ -7,7 +7,6 @@ film thickness at the inner radius of the aligned seal, `h = clearance + coning 
 is outer minus inner pressure.
 """
 
-from .both_rings import TiltingRing, fmsr_relative_tilts
 from .film import (
     FilmCoefficients,
     aligned_leakage,
@@ -16,10 +15,18 @@ from .film import (
     narrow_seal_opening_force,
     radial_film_coefficients,
 )
-from .flow_regime import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
-from .green_1989 import GREEN_1989, GREEN_1989_ROUNDED, GREEN_1989_SEAL, Published, green_1989_tilt
-from .green_groups import film_groups, ring_groups, seal_parameter
+from .green_1989 import (
+    GREEN_1989,
+    GREEN_1989_ROUNDED,
+    GREEN_1989_SEAL,
+    Published,
+    film_groups,
+    green_1989_tilt,
+    ring_groups,
+    seal_parameter,
+)
 from .response import (
+    TiltingRing,
     contact_tilt,
     critical_coning,
     critical_forcing,
@@ -30,14 +37,18 @@ from .response import (
     fmr_static,
     fms_dynamic,
     fms_static,
+    fmsr_relative_tilts,
     superposed,
 )
 from .stability import (
     axial_mode_stable,
+    centrifugal_pressure,
+    couette_reynolds,
     fmr_critical_speed,
     fmr_whirl_ratio,
     fms_critical_speed,
     fms_whirl_ratio,
+    poiseuille_reynolds,
     unconditional_inertia_ratio,
 )
 

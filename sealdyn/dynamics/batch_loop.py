@@ -14,9 +14,9 @@ from numba import carray
 from ..numerics.addresses import call_rates, integers
 from ..numerics.hermite import sample, sample_doubtful
 from ..numerics.kernel import inner_kernel, outer_kernel
-from ..solvers.block import OVERLAP
+from ..solvers.contract import OVERLAP
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
-from ..solvers.sundials_objects import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
+from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
 from ..solvers.sundials_python import longest_step
 from .contact_events import locate_contacts
 from .extrema import track_extremes
@@ -196,7 +196,7 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
 
 @inner_kernel()
 def _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, begin, end, done, output):
-    """Output due in the steps [begin, end], as Block.at (solvers/block.py); returns how many are done."""
+    """Output due in the steps [begin, end], as Block.at (solvers/contract.py); returns how many are done."""
     last = done
     while last < whole[END_DUE] and output.due[last] <= t[end]:
         last += 1

@@ -13,7 +13,7 @@ from ..faces.geometry import TOUCH
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
 from .extrema import MOST_SCAN, PER_RADIAN, SCAN, crossing_time, gap_and_tilt, locate_minimum, scan_step
-from .function_values import thinnest_value
+from .native import thinnest_value
 from .step_bounds import THICKNESS
 
 # One row per contact (or near miss): 1 a contact, 0 grazing; times of touch, lift-off and deepest place (s); film

@@ -10,9 +10,8 @@ from ..faces.geometry import FORCE, MOMENT_X, MOMENT_Y, OUTER_RADIUS
 from ..numerics.addresses import ADDRESS, call_film_residual, call_load, floats, integers
 from ..numerics.kernel import c_function, inner_kernel, outer_kernel
 from . import equations
-from .film_derivatives import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
-from .function_values import load_value
-from .native import ARRAYS, CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, WORK, Native, array
+from .condensation import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
+from .native import ARRAYS, CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, WORK, Native, array, load_value
 from .native import RESIDUAL as OF_RESIDUAL
 
 # The block goes on after that of native.py: two arrays of float64, four of int64; where the film's unknowns begin, and

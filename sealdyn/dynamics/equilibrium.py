@@ -17,7 +17,7 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially
 from ..scene.contact import contact_thresholds, waves_of
 from ..scene.film import aligned_gaps, coned
 from ..scene.scene import Scene, SceneError
-from .fluid import set_conditions
+from .imposed_motion import set_conditions
 from .intervals import Interval, constant_and_slope, spins
 
 POINTS = 600

@@ -16,8 +16,8 @@ from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
 from ..solvers.contract import Cause, Stop
 from .equations import LEG_AT, kinematics
-from .function_values import thinnest_value
 from .imposed_motion import coning_at
+from .native import thinnest_value
 from .step_bounds import (
     FROM,
     MINUS_TILT,

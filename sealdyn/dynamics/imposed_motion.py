@@ -11,11 +11,45 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..faces.geometry import CONING_CHANGE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
 from ..numerics.kernel import inner_kernel, outer_kernel
+from ..scene.film import coning_change
+from ..scene.gas import viscosity_of
 from ..scene.rings import ROTOR, STATOR
 from .intervals import Interval, constant_and_slope, modulo_turn
-from .sampled_motion import motion_at, motions, piece_at
-from .swept_motion import AXIAL_SHARE, SWEEP_ROW, sweep_at
+from .swept_motion import AXIAL_SHARE, SWEEP_ROW, motion_at, motions, piece_at, sweep_at
+
+# --- Fluid and faces at rest ---------------------------------------------------------------------------
+
+# The state of fluid and faces at rest: what of a scene goes into which slots of a gap state.
+
+
+def fluid_conditions(film) -> dict:
+    """Slots of the gap state and what they hold of a `Film` table, each a number or a function of time, SI; temperature
+    0 of a liquid."""
+    return {
+        VISCOSITY: viscosity_of(film),
+        INNER_PRESSURE: film.inner_pressure,
+        OUTER_PRESSURE: film.outer_pressure,
+        TEMPERATURE: 0.0 if film.temperature is None else film.temperature,
+    }
+
+
+def thermal_coning(scene, interval) -> tuple[float, float]:
+    """Change (rad) of the coning at an interval's start and its slope (rad/s), without what follows the speed."""
+    film = scene.film
+    change = coning_change(scene, lambda quantity: constant_and_slope(quantity, interval)[0], speed=0.0)
+    rate, warming = (constant_and_slope(quantity, interval)[1] for quantity in (film.coning, film.temperature or 0.0))
+    return change, rate + film.coning_per_kelvin * warming
+
+
+def set_conditions(s, scene, value, speed=None) -> None:
+    """Writes them into a gap state `s`, and how much the coning has changed; `value` takes the number of a function of
+    time, `speed` (rad/s) is the shaft's in place of the scene's."""
+    for slot, quantity in fluid_conditions(scene.film).items():
+        s[slot] = value(quantity)
+    s[CONING_CHANGE] = coning_change(scene, value, speed)
+
 
 ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLOSING_AT = range(0, 14, 2)
 # Change of the coning, and what it has of the shaft speed squared (rad s^2); angles (rad, modulo one turn) of both
@@ -23,7 +57,7 @@ ROTOR_SPEED, STATOR_SPEED, VISCOSITY_AT, INNER_AT, OUTER_AT, TEMPERATURE_AT, CLO
 CONING_AT, CONING_PER_SPEED_SQUARED = 14, 16
 ROTOR_ANGLE_AT, STATOR_ANGLE_AT, OSCILLATOR_COUNT = 17, 18, 19
 # Where the sweeps of the housing stand (swept_motion.py), and the sampled motion of stator's and rotor's carrier
-# (sampled_motion.py), 0 if there is none.
+# (swept_motion.py), 0 if there is none.
 SWEEPS_AT, MOTION_AT, OSCILLATORS = 20, 21, 23
 ROW = 9
 

@@ -1,7 +1,7 @@
 """What lies between the rings: the film of a scene, the asperities that may touch, and the borrowed numbers."""
 
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -11,10 +11,12 @@ from ..faces.geometry import (
     CLEARANCE,
     CONING_CHANGE,
     CONTACT_FORCE,
+    CONTACT_TORQUE,
     CONTACT_X,
     CONTACT_Y,
     DZ,
     FLOOR,
+    FLOW_INNER,
     FORCE,
     GAP_STATE_SIZE,
     INNER_PRESSURE,
@@ -23,6 +25,7 @@ from ..faces.geometry import (
     MOMENT_Y,
     OUTER_PRESSURE,
     SPIN_DIFFERENCE,
+    TORQUE,
     face_parameters,
 )
 from ..films import film_named, film_of
@@ -30,10 +33,9 @@ from ..numerics.piecewise_linear import initially
 from ..scene.contact import contact_thresholds, waves_of
 from ..scene.film import Coefficients, aligned_gaps, coned
 from ..scene.scene import SceneError
-from .cells import with_cells
-from .condensation import NOISE, LinearFilm, Slopes, film_slopes, linearise
+from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
-from .fluid import set_conditions
+from .imposed_motion import set_conditions
 from .intervals import constant_and_slope, spins
 
 # Relative error of the quadrature of a film that is linearised: what a run is asked for does not matter to a verdict.
@@ -225,9 +227,6 @@ class Interface:
 
     def linear_film(self, s, steps) -> LinearFilm:
         """A film with unknowns about a gap state, these steady; `steps` as in condensation.moved_gaps."""
-        # Sparse matrices are loaded for a film with unknowns only.
-        from .film_derivatives import FilmDerivatives
-
         f, unknowns = self.whole
         return LinearFilm.about(FilmDerivatives(self.film, unknowns, f), s, self.steady(f, s), steps)
 
@@ -358,3 +357,68 @@ def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, 
     """Stiffness and damping matrices (3, 3) of a film's `wrench(f, s)` about `rest_state`."""
     s, steps = rest_state(scene, clearance, interval, mean_spin, shift, pace)
     return linearise(wrench, f, s, steps)
+
+
+# --- Cells ---------------------------------------------------------------------------------------------
+
+# How many cells a film needs: doubled until the balance of the aligned seal hardly changes.
+#
+# **Source** Richardson (1911): what doubling changes, over 2^p - 1, is the error of a method of order p; here half of
+# the change is, since fronts of cavities are of lower order than the rest.
+
+# Grids that are tried, coarsest first, each with twice the cells of the one before.
+MOST_DOUBLINGS = 4
+# Share of a change that counts as the error of the finer grid.
+CHANGED = 0.5
+# Coefficient of friction that is rounding: a standing shaft has none, and its logarithm would never settle.
+NOTHING = 1e-9
+# What is searched so often need not be searched again; the scenes of a study.
+REMEMBERED = 64
+
+
+class Asked:
+    """A scene as what a search may be remembered by."""
+
+    def __init__(self, scene, film):
+        self.scene, self.film, self.words = scene, film, f"{film.name} {scene!r}"
+
+    def __eq__(self, other):
+        return self.words == other.words
+
+    def __hash__(self):
+        return hash(self.words)
+
+
+def with_cells(scene, film):
+    """The `Film` table of a scene with enough cells for what `film` is asked for; cells that are given stay.
+    Raises SceneError where the seal has no balance."""
+    table = film.prepared(scene)
+    return table if film.cells_are_given(scene.film) else _searched(Asked(scene, film))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _searched(asked):
+    scene, film = asked.scene, asked.film
+    wanted, before = film.grid_accuracy(film.prepared(scene)), None
+    for doubling in range(MOST_DOUBLINGS):
+        table = film.doubled(film.prepared(scene), doubling)
+        loads = _balance(replace(scene, film=table))
+        if before is not None and CHANGED * float(np.max(np.abs(loads - before))) <= wanted:
+            break
+        before = loads
+    return table
+
+
+def _balance(scene) -> np.ndarray:
+    """What film and asperities carry, leak and rub where the aligned seal rests, with what is carried at the clearance
+    of that; each over the scale of its own."""
+    interface = Interface(scene, 1e-8)
+    s, _ = rest_state(scene, interface.clearance)
+    flow_at_rest(interface, s)
+    load = max(abs(s[FORCE] + s[CONTACT_FORCE]), 1e-300)
+    return np.array([
+        s[FORCE] / load,
+        np.log(max(abs(s[FLOW_INNER]), 1e-300)),
+        np.log(max(abs(s[TORQUE] + s[CONTACT_TORQUE]), NOTHING * load * scene.film.outer_radius)),
+        np.log(interface.clearance),
+    ])  # fmt: skip

@@ -11,9 +11,8 @@ from .imposed_motion import AXIAL, FIXED_AXIS, OWN, ROW
 from .interface import rest_state
 from .intervals import constant_and_slope
 from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, RingNumbers
-from .neutral_speeds import Whirl
+from .stability_thresholds import Whirl, all_at_once, one_by_one
 from .swept_motion import sweeps_of
-from .whirl_speeds import all_at_once, one_by_one
 
 
 def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
@@ -85,8 +84,8 @@ def moves_with_speed(film) -> bool:
 
 def whirl_over_speed(model, interval):
     """Eigenvalues of the whirl over the shaft's speed in its own direction, the rest as at an interval's start: the
-    function `values` of whirl_speeds.py, and the Whirl they are those of (None where the matrices are not linear in the
-    speed)."""
+    function `values` of stability_thresholds.py, and the Whirl they are those of (None where the matrices are not
+    linear in the speed)."""
     linear = model.linear_scene(interval)
     direction = -1.0 if linear.rings[ROTOR].spin < 0.0 else 1.0
     whirl = _whirl(linear) if linear_in_speed(model, interval) else None

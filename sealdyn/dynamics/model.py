@@ -10,13 +10,12 @@ from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from . import equations, linearisation
 from .equilibrium import axial_shift
-from .fluid import fluid_conditions
+from .imposed_motion import fluid_conditions
 from .interface import FAST, Interface
 from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
-from .sampled_motion import check_covers
 from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
-from .swept_motion import check_begins, sweep_breaks
+from .swept_motion import check_begins, check_covers, sweep_breaks
 from .unknowns import Unknowns
 
 

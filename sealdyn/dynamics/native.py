@@ -6,15 +6,64 @@ The kernels of film and contact come as addresses in the block: one function on 
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from numba import carray, float64, int32
+from numba import boolean, carray, float64, int32, int64, types
 
+from ..faces.contact import contact_load, contact_load_and_friction, no_load
+from ..faces.film_thickness import h_min_of
 from ..faces.geometry import FORCE
-from ..numerics.addresses import ADDRESS, call_film, call_load, floats, integers
-from ..numerics.kernel import c_function, inner_kernel
-from .equations import kinematics, rates
-from .function_values import Value, load_value
+from ..numerics.addresses import ADDRESS, MATRIX, VECTOR, call_film, call_load, call_rates, floats, integers
+from ..numerics.kernel import c_function, inner_kernel, lazy_kernel
+from .equations import kinematics, rates, residual
+
+# --- Function values -----------------------------------------------------------------------------------
+
+# What a scene chooses is called by a kernel through its address, not compiled in.
+# A film's kernel on its block and a gap state; the load of contact on its block, a film's and a gap state; the thinnest
+# place of a face block at a gap state.
+FILM_TYPE, LOAD_TYPE = (
+    types.FunctionType(types.void(VECTOR, VECTOR)),
+    types.FunctionType(types.void(VECTOR, VECTOR, VECTOR)),
+)
+# Friction of the secondary seal of a ring (int64) whose carrier spins, on the parameters and the scratch.
+SEAL_TYPE = types.FunctionType(float64(int64, float64, float64, VECTOR, VECTOR))
+THINNEST_TYPE = types.FunctionType(types.UniTuple(float64, 3)(VECTOR, VECTOR))
+
+
+@lru_cache
+class Value(types.WrapperAddressProtocol):
+    """A kernel as a function value, its address looked up once: each look-up costs as much as thirty films."""
+
+    def __init__(self, kernel, kind=FILM_TYPE):
+        found = kernel.get_compile_result(kind.signature)
+        self.address = found.library.get_pointer_to_function(found.fndesc.llvm_cfunc_wrapper_name)
+        if not self.address:
+            raise TypeError(f"{kernel.__name__} is no value_kernel (numerics/kernel.py): it has no address")
+        # What numba looks for first: without it the type is made anew at every call.
+        self._numba_type_ = kind
+
+    def __wrapper_address__(self):
+        return self.address
+
+    def signature(self):
+        """The kernel's signature, which numba asks for."""
+        return self._numba_type_.signature
+
+
+def load_value(block, complete=False) -> tuple[Value, np.ndarray]:
+    """Load of contact as a function value, `complete` with friction and wear, and its block; without one (None) a load
+    that does nothing, and an empty block."""
+    if block is None:
+        return Value(no_load, LOAD_TYPE), np.empty(0)
+    return Value(contact_load_and_friction if complete else contact_load, LOAD_TYPE), block
+
+
+def thinnest_value(face) -> Value:
+    """What finds the thinnest place of a face block, as a function value."""
+    return Value(h_min_of(face), THINNEST_TYPE)
+
 
 # The block, int64: number of unknowns, kernels of film and contact, then address and length of each array.
 SIZE, KERNEL, LOAD, ARRAYS = 0, 1, 2, 3
@@ -39,12 +88,8 @@ class Native:
 
     @property
     def residual(self) -> int:
-        """Address of the residual; that of rings alone is compiled by its import, which few integrations need."""
-        if self.own_residual:
-            return self.own_residual
-        from .native_residual import residual_at
-
-        return residual_at.address
+        """Address of the residual; that of rings alone is compiled when it is asked for: few integrations need it."""
+        return self.own_residual or residual_at.address
 
 
 def native(segment) -> Native:
@@ -85,3 +130,62 @@ def rates_at(tau, y_at, yp_at, data):
     rates(tau, y, array(block, PARAMETERS), array(block, SCRATCH), s, yp)
     # A shorter step may stay where the film has a solution.
     return 1 if math.isnan(s[FORCE]) else 0
+
+
+@c_function(RESIDUAL)
+def residual_at(tau, y_at, yp_at, res_at, data):
+    """The residual."""
+    block = carray(integers(data), BLOCK)
+    y, yp = carray(floats(y_at), block[SIZE]), carray(floats(yp_at), block[SIZE])
+    loads(tau, y, yp, block)
+    p, w, s = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP)
+    residual(tau, y, yp, p, w, s, array(block, WORK), carray(floats(res_at), block[SIZE]))
+    return 0
+
+
+# --- At many instants in one call ----------------------------------------------------------------------
+
+# What differs from scene to scene, film, contact and thinnest place, comes as a function value: one kernel on disk
+# serves all, and none compiles what its scene has not.
+
+
+@lazy_kernel(types.void(ADDRESS, ADDRESS, VECTOR, MATRIX, MATRIX))
+def rates_along(function, block, taus, ys, yps):
+    """Derivatives `yps` (m, unknowns) at segment times `taus` (m,) (s) and unknowns `ys` (m, unknowns), by addresses of
+    the `function` for C and of its `block` (dynamics/native.py)."""
+    for i in range(len(taus)):
+        call_rates(function, taus[i], ys[i].ctypes.data, yps[i].ctypes.data, block)
+
+
+STATES = types.void(
+    FILM_TYPE, VECTOR, LOAD_TYPE, VECTOR, boolean, VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX,
+    THINNEST_TYPE, VECTOR, MATRIX, MATRIX, MATRIX,
+)  # fmt: skip
+
+
+@lazy_kernel(STATES)
+def states_along(flow, f, contact, block, seals, p, w, s, taus, ys, yps, thinnest, face, gaps, scratch, low):
+    """Gap states `gaps` (m, GAP_STATE_SIZE), scratch states `scratch` (m, SCRATCH) and `low` (m, 3), the thinnest film
+    of the `face` (m) as `thinnest` finds it, its angle (rad) and radius (m), at segment times `taus` (m,) (s) and
+    unknowns `ys`; `yps` (m, unknowns) gives the rates of a massless ring.  `flow` may be any kernel of a film; with
+    `seals` the friction of secondary seals too."""
+    out = np.empty(yps.shape[1])
+    for i in range(len(taus)):
+        kinematics(taus[i], ys[i], yps[i], p, w, s)
+        flow(f, s)
+        contact(block, f, s)
+        if seals:
+            rates(taus[i], ys[i], p, w, s, out)
+        # One by one: assigning whole arrays would take seconds to compile.
+        for j in range(len(s)):
+            gaps[i, j] = s[j]
+        for j in range(len(w)):
+            scratch[i, j] = w[j]
+        low[i, 0], low[i, 1], low[i, 2] = thinnest(face, s)
+
+
+@lazy_kernel(types.void(FILM_TYPE, VECTOR, MATRIX))
+def at_each(kernel, f, gaps):
+    """A film's kernel on every gap state of `gaps` (m, GAP_STATE_SIZE)."""
+    for i in range(len(gaps)):
+        kernel(f, gaps[i])

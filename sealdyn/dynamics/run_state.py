@@ -1,6 +1,8 @@
 """What a run changes: where it starts, its segments, and what is observed on the way."""
 
+from enum import StrEnum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,16 +10,43 @@ from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
 from ..scene.scene import SceneError
 from ..scene.sweep import end
-from .cautions import Caution, Concern
 from .contact_events import ContactEvents
 from .extrema import ExtremaTracker
 from .imposed_motion import harmonics_of_segment
 from .intervals import constant_and_slope
 from .model import Model
-from .sampled_motion import motions
 from .segments import Segment
 from .stick_slip import StickSlip
-from .swept_motion import fastest_sweep, sweeps_of, sweeps_of_segment
+from .swept_motion import fastest_sweep, motions, sweeps_of, sweeps_of_segment
+
+
+class Concern(StrEnum):
+    """What a caution is about."""
+
+    ACCURACY = "accuracy"
+    ALIASING = "aliasing"
+    NO_EQUILIBRIUM = "no equilibrium gap"
+    CHOKING = "choking"
+    BLOWN_OPEN = "blown open"
+    CONTACT_ARM = "arm of the contact force"
+    ENERGY = "energy"
+    FLOOR = "pressure floor"
+    FLASHING = "flashing"
+    HEATING = "heating"
+    INERTIA = "inertia of the film"
+    ROUGH_FILM = "rough film"
+    THIN_FILM = "thin film"
+    TURBULENCE = "turbulence"
+    WIDE_DAM = "wide dam"
+    UNITS = "units"
+    WEAR = "wear"
+
+
+class Caution(NamedTuple):
+    """What a person should know of a run before trusting it: code tests the concern, a person reads the sentence."""
+
+    concern: Concern
+    sentence: str
 
 
 class FilmClosed(SceneError):

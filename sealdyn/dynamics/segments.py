@@ -13,13 +13,20 @@ from ..scene.rings import STATOR
 from ..solvers.contract import SolverFailure
 from . import equations, linearisation
 from .extrema import longest_scan, scan_pace
-from .fluid import fluid_conditions, thermal_coning
-from .imposed_motion import CONING_PER_SPEED_SQUARED, ROTOR_SPEED, coning_at, harmonics_of_segment, imposed_block
+from .imposed_motion import (
+    CONING_PER_SPEED_SQUARED,
+    ROTOR_SPEED,
+    coning_at,
+    fluid_conditions,
+    harmonics_of_segment,
+    imposed_block,
+    thermal_coning,
+)
 from .intervals import Interval, constant_and_slope, modulo_turn
-from .sampled_motion import motions
-from .steady_extremes import common_period
+from .modes import common_period
+from .native import native, rates_along
 from .step_bounds import BEND, REACH, largest_swing
-from .swept_motion import fastest_sweep, largest_sweep, sweeps_of, sweeps_of_segment
+from .swept_motion import fastest_sweep, largest_sweep, motions, sweeps_of, sweeps_of_segment
 
 # Steps per shortest period while a ring sticks: its load is looked at twice in each.
 PER_PERIOD = 32
@@ -148,9 +155,6 @@ class Segment:
     @cached_property
     def native(self):
         """These equations for C (native.py), which work on this segment's arrays and those of its copies."""
-        # A kernel of fixed signature is made ready by its import.
-        from .native import native
-
         return native(self)
 
     def failure(self) -> str:
@@ -264,17 +268,12 @@ class Segment:
 
     def derivatives(self, taus, ys) -> np.ndarray:
         """The right-hand side (m, size) at times and unknowns `ys` (m, size); every ring has mass."""
-        # Kernels of fixed signature are made ready by their import.
         out = np.zeros((len(taus), self.size))
         if self.native is None:
-            from .function_values import Value, load_value
-            from .kernels_by_parts import rates_by_parts
-
-            film = Value(self.model.interface.film.wrench), self.model.f
-            rates_by_parts(*film, *load_value(self.model.contact), self.p, self.w, self.s, taus, ys, out)
+            # Equations of other programs' own.
+            for tau, y, yp in zip(taus, ys, out, strict=True):
+                self.rhs(tau, y, yp)
         else:
-            from .kernels import rates_along
-
             rates_along(self.native.rates, self.native.block.ctypes.data, taus, ys, out)
         return out
 

@@ -39,6 +39,7 @@ from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
 from .intervals import constant_and_slope, modulo_turn
+from .native import Value, load_value, states_along, thinnest_value
 
 # What people read instead of an SI unit, and how many of it make one.
 DISPLAY_UNITS = {
@@ -237,10 +238,6 @@ def _of_ring(ring, parts, first):
 
 def samples(segment, taus, q, q_rate, x=None) -> Samples:
     """States at times (m,) of a segment; `q`, `q_rate` (m, n) displacements and rates, `x` (m, n) the film's."""
-    # Kernels of fixed signature are made ready by their import.
-    from .function_values import Value, load_value, thinnest_value
-    from .kernels import states_along
-
     m, taus = len(taus), np.ascontiguousarray(taus, dtype=float)
     gap, scratch, low = np.empty((m, GAP_STATE_SIZE)), np.empty((m, equations.SCRATCH)), np.empty((m, 3))
     model = segment.model

@@ -20,8 +20,7 @@ from ..faces.waviness import wave_rows
 from ..numerics.kernel import inner_kernel
 from .equations import AT_TILT, AT_Z, FLOATS, LEG_AT, RING
 from .imposed_motion import AXIAL, MOTION_AT, OSCILLATOR_COUNT, OSCILLATORS, OWN, ROW, SWEEPS_AT, TURNING
-from .sampled_motion import motion_at, piece_at
-from .swept_motion import AXIAL_SHARE, SWEEP_ROW, sweep_at
+from .swept_motion import AXIAL_SHARE, SWEEP_ROW, motion_at, piece_at, sweep_at
 
 # The three measures that are made small: the film thickness, minus the squared tilt, the squared tilt (smooth through
 # zero).

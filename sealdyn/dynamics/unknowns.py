@@ -11,12 +11,11 @@ from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
 from ..scene.variants import tilt_is_given, tilt_is_imposed
 from . import equations
-from .fluid import fluid_conditions
-from .function_values import SEAL, Value
-from .imposed_motion import AXIAL, harmonics_of_segment
+from .imposed_motion import AXIAL, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
-from .sampled_motion import motions
+from .native import SEAL_TYPE, Value
 from .secondary_seal import friction_on_ring
+from .swept_motion import motions
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
 WORKS, MORE = 6, 3
@@ -118,7 +117,7 @@ class Unknowns:
             if seal:
                 block[equations.SEAL_LINE], block[equations.SEAL_RADIUS] = seal.line(), seal.radius
                 block[equations.SEAL_SMOOTH] = seal.law == "regularised"
-                block[equations.SEAL_KERNEL] = Value(friction_on_ring, SEAL).address
+                block[equations.SEAL_KERNEL] = Value(friction_on_ring, SEAL_TYPE).address
             block[equations.FLOATS : equations.AXIAL_K] = 1.0, ring.mass, ring.transverse_inertia, ring.polar_inertia
             block[equations.AXIAL_K : equations.AT_Z] = support.axial_stiffness, support.axial_damping, *support.tilt()
             if self.with_axial:

@@ -170,7 +170,7 @@ class Film:
     `whole(table)`     the table of the whole circle where a part of it stands for all.
     `prepared(scene)`  the table with what the rest of the scene decides of it; beside it `cells_are_given(table)`, and
                        `doubled(table, times)`, the table with twice the cells so many times, for the search of how many
-                       are needed (dynamics/cells.py).
+                       are needed (dynamics/interface.py).
     `grid_accuracy(table)`
         the relative error that its cells may have, beside the accuracy of a run.
     `halved(table)`    the table with half the cells, which err four times as much.

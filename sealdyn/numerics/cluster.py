@@ -12,8 +12,8 @@ from functools import partial
 from threading import Lock
 
 from .. import __version__
+from .interruption import one_thread
 from .parallel import row_of
-from .threads import one_thread
 
 PATIENCE = 10.0
 """Time (s) within which a scheduler has to be reached, and to answer."""

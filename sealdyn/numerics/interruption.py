@@ -11,6 +11,7 @@ import signal
 import socket
 import sys
 from contextlib import contextmanager
+from functools import cache
 from threading import Thread, current_thread, main_thread
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
@@ -123,3 +124,18 @@ def deafen() -> None:
     if current_thread() is main_thread():
         for number in SIGNALS:
             signal.signal(number, signal.SIG_IGN)
+
+
+# One thread for linear algebra: matrices here have a dozen rows, and threads of every worker's BLAS only get in each
+# other's way.
+VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS")
+
+
+@cache
+def one_thread():
+    """Keep this process to one thread of BLAS and OpenMP: libraries that are loaded, and those that are still to be."""
+    from threadpoolctl import threadpool_limits
+
+    for name in VARIABLES:
+        os.environ.setdefault(name, "1")
+    threadpool_limits(1)

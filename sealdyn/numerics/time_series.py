@@ -5,6 +5,8 @@ A section holds one point (real or complex) per return of the motion, such as on
 **Source** Moon, *Chaotic Vibrations* (1987), ch. 2 and 5: sections, spectra and exponents as the tests of chaos.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.stats import t as student
 
@@ -139,3 +141,202 @@ def compared(one: dict, other: dict, floors: dict) -> dict:
             "agree": bool(apart <= allowed),
         }
     return rows
+
+
+# --- Lyapunov exponents ----------------------------------------------------------------------------
+
+# Lyapunov exponents of a map, by two methods that share nothing, with their uncertainty; and how far one can see.
+#
+# A map is a function of a point; a flow becomes one by integrating it over a fixed time. Exponents are per iteration.
+# **Source** Benettin, Galgani, Giorgilli & Strelcyn, *Meccanica* 15 (1980) 9 and 21: two neighbours pulled back
+# together, and products of tangent maps made orthonormal; block averages: Flyvbjerg & Petersen, *J. Chem. Phys.* 91
+# (1989) 461. **Valid** maps with a continuous derivative; the trajectory must be on its attractor when counting
+# begins.
+
+# Blocks an uncertainty is drawn from: fewer say too little, more are too short to be independent.
+EXPONENT_BLOCKS = (8, 12, 16, 24, 32)
+
+
+@dataclass(frozen=True)
+class Exponent:
+    """Largest exponent per iteration (`value`), its uncertainty (95 % of cases, by blocks), and the spectrum (k,): as
+    many exponents as directions were followed, largest first."""
+
+    value: float
+    uncertainty: float
+    spectrum: np.ndarray
+
+
+def two_trajectories(step, start, scales, iterations: int, settle: int = 20, distance: float = 1e-5) -> Exponent:
+    """Growth of the distance of two neighbours, pulled back to `distance` (in units of `scales`) at each iteration.
+
+    `step(x) -> x` the map on points (n,), from `start`; `scales` (n,) of its unknowns; the first `settle` iterations
+    only turn the distance into the direction that grows, `iterations` more are counted.
+    **Valid** `distance` far above the map's own error, and far below the size of the attractor.
+    """
+    x, scales = np.array(start, dtype=float), np.asarray(scales, dtype=float)
+    apart = _direction(len(x)) * distance
+    growths = np.empty(settle + iterations)
+    for k in range(settle + iterations):
+        other = step(x + apart * scales)
+        x = step(x)
+        apart = (other - x) / scales
+        size = np.linalg.norm(apart)
+        growths[k] = np.log(size / distance)
+        apart *= distance / size
+    growths = growths[settle:]
+    return Exponent(float(growths.mean()), uncertainty(growths), growths.mean(keepdims=True))
+
+
+def tangent_product(step, start, iterations: int, directions: int = 1, settle: int = 20) -> Exponent:
+    """Growth of tangent vectors under the products of the map's derivative, made orthonormal at each iteration (QR).
+
+    `step(x, q) -> (x, dq)`: the map on points (n,), from `start`, and its derivative applied to the columns of q (n,
+    directions); `q` and `dq` in units in which lengths are compared.  `settle` iterations are not counted.
+    """
+    x = np.array(start, dtype=float)
+    q = np.linalg.qr(np.column_stack([np.roll(_direction(len(x)), k) for k in range(directions)]))[0]
+    growths = np.empty((settle + iterations, directions))
+    for k in range(settle + iterations):
+        x, moved = step(x, q)
+        q, r = np.linalg.qr(moved)
+        growths[k] = np.log(np.abs(np.diag(r)))
+    growths = growths[settle:]
+    spectrum = growths.mean(axis=0)
+    return Exponent(float(spectrum[0]), uncertainty(growths[:, 0]), spectrum)
+
+
+def _direction(n: int) -> np.ndarray:
+    """A unit vector that no symmetry of a scene singles out."""
+    v = np.cos(1.0 + 2.3 * np.arange(n))
+    return v / np.linalg.norm(v)
+
+
+def uncertainty(series) -> float:
+    """Half-width (95 % of cases) of the mean of a correlated series (m,): spread of the means of blocks, the largest
+    over several lengths of blocks, in units of the series.  Infinite for fewer than two values a block (m < 16)."""
+    series = np.asarray(series, dtype=float)
+    found = [0.0]
+    for count in EXPONENT_BLOCKS:
+        length = len(series) // count
+        if length < 2:
+            break
+        means = series[: count * length].reshape(count, length).mean(axis=1)
+        found.append(float(means.std(ddof=1) / np.sqrt(count) * student.ppf(0.975, count - 1)))
+    return max(found) if len(found) > 1 else float("inf")
+
+
+def horizon(exponent: float, error: float, scale: float = 1.0) -> float:
+    """Iterations after which an error has grown to `scale` (same unit): ln(scale/error)/exponent; infinite if nothing
+    grows."""
+    return float(np.log(scale / error) / exponent) if exponent > 0 else float("inf")
+
+
+# --- Order tracking ---------------------------------------------------------------------------------
+
+# One order of a signal followed over a ramp, and spectra in orders against speed: all over the shaft's angle.
+#
+# A signal sampled evenly in shaft angle has its orders standing still however the speed changes; windows of whole
+# turns put every whole order on a line. A Hann window over `turns` turns lets orders nearer than 2/turns into each
+# other, and sees everything that happens while the shaft turns through it as one: the speed then changes by rate
+# times its duration. **Source** Fyfe and Munck (1997), Mech. Systems and Signal Processing 11(2), order tracking;
+# Harris (1978), windows.
+
+# Equivalent noise bandwidth of the Hann window, in bins: what `resolution` means.
+HANN = 1.5
+# Share of the power in the top tenth of the band above which a spectrum may be folded.
+FOLDED = 1e-4
+
+
+def hann(count: int) -> np.ndarray:
+    """Hann window (count,) at the middles of its samples, symmetric, its sum one."""
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(count) + 0.5) / count)
+    return window / window.sum()
+
+
+def resolution(turns: int) -> float:
+    """Resolution (orders) of a window of whole turns."""
+    return HANN / turns
+
+
+def centres(begin: int, end: int, length: int, speed, most: int) -> np.ndarray:
+    """First samples (ints) of at most `most` windows of `length` samples inside [begin, end), even in `speed` (m,)
+    (rad/s), which is monotonic there; empty if no window fits."""
+    firsts = np.arange(begin, end - length + 1)
+    if not len(firsts):
+        return firsts
+    middle = speed[firsts + length // 2]
+    if most >= len(firsts) or np.ptp(middle) == 0.0:
+        return firsts[np.unique(np.linspace(0, len(firsts) - 1, min(most, len(firsts))).astype(int))]
+    rising = 1.0 if middle[-1] > middle[0] else -1.0
+    wanted = np.linspace(middle[0], middle[-1], most)
+    return firsts[np.unique(np.clip(np.searchsorted(rising * middle, rising * wanted), 0, len(firsts) - 1))]
+
+
+def tracked(signal, phase_index, per_turn: int, turns: int, order: float, firsts) -> np.ndarray:
+    """Complex amplitudes (windows,) of `exp(i order angle)` in windows of whole turns beginning at samples `firsts`.
+
+    `signal` (m,), `per_turn` samples a turn; sample k stands at the angle `2 pi phase_index[k] / per_turn`.
+    Of a real signal: amplitude and phase of the cosine, in its unit.
+    """
+    length = turns * per_turn
+    window, twice = hann(length), 2.0 if np.isrealobj(signal) and order != 0.0 else 1.0
+    out = np.empty(len(firsts), dtype=complex)
+    for n, first in enumerate(firsts):
+        part = slice(first, first + length)
+        # Whole turns are taken off the angle before it is multiplied: a phase as exact after a thousand turns.
+        angle = 2 * np.pi * order * (phase_index[part] - phase_index[first]) / per_turn
+        begun = 2 * np.pi * np.mod(order * phase_index[first] / per_turn, 1.0)
+        out[n] = twice * np.sum(window * signal[part] * np.exp(-1j * (angle + begun)))
+    return out
+
+
+def waterfall(signal, per_turn: int, turns: int, firsts, low: float, high: float, still: float = 0.0):
+    """Amplitudes (windows, orders) of `signal` (m,), real or complex, in windows of whole turns beginning at samples
+    `firsts`, two-sided; the orders (n,) within [low, high]; the largest share of power in the top tenth of the band
+    (`at_the_edge`)."""
+    length = turns * per_turn
+    window = hann(length)
+    orders = np.fft.fftshift(np.fft.fftfreq(length, 1.0 / per_turn))
+    kept, rows, share = (orders >= low) & (orders <= high), [], 0.0
+    for first in firsts:
+        part = signal[first : first + length]
+        lines = np.abs(np.fft.fftshift(np.fft.fft(window * part)))
+        share = max(share, at_the_edge(orders, lines, resolution(turns), still))
+        rows.append(lines[kept])
+    return np.array(rows).reshape(len(firsts), int(kept.sum())), orders[kept], share
+
+
+def at_the_edge(orders, amplitude, near: float, still: float = 0.0) -> float:
+    """Share of the power in the top tenth of the sampled band, of all orders farther than 2 `near` from zero: a
+    response that has not died out there is folded.  `orders`, `amplitude` (n,); 0 if all that moves stays below `still`
+    (unit of the amplitude)."""
+    power = np.where(np.abs(orders) > 2 * near, amplitude**2, 0.0)
+    total = power.sum()
+    edge = power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum()
+    return float(edge / total) if total > still**2 else 0.0
+
+
+# A peak is read from a parabola through what stands above this share of its height.
+TOP = 0.98
+
+
+def peak(speed, amplitude) -> tuple[float, float] | None:
+    """Speed and height of the largest of `amplitude` (n,) over `speed` (n,), by the parabola fitted to the top two per
+    cent around it (three points at least; from nine points on a fourth-order fit's parabola); None where the largest is
+    at an end."""
+    speed, amplitude = np.asarray(speed), np.asarray(amplitude)
+    k = int(np.argmax(amplitude)) if len(speed) > 2 else 0
+    if k in (0, len(speed) - 1):
+        return None
+    first, last = k - 1, k + 1
+    while first > 0 and amplitude[first - 1] > TOP * amplitude[k]:
+        first -= 1
+    while last < len(speed) - 1 and amplitude[last + 1] > TOP * amplitude[k]:
+        last += 1
+    # As far to one side as to the other, so that a lopsided top does not pull it.
+    reach = max(1, min(k - first, last - k))
+    x, y = speed[k - reach : k + reach + 1] - speed[k], amplitude[k - reach : k + reach + 1]
+    a, b, c = np.polyfit(x, y, min(4, len(x) - 1) if reach > 3 else 2)[-3:]
+    at = -b / (2 * a) if a < 0 else 0.0
+    return float(speed[k] + at), float(c + b * at + a * at * at)

@@ -39,7 +39,7 @@ import numpy as np
 
 from ..dynamics.contact_events import ROW
 from ..dynamics.extrema import slack, watched_level
-from ..dynamics.function_values import thinnest_value
+from ..dynamics.native import thinnest_value
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, tolerance_for
 from ..solvers.integrate import STIFF, Outcome
 from ..solvers.sundials import looped
@@ -312,7 +312,7 @@ def integrate(alike: list[LoopedRun]):
     # Compiled and linked with the libraries as it is imported.
     from ..dynamics import batch_loop as loop
     from ..solvers.sundials_direct import cvode_for
-    from ..solvers.sundials_objects import words_for
+    from ..solvers.sundials_libraries import words_for
 
     first = alike[0]
     runs, touching, output = _loop_arrays(alike, loop)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..dynamics.model import Model
+from ..dynamics.native import Value, at_each, load_value, states_along, thinnest_value
 from ..dynamics.run_state import RunState
 from ..faces.contact import lay_surfaces
 from ..faces.film_thickness import h_min
@@ -174,10 +175,6 @@ class FilmComparison:
     def defects(self, times, states) -> np.ndarray:
         """Forces (N) and moments (N m), shape (m, n), by which the higher film pushes more than the lower one, at
         segment `times` (m,) (s) and `states` (m, 2 n), displacements and rates."""
-        # Kernels of fixed signature are made ready by their import.
-        from ..dynamics.function_values import Value, load_value, thinnest_value
-        from ..dynamics.kernels import at_each, states_along
-
         segment, linear, n = self.segment, self.linear, len(self.linear.mass)
         model, kept = segment.model, segment.model.unknowns.among_three()
         ys = np.zeros((len(times), segment.size))
@@ -200,9 +197,6 @@ class FilmComparison:
         """Largest change (2,) by displacements and rates `moved` (m, 2 n) at the states last seen: of the film at the
         outer radius in clearances, of the leakage relative to its largest."""
         # Kernels of fixed signature are made ready by their import.
-        from ..dynamics.function_values import Value
-        from ..dynamics.kernels import at_each
-
         linear, model, n = self.linear, self.segment.model, len(self.linear.mass)
         x, v = (
             sum(linear.rings[k].sign * part[:, 3 * a : 3 * a + 3] for a, k in enumerate(linear.floating))

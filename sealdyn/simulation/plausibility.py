@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..closed_form import centrifugal_pressure, couette_reynolds, poiseuille_reynolds
-from ..dynamics.cautions import Caution, Concern
 from ..dynamics.intervals import largest_value
 from ..dynamics.model import Model
+from ..dynamics.run_state import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points

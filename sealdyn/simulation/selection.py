@@ -8,11 +8,10 @@ import numpy as np
 
 from .. import archive
 from ..dynamics import modes
-from ..dynamics.cautions import Caution, Concern
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
-from ..dynamics.run_state import RunState
-from ..dynamics.sampled_motion import COARSE, PER_PERIOD, motions
+from ..dynamics.run_state import Caution, Concern, RunState
+from ..dynamics.swept_motion import COARSE, PER_PERIOD, motions
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
 from ..scenario.reader import Run, Scenario
 from ..scene.gas import viscosity_of

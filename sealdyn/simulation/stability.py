@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..dynamics import modes, whirl_speeds
+from ..dynamics import modes, stability_thresholds
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
-from ..dynamics.neutral_speeds import neutral_speeds
+from ..dynamics.stability_thresholds import neutral_speeds
 from ..scene.contact import waves_of
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import SceneError
@@ -76,8 +76,8 @@ def thresholds(model, interval=None) -> list[float]:
     """Shaft speeds (rad/s, rising, without sign: in the direction in which the shaft turns) at which the tilts of a
     model lose or regain their damping, the rest as at an interval's start (default: the run's).
 
-    **Valid** every speed, where the film's matrices are linear in it (dynamics/neutral_speeds.py); of a film with a
-    floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
+    **Valid** every speed, where the film's matrices are linear in it (dynamics/stability_thresholds.py); of a film with
+    a floor of the pressure, unknowns of its own or waves those that 160 speeds tell apart, from a thousandth of the
     smaller of the shaft's speed and `natural_frequency` to a thousand times the larger, within `held_speeds`."""
     low, high = _range(model, interval)
     if not high:
@@ -85,7 +85,7 @@ def thresholds(model, interval=None) -> list[float]:
     values, whirl = whirl_over_speed(model, interval)
     neutral, points = ((), POINTS) if whirl is None else (neutral_speeds(whirl), POINTS_KNOWN)
     low, high = held_speeds(model, interval, low / AROUND, high * AROUND)
-    return whirl_speeds.thresholds(values, low, high, points, neutral)
+    return stability_thresholds.thresholds(values, low, high, points, neutral)
 
 
 def critical_speed(model, interval=None) -> float | None:
@@ -102,7 +102,7 @@ def resonance_speeds(model, interval=None) -> list[float]:
         return []
     values, whirl = whirl_over_speed(model, interval)
     low, high = held_speeds(model, interval, 1e-2 * natural, 1e2 * natural)
-    return whirl_speeds.resonance_speeds(values, low, high, whirl=whirl)
+    return stability_thresholds.resonance_speeds(values, low, high, whirl=whirl)
 
 
 def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]:
@@ -150,7 +150,7 @@ def natural_frequency(model, interval=None) -> float:
     there are none: of an overdamped pair, however far apart, the root of stiffness over inertia."""
     _, whirl = whirl_over_speed(model, interval)
     if whirl is not None:
-        found, _ = whirl_speeds.all_at_once(replace(whirl, stator_speed=0.0))([0.0])
+        found, _ = stability_thresholds.all_at_once(replace(whirl, stator_speed=0.0))([0.0])
         sizes = np.abs(found[np.isfinite(found)])
     else:
         sizes = np.array([abs(mode.value) for mode in model.linear_scene(interval).modes() if mode.kind == "tilt"])

@@ -7,11 +7,11 @@ import numpy as np
 
 from .. import closed_form
 from ..dynamics import modes
-from ..dynamics.cautions import Caution, Concern
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.interface import flow_at_rest, rest_state
 from ..dynamics.intervals import constant_and_slope
-from ..dynamics.steady_extremes import steady_extremes
+from ..dynamics.modes import steady_extremes
+from ..dynamics.run_state import Caution, Concern
 from ..faces.geometry import CONTACT_TORQUE, FLOW_INNER, INNER_PRESSURE, OUTER_PRESSURE, SPIN_DIFFERENCE, TORQUE, TOUCH
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.contact import waves_of

@@ -10,8 +10,8 @@ from ..dynamics.interface import rest_state
 from ..dynamics.intervals import constant_and_slope
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
-from ..dynamics.sampled_motion import motions
 from ..dynamics.signals import samples
+from ..dynamics.swept_motion import motions
 from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT_Y, OUTER_PRESSURE, TORQUE
 from ..numerics.piecewise_linear import initially
 from ..scene.gas import density_of, gas_of

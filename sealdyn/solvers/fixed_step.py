@@ -233,7 +233,7 @@ def _refuse_residual_form(segment, method):
 
 
 def _only_with_rates(steps):
-    """A method of solvers/methods.py that says so when the scene has no rates."""
+    """A method of METHODS that says so when the scene has no rates."""
 
     def guarded(segment, tau, y, method, tolerance, counts):
         _refuse_residual_form(segment, method)

@@ -1,4 +1,4 @@
-"""CVODE and IDA: by compiled loops (sundials_direct.py, sundials_ida.py) where a segment has equations for C and the
+"""CVODE and IDA: by compiled loops (sundials_direct.py) where a segment has equations for C and the
 libraries are as known, else through scikit-sundae (sundials_python.py)."""
 
 import os
@@ -47,9 +47,7 @@ def _back_end(segment, counts, form):
         counts.back_end = SCIKIT_SUNDAE
         return sundials_python
     counts.back_end = f"SUNDIALS {libraries().version}, compiled loop"
-    # Their compiled code needs the libraries open, and is made ready by the import.
-    if form == "residual":
-        from . import sundials_ida as back_end
-    else:
-        from . import sundials_direct as back_end
-    return back_end
+    # Its compiled code needs the libraries open.
+    from . import sundials_direct
+
+    return sundials_direct

@@ -1,7 +1,8 @@
-"""CVODE stepped by a compiled loop, without Python between steps (IDA: sundials_ida.py).
+"""CVODE and IDA stepped by compiled loops, without Python between steps.
 
 Steps are handed over in blocks; between blocks the integrator waits with its whole history, it never starts again.
-The right-hand side comes as an address (dynamics/native.py).
+Right-hand side and residual come as addresses (dynamics/native.py).  Without the libraries this file cannot be
+imported.
 """
 
 import ctypes
@@ -10,11 +11,10 @@ from contextlib import contextmanager
 import numpy as np
 from numba import carray, float64, int32, int64, types
 
-from ..numerics.addresses import ADDRESS, call_rates, floats, integers
-from ..numerics.kernel import c_function, inner_kernel, outer_kernel
+from ..numerics.addresses import ADDRESS, call_derivatives, call_rates, call_residual, floats, integers, short_integers
+from ..numerics.kernel import c_function, inner_kernel, lazy_kernel, outer_kernel
 from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
-from .sundials_libraries import libraries
-from .sundials_objects import (
+from .sundials_libraries import (
     BLOCK,
     CALLS,
     CARRIED,
@@ -25,13 +25,19 @@ from .sundials_objects import (
     ONE_STEP,
     SCALES,
     SIZE,
+    SPARSE,
     TOO_MUCH_WORK,
     Carried,
     Objects,
     flag_name,
+    libraries,
     values_of,
 )
 from .sundials_python import MOST_STEPS, longest_step
+
+# The loops are linked to the libraries as they are compiled.
+if isinstance(libraries(), str):
+    raise ImportError(libraries())
 
 ADAMS, BDF = 1, 2
 
@@ -176,3 +182,124 @@ def cvode(segment, tau, y, method, tolerance, counts, max_order: int | None = No
                 yield ts[:count], ys[:count], None
             if flag < 0:
                 raise SolverFailure(failure_message(method, flag_name(lib.CVodeGetReturnFlagName, flag), reached[0]))
+
+
+# --- Sparse Jacobians ---------------------------------------------------------------------------------
+
+# For a segment that knows its residual's derivatives: they come as an address (dynamics/coupled_native.py), and
+# SuperLU_MT solves.  The values are written where the SUNDIALS matrix keeps them; SUNDIALS empties the whole matrix
+# before, so that the pattern is written each time too.
+# Words that SUNDIALS carries: address of the derivatives, then addresses of the pattern's row numbers and of its
+# columns' starts, and how many halves of a word (int32) each has; whether there has been a Jacobian.
+DERIVATIVES, ROWS, ROW_HALVES, STARTS, START_HALVES, FACTORED = range(SPARSE, SPARSE + 6)
+
+_values = types.ExternalFunction("SUNSparseMatrix_Data", ADDRESS(ADDRESS))
+_rows = types.ExternalFunction("SUNSparseMatrix_IndexValues", ADDRESS(ADDRESS))
+_starts = types.ExternalFunction("SUNSparseMatrix_IndexPointers", ADDRESS(ADDRESS))
+
+
+@c_function(int32(float64, float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS, ADDRESS))
+def _sparse_jacobian(tau, alpha, y, yp, res, matrix, carried, spare, another, third):
+    """d res / d y + alpha d res / d y'."""
+    carried = carray(integers(carried), CARRIED)
+    for to, at, count in ((_rows(matrix), ROWS, ROW_HALVES), (_starts(matrix), STARTS, START_HALVES)):
+        carray(short_integers(to), carried[count])[:] = carray(short_integers(carried[at]), carried[count])
+    carried[JACOBIANS] += 1
+    carried[CALLS] += carried[COLUMNS] + 1
+    values = _values(matrix)
+    status = call_derivatives(carried[DERIVATIVES], tau, alpha, values_of(y), values_of(yp), values, carried[DATA])
+    carried[FACTORED] |= status == 0
+    return status
+
+
+def set_sparse_solver(made, memory, vector, segment, carried):
+    """Give IDA of this `memory` the sparse Jacobian of a segment and a solver for it; `carried` gets the words."""
+    pattern, lib = segment.pattern, made.lib
+    # Their width is that of the library's indices.
+    rows, starts = (part.astype(np.dtype(lib.index)) for part in (pattern.indices, pattern.indptr))
+    made.kept += [rows, starts]
+    words = [segment.native.derivatives]
+    for part in (rows, starts):
+        words += [part.ctypes.data, part.nbytes // 4]
+    carried.words[SPARSE:] = [*words, False]
+    matrix, solver = made.sparse(vector, pattern.nnz, lambda: carried.words[FACTORED])
+    lib.IDASetLinearSolver(memory, solver, matrix)
+    lib.IDASetJacFn(memory, ctypes.c_void_p(_sparse_jacobian.address))
+
+
+# --- IDA ----------------------------------------------------------------------------------------------
+
+_ida_order = types.ExternalFunction("IDAGetLastOrder", int32(ADDRESS, ADDRESS))
+_ida = types.ExternalFunction("IDASolve", int32(ADDRESS, float64, ADDRESS, ADDRESS, ADDRESS, int32))
+
+
+@c_function(int32(float64, ADDRESS, ADDRESS, ADDRESS, ADDRESS))
+def _residual(tau, y, yp, res, carried):
+    carried = carray(integers(carried), CARRIED)
+    carried[CALLS] += 1
+    return call_residual(carried[FUNCTION], tau, values_of(y), values_of(yp), values_of(res), carried[DATA])
+
+
+IDA_STEPS = types.Tuple((int64, int32))(
+    ADDRESS, ADDRESS, ADDRESS, float64[::1], float64[::1], float64[::1], float64,
+    int64[::1], float64[::1], float64[:, ::1], float64[:, ::1],
+)  # fmt: skip
+
+
+@lazy_kernel(IDA_STEPS, nogil=True)
+def _step_ida(memory, vector, slopes, y, yp, reached, end, orders, ts, ys, yps):
+    """As `step_cvode`, with the derivatives `yp` (size,) in `yps` (m, size)."""
+    order = np.zeros(1, dtype=np.int32)
+    for k in range(len(ts)):
+        before = reached[0]
+        flag = _ida(memory, end, reached.ctypes.data, vector, slopes, ONE_STEP)
+        if reached[0] <= before and flag >= 0:
+            flag = int32(TOO_MUCH_WORK)
+        if flag < 0:
+            return k, flag
+        _ida_order(memory, order.ctypes.data)
+        orders[order[0] - 1] += 1
+        ts[k] = reached[0]
+        for i in range(len(y)):
+            ys[k, i], yps[k, i] = y[i], yp[i]
+        if reached[0] >= end:
+            return k + 1, flag
+    return len(ts), int32(0)
+
+
+def ida(segment, tau, y, method, tolerance, counts):
+    """Steps of IDA, on the residual form, with the contract of contract.py; `y` is made consistent first.
+    **Raises** SolverFailure."""
+    carried, reached = Carried(segment, segment.native.residual), np.array([tau])
+    y, yp = (np.ascontiguousarray(part, dtype=float) for part in segment.start(tau, y.copy()))
+    with Objects(segment.size) as made:
+        lib, vector, slopes = made.lib, made.vector(y), made.vector(yp)
+        memory = made.memory(lib.IDACreate(made.context), lib.IDAFree)
+        lib.IDAInit(memory, ctypes.c_void_p(_residual.address), ctypes.c_double(tau), vector, slopes)
+        absolute = made.vector(absolute_tolerances(segment, tolerance))
+        lib.IDASVtolerances(memory, ctypes.c_double(tolerance), absolute)
+        lib.IDASetUserData(memory, ctypes.c_void_p(carried.words.ctypes.data))
+        if segment.native.derivatives:
+            set_sparse_solver(made, memory, vector, segment, carried)
+        else:
+            matrix, solver = made.dense(vector)
+            lib.IDASetLinearSolver(memory, solver, matrix)
+        if len(segment.algebraic):
+            differential = np.ones(segment.size)
+            differential[segment.algebraic] = 0.0
+            lib.IDASetId(memory, made.vector(differential))
+        lib.IDASetMaxNumSteps(memory, ctypes.c_long(MOST_STEPS))
+        lib.IDASetMaxStep(memory, ctypes.c_double(longest_step(segment)))
+        lib.IDASetStopTime(memory, ctypes.c_double(segment.length))
+        rows = FEW if segment.may_change else BLOCK
+        while reached[0] < segment.length:
+            ts, (ys, yps) = np.empty(rows), np.empty((2, rows, segment.size))
+            count, flag = _step_ida(
+                memory.value, vector.value, slopes.value, y, yp, reached, segment.length, carried.orders, ts, ys, yps
+            )
+            carried.tell(counts, memory, (lib.IDAGetNumErrTestFails, lib.IDAGetNumNonlinSolvConvFails))
+            if count:
+                yield ts[:count], ys[:count], yps[:count]
+            if flag < 0:
+                message = failure_message(method, flag_name(lib.IDAGetReturnFlagName, flag), reached[0])
+                raise SolverFailure(segment.failure() or message)

@@ -15,8 +15,7 @@ from typing import Any
 from .. import __version__, studies
 from ..answers import Answer, as_json, plain
 from ..archive import link_target, only_writer, write_study
-from ..numerics.parallel import Checkpoint, evaluate, processes
-from ..numerics.results import Results
+from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..report.text import written_units
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without

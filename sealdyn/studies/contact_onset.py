@@ -10,8 +10,8 @@ from ..analysis.shooting import NoOrbit, Shooter, TooMuchWork
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
+from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import RunState
-from ..dynamics.steady_extremes import steady_extremes
 from ..numerics.piecewise_linear import points
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError

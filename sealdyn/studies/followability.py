@@ -17,9 +17,8 @@ from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
 from ..scenario.settings import axis, values_in_si, with_values
 from ..scene.scene import SceneError
-from ..solvers.contract import Status
+from ..solvers.contract import Recorder, Status
 from ..solvers.integrate import solve
-from ..solvers.recorder import Recorder
 from . import Info
 
 INFO = Info(

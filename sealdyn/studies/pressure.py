@@ -23,7 +23,7 @@ from ..faces.geometry import (
     OUTER_RADIUS,
     REFUSED,
 )
-from ..numerics.crossing import crossing
+from ..numerics.piecewise_linear import crossing
 from ..quantities import in_words, number, shown_in
 from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of

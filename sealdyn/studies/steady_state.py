@@ -10,9 +10,9 @@ from ..analysis.shooting import NoOrbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics import modes
 from ..dynamics.model import Model
+from ..dynamics.modes import steady_extremes
 from ..dynamics.run_state import RunState
 from ..dynamics.signals import signals
-from ..dynamics.steady_extremes import steady_extremes
 from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
@@ -20,9 +20,8 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import critical_speed
-from ..solvers.contract import Status
+from ..solvers.contract import Recorder, Status
 from ..solvers.integrate import solve
-from ..solvers.recorder import Recorder
 from . import Info
 
 INFO = Info(

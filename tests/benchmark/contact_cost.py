@@ -11,8 +11,8 @@ from pathlib import Path
 
 from sealdyn.scenario.reader import parse_scenario, read_scenario
 from sealdyn.simulation.simulate import prepare_run
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CONTACT = '[contact]\nroughness = "0.1 um"\ncompressive_strength = "300 MPa"\n'

@@ -19,7 +19,7 @@ from radial_cells import film_of
 from scenes import SPEED, fms, prepared
 
 from sealdyn.dynamics.model import Model
-from sealdyn.numerics.threads import one_thread
+from sealdyn.numerics.interruption import one_thread
 from sealdyn.solvers import sundials_python
 from sealdyn.solvers.contract import Counts, tolerance_for
 from sealdyn.solvers.sundials import why_slow
@@ -57,7 +57,7 @@ def seconds(ready, way):
     segment.settle_film(0.0, y)
     begun_with = segment.start(0.0, y)
     segment.start = lambda tau, y: [part.copy() for part in begun_with]
-    back_end = sundials_python if way else sundials_ida
+    back_end = sundials_python if way else sundials_direct
     tolerance, begun = tolerance_for("ida", ACCURACY, ready.memory), time.perf_counter()
     steps = sum(len(t) for t, *_ in back_end.ida(segment, 0.0, y, "ida", tolerance, counts))
     return time.perf_counter() - begun, steps, counts.rhs
@@ -67,7 +67,7 @@ if __name__ == "__main__":
     one_thread()
     if why := why_slow(sparse=True):
         raise SystemExit(why)
-    from sealdyn.solvers import sundials_ida
+    from sealdyn.solvers import sundials_direct
 
     model = partial(Model, film=film_of(CELLS, ANGLES))
     ready = prepared(fms(), TURNS * 2 * math.pi / SPEED, ACCURACY, model_class=model)

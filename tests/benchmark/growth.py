@@ -19,9 +19,8 @@ from right_hand_side import best
 from scenes import SPEED, fms, prepared
 
 import sealdyn
-from sealdyn.dynamics.function_values import Value
-from sealdyn.dynamics.kernels import at_each
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.native import Value, at_each
 from sealdyn.films._radial_quadrature import RADIAL_POINTS, points_for
 from sealdyn.films.radial import film as radial
 from sealdyn.simulation.simulate import simulate, simulate_in_memory

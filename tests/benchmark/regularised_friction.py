@@ -19,8 +19,8 @@ from sealdyn.report.charts import palette
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, SecondarySeal
 from sealdyn.scene.scene import Initial, RingStart
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)

@@ -13,13 +13,11 @@ import numpy as np
 from scenes import started
 
 import sealdyn
-from sealdyn.dynamics.function_values import Value
-from sealdyn.dynamics.kernels import at_each
+from sealdyn.dynamics.native import Value, at_each
 from sealdyn.films.radial import film as radial
-from sealdyn.solvers.contract import Counts, tolerance_for
+from sealdyn.solvers.contract import Counts, Recorder, tolerance_for
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIO = Path(__file__).parents[2] / "scenarios" / "fms_reference.toml"
 TURNS = 400

@@ -31,7 +31,7 @@ from benchmark.attack.settings import settings
 from benchmark.attack.soak import soak
 from benchmark.attack.worlds import WORLDS, worlds
 
-from sealdyn.numerics.threads import VARIABLES
+from sealdyn.numerics.interruption import VARIABLES
 
 JOURNAL = Path(__file__).parents[2] / "outputs" / "gallery" / "robustness.jsonl"
 # Each with its cases: all, a quick sample; and how many make a batch.

@@ -12,9 +12,9 @@ from sealdyn.dynamics.segments import Segment
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation import selection
 from sealdyn.simulation.simulate import simulate
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 K_S, D_S = SUPPORT.tilt()

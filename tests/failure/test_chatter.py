@@ -8,9 +8,8 @@ import pytest
 from sealdyn.archive import read_info
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.simulate import simulate
-from sealdyn.solvers.advance import CHANGES, STEPS, Advance
 from sealdyn.solvers.contract import SolverFailure
-from sealdyn.solvers.integrate import METHODS
+from sealdyn.solvers.integrate import CHANGES, METHODS, STEPS, Advance
 
 SQUEEZE = Path(__file__).parents[2] / "scenarios" / "squeeze.toml"
 

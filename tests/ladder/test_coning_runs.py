@@ -17,9 +17,8 @@ from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft
 from sealdyn.simulation.selection import choose_method
-from sealdyn.solvers.contract import Status
+from sealdyn.solvers.contract import Recorder, Status
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 MU, P_I, P_O, CONING = 0.5e-3, 1e5, 6e5, 3.125e-3
 RAMP = PiecewiseLinear((0.002, 0.006, 0.010), (200.0, 1200.0, 700.0))

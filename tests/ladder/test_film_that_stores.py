@@ -12,10 +12,10 @@ from scenes import CLEARANCE, R_I, R_O, SPEED, SUPPORT, TILT_SCALE, film, fmr, f
 from scipy.linalg import eig
 
 from sealdyn.analysis.whirl.time_domain import fit_growth
-from sealdyn.dynamics import modes, whirl_speeds
+from sealdyn.dynamics import modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Harmonic
-from sealdyn.dynamics.whirl_speeds import one_by_one
+from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.rings import Stator
@@ -129,7 +129,7 @@ def thresholds():
     """Critical speeds (rad/s) of a stored FMS scene, and as slow motion has it."""
     model = stored(aligned(fms))
     roads = (lambda w: model.linear_scene(speed=w)), (lambda w: model.linear_scene(speed=w).at_frequency(0.0))
-    return tuple(whirl_speeds.critical_speed(one_by_one(road), 300.0, 3e4, 40) for road in roads)
+    return tuple(stability_thresholds.critical_speed(one_by_one(road), 300.0, 3e4, 40) for road in roads)
 
 
 def test_threshold_is_that_of_rings_and_film_together_and_not_that_of_slow_motion():

@@ -10,7 +10,7 @@ from radial_cells import film_of
 from scenes import CLEARANCE, R_I, R_O, SPEED, Sink, film, fms, fmsr, prepared, ring, run, runup, started
 from scipy.special import iv, kv
 
-from sealdyn.dynamics.film_derivatives import FilmDerivatives
+from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry

@@ -10,9 +10,8 @@ from scipy.linalg import eig
 
 from sealdyn.analysis.sources import lebeck_1979, lebeck_1979_plateaus
 from sealdyn.analysis.truncated_heights import load_shares, plateaus
-from sealdyn.dynamics.cells import with_cells
 from sealdyn.dynamics.film_modes import even
-from sealdyn.dynamics.interface import opening_parts
+from sealdyn.dynamics.interface import opening_parts, with_cells
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER

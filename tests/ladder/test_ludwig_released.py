@@ -10,7 +10,7 @@ from scipy.optimize import fsolve
 
 from sealdyn.analysis import quasi_static
 from sealdyn.closed_form import ludwig_allen as la
-from sealdyn.closed_form import released_ring as rr
+from sealdyn.closed_form import ludwig_allen as rr
 from sealdyn.dynamics.model import Model
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import Shaft

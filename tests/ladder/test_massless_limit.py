@@ -13,8 +13,8 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.simulation.simulate import prepare_run, simulate
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TURNS, PER_TURN = 2, 32

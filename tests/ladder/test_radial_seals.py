@@ -23,10 +23,9 @@ from sealdyn.radial_seals.model import RadialModel, RadialRun, RadialSegment
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
 from sealdyn.simulation.simulate import simulate
-from sealdyn.solvers.contract import Status
+from sealdyn.solvers.contract import Recorder, Status
 from sealdyn.solvers.energy_audit import EnergyAudit
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 R, E, W = 0.025, 1e-4, 300.0
 ACCURACY = 1e-7

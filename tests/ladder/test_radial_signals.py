@@ -29,9 +29,8 @@ from sealdyn.report.summary import run_answer
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scene.radial import Circumferential, Lip, Lobes, RadialScene, RadialShaft
 from sealdyn.simulation.simulate import simulate
-from sealdyn.solvers.contract import Transition
+from sealdyn.solvers.contract import Recorder, Transition
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 R = 0.025
 TIMES, SPEEDS = (0.0, 0.02, 0.05), (-200.0, 400.0, 500.0)

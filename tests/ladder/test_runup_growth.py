@@ -13,10 +13,10 @@ from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
-from sealdyn.analysis.whirl.mode_over_speed import tilt_mode
-from sealdyn.dynamics import whirl_speeds
-from sealdyn.dynamics.whirl_speeds import one_by_one
-from sealdyn.numerics.order_tracking import centres, tracked
+from sealdyn.analysis.whirl.mode_over_speed import along, tilt_mode
+from sealdyn.dynamics import stability_thresholds, whirl_speeds
+from sealdyn.dynamics.stability_thresholds import one_by_one
+from sealdyn.numerics.time_series import centres, tracked
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies.runup.ramp_run import RampCycle, run_cycle
 from sealdyn.studies.runup.speed_ramp import measured_growth, predicted_growth
@@ -62,6 +62,8 @@ def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     ready = free_model(asked.scene, 1000.0)
     crossing = whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
     mode = tilt_mode(ready, 0.9 * crossing, 1.05 * crossing, crossing)
+    crossing = stability_thresholds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
+    mode = along(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
     return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
 
@@ -93,9 +95,9 @@ def oracle(ring, trip, times, start):
 @pytest.mark.core
 def test_thresholds_are_those_of_the_complex_ring():
     ready = free_model(scenario().scene, 1000.0)
-    assert whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4) == pytest.approx(
-        threshold(stator), rel=1e-9
-    )
+    assert stability_thresholds.critical_speed(
+        one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4
+    ) == pytest.approx(threshold(stator), rel=1e-9)
     assert threshold(stator) == pytest.approx(5890.6, abs=0.1)
 
 

@@ -10,7 +10,7 @@ from scenes import INERTIA, SUPPORT, fmr, fms, run
 from sealdyn.closed_form import film_coefficients, fmr_critical_speed, fms_critical_speed
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import verdict
-from sealdyn.dynamics.whirl_speeds import critical_speed, one_by_one
+from sealdyn.dynamics.stability_thresholds import critical_speed, one_by_one
 from sealdyn.scene.scene import Initial, RingStart
 from sealdyn.simulation import stability
 

@@ -16,9 +16,8 @@ from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.rings import Rotor, Stator, Support
 from sealdyn.scene.scene import Scene, SceneError
 from sealdyn.simulation.stability import stability
-from sealdyn.solvers.contract import Status
+from sealdyn.solvers.contract import Recorder, Status
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 WAVE = Waviness(3, 1.2e-6, 0.4)
 CLEARANCE = 5e-6

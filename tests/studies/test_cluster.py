@@ -17,8 +17,7 @@ import pytest
 import sealdyn
 from sealdyn.numerics import cluster as cluster_module
 from sealdyn.numerics.cluster import ClusterError, workers_of
-from sealdyn.numerics.parallel import Together, evaluate, processes
-from sealdyn.numerics.results import Results
+from sealdyn.numerics.parallel import Results, Together, evaluate, processes
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation.batch import run_many
 from sealdyn.simulation.result import COMMON

@@ -14,8 +14,8 @@ from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 from sealdyn.studies import contact_onset
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.contact_onset import Follower, Settings, onset

@@ -9,9 +9,9 @@ from radial_cells import film_of
 
 from sealdyn import read_scenario
 from sealdyn.analysis.arrangements import seals_of
-from sealdyn.dynamics import interface, modes, whirl_speeds
+from sealdyn.dynamics import interface, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.whirl_speeds import one_by_one
+from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
@@ -59,7 +59,7 @@ def test_campbell_crosses_zero_damping_at_the_critical_speed():
     scenario = reference()
     found = campbell.run(scenario, campbell.Settings(points=61, speed_to=12000.0), InProcess()).numbers
     model = Model(frozen_at_start(scenario.scene))
-    critical = whirl_speeds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
+    critical = stability_thresholds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
     crossing = next(p["speed"] for p in found["thresholds"] if p["what"] == "damping")
     assert crossing == pytest.approx(critical, rel=1e-4)
 
@@ -112,7 +112,7 @@ def test_runup_is_planned_by_the_modes_at_speed():
     scenario = reference()
     plan = planned(scenario, RunupSettings())
     model = Model(frozen_at_start(scenario.scene))
-    expected = whirl_speeds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
+    expected = stability_thresholds.critical_speed(one_by_one(lambda w: model.linear_scene(speed=w)), 300.0, 3e4, 40)
     assert plan["threshold"] == pytest.approx(expected, rel=1e-6) and plan["mode"] is None
 
 

@@ -8,7 +8,7 @@ from multiprocessing import active_children
 import pytest
 from threadpoolctl import threadpool_info
 
-from sealdyn.numerics import parallel, results
+from sealdyn.numerics import parallel
 from sealdyn.numerics.parallel import Checkpoint, Together, evaluate, processes, row_of
 from sealdyn.scenario.errors import ScenarioError
 
@@ -145,7 +145,7 @@ def test_a_row_is_the_same_alone_and_together(calls):
     assert Together(squares)({"x": 3}) == {"y": 9}
     with pytest.raises(ValueError, match="not for squaring"):
         Together(squares)({"x": 2})
-    assert results.content_keys(Together(squares), points(1)) != results.content_keys(Together(cube), points(1))
+    assert parallel.content_keys(Together(squares), points(1)) != parallel.content_keys(Together(cube), points(1))
 
 
 def test_a_row_that_failed_tells_why_in_the_words_of_a_user():

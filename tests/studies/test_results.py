@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 import sealdyn
-from sealdyn.numerics import results
-from sealdyn.numerics.parallel import Checkpoint, evaluate, processes
-from sealdyn.numerics.results import Results, content_keys
+from sealdyn.numerics import parallel
+from sealdyn.numerics.parallel import Checkpoint, Results, content_keys, evaluate, processes
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.simulation import batch
 from sealdyn.studies import sweep
@@ -131,7 +130,7 @@ def test_what_is_no_data_is_refused():
 def test_a_row_of_another_version_is_not_used(tmp_path, monkeypatch):
     CALLS.clear()
     for version in ("1", "2", "2"):
-        monkeypatch.setattr(results, "__version__", version)
+        monkeypatch.setattr(parallel, "__version__", version)
         evaluate(partial(counted, 3), [{"x": 1}], Results(tmp_path), processes(1), quiet, "")
     assert CALLS == [1, 1]
 

@@ -17,8 +17,8 @@ from sealdyn.dynamics.model import Model
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 from sealdyn.studies import coefficients, critical_speed, equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.stability.grid import Grid

@@ -37,10 +37,9 @@ from sealdyn.simulation.film_error import model_error, model_errors
 from sealdyn.simulation.selection import select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.simulation.verification_run import Comparison, ProgressSink
-from sealdyn.solvers.contract import Counts, tolerance_for
+from sealdyn.solvers.contract import Counts, Recorder, tolerance_for
 from sealdyn.solvers.global_error import GlobalErrorEstimate
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 TURN = 2 * math.pi / SPEED
 

@@ -8,8 +8,7 @@ from gas_faces import gap_state, gas_film, linear_film, steady
 from scipy.linalg import block_diag, eig
 from scipy.sparse import csc_array
 
-from sealdyn.dynamics.condensation import LinearFilm
-from sealdyn.dynamics.film_derivatives import FilmDerivatives
+from sealdyn.dynamics.condensation import FilmDerivatives, LinearFilm
 from sealdyn.dynamics.film_modes import ReducedFilm
 from sealdyn.dynamics.modes import LinearScene, RingNumbers
 from sealdyn.faces.waviness import lay_waves

@@ -9,7 +9,7 @@ from marched_dam import Dam, flow
 from scenes import run
 
 from sealdyn.dynamics.condensation import film_slopes
-from sealdyn.dynamics.fluid import fluid_conditions
+from sealdyn.dynamics.imposed_motion import fluid_conditions
 from sealdyn.dynamics.model import Model
 from sealdyn.faces import geometry
 from sealdyn.films import linear

@@ -9,7 +9,7 @@ from gas_faces import MU, PARTS, TEMPERATURE, gap_state, gas_film, linear_film, 
 from scipy.integrate import quad
 from scipy.special import iv, kv
 
-from sealdyn.dynamics.film_derivatives import FilmDerivatives
+from sealdyn.dynamics.condensation import FilmDerivatives
 from sealdyn.faces import geometry, waviness
 from sealdyn.films import film_of
 from sealdyn.films.gas_reynolds import film as gas

@@ -9,8 +9,7 @@ from scenes import GIVEN, INERTIA, NOTHING, SPEED, SUPPORT, film, ring
 from scenes import of_given_film as run_of
 from scipy.integrate import solve_ivp
 
-from sealdyn.dynamics.modes import Harmonic
-from sealdyn.dynamics.steady_extremes import common_period, steady_extremes
+from sealdyn.dynamics.modes import Harmonic, common_period, steady_extremes
 from sealdyn.scene.excitation import AngularVibration, Housing, Shaft, Whirl
 from sealdyn.scene.rings import Rotor, Stator
 

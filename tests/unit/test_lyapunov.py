@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
-from sealdyn.numerics.lyapunov import horizon, tangent_product, two_trajectories, uncertainty
+from sealdyn.numerics.time_series import horizon, tangent_product, two_trajectories, uncertainty
 
 LORENZ_TIME = 0.5
 

@@ -11,7 +11,7 @@ from scenes import of_given_film as run_of
 
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.modes import Mode, film_matrices, verdict
-from sealdyn.dynamics.whirl_speeds import critical_speed, one_by_one, resonance_speeds
+from sealdyn.dynamics.stability_thresholds import critical_speed, one_by_one, resonance_speeds
 from sealdyn.scene.rings import Rotor, Stator
 
 K_F, D_F, K_FZ, D_FZ = GIVEN

@@ -12,8 +12,8 @@ from sealdyn.analysis import shooting
 from sealdyn.analysis.shooting import NoOrbit, Shooter
 from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.simulation.selection import choose_method
+from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.recorder import Recorder
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 PERIODIC = ["fmr_reference", "fms_reference", "fmsr_both_flexible", "massless_ring"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sealdyn.dynamics.cautions import Concern
+from sealdyn.dynamics.run_state import Concern
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import with_values
 from sealdyn.simulation import plausibility, simulate

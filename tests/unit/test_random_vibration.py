@@ -11,10 +11,10 @@ from scenes import fmr, run
 from scipy.integrate import quad
 from scipy.signal import welch
 
-from sealdyn.dynamics.cautions import Concern
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import PER_RING, TILT_Y_ACCELERATION, Z_ACCELERATION, imposed_state
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.run_state import Concern
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.excitation import AngularRandom, AxialRandom, Housing, mean_square, tones_of
 from sealdyn.simulation.simulate import prepare_run

@@ -10,7 +10,6 @@ import pytest
 from scenes import fmr, fms, run
 from scipy.interpolate import make_interp_spline
 
-from sealdyn.dynamics.cautions import Concern
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import (
     OSCILLATORS,
@@ -21,8 +20,9 @@ from sealdyn.dynamics.imposed_motion import (
     imposed_state,
 )
 from sealdyn.dynamics.model import Model
-from sealdyn.dynamics.sampled_motion import sampled
+from sealdyn.dynamics.run_state import Concern
 from sealdyn.dynamics.step_bounds import imposed_gap
+from sealdyn.dynamics.swept_motion import sampled
 from sealdyn.scenario.reader import ScenarioError, parse_scenario, read_scenario
 from sealdyn.scene.excitation import AxialVibration, Housing, Motion, Shaft
 from sealdyn.scene.scene import SceneError

@@ -27,6 +27,9 @@ import json, sys
 
 ours = [module for name, module in sys.modules.items() if name.startswith("sealdyn")]
 kernels = {v for module in ours for v in vars(module).values() if hasattr(v, "py_func") and v.overloads}
+# Those of numerics/kernel.py that are compiled at their first use.
+late = [v for module in ours for v in vars(module).values() if type(v).__name__ == "AtFirstUse"]
+kernels |= {v.function for v in late if "compiled" in vars(v)}
 names = [f"{k.__module__.removeprefix('sealdyn.')}.{k.__name__}" for k in kernels]
 print(json.dumps({"modules": sorted(sys.modules), "kernels": names}), file=sys.stderr)
 """
@@ -56,9 +59,11 @@ BESIDE_A_RUN = {
     "matplotlib", "PIL", "sksundae", "xarray", "h5netcdf", "distributed", "scipy.optimize", "scipy.integrate",
     "scipy.stats", "scipy.signal", "scipy.special", "pint",
     "sealdyn.report.charts", "sealdyn.studies", "sealdyn.analysis",
-    "sealdyn.solvers.sundials_ida", "sealdyn.dynamics.native_residual",
 }  # fmt: skip
-OF_OTHERS = ("floored", "cavitated", "contact_load", "thinnest_of_waves", "locate_contacts", "profiled")
+OF_OTHERS = (
+    "floored", "cavitated", "contact_load", "thinnest_of_waves", "locate_contacts", "profiled", "residual_at",
+    "_step_ida",
+)  # fmt: skip
 
 
 def named(kernels, names):

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from sealdyn.dynamics import segments
 from sealdyn.dynamics.extrema import empty_records, slack, track_extremes, watched_level
-from sealdyn.dynamics.function_values import thinnest_value
+from sealdyn.dynamics.native import thinnest_value
 from sealdyn.dynamics.step_bounds import (
     MINUS_TILT,
     SWING,

@@ -17,7 +17,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import ROTOR_ANGLE
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
-from sealdyn.solvers import sundials, sundials_ida, sundials_libraries, sundials_python
+from sealdyn.solvers import sundials, sundials_direct, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Cause, Counts, SolverFailure
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS
@@ -72,7 +72,7 @@ def test_blocks_go_on_without_a_new_start(monkeypatch):
     """Handed over in blocks of seven the steps are the same to the bit."""
     ready, found = on_film(fmsr()), []
     for rows in (7, 1024):
-        monkeypatch.setattr(sundials_ida, "BLOCK", rows)
+        monkeypatch.setattr(sundials_direct, "BLOCK", rows)
         y = ready.y0.copy()
         segment = ready.segment(0)
         segment.settle_film(0.0, y)

@@ -11,7 +11,6 @@ import pytest
 from scenes import fmr, run, started
 
 from sealdyn.archive import column
-from sealdyn.dynamics.cautions import Concern
 from sealdyn.dynamics.equations import LEG_AT
 from sealdyn.dynamics.imposed_motion import (
     PER_RING,
@@ -25,6 +24,7 @@ from sealdyn.dynamics.imposed_motion import (
 )
 from sealdyn.dynamics.intervals import Interval
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.run_state import Concern
 from sealdyn.dynamics.step_bounds import imposed_gap
 from sealdyn.dynamics.swept_motion import largest_sweep
 from sealdyn.scenario.reader import ScenarioError, parse_scenario

@@ -20,8 +20,8 @@ from sealdyn.dynamics.contact_events import (
     locate_contacts,
 )
 from sealdyn.dynamics.extrema import H_TAU, H_THETA, MOST_SCAN, PER_RADIAN, H
-from sealdyn.dynamics.function_values import thinnest_value
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.native import thinnest_value
 from sealdyn.faces import geometry as G
 from sealdyn.faces.film_thickness import film_thickness, film_thickness_rate, h_min
 from sealdyn.faces.waviness import lay_waves, wave_parts_along
@@ -36,8 +36,7 @@ from sealdyn.scene.excitation import Shaft, Whirl
 from sealdyn.scene.film import Profile
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.scene.scene import SceneError
-from sealdyn.solvers.block import Block
-from sealdyn.solvers.contract import Counts
+from sealdyn.solvers.contract import Block, Counts
 from sealdyn.solvers.methods import METHODS
 from sealdyn.studies._runner import run_study
 

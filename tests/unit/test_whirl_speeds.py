@@ -9,9 +9,9 @@ import pytest
 from scenes import SUPPORT, film, fmr, fms, fmsr, ring
 from scipy.optimize import brentq
 
-from sealdyn.dynamics import linearisation, modes, whirl_speeds
+from sealdyn.dynamics import linearisation, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
-from sealdyn.numerics.crossing import crossing
+from sealdyn.numerics.piecewise_linear import crossing
 from sealdyn.scene.film import Coefficients
 from sealdyn.scene.rings import Rotor, Stator
 from sealdyn.simulation import stability
@@ -159,7 +159,7 @@ def test_a_mode_that_turns_round_hides_no_resonance_of_another():
         w = np.asarray(speeds)
         return np.stack([-1.0 + 1j * (50.0 + 0.5 * w), -1.0 + 1j * (w - 103.0)], axis=1), np.zeros((len(w), 2))
 
-    assert whirl_speeds.resonance_speeds(values, 1.0, 1e4) == pytest.approx([100.0])
+    assert stability_thresholds.resonance_speeds(values, 1.0, 1e4) == pytest.approx([100.0])
 
 
 def test_crossing_of_hard_functions():

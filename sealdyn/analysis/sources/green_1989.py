@@ -11,15 +11,15 @@ import numpy as np
 
 from ... import closed_form as cf
 from ...dynamics.model import Model
+from ...dynamics.modes import steady_extremes
 from ...dynamics.run_state import RunState
-from ...dynamics.steady_extremes import steady_extremes
 from ...scene.excitation import Shaft
 from ...scene.film import Film
 from ...scene.rings import Rotor, Stator, Support
 from ...scene.scene import Initial, RingStart, Scene
 from ...simulation.stability import critical_speed
+from ...solvers.contract import Recorder
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 
 TITLE = "Green (1989), J. Tribology 111, Table 1; linear film, Green's coefficients; speeds in rad/s"
 FILM = "linear"

@@ -9,9 +9,8 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...scene.scene import Scene
 from ...simulation.selection import choose_method
-from ...solvers.contract import Enough, attainable
+from ...solvers.contract import Enough, Recorder, attainable
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 from ...status import Status
 from ..poincare_map import PIECE, PeriodMap
 from .rotating_wave import RotatingWave, contact_tilt_aligned, free_model, least_damped

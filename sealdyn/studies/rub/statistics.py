@@ -11,7 +11,7 @@ import numpy as np
 from ...analysis.continuation import FilmCollapsed, frozen_at_end, neighbours
 from ...analysis.poincare_map import SAMPLES, PeriodMap, share_below
 from ...numerics import time_series
-from ...numerics.lyapunov import tangent_product
+from ...numerics.time_series import tangent_product
 from ...scene.contact import contact_thresholds
 from ...scene.variants import with_values
 from ...status import Status

@@ -14,8 +14,8 @@ from ...analysis.whirl import free_model
 from ...analysis.whirl.time_domain import whirl_fate
 from ...answers import Answer, Table
 from ...numerics import time_series
-from ...numerics.lyapunov import horizon
 from ...numerics.piecewise_linear import initially
+from ...numerics.time_series import horizon
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scenario.settings import si_unit, values_in_si

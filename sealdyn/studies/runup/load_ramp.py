@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...dynamics.fluid import set_conditions
+from ...dynamics.imposed_motion import set_conditions
 from ...dynamics.intervals import constant_and_slope, spins
 from ...dynamics.model import Model
+from ...dynamics.modes import steady_extremes
 from ...dynamics.run_state import RunState
-from ...dynamics.steady_extremes import steady_extremes
 from ...faces.geometry import (
     CONING_CHANGE,
     DZ,

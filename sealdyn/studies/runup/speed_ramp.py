@@ -9,10 +9,10 @@ from scipy.optimize import brentq, minimize_scalar
 from ...analysis.continuation import frozen_at_end
 from ...analysis.whirl import free_model
 from ...analysis.whirl.mode_over_speed import tilt_mode
-from ...dynamics.cautions import Concern
 from ...dynamics.model import Model
+from ...dynamics.run_state import Concern
 from ...faces.geometry import COLLAPSE, TOUCH, smallest_gap
-from ...numerics.order_tracking import centres, peak, resolution, tracked, waterfall
+from ...numerics.time_series import centres, peak, resolution, tracked, waterfall
 from ...scene.excitation import Housing
 from .ramp_run import RampCycle, run_cycle
 

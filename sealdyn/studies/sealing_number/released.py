@@ -1,7 +1,7 @@
 """Ludwig & Allen's ring let go: three degrees of freedom, inertia, Coulomb friction around the secondary seal and both
 film moments.  Does it keep the film that their closed form gives it?
 
-What it must come to is worked out in `closed_form.released_ring`; here the ring of a scene is run in time and what
+What it must come to is worked out in `closed_form.ludwig_allen`; here the ring of a scene is run in time and what
 becomes of it is named.
 """
 
@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from ...analysis import quasi_static
 from ...closed_form import ludwig_allen as closed
-from ...closed_form.released_ring import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
+from ...closed_form.ludwig_allen import LEAST_MOMENT, MOST_MOMENT, film, moment_ratio
 from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
@@ -22,9 +22,8 @@ from ...scene.film import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
 from ...simulation.selection import choose_method
-from ...solvers.contract import Status
+from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 
 # h1/h0 below which a ring has straightened; share of the spring force, or of time, that counts; what is steady.
 STRAIGHT, COUNTS, STEADY = 0.1, 0.01, 0.02

@@ -9,8 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from ...analysis import quasi_static
+from ...closed_form import ludwig_allen
 from ...closed_form import ludwig_allen as closed
-from ...closed_form import released_ring
 from ...dynamics.model import Model
 from ...numerics.piecewise_linear import initially
 from ...status import Status
@@ -118,7 +118,7 @@ def _foreseen_line(scene, ring, highest) -> dict:
 def _map(highest) -> dict:
     """Where a released ring hangs up, rides and straightens, over the guide; and what the closed form needs."""
     guide = np.linspace(0.0, 1.0, 400, endpoint=False)
-    edges = np.minimum([released_ring.film_range(k) for k in guide], 10 * highest)
+    edges = np.minimum([ludwig_allen.film_range(k) for k in guide], 10 * highest)
     q = np.array(_line(highest)["force_ratio"])
     return {"guide": guide.tolist(), "hang_up_below": edges[:, 0].tolist(), "straightens_above": edges[:, 1].tolist(),
             "closed_form": {"force_ratio": q.tolist(), "guide": closed.amplitude_ratio(q).tolist()}}  # fmt: skip
@@ -156,7 +156,7 @@ def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
     ring, q = free.ring_of(scene), point["force_ratio"]
     scene = replace(scene, rotor=_heavier(scene.rotor, point["inertia"]))
-    guide = None if point["support"] == OWN else released_ring.closed_form_guide(q)
+    guide = None if point["support"] == OWN else ludwig_allen.closed_form_guide(q)
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
     for accuracy in (point["accuracy"], point["accuracy"] / 3, 3 * point["accuracy"]):
@@ -212,7 +212,7 @@ def sentences(answer) -> list[str]:
     """The verdict: the released ring on its own support, the balance that the closed form states, and the released
     ring on a support that carries what the closed form leaves out."""
     own, kept = _rows(answer, OWN), [row for row in _rows(answer, NEEDED) if row["status"] == "film"]
-    low, high = released_ring.film_range(answer["guide"])
+    low, high = ludwig_allen.film_range(answer["guide"])
     lines = [f"What friction makes of the ring on its own support (tilt spring {answer['guide']:.2g} R F_s), F_s/F_d: "
              f"{_fates(own)}; foreseen a film from {low:.4g} to {high:.4g}."]  # fmt: skip
     if static := [row for row in answer["balance"] if row.get("static")]:

@@ -16,9 +16,8 @@ from ...scene.film import Coefficients, aligned_gaps, coning_change
 from ...scene.scene import Scene
 from ...scene.variants import frozen_at_start
 from ...simulation.selection import choose_method
-from ...solvers.contract import Status
+from ...solvers.contract import Recorder, Status
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 
 QUANTITIES = ("static", "dynamic", "total")
 PHASES = ("static_phase", "dynamic_phase")

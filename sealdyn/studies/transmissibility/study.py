@@ -7,7 +7,7 @@ Phase (deg): how far the tilt of the ring that carries the forcing, relative to 
 forcing in the forcing's own frame, against the sense of the shaft's rotation; 0 where it follows at once.
 Three independent methods: formula, harmonic balance, and the equations of motion in time.
 **Source** Green (1989), Fig. 8 and Table 1; the phases are the arguments of the same quotients; FMSR, of which he only
-expects that it is better than both, closed_form/both_rings.py.
+expects that it is better than both, closed_form/response.py.
 """
 
 from dataclasses import dataclass
@@ -283,7 +283,7 @@ def _critical_speed(seal: Arrangement, road: str, by_formula: bool) -> float | N
 
 def groups(seals: dict[str, Arrangement], speed: float) -> dict:
     """Green's dimensionless groups at a speed (rad/s), {} at rest: those of faces and film, and of the rings on their
-    supports, `rotor` and `stator`, as they float in the FMSR seal; what each is: closed_form/green_groups.py."""
+    supports, `rotor` and `stator`, as they float in the FMSR seal; what each is: closed_form/green_1989.py."""
     if speed == 0.0:
         return {}
     seal = seals["fmsr"]

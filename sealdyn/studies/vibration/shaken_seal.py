@@ -19,9 +19,8 @@ from scipy.constants import g
 
 from ...dynamics.extrema import H
 from ...dynamics.model import Model
-from ...dynamics.modes import Harmonic, verdict
+from ...dynamics.modes import Harmonic, steady_extremes, verdict
 from ...dynamics.run_state import RunState
-from ...dynamics.steady_extremes import steady_extremes
 from ...faces.geometry import DZ, GX, GY
 from ...quantities import in_words
 from ...scene.contact import touch_height, waves_of
@@ -30,9 +29,8 @@ from ...scene.rings import STATOR
 from ...scene.scene import Initial, Scene, SceneError
 from ...scene.variants import frozen_at_start, unforced
 from ...simulation.selection import choose_method
-from ...solvers.contract import MANY, Enough, SolverFailure, Status
+from ...solvers.contract import MANY, Enough, Recorder, SolverFailure, Status
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 
 # Motion of the housing (z, tilt about x, tilt about y), and which modes it excites.
 SHAPES = {"axial": (1.0, 0.0, 0.0), "angular": (0.0, 1.0, 0.0)}

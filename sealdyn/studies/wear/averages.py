@@ -25,9 +25,8 @@ from ...scene.contact import contact_thresholds
 from ...scene.film import Profile
 from ...scene.scene import Closing, Initial, SceneError
 from ...simulation.selection import choose_method
-from ...solvers.contract import Cause, Status
+from ...solvers.contract import Cause, Recorder, Status
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 from .rosenbrock import Average, NoAverage
 
 # Samples of a shaft turn; those of them on which the slope is taken; step of its differences, in roughnesses.

@@ -9,9 +9,8 @@ import numpy as np
 from ...dynamics.extrema import LEAST, MOST, H
 from ...dynamics.signals import signals
 from ...simulation.verification_run import JUMP_QUANTILE
-from ...solvers.contract import Counts, SolverFailure, Status
+from ...solvers.contract import Counts, Recorder, SolverFailure, Status
 from ...solvers.integrate import solve
-from ...solvers.recorder import Recorder
 
 OBSERVABLES = ("h_min", "relative_misalignment", "leakage", "contact_impulse")
 WHERE = ("end", "over_time", "steady")

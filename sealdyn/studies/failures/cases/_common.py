@@ -4,8 +4,8 @@ from ....closed_form.zuk_1972 import CRUISE
 from ....dynamics.model import Model
 from ....dynamics.run_state import RunState
 from ....scene.film import Coefficients, Film
+from ....solvers.contract import Recorder
 from ....solvers.integrate import solve
-from ....solvers.recorder import Recorder
 
 # A film that does nothing, so that a ring's own motion is known exactly.
 ZERO_FILM = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)

@@ -14,9 +14,8 @@ from ....scene.film import Film
 from ....scene.gas import GasReynolds
 from ....scene.rings import Stator, Support
 from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
-from ....solvers.contract import Status
+from ....solvers.contract import Recorder, Status
 from ....solvers.integrate import solve
-from ....solvers.recorder import Recorder
 from ._common import row, run_from
 from .vanishing_inertia import lightened
 

@@ -7,8 +7,8 @@ from scipy.optimize import brentq
 from ....analysis.shooting import Shooter
 from ....analysis.sources.green_1989 import reference_scene
 from ....dynamics.model import Model
+from ....dynamics.modes import steady_extremes
 from ....dynamics.run_state import RunState
-from ....dynamics.steady_extremes import steady_extremes
 from ....simulation.film_error import steady_tilt
 from ._common import integrated, row
 

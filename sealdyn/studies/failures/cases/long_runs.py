@@ -5,7 +5,6 @@ from decimal import Decimal, localcontext
 
 import numpy as np
 
-from ....dynamics.cautions import Concern
 from ....dynamics.imposed_motion import (
     OSCILLATOR_COUNT,
     OSCILLATORS,
@@ -17,6 +16,7 @@ from ....dynamics.imposed_motion import (
     imposed_state,
 )
 from ....dynamics.intervals import LONGEST, TURN, split_at_breaks
+from ....dynamics.run_state import Concern
 from ....scenario.reader import Run, Scenario
 from ....scene.excitation import AxialVibration, Housing, Shaft
 from ....scene.film import Film

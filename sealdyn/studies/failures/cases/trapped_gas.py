@@ -13,8 +13,7 @@ import math
 
 import numpy as np
 
-from ....dynamics.condensation import LinearFilm
-from ....dynamics.film_derivatives import FilmDerivatives
+from ....dynamics.condensation import FilmDerivatives, LinearFilm
 from ....faces.geometry import GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
 from ....films.gas_reynolds import film as gas
 from ....films.gas_reynolds.cells import GRADING
