@@ -14,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
 from sealdyn.analysis.whirl.mode_over_speed import along, tilt_mode
-from sealdyn.dynamics import stability_thresholds, whirl_speeds
+from sealdyn.dynamics import stability_thresholds
 from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.numerics.time_series import centres, tracked
 from sealdyn.scenario.reader import read_scenario
