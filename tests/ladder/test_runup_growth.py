@@ -13,7 +13,7 @@ from oracles import green_film
 from scipy.integrate import quad, solve_ivp
 
 from sealdyn.analysis.whirl import free_model
-from sealdyn.analysis.whirl.mode_over_speed import along, tilt_mode
+from sealdyn.analysis.whirl.mode_over_speed import tilt_mode
 from sealdyn.dynamics import stability_thresholds
 from sealdyn.dynamics.stability_thresholds import one_by_one
 from sealdyn.numerics.time_series import centres, tracked
@@ -60,10 +60,8 @@ def scenario(name="runup_past_threshold", *overrides, model="linear"):
 def passage(asked, rate, kick=1e-3, hold=0.0, per_turn=16):
     """The trip past the threshold and back, and the mode along it."""
     ready = free_model(asked.scene, 1000.0)
-    crossing = whirl_speeds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
-    mode = tilt_mode(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     crossing = stability_thresholds.critical_speed(one_by_one(lambda w: ready.linear_scene(speed=w)), 500.0, 2e4)
-    mode = along(ready, 0.9 * crossing, 1.05 * crossing, crossing)
+    mode = tilt_mode(ready, 0.9 * crossing, 1.05 * crossing, crossing)
     trip = RampCycle("shaft.speed", 0.97 * crossing, 1.05 * crossing, rate, 0.005, hold, 0.002, crossing)
     return run_cycle(asked, trip, per_turn, mode, kick * SCALE), trip, mode
 
