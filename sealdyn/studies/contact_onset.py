@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from scipy.optimize import brentq
 
-from ..analysis.shooting import NoOrbit, Shooter, TooMuchWork
+from ..analysis.shooting import Follower, NoOrbit, Shooter
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.interface import opening_parts
 from ..dynamics.model import Model
@@ -35,8 +35,6 @@ INFO = Info(
     },
     along={"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
 )  # fmt: skip
-# Right-hand sides that the path of orbits may take: three times what the dearest scenario needs.
-MOST_WORK = 1_200_000
 # A tilt (rad) that nobody calls small: gap and pressure are then wrong by a thousandth, and no seal runs so far off.
 SMALL_TILT = 0.05
 # Beyond this value of a key, SI, linear theory is not asked any more.
@@ -234,103 +232,6 @@ def linear_films(scene, key: str, rough: float, own) -> dict:
         "clearance": Model(scene(0.0), 1e-6).clearance,
         "linear": {"forcing": forcing, "h_min": films, "own": value},
     }
-
-
-class Follower:
-    """Follows the periodic orbit as the forcing grows, until its thinnest film is the margin, or `touch` (m)."""
-
-    def __init__(self, scene, margin: float, accuracy: float, monodromy=None, start=None, touch: float = 0.0):
-        self.scene, self.margin, self.accuracy, self.touch = scene, margin, accuracy, touch
-        self.monodromy, self.start, self.path = monodromy, start, []
-        self.known, self.work = [], 0
-
-    def told(self) -> dict:
-        """The path of orbits followed, and their clearance (m), if there is any."""
-        names = ("forcing", "h_min", "tilt", "axial")
-        path = {name: [p[name] for p in self.path] for name in names}
-        return {"path": path, "clearance": self.path[-1]["clearance"]} if self.path else {}
-
-    def excess(self, value: float) -> float:
-        """h_min / clearance - margin of the orbit at one forcing, guessed from its neighbours."""
-        scene = self.scene(value)
-        # A floored film has kinks and costs a hundred times more: a looser orbit is all it can give.
-        tight, target = (1e-10, 1e-8) if scene.film.cavitation_pressure is None else (1e-6, 1e-5)
-        shooter = Shooter(scene, self.accuracy, tight=tight)
-        shooter.most_work = MOST_WORK - self.work
-        try:
-            orbit = shooter.find(self._guess(value, shooter), self.monodromy, target=target, most=25)
-        except TooMuchWork:
-            raise TooMuchWork(f"more than {MOST_WORK} right-hand sides for the path of orbits") from None
-        finally:
-            self.work += shooter.work
-        self.monodromy, self.start = orbit.monodromy, orbit.start
-        self.known = [*[k for k in self.known if k[0] != value][-3:], (value, orbit.start, shooter.guess())]
-        low, model = orbit.extremes["h_min"], shooter.model
-        tilt, axial = orbit.extremes["relative_misalignment"]["max"], self._mean_axial(model, orbit)
-        self.path.append({"forcing": value, "h_min": low["value"], "radius": low["radius"], "tilt": tilt,
-                          "clearance": model.clearance, "axial": axial})  # fmt: skip
-        return low["value"] / model.clearance - (self.touch / model.clearance or self.margin)
-
-    def _guess(self, value, shooter):
-        """The linear steady state, which scales with the forcing, plus what the nonlinear film adds to it: a
-        polynomial in the forcing through the orbits known (and through nothing at no forcing)."""
-        linear = shooter.guess()
-        if not self.known:
-            return linear if self.start is None else self.start
-        if len(self.known) == 1:
-            v, x, before = self.known[0]
-            return linear + (x - before) * (value / v) ** 2
-        nodes = [0.0, *(v for v, _, _ in self.known)]
-        added = [np.zeros_like(linear), *(x - before for _, x, before in self.known)]
-        total = np.zeros_like(linear)
-        for i, (node, part) in enumerate(zip(nodes, added, strict=True)):
-            others = [n for j, n in enumerate(nodes) if j != i]
-            total += part * np.prod([(value - n) / (node - n) for n in others])
-        return linear + total
-
-    @staticmethod
-    def _mean_axial(model, orbit):
-        """Axial opening of the gap (m) at the start of the orbit: how far the seal has lifted."""
-        signs = {"stator_z": 1.0, "rotor_z": -1.0}
-        return float(sum(signs.get(name, 0.0) * x for name, x in zip(model.unknowns.names, orbit.start, strict=False)))
-
-    def follow(self, linear: float, tolerance: float) -> float:
-        """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
-        closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch."""
-        clearance = Model(self.scene(0.0), 1e-6).clearance if self.touch else 1.0
-        low, low_left, step = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear
-        for _ in range(80):
-            value = low + step
-            try:
-                left = self.excess(value)
-            except TooMuchWork:
-                raise
-            except NoOrbit:
-                step *= 0.5
-                if abs(step) < 1e-6 * linear:
-                    raise
-                continue
-            slope = (left - low_left) / (value - low)
-            low, low_left = value, left
-            if abs(left) < 1e-6 or abs(step) < tolerance * value:
-                return float(value - left / slope)
-            aim = 0.3 * left if left > 0.03 else 0.0
-            step = min((aim - left) / slope, 0.2 * linear)
-            if value > 20 * linear:
-                raise NoOrbit("no touch up to twenty times the linear onset")
-        raise NoOrbit("the path of orbits did not reach touch in 80 steps")
-
-    def close(self, near: float, tolerance: float) -> float:
-        """The forcing that touches, by secants from a forcing already close."""
-        a, b = 0.98 * near, near
-        f_a, f_b = self.excess(a), self.excess(b)
-        for _ in range(12):
-            c = b - f_b * (b - a) / (f_b - f_a)
-            c = min(max(c, 0.8 * near), 1.2 * near)
-            a, f_a, b, f_b = b, f_b, c, self.excess(c)
-            if abs(b - a) < tolerance * near:
-                return float(b)
-        raise NoOrbit("the floored onset did not settle")
 
 
 # --- what is shown -----------------------------------------------------------------------------------------

@@ -4,59 +4,65 @@ Linear: published formula with the film's own coefficients, eigenvalues, growth 
 Beyond: the family of circular whirls that leaves the threshold (analysis/whirl), and runs in time that must agree.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from ..analysis.whirl import (
-    TOO_SLOW,
     bounded_or_not,
     branch,
+    compared,
     contact_tilt_aligned,
+    family_columns,
     free_model,
     growth_rate,
+    kind_of,
     linear_growth,
     tipping_disturbance,
 )
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..closed_form import fmr_critical_speed, fms_critical_speed
 from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
+from ..quantities import in_words
+from ..report.text import written_units
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import FASTEST, critical_speed, held_speeds, natural_frequency, speeds_held
 from ..status import Status
-from ._words import no_film_beyond, plain
-from ._words import speed as speed_words
+from . import Info
 
-REFUSES = ("secondary-seal",)
-ALONG = {"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
-         "nonlinear/directions": ("speed",)}  # fmt: skip
-units = dict.fromkeys(("speed", "frequency", "bracket"), "rad/s") | dict.fromkeys(("opening", "h_min"), "m")
-units |= dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate", "rate"), "1/s")
-units |= dict.fromkeys(
-    ("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"), "rad"
-)
-units |= dict.fromkeys(("difference", "turns"), "1")
-
+INFO = Info(
+    timed=("fms_reference", 13),
+    asks="Where does the seal start to whirl, and what becomes of it?",
+    refuses=("secondary-seal",),
+    units={
+        **dict.fromkeys(("speed", "frequency", "bracket"), "rad/s"), **dict.fromkeys(("opening", "h_min"), "m"),
+        **dict.fromkeys(("eigenvalue", "growth/time_domain", "growth/uncertainty", "growth_rate", "rate"), "1/s"),
+        **dict.fromkeys(("amplitude", "disturbance", "whirl", "tipping/branch", "directions/branch", "from", "apart"),
+                        "rad"),
+        **dict.fromkeys(("difference", "turns"), "1"),
+    },
+    along={"growth": ("speed",), "nonlinear/branch": ("speed",), "nonlinear/tipping": ("speed",),
+           "nonlinear/directions": ("speed",)},
+)  # fmt: skip
 # Speeds, relative to the eigenvalues' threshold, at which a disturbance is let grow or decay.
 SHARES = (0.95, 0.98, 0.998, 1.002, 1.02, 1.05)
 NARROW = 2e-5
 # Without a threshold: speeds, in parts of a tenth of the fastest, at which it is seen that there is none.
 TRIED = (0.3, 1.0, 3.0, 10.0)
+# Factor beyond the speeds that are drawn up to which the scenario's own is marked.
+FAR = 2.0
 # Of an eigenvalue's growth rate what the runs in time may be away from it besides their own uncertainty.
 ALIKE = 1e-3
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 13)
+# What becomes of a whirl: its colour, and words.
+FATES = {"decays": ("good", "dies out"), "bounded": ("blue", "bounded"), "contact": ("contact", "contact")}
 
 
 @dataclass(frozen=True)
@@ -77,7 +83,7 @@ class Settings:
     """Go beyond linear."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """The threshold by three independent methods, and the whirl beyond it."""
     scene = scenario.scene
     model = free_model(scene, initially(scene.shaft.speed))
@@ -93,8 +99,10 @@ def run(scenario, settings, tools) -> dict:
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
     answer["speeds_held"], answer["own_speed"] = speeds_held(model), abs(scene.shaft.speed)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
-    answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
-    return {**answer, "verdict": sentences(answer)}
+    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
+    answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools, written)
+    found, panels = _found(answer, written), [_growth_panel(answer), *_whirl_panel(answer)]
+    return Answer(answer, found, _tables(answer), panels, _notes(answer), written)
 
 
 def by_formula(model) -> tuple[float | None, str]:
@@ -156,8 +164,8 @@ def in_time(scene, model, eigenvalue, how, tools, pace) -> dict:
         undecided = {} if len(signs) == 1 else {"status": Status.FAILED}
         return {"time_domain": found, "growth": columns(rows, speeds), **undecided}
     if eigenvalue > fastest:
-        edge = plain(eigenvalue * scene.film.outer_radius, 4)
-        reason = f"not run, {edge} m/s at the outer radius are of no seal"
+        edge = in_words("m/s", eigenvalue * scene.film.outer_radius)
+        reason = f"not run, {edge} at the outer radius are of no seal"
         speeds = [share * eigenvalue for share in SHARES]
         rows = [{"eigenvalue": linear_growth(free_model(scene, w))} for w in speeds]
         return {"time_domain": {"value": None, "uncertainty": None, "reason": reason}, "growth": columns(rows, speeds)}
@@ -216,20 +224,11 @@ def line_crossing(a, b) -> tuple[float, float]:
     return float(low - p["rate"] / slope), float(max(p["uncertainty"], q["uncertainty"]) / slope)
 
 
-def roads_apart(growth) -> str:
-    """A sentence where growth in time is another than the eigenvalues have it, by more than three times its
-    uncertainty: of the speed at which they are farthest apart; "" where they agree."""
-    names, far = ("speed", "eigenvalue", "time_domain", "uncertainty"), []
-    for speed, linear, rate, doubt in zip(*(growth[name] for name in names), strict=True):
-        if None not in (linear, rate, doubt) and abs(rate - linear) > 3.0 * doubt + ALIKE * abs(linear):
-            far.append((abs(rate - linear) / (doubt or 1e-300), speed, linear, rate, doubt))
-    if not far:
-        return ""
-    _, speed, linear, rate, doubt = max(far)
-    return (
-        f"Eigenvalues and runs in time disagree at {len(far)} of {len(growth['speed'])} speeds, most at "
-        f"{speed_words(speed)}: growth rate {linear:.3g} 1/s by eigenvalues, {rate:.3g} +- {doubt:.1g} 1/s in time."
-    )
+def disagreements(growth) -> list[bool]:
+    """Whether growth in time is another than the eigenvalues have it, by more than three times its uncertainty, at
+    each speed."""
+    rows = zip(*(growth[name] for name in ("eigenvalue", "time_domain", "uncertainty")), strict=True)
+    return [None not in row and abs(row[1] - row[0]) > 3.0 * row[2] + ALIKE * abs(row[0]) for row in rows]
 
 
 def columns(rows, speeds) -> dict:
@@ -252,30 +251,24 @@ def fate(scene, point: dict) -> dict:
     return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
 
 
-def beyond(model, scene, threshold, settings, tools) -> dict | None:
+def beyond(model, scene, threshold, settings, tools, written) -> dict | None:
     """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
     if not settings.beyond:
         return None
     if model.unknowns.linear:
-        return {
-            "verdict": "Beyond linear: of a linear film nothing bounds the whirl and nothing tips it.",
-            "tipping": [],
-        }
+        return _not_followed("of a linear film nothing bounds the whirl and nothing tips it")
     if threshold is not None and threshold > FASTEST / scene.film.outer_radius:
-        return {"verdict": "Beyond linear: not followed at such a speed.", "tipping": []}
+        return _not_followed("not followed at such a speed")
     if threshold is None:
-        return {"verdict": "Beyond linear: no threshold, so no whirl branches off.", "tipping": []}
+        return _not_followed("no threshold, so no whirl branches off")
     if scene.contact:
-        verdict = "Beyond linear: asperities bound the whirl (study rub); without contact the film's own whirls."
-        return {"verdict": verdict, "tipping": []}
+        return _not_followed("asperities bound the whirl (study rub); without contact the film's own whirls")
     if model.unknowns.film_unknowns:
-        verdict = "Beyond linear: whirls of a film with unknowns of its own are not followed."
-        return {"verdict": verdict, "tipping": []}
+        return _not_followed("whirls of a film with unknowns of its own are not followed")
     at_threshold = free_model(scene, threshold)
     family = branch(at_threshold, threshold)
     if not family:
-        verdict = "Beyond linear: no family of circular whirls was found at the threshold."
-        return {"verdict": verdict, "tipping": []}
+        return _not_followed("no family of circular whirls was found at the threshold")
     unit = contact_tilt_aligned(at_threshold)
     found = {"kind": kind_of(family, threshold), "branch": family_columns(family), "contact_tilt": unit}
     ends_in_contact = family[-1].h_min < 2 * at_threshold.face[4]
@@ -299,122 +292,160 @@ def beyond(model, scene, threshold, settings, tools) -> dict | None:
         compared({"speed": p["speed"], "start": p["start"], **row}, family, True)
         for p, row in zip(points, rows, strict=True)
     ]
-    return {"verdict": " ".join(nonlinear_sentences(found, threshold)), **found}
+    return {"verdict": whirl_verdict(found, written), **found}
 
 
-def kind_of(family, threshold) -> str:
-    """subcritical (the family leaves towards lower speed), supercritical, or with a fold."""
-    speeds = np.array([threshold, *[w.speed for w in family]])
-    falls, rises = np.all(np.diff(speeds) < 0), np.all(np.diff(speeds) > 0)
-    if falls or rises:
-        return "subcritical" if falls else "supercritical"
-    return "subcritical, then turning" if speeds[1] < threshold else "supercritical, then turning"
+def _not_followed(why: str) -> dict:
+    return {"verdict": f"Beyond linear: {why}.", "tipping": []}
 
 
-def family_columns(family) -> dict:
-    names = {n: n for n in ("speed", "amplitude", "frequency", "opening", "h_min")} | {"growth_rate": "growth"}
-    return {key: [asdict(w)[name] for w in family] for key, name in names.items()}
+# --- what is told ---------------------------------------------------------------------------------------
 
 
-def compared(row: dict, family, stable: bool) -> dict:
-    """The row with the family's amplitude at its speed (rad; None where the family has none of that stability)."""
-    amplitudes, speeds = np.array([w.amplitude for w in family]), np.array([w.speed for w in family])
-    speed_of, row["branch"], row["difference"] = CubicSpline(amplitudes, speeds), None, None
-    for k in np.flatnonzero(np.diff(np.sign(speeds - row["speed"]))):
-        if (family[k + 1].growth < 0) == stable:
-            row["branch"] = float(brentq(lambda a: speed_of(a) - row["speed"], amplitudes[k], amplitudes[k + 1]))
-            row["difference"] = row["whirl"] / row["branch"] - 1 if row.get("whirl") else None
-    return row
+def whirl_verdict(nonlinear, written) -> str:
+    """What bounds or tips the whirl, by the kind of its family."""
+    kind, touches = nonlinear["kind"], nonlinear["contact_speed"]
+    last = in_words("speed", touches or min(nonlinear["branch"]["speed"]), written)
+    if kind == "subcritical":
+        beside = "between rest and contact" if touches else "beside rest, as far as it was followed"
+        return f"Nothing bounds the whirl above it; below, down to {last}, an unstable whirl stands {beside}."
+    ends = f"touches at {last}" if touches else "touches at no speed followed"
+    if kind == "supercritical":
+        return f"Above it the film bounds the whirl, which {ends}; no hysteresis."
+    return f"The family of whirls turns back on its way to contact, and {ends}: hysteresis between the turns."
 
 
-def sentences(answer) -> list[str]:
-    """The verdict."""
-    said, eigen, time = [], answer["eigenvalue"], answer["time_domain"]
+def _found(numbers, written) -> str:
+    eigen, time, nonlinear = numbers["eigenvalue"], numbers["time_domain"], numbers["nonlinear"] or {}
     if eigen is None:
-        why = "eigenvalues cross at no speed" + (f" ({reason})" if (reason := answer["formula_reason"]) else "")
-        said.append(f"No critical speed{no_film_beyond(answer['speeds_held'])}: {why}; in time {time['reason']}.")
-    else:
-        formula = answer["formula"]
-        roads = f"eigenvalues {eigen:.6g}"
-        roads += f", formula {formula:.6g}" if formula else f" ({answer['formula_reason']})"
-        if time["value"] is None:
-            roads += f"; in time: {time['reason']}"
-        else:
-            roads += f", in time {time['value']:.6g} +- {time['uncertainty']:.1g}"
-        said.append(f"Critical speed {speed_words(eigen)}: {roads}.")
+        reach = ""
+        if held := numbers["speeds_held"]:
+            reach = f" up to {in_words('speed', held[1], written, 5)}, beyond which no film holds the closing force"
+        return f"No critical speed{reach}: eigenvalues cross at no speed; in time {time['reason']}."
+    then = f": {nonlinear['verdict'][0].lower()}{nonlinear['verdict'][1:]}" if "branch" in nonlinear else "."
+    return f"Critical speed {in_words('speed', eigen, written, 6)}{then}"
+
+
+def _notes(numbers) -> list[str]:
+    found, nonlinear = [], numbers["nonlinear"] or {}
+    if numbers["eigenvalue"] is not None and numbers["time_domain"]["value"] is None:
+        found.append(f"In time: {numbers['time_domain']['reason']}.")
+    if numbers["formula_reason"]:
+        found.append(f"No formula: {numbers['formula_reason']}.")
+    growth = numbers["growth"]
+    if apart := sum(disagreements(growth)):
+        found.append(f"Eigenvalues and runs in time disagree at {apart} of {len(growth['speed'])} speeds.")
+    if nonlinear and "branch" not in nonlinear:
+        found.append(nonlinear["verdict"])
+    if any(row.get("turns") and row["branch"] for row in nonlinear.get("tipping", ())):
+        found.append("What tips the seal is known by the family alone where runs beside it part too slowly.")
+    return found
+
+
+def _tables(numbers) -> list[Table]:
+    """The threshold by each method, growth over speed, and whirls beyond it by continuation and in time."""
+    eigen, time, growth = numbers["eigenvalue"], numbers["time_domain"], numbers["growth"]
+    methods = [("formula", numbers["formula"], None), ("eigenvalues", eigen, None),
+               ("in time", time["value"], time["uncertainty"])]  # fmt: skip
+    rows = [[name, speed, doubt, speed / eigen - 1.0] for name, speed, doubt in methods if speed]
+    columns = [("1", "method"), ("speed", "critical speed"), ("speed", "uncertainty"), ("1", "over eigenvalues'")]
+    tables = [Table("threshold", columns, rows)]
+    columns = [("speed", "speed"), ("1", "over threshold"), ("growth_rate", "growth by eigenvalues"),
+               ("growth_rate", "in time"), ("growth_rate", "uncertainty"), ("1", "apart"), ("1", "failed")]  # fmt: skip
+    parts = [growth[name] for name in ("eigenvalue", "time_domain", "uncertainty")]
+    over = [speed / eigen - 1.0 if eigen else None for speed in growth["speed"]]
+    rows = [*zip(growth["speed"], over, *parts, disagreements(growth), growth["failed"], strict=True)]
+    tables.append(Table("growth", columns, rows))
     if time.get("numerical_damping") is not None:
-        closest = min(abs(v) for v in answer["growth"]["time_domain"] if v is not None)
-        said.append(
-            f"The method in time, {time['method']}, adds at most {time['numerical_damping']:.1g} 1/s of damping or "
-            f"growth of its own there ({time['against_eigenvalue']:.1g} 1/s away from the eigenvalues); the smallest "
-            f"growth rate that decides a verdict is {closest:.2g} 1/s."
-        )
-    said += filter(None, [roads_apart(answer["growth"])])
-    if answer["nonlinear"]:
-        said.append(answer["nonlinear"]["verdict"])
-    return said
+        columns = [("1", "method"), ("1", "accuracy"), ("growth_rate", "damping of its own"),
+                   ("growth_rate", "from eigenvalues"), ("growth_rate", "smallest growth that decides")]  # fmt: skip
+        closest = min(abs(rate) for rate in growth["time_domain"] if rate is not None)
+        row = [*(time[name] for name in ("method", "accuracy", "numerical_damping", "against_eigenvalue")), closest]
+        tables.append(Table("method in time", columns, [row]))
+    found = numbers["nonlinear"] or {}
+    if "branch" not in found:
+        return tables
+    touch, closed = found["contact_speed"], found["contact_tilt"]
+    columns = [("1", "whirl"), ("speed", "touches at"), ("1", "of the threshold"), ("tilt", "followed to a tilt of"),
+               ("1", "of that which closes the gap")]  # fmt: skip
+    last = found["branch"]["amplitude"][-1]
+    tables.append(Table("whirl", columns, [[found["kind"], touch, touch / eigen if touch else None, last,
+                                            last / closed]]))  # fmt: skip
+    columns = [("speed", "speed"), ("1", "of the threshold"), ("tilt", "tilt that tips"), ("tilt", "whirl in time"),
+               ("tilt", "whirl by continuation"), ("1", "difference"), ("1", "turns it would take")]  # fmt: skip
+    rows = [[row["speed"], row["speed"] / eigen, *map(row.get, ("disturbance", "whirl", "branch", "difference",
+                                                                "turns"))] for row in found["tipping"]]  # fmt: skip
+    tables.append(Table("tipping", columns, rows))
+    columns = [("speed", "speed"), ("1", "whirl begun"), ("1", "in time"), ("tilt", "settles at"),
+               ("tilt", "by continuation"), ("1", "difference"), ("growth_rate", "growth by eigenvalues")]  # fmt: skip
+    rows = [[row["speed"], row["start"], row.get("fate") or row["failed"],
+             *map(row.get, ("whirl", "branch", "difference", "rate"))] for row in found["directions"]]  # fmt: skip
+    tables.append(Table("small and large whirls", columns, rows))
+    return tables
 
 
-def nonlinear_sentences(found, threshold) -> list[str]:
-    said = [f"Beyond linear: {found['kind']} (contact: the film at its floor)."]
-    unit, touching = found["contact_tilt"], found["branch"]["amplitude"][-1]
-    speed = found["contact_speed"]
-    at = f"{speed_words(speed)}, {speed / threshold:.4f} of the threshold" if speed else "no speed followed"
-    if found["kind"] == "subcritical" and not speed:
-        said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
-                    f"stands beside rest, followed down to {speed_words(min(found['branch']['speed']))}: "
-                    "hysteresis.")  # fmt: skip
-    elif found["kind"] == "subcritical":
-        said.append("Nothing bounds the whirl above the threshold: it grows to contact.  Below it an unstable whirl "
-                    f"stands between rest and contact, down to {at}: hysteresis over that range.")  # fmt: skip
-    elif found["kind"] == "supercritical":
-        said.append("Above the threshold the film bounds the whirl, which grows with speed and touches at "
-                    f"{at}, its tilt {touching / unit:.3g} of what closes an unopened gap; contact beyond; no "
-                    "hysteresis.")  # fmt: skip
-    else:
-        said.append(f"The family of whirls turns back on its way to contact at {at}: hysteresis between the turns.")
-    for row in found["tipping"]:
-        if row.get("disturbance"):
-            said.append(f"At {row['speed'] / threshold:.4f} of the threshold a whirl of "
-                        f"{row['disturbance'] * 1e6:.0f} urad ({row['disturbance'] / unit:.3g} of the contact tilt) "
-                        "tips it.")  # fmt: skip
-    slow = sorted((row["speed"], row["branch"]) for row in found["tipping"] if row.get("turns") and row["branch"])
-    if slow:
-        shares, sizes = [at / threshold for at, _ in slow], [1e6 * size for _, size in slow]
-        said.append(f"At {_span(shares, '.4f')} of the threshold a whirl of {_span(sizes, '.0f')} urad tips it, by the "
-                    "family alone: runs that begin beside it part too slowly to be told apart in time.")  # fmt: skip
-    if found["directions"]:
-        said += [fates(found["directions"], start) for start in ("small", "large")]
-    apart = [abs(row["difference"]) for row in (*found["tipping"], *found["directions"]) if row["difference"]]
-    if apart:
-        said.append(f"Whirls by continuation and in time agree within {max(apart):.1e} ({len(apart)} compared).")
-    return said
+def _growth_panel(numbers) -> Panel:
+    """Growth rate of a small disturbance over speed."""
+    growth, title, eigen = numbers["growth"], "Growth of a small disturbance", numbers["eigenvalue"]
+    speed, own, time = growth["speed"], numbers["own_speed"], numbers["time_domain"]["value"]
+    sizes = [abs(rate) for rate in growth["eigenvalue"] if rate]
+    if not sizes:
+        return Panel(title, note=next(filter(None, growth["failed"]), "no growth rate was found"))
+    # Speeds tried far apart are no curve.
+    kind, style = ("marks", "warn diamond small front") if eigen is None else ("line", "warn")
+    series = [Series(kind, speed, growth["eigenvalue"], label="eigenvalues", style=style)]
+    if any(rate is not None for rate in growth["time_domain"]):
+        series.append(Series("marks", speed, growth["time_domain"], label="in time",
+                             style="blue open circle", error=growth["uncertainty"]))  # fmt: skip
+    for label, value, style in (("formula", numbers["formula"], "grey plus"), ("in time", time, "black cross")):
+        if value:
+            series.append(Series("marks", [value], [0.0], label=f"threshold {label}", style=f"{style} front large"))
+    levels = [Level(0.0, style="black")]
+    levels += [Level(eigen, "threshold", upright=True, style="bad dashed", number=True)] if eigen else []
+    if min(speed) / FAR <= own <= FAR * max(speed):
+        levels.append(Level(own, "this scenario", upright=True, style="black dotted"))
+    far = eigen is None and 0.0 < 10 * min(speed) < max(speed)
+    wide = far and max(sizes) > 30 * min(sizes)
+    rate = Axis("growth_rate", scale="asinh" if wide else "linear", width=min(sizes))
+    return Panel(title, Axis("speed", scale="log" if far else "linear"), rate, series, levels)
 
 
-def _span(values, form) -> str:
-    """First to last of some numbers."""
-    first, last = (format(value, form) for value in (values[0], values[-1]))
-    return first if first == last else f"{first} to {last}"
+def _whirl_panel(numbers) -> list[Panel]:
+    """Tilt of the whirl over speed: its family, stable or not, and what became of runs in time; none where it was not
+    followed."""
+    found = numbers["nonlinear"] or {}
+    if "branch" not in found:
+        return []
+    family, closed = found["branch"], found["contact_tilt"]
+    speed = [numbers["eigenvalue"], *family["speed"]]
+    size = [0.0, *(amplitude / closed for amplitude in family["amplitude"])]
+    stable = [rate < 0.0 for rate in (family["growth_rate"][0], *family["growth_rate"])]
+    series = []
+    for held, style, label in ((True, "black thick", "whirl, stable"), (False, "black dashed", "whirl, unstable")):
+        if held in stable:
+            part = [value if same == held else None for value, same in zip(size, stable, strict=True)]
+            series.append(Series("line", speed, part, label=label, style=style))
+    touches = found["contact_speed"] is not None
+    series.append(Series("marks", speed[-1:], size[-1:], label="touches" if touches else "followed to here",
+                         style=f"{'contact' if touches else 'grey'} square front"))  # fmt: skip
 
+    def marks(rows, name, label, style):
+        at, tilt = [row["speed"] for row in rows], [row[name] / closed for row in rows]
+        return [Series("marks", at, tilt, label=label, style=style)] if rows else []
 
-def fates(rows, start) -> str:
-    """What became of the small or large whirls, from low to high speed."""
-    rows = [row for row in rows if row["start"] == start]
-    failed = [row["failed"] for row in rows if "failed" in row]
-    slow = [row for row in rows if row.get("fate") == TOO_SLOW]
-    rows = [row for row in rows if row.get("fate") not in (None, TOO_SLOW)]
-    parts, last = [], None
-    whirls = f"{start.capitalize()} whirls in time"
-    left = ""
-    if slow:
-        # Nothing failed: where they go the sign of their growth rate says.
-        ways = [f"{'grows' if row['rate'] > 0 else 'dies out'} at {speed_words(row['speed'])}" for row in slow]
-        left = f"too slow to be followed ({slow[0]['said']}), by eigenvalues a small one {', '.join(ways)}"
-    if not rows:
-        return f"{whirls}: {left or f'none was followed to its end ({failed[0]})'}."
-    for row in rows:
-        if row["fate"] != last:
-            parts.append([row["fate"], row["speed"], row["speed"]])
-        parts[-1][2], last = row["speed"], row["fate"]
-    words = [f"{what} at {speed_words(a)}" + (f" to {speed_words(b)}" if b > a else "") for what, a, b in parts]
-    return f"{whirls}: {', '.join(words)}{f'; {left}' if left else ''}."
+    tips = [row for row in found["tipping"] if row.get("disturbance")]
+    series += marks(tips, "whirl", "at the edge, in time", "warn cross")
+    series += marks(tips, "disturbance", "tips unopened gap", "warn tick large")
+    for fate, (colour, words) in FATES.items():
+        rows = [row for row in found["directions"] if row.get("fate") == fate]
+        for start, mark in (("small", "triangle"), ("large", "down")):
+            begun = [row for row in rows if row["start"] == start]
+            series += marks(begun, "from", words, f"{colour} {mark}")
+            words = words if not begun else ""
+        series += marks([row for row in rows if row["whirl"]], "whirl", "settles at", f"{colour} open circle")
+    ends = [row["speed"] for row in found["directions"]]
+    room = 0.08 * (max(ends) - min(ends)) or 0.01 * max(ends)
+    over = Axis("speed", low=min(ends) - room, high=max(ends) + room)
+    tilt = Axis("1", "whirl tilt / tilt that closes the gap", low=-0.02 * max(size), high=1.15 * max(size))
+    threshold = [Level(numbers["eigenvalue"], "threshold", upright=True, style="bad dashed")]
+    return [Panel("Whirl beyond the threshold (▲ begun small, ▼ large)", over, tilt, series, threshold)]

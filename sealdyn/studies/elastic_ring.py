@@ -7,24 +7,31 @@ from functools import partial
 import numpy as np
 
 from ..analysis.elastic_ring import release
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.elastic_ring import OperatingPoint, operating_point, operating_points, order_of, with_cells_of
+from ..quantities import in_words
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from ..units import Length, Time
+from . import Info
 
-WITH_WAVES = True
+INFO = Info(
+    timed=("lebeck_elastic", 14),
+    asks="Which waviness is left under load?",
+    wavy=True,
+    units={
+        **dict.fromkeys(("net", "initial", "clearance", "from", "to"), "m"), "turned": "rad", "leakage": "m^3/s",
+        "time": "s", **dict.fromkeys(("load_support", "friction_coefficient", "let_go/points"), "1"),
+    },
+    along={"curve": ("net",), "points/let_go": ("instant",)},
+)  # fmt: skip
 # Net wavinesses that are looked at, in initial ones.
 LEAST, LARGEST = 1e-3, 1.3
 # Steps of letting a ring go, and how near (as a share) it has come back.
 STEPS, NEAR = 80, 0.1
-ALONG = {"curve": ("net",), "points/let_go": ("instant",)}
-units = dict.fromkeys(("net", "initial", "clearance", "from", "to"), "m") | {"turned": "rad", "leakage": "m^3/s"}
-units |= {"time": "s"} | dict.fromkeys(("load_support", "friction_coefficient", "let_go/points"), "1")
 COLUMNS = ("net", "initial", "turned", "load_support", "clearance", "leakage", "friction_coefficient")
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("lebeck_elastic", 14)
+# Operating points by whether they hold: style and words.
+ROOTS = {True: ("good circle large front", "holds"), False: ("bad cross large front", "does not hold")}
 
 
 @dataclass(frozen=True)
@@ -43,7 +50,7 @@ class Settings:
     """How long it is followed."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """The curve of initial over net waviness, operating points by two roads."""
     scene = frozen_at_start(scenario.scene)
     ring = scene.stator.elastic
@@ -71,7 +78,7 @@ def run(scenario, settings, tools) -> dict:
         "curve": {name: [getattr(point, name) for point in along] for name in COLUMNS},
         "points": points,
     }
-    return answer | {"verdict": _verdict(answer)}
+    return Answer(answer, _found(answer), [_table(answer)], _panels(answer), _notes(answer))
 
 
 def _middle(scene, low, high) -> float:
@@ -103,33 +110,77 @@ def _let_go(scene, settings, point, holds) -> dict:
     return {**asdict(point), "stable": bool(holds), "comes_back": back, "let_go": ways}
 
 
-def tables(answer) -> list:
-    """Every operating point."""
-    columns = (("waviness left, um", "net", 1e6), ("stable by the slope", "stable"), ("comes back", "comes_back"),
-               ("turned, rad", "turned"), ("clearance, um", "clearance", 1e6), ("load support, %", "load_support", 100),
-               ("friction", "friction_coefficient"), ("leakage, ml/h", "leakage", 3.6e9))  # fmt: skip
-    return [(answer["points"], columns)]
+def _found(numbers) -> str:
+    """Which wavinesses the load leaves, or what the ring would have to be made with."""
+    made, points, curve = in_words("m", numbers["initial"]), numbers["points"], numbers["curve"]
+    if points:
+        left = [f"{in_words('m', point['net'])} ({ROOTS[point['stable']][1]})" for point in points]
+        return f"Of {made} of {numbers['order']} waves the load leaves {', '.join(left)}."
+    ends = [in_words("m", end(curve["initial"])) for end in (min, max)]
+    least = numbers["initial"] < min(curve["initial"])
+    less = f"; if any is left, it is less than the {in_words('m', curve['net'][0])} looked at" if least else ""
+    return f"No operating point of a ring made with {made}: those looked at need {ends[0]} to {ends[1]}{less}."
 
 
-def _verdict(answer) -> list[str]:
-    points, made = answer["points"], f"{1e6 * answer['initial']:.4g} um of {answer['order']} waves"
-    if not points:
-        least, most = min(answer["curve"]["initial"]), max(answer["curve"]["initial"])
-        less = f"; if any is left, it is less than the {1e6 * answer['curve']['net'][0]:.4g} um looked at"
-        return [f"No operating point of a ring made with {made} among these: they need {1e6 * least:.4g} to "
-                f"{1e6 * most:.4g} um{less if answer['initial'] < least else ''}."]  # fmt: skip
-    left = ", ".join(f"{1e6 * point['net']:.4g} um ({'holds' if point['stable'] else 'does not'})" for point in points)
-    said = [f"Of {made} the load leaves {left}."]
-    apart = [point for point in points if point["comes_back"] is not None and point["comes_back"] != point["stable"]]
-    unknown = [point for point in points if point["comes_back"] is None]
-    if apart:
-        where = ", ".join(f"{1e6 * point['net']:.4g} um" for point in apart)
-        said.append(f"Slope and motion disagree at {where}: its waves turn as they change, or the duration is short.")
-    elif not unknown:
-        said.append("Let go from a waviness a little less and more, the film's cavities in motion, they do the same.")
-    for point in unknown:
-        why = next(way["failed"] for way in point["let_go"] if "failed" in way)
-        said.append(f"At {1e6 * point['net']:.4g} um the motion was not followed: {why}.")
+def _notes(numbers) -> list[str]:
+    points, notes = numbers["points"], []
+    if any(point["comes_back"] not in (None, point["stable"]) for point in points):
+        notes.append("Slope and motion disagree where waves turn as they change, or the duration is short.")
+    for point in points:
+        if point["comes_back"] is None:
+            why = next(way["failed"] for way in point["let_go"] if "failed" in way)
+            notes.append(f"At {in_words('m', point['net'])} the motion was not followed: {why}.")
     if sum(point["stable"] for point in points) > 1:
-        said.append("Several hold: how the seal was loaded decides which; from lifted faces it is the largest.")
-    return said
+        notes.append("Several hold: how the seal was loaded decides which; from lifted faces it is the largest.")
+    return notes
+
+
+def _table(numbers) -> Table:
+    """Every operating point."""
+    names = (
+        ("m", "waviness left", "net"), ("1", "stable by the slope", "stable"), ("1", "comes back", "comes_back"),
+        ("angle", "turned", "turned"), ("clearance", "clearance", "clearance"),
+        ("share", "load support", "load_support"), ("1", "friction", "friction_coefficient"),
+        ("leakage", "leakage", "leakage"),
+    )  # fmt: skip
+    rows = [[point[key] for *_, key in names] for point in numbers["points"]]
+    return Table("operating points", [name[:2] for name in names], rows)
+
+
+def _panels(numbers) -> list[Panel]:
+    """The curve with its crossings above load support along it; the waviness of points that were let go over time."""
+    curve, made, points = numbers["curve"], numbers["initial"], numbers["points"]
+    initial = [Series("line", curve["net"], curve["initial"], label="made with this, left with that", style="film")]
+    load = [Series("line", curve["net"], curve["load_support"], style="contact")]
+    for stable, (style, words) in ROOTS.items():
+        own = [point for point in points if point["stable"] == stable]
+        at = [point["net"] for point in own]
+        if own:
+            initial.append(Series("marks", at, [made] * len(at), label=words, style=style))
+            load.append(Series("marks", at, [point["load_support"] for point in own], style=style))
+    net = Axis("m", "net waviness", scale="log", low=curve["net"][0], high=curve["net"][-1])
+    level = Level(made, "made with", style="theory dashed", number=True)
+    return [
+        Panel("Waviness made and left", net, Axis("m", "initial waviness", scale="log"), initial, [level]),
+        Panel("", net, Axis("share", "load support"), load, below=True),
+        _let_go_panel(points),
+    ]
+
+
+def _let_go_panel(points) -> Panel:
+    """Waviness over time of every point that was let go, from its first step on."""
+    title, series = "Let go a little beside each point", []
+    for point in points:
+        style, words = ROOTS[point["stable"]]
+        colour = style.split()[0]
+        for way in point["let_go"]:
+            if "net" in way:
+                label = "" if any(one.label == words for one in series) else words
+                series.append(Series("line", way["time"][1:], way["net"][1:], label=label, style=colour))
+    if not series:
+        return Panel(title, note="no operating point whose motion was followed")
+    levels = [Level(point["net"], style="grey dotted") for point in points]
+    # A ring that is back at once does not enlarge its last step.
+    sizes = [size for one in series for size in one.y] + [way["from"] for point in points for way in point["let_go"]]
+    waviness = Axis("m", "waviness", scale="log", low=0.95 * min(sizes), high=1.05 * max(sizes))
+    return Panel(title, Axis("time", scale="log"), waviness, series, levels)

@@ -11,15 +11,18 @@ from functools import partial
 import numpy as np
 
 from ..analysis.whirl import free_model, growth_rate
+from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
+from ..quantities import in_words, number
+from ..report.text import written_units
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing, SceneError
 from ..scene.variants import unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
-from ._words import speed
+from . import Info
 from .failures.cases import neutral_stability as exhibit
 
 METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
@@ -30,17 +33,20 @@ MOST_CALLS = 600_000
 # Accuracy of the numbers that are told.
 TOLD = 1e-6
 NOTHING = Coefficients(tilt_stiffness=0.0, tilt_damping=0.0, axial_stiffness=0.0, axial_damping=0.0)
-ALONG = {"damping": ("accuracy",), "drift": ("accuracy",)}
-# Growth, cost and drift are for each turn, or shares.
-units = dict.fromkeys(("accuracy", "turns", "growth", "cost", "tolerance", "energy", "momentum", "attainable"), "1")
-
 LINEAR = {"film.model": "linear"}
-# The linear film at its threshold is the measure: nothing else may damp or bound the motion.
-REFUSES = ("contact", "secondary-seal")
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("fms_reference", 22)
+INFO = Info(
+    timed=("fms_reference", 22),
+    asks="What do the methods themselves add where nothing damps?",
+    # The linear film at its threshold is the measure: nothing else may damp or bound the motion.
+    refuses=("contact", "secondary-seal"),
+    # Growth, cost and drift are for each turn, or shares.
+    units=dict.fromkeys(("accuracy", "turns", "growth", "cost", "tolerance", "energy", "momentum", "attainable"), "1"),
+    along={"damping": ("accuracy",), "drift": ("accuracy",)},
+)
+# How each method is drawn, and below which size a change per turn is rounding.
+STYLES = {"adams": "first circle", "bdf": "second square", "ida": "third diamond", "dop853": "fourth triangle",
+          "rk45": "fifth down", "radau": "sixth plus", "expm": "seventh star"}  # fmt: skip
+ROUNDING = 1e-17
 
 
 @dataclass(frozen=True)
@@ -55,7 +61,7 @@ class Settings:
     """Turns that the default method precesses (0: not at all)."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Numerical damping and drift of every method, and whether the default one is fine enough."""
     linear = with_values(scenario.scene, LINEAR)
     speed, why = None, ""
@@ -84,7 +90,8 @@ def run(scenario, settings, tools) -> dict:
         drift_why = str(error)
     answer = {"critical_speed": speed, "reason": why, "damping": damping, "resolved": resolved, "drift": drift,
               "drift_reason": drift_why, "turns": settings.turns}  # fmt: skip
-    return {**answer, "verdict": sentences(answer)}
+    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
+    return Answer(answer, _found(answer, written), _tables(answer), _panels(answer), _notes(answer), written)
 
 
 def joined(points, rows) -> list[dict]:
@@ -192,39 +199,88 @@ def drifted(scene, point: dict) -> dict:
             "cost": counts.rhs / turns, "reason": None}  # fmt: skip
 
 
-# --- in words ---------------------------------------------------------------------------------------------
+# --- what is told ---------------------------------------------------------------------------------------
 
 
-def tables(answer) -> list:
-    """What is each method's own at accuracy 1e-6, and the long precession."""
-    drift = [row for row in answer["drift"] if row["turns"] != answer["turns"] or row["accuracy"] == TOLD]
-    method, cost = ("method", "method"), ("right-hand sides per turn", "cost")
-    precession = (("turns", "turns"), ("energy drift per turn", "energy"), ("of angular momentum", "momentum"))
-    return [(_told(answer), (method, ("growth per turn", "growth"), cost)), (drift, (method, *precession, cost))]
+def _told(numbers) -> list[dict]:
+    return [row for row in numbers["damping"] if row.get("growth") is not None and row["accuracy"] == TOLD]
 
 
-def _told(answer) -> list[dict]:
-    return [row for row in answer["damping"] if row.get("growth") is not None and row["accuracy"] == TOLD]
+def _found(numbers, written) -> str:
+    """The least and the largest growth per turn that is a method's own."""
+    if not numbers["critical_speed"]:
+        return f"No numerical damping measured: {numbers['reason']}."
+    where = f"at the threshold, {in_words('speed', numbers['critical_speed'], written, 5)}, and accuracy {TOLD:.0e}"
+    rows = sorted(_told(numbers), key=lambda row: abs(row["growth"]))
+    if not rows:
+        return f"No method kept to the bound on its cost {where}."
+    least, most = (f"{number(row['growth'], digits=2)} ({row['method']})" for row in (rows[0], rows[-1]))
+    return f"Growth per turn of the methods' own {where}: {least} to {most}."
 
 
-def sentences(answer) -> list[str]:
-    """The verdict."""
-    lines, found, rows = [], answer["resolved"], _told(answer)
-    if not answer["critical_speed"]:
-        lines.append(f"No numerical damping measured: {answer['reason']}.")
-    else:
-        least, most = (f(rows, key=lambda row: abs(row["growth"]), default=None) for f in (min, max))
-        said = "no method kept to the bound on its cost"
-        if rows:
-            said = f"{least['growth']:+.1e} ({least['method']}) to {most['growth']:+.1e} ({most['method']})"
-        lines.append(f"Growth per turn that is the method's own at the threshold, {speed(answer['critical_speed'])}, "
-                     f"accuracy {TOLD:.0e}: {said}.")  # fmt: skip
-    if found and "failed" not in found:
-        verb = "stays" if found["ratio"] >= MARGIN else "does not stay"
-        lines.append(
-            f"The default method {verb} {MARGIN:.0f} times below what the critical-speed study resolves: "
-            f"{found['numerical_damping']:.1e} against {found['rate']:.2g} 1/s ({found['ratio']:.2g} times)."
-        )
-    if answer["drift_reason"]:
-        lines.append(f"No free precession: {answer['drift_reason']}.")
-    return lines
+def _notes(numbers) -> list[str]:
+    found, notes = numbers["resolved"] or {}, []
+    if "ratio" in found:
+        stays = "stays" if found["ratio"] >= MARGIN else "does not stay"
+        notes.append(f"The default method {stays} {MARGIN:.0f} times below what the critical-speed study resolves.")
+    return notes + ([f"No free precession: {numbers['drift_reason']}."] if numbers["drift_reason"] else [])
+
+
+def _tables(numbers) -> list[Table]:
+    """What is each method's own at the accuracy told, the long precession, and what the default method leaves."""
+    cost = ("1", "right-hand sides per turn")
+    columns = [("1", "method"), ("1", "growth per turn"), cost]
+    growths = [[row["method"], row["growth"], row["cost"]] for row in _told(numbers)]
+    drift = [row for row in numbers["drift"] if row["turns"] != numbers["turns"] or row["accuracy"] == TOLD]
+    precession = [("1", "method"), ("1", "turns"), ("1", "energy drift per turn"), ("1", "of angular momentum"), cost]
+    names = ("method", "turns", "energy", "momentum", "cost")
+    tables = [Table("growth", columns, growths),
+              Table("drift", precession, [[row.get(name) for name in names] for row in drift])]  # fmt: skip
+    found = numbers["resolved"] or {}
+    if "ratio" in found:
+        columns = [("1", "default method"), ("growth_rate", "its own growth"), ("growth_rate", "resolved growth"),
+                   ("growth_rate", "uncertainty"), ("1", "ratio")]  # fmt: skip
+        names = ("method", "numerical_damping", "rate", "uncertainty", "ratio")
+        tables.append(Table("resolution", columns, [[found[name] for name in names]]))
+    return tables
+
+
+def _panels(numbers) -> list[Panel]:
+    """Over the cost of a turn: growth of the neutral whirl, and energy drift of free precession."""
+    cost, found, levels = Axis("1", "right-hand sides per turn", scale="log"), numbers["resolved"] or {}, []
+    title, drifts = "Growth of a neutral whirl, at the stability threshold", "Energy drift of free precession"
+    if "rate" in found:
+        turn = 2 * math.pi / numbers["critical_speed"]
+        shares = (1.0, "resolved by study critical-speed"), (0.01, "a hundredth of it")
+        levels = [Level(share * found["rate"] * turn, words) for share, words in shares]
+    growth = Panel(title, note=numbers["reason"])
+    if numbers["damping"]:
+        series, note = _curves(numbers["damping"], "growth")
+        growth = Panel(title, cost, Axis("1", "|growth per turn|", scale="log"), series, levels, note=note)
+    if not numbers["drift"]:
+        return [growth, Panel(drifts, note=numbers["drift_reason"])]
+    short = [row for row in numbers["drift"] if row["turns"] == numbers["turns"]]
+    series, note = _curves(short, "energy")
+    for row in numbers["drift"]:
+        if row["turns"] != numbers["turns"] and row.get("energy") is not None:
+            size = max(abs(row["energy"]), ROUNDING)
+            series.append(Series("marks", [row["cost"]], [size], style=f"{STYLES[row['method']]} large front",
+                                 names=[f"{row['turns']} turns"]))  # fmt: skip
+    return [growth, Panel(drifts, cost, Axis("1", "|energy drift per turn|, relative", scale="log"), series, note=note)]
+
+
+def _curves(rows, key: str) -> tuple[list[Series], str]:
+    """One line per method over its accuracies, open marks where it pumps; what has no answer."""
+    series, missing = [], []
+    for method, style in STYLES.items():
+        own = [row for row in rows if row["method"] == method]
+        good = [row for row in own if row.get(key) is not None]
+        missing += [f"{method} at {row['accuracy']:.0e}" for row in own if row not in good]
+        cost, size = [row["cost"] for row in good], [max(abs(row[key]), ROUNDING) for row in good]
+        if good:
+            series.append(Series("line", cost, size, label=method, style=style))
+        pumps = [(x, y) for x, y, row in zip(cost, size, good, strict=True) if row[key] > 0.0]
+        if pumps:
+            series.append(Series("marks", *zip(*pumps, strict=True), style=f"{style} open front"))
+    note = "filled: damps; open: pumps" + (f"; no answer: {', '.join(missing)}" if missing else "")
+    return series, note

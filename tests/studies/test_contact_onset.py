@@ -8,7 +8,8 @@ from scenes import started
 
 import sealdyn
 from sealdyn import closed_form as cf
-from sealdyn.analysis.shooting import Shooter, TooMuchWork
+from sealdyn.analysis import shooting
+from sealdyn.analysis.shooting import Follower, Shooter, TooMuchWork
 from sealdyn.archive import read_study
 from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
@@ -18,7 +19,7 @@ from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import contact_onset
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.contact_onset import Follower, Settings, onset
+from sealdyn.studies.contact_onset import Settings, onset
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CASES = {
@@ -191,7 +192,7 @@ def test_a_figure_shows_why_an_onset_is_not_followed(tmp_path):
 def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
     point = {"key": "stator.misalignment", "margin": 1e-3, "tolerance": 1e-5, "most": 1e3, "set": {}, "floor": False}
-    monkeypatch.setattr(contact_onset, "MOST_WORK", 36_000)
+    monkeypatch.setattr(shooting, "MOST_WORK", 36_000)
     row = onset(scenario, point)
     assert "right-hand sides" in row["failed"] and 1 <= len(row["path"]["forcing"]) < 5 and row["formula"] > 0
 
@@ -199,7 +200,7 @@ def test_a_path_that_costs_too_much_is_given_up(monkeypatch):
 def test_a_single_orbit_that_costs_too_much_is_given_up(monkeypatch):
     """Not only between orbits: one of them may cost more than all others."""
     scenario = sealdyn.read_scenario(SCENARIOS / "fmr_reference.toml")
-    monkeypatch.setattr(contact_onset, "MOST_WORK", 3000)
+    monkeypatch.setattr(shooting, "MOST_WORK", 3000)
     follower = Follower(lambda value: with_values(scenario, {"stator.misalignment": value}).scene, 1e-3, 1e-7)
     with pytest.raises(TooMuchWork):
         follower.excess(1e-4)

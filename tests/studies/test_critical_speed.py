@@ -114,11 +114,6 @@ def test_runs_that_would_not_part_within_the_turns_are_not_bisected():
     assert row["disturbance"] is None and row["whirl"] is None
     assert row["turns"] == pytest.approx(math.log(1e6) / 0.1 * 5560.0 / (2 * math.pi))
     assert "not bisected in time" in row["said"]
-    family = {"amplitude": [1e-4, 3e-4]}
-    slow = [{"speed": speed, "branch": size, "difference": None, **row} for speed, size in ((950, 2e-4), (980, 1e-4))]
-    found = {"kind": "subcritical", "contact_tilt": 4e-4, "branch": family, "contact_speed": 930.0, "tipping": slow}
-    said = " ".join(critical_speed.nonlinear_sentences({**found, "directions": []}, 1000.0))
-    assert "At 0.9500 to 0.9800 of the threshold a whirl of 200 to 100 urad tips it, by the family alone" in said
 
 
 # An oil seal with a long rotor: its inertia closes the faces at 15 600 rpm, below the speed at which it would whirl.
@@ -146,10 +141,8 @@ def test_speeds_at_which_no_film_holds_the_seal_are_none_without_whirl(tmp_path)
     """It was said that a disturbance dies out up to 1000 m/s, where there is no film from 82 m/s on."""
     scenario = parse_scenario(CLOSED_BY_INERTIA, "closed")
     answer = run_study("critical-speed", scenario, tmp_path / "out.h5", flags={"turns": 20}, workers=1)
-    first = answer["verdict"][0]
     assert answer["eigenvalue"] is None and answer["speeds_held"][1] == pytest.approx(1636.5, abs=0.1)
-    assert first.startswith("No critical speed up to 1636.5 rad/s (15627 rpm), beyond which no film holds the closing")
-    assert "m/s at the outer radius" not in first
+    assert max(answer["growth"]["speed"]) <= 1.001 * answer["speeds_held"][1]
 
 
 # A slow shaft in a stator that runs the other way: the whirl turns twenty times as fast as the shaft at the threshold.
@@ -221,21 +214,6 @@ def test_a_threshold_too_fast_to_run_has_its_growth_by_eigenvalues():
     assert all(
         (rate > 0) == (speed > threshold) for speed, rate in zip(*map(growth.get, ("speed", "eigenvalue")), strict=True)
     )
-    assert "e+0" not in answer["verdict"][0]
-
-
-def test_an_unstable_whirl_that_meets_no_contact_is_told_to_where_it_was_followed():
-    branch = {"speed": [600.0, 130.0], "amplitude": [1e-4, 3e-4]}
-    found = {
-        "kind": "subcritical",
-        "contact_tilt": 3e-4,
-        "contact_speed": None,
-        "branch": branch,
-        "tipping": [],
-        "directions": [],
-    }
-    said = " ".join(critical_speed.nonlinear_sentences(found, 640.0))
-    assert "no speed" not in said and "followed down to 130 rad/s" in said
 
 
 # Two heavy rings that turn against each other on a thin, stiff film that hardly damps their whirl.
@@ -272,17 +250,8 @@ def test_whirls_that_take_a_million_turns_to_go_anywhere_are_not_run():
     assert time_domain._method(free_model(scene, 18796.0)) == "bdf"
     row = {"speed": 18760.0, "start": "small", **time_domain.bounded_or_not(scene, 18760.0, "small", None, None)}
     assert row["turns"] > time_domain.SHOWS * 8000 and row["whirl"] is None
-    # Nothing has failed, and what becomes of it is told.
-    said = critical_speed.fates([row, {"speed": 19000.0, "start": "small", "fate": "contact"}], "small")
-    assert said.startswith("Small whirls in time: contact at 19000 rad/s") and "turns to go anywhere" in said
-    assert f"by eigenvalues a small one {'grows' if row['rate'] > 0 else 'dies out'} at 18760 rad/s" in said
-
-
-def test_fates_that_are_not_known_say_why():
-    rows = [{"start": "small", "speed": 1.0, "failed": "too many steps"}]
-    assert critical_speed.fates(rows, "small") == (
-        "Small whirls in time: none was followed to its end (too many steps)."
-    )
+    # Nothing has failed, and where it goes the eigenvalues tell.
+    assert "failed" not in row and row["rate"] != 0.0
 
 
 def test_growth_in_time_is_that_of_the_gap_at_its_speed(tmp_path):
@@ -292,16 +261,14 @@ def test_growth_in_time_is_that_of_the_gap_at_its_speed(tmp_path):
     growth = answer["growth"]
     assert growth["speed"][-1] == pytest.approx(1655.1, abs=0.1) and len(set(growth["speed"])) == 4
     assert growth["time_domain"] == pytest.approx(growth["eigenvalue"], rel=1e-3)
-    assert "disagree" not in " ".join(answer["verdict"]) and answer["status"] == "ok"
+    assert not any(critical_speed.disagreements(growth)) and answer["status"] == "ok"
 
 
 def test_roads_that_disagree_are_told():
     growth = {"speed": [600.0, 1655.0, 1700.0], "eigenvalue": [-3.0, -0.0887, -1.0]}
     growth |= {"time_domain": [-2.9, -1.69, None], "uncertainty": [0.3, 0.24, None]}
-    said = critical_speed.roads_apart(growth)
-    assert "disagree at 1 of 3 speeds" in said and "1655 rad/s" in said
-    assert "-0.0887 1/s by eigenvalues, -1.69 +- 0.2 1/s in time" in said
-    assert critical_speed.roads_apart({**growth, "time_domain": [-2.9, -0.08, None]}) == ""
+    assert critical_speed.disagreements(growth) == [False, True, False]
+    assert not any(critical_speed.disagreements({**growth, "time_domain": [-2.9, -0.08, None]}))
 
 
 def test_a_run_near_the_last_speed_that_holds_is_a_result():

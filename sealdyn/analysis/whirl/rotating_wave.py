@@ -8,9 +8,10 @@ aligned seal at the stability threshold (a Hopf bifurcation): falling speed mean
 **Valid** rings, supports and film alike in all directions (all of this package's), constant parameters.
 """
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, root
 
 from ...dynamics import equations
@@ -221,3 +222,31 @@ def _at_contact(wave, found, beyond, floor):
     low = last.amplitude
     at = brentq(excess, low, beyond.amplitude, xtol=1e-12 * low, rtol=1e-12)
     return kept[at]
+
+
+def kind_of(family: list[Whirl], threshold: float) -> str:
+    """Of the whirls that leave the threshold (rad/s): subcritical (towards lower speed), supercritical, or
+    with a fold."""
+    speeds = np.array([threshold, *[w.speed for w in family]])
+    falls, rises = np.all(np.diff(speeds) < 0), np.all(np.diff(speeds) > 0)
+    if falls or rises:
+        return "subcritical" if falls else "supercritical"
+    return "subcritical, then turning" if speeds[1] < threshold else "supercritical, then turning"
+
+
+def family_columns(family: list[Whirl]) -> dict:
+    """Columns of a family of whirls, in SI."""
+    names = {n: n for n in ("speed", "amplitude", "frequency", "opening", "h_min")} | {"growth_rate": "growth"}
+    return {key: [asdict(w)[name] for w in family] for key, name in names.items()}
+
+
+def compared(row: dict, family: list[Whirl], stable: bool) -> dict:
+    """A row {speed, whirl} of a run in time with the family's amplitude at its speed (rad; None where it has none of
+    that stability) and the difference from it."""
+    amplitudes, speeds = np.array([w.amplitude for w in family]), np.array([w.speed for w in family])
+    speed_of, row["branch"], row["difference"] = CubicSpline(amplitudes, speeds), None, None
+    for k in np.flatnonzero(np.diff(np.sign(speeds - row["speed"]))):
+        if (family[k + 1].growth < 0) == stable:
+            row["branch"] = float(brentq(lambda a: speed_of(a) - row["speed"], amplitudes[k], amplitudes[k + 1]))
+            row["difference"] = row["whirl"] / row["branch"] - 1 if row.get("whirl") else None
+    return row

@@ -9,29 +9,31 @@ import numpy as np
 from pydantic import Field
 
 from ...analysis import quasi_static
-from ...closed_form import ludwig_allen
+from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...closed_form import ludwig_allen as closed
 from ...dynamics.model import Model
 from ...numerics.piecewise_linear import initially
 from ...status import Status
+from .. import Info
 from . import released as free
 
-ALONG = {"line": ("force_ratio",), "foreseen": ("force_ratio",), "map": ("guide",),
-         "map/closed_form": ("force_ratio",), "balance": ("force_ratio",), "published": ("force_ratio",),
-         "released": ("force_ratio",)}  # fmt: skip
-# Of what is left a film is a length; of what the released ring has, three: mean, least and largest of its last turns.
-units = {"mean_film": "m", "least_film": "m", "ratio/mean_film": "1", "ratio/least_film": "1", "direction": "rad",
-         "tilt_stiffness": "N*m/rad", "*": "1"}  # fmt: skip
-
+INFO = Info(
+    timed=("ludwig_allen", 66),
+    asks="Does friction of the secondary seal lubricate the faces?",
+    # Of the rest a film is a length; of what the released ring has, three: mean, least and largest of its last turns.
+    units={"mean_film": "m", "least_film": "m", "ratio/mean_film": "1", "ratio/least_film": "1", "direction": "rad",
+           "tilt_stiffness": "N*m/rad", "*": "1"},
+    along={"map": ("guide",)} | dict.fromkeys(("line", "foreseen", "map/closed_form", "balance", "published",
+                                               "released"), ("force_ratio",)),
+)  # fmt: skip
 # Turns (radians of the shaft) a quasi-static run may take; how far above the balance it starts.
 RADIANS, ABOVE = 300.0, 1.02
 RATIOS = (1.2, 1.3, 1.45, 1.6, 1.65, 1.72, 1.8, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0)
 Positive, Start = Annotated[float, Field(gt=0)], Literal["closed form", "open"]
 OWN, NEEDED = "own", "as the closed form needs"
-
-
-# A scenario (and flags) with which the default settings take so much processor time (s) on one core.
-TIMED = ("ludwig_allen", 66)
+# One fate, one colour and mark, in all panels.
+FATES = {"film": "good circle", "straightened": "bad down", "hang-up": "fourth cross", "rubs": "warn diamond",
+         "moving": "blue square", "failed": "black plus"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ class Settings:
     """Accuracy of these runs."""
 
 
-def run(scenario, settings, tools) -> dict:
+def run(scenario, settings, tools) -> Answer:
     """Closed form, static root, quasi-static and released films over the force ratio."""
     scene = scenario.scene
     ring = free.ring_of(scene)
@@ -85,7 +87,9 @@ def run(scenario, settings, tools) -> dict:
         "foreseen": _foreseen_line(scene, ring, max(ratios)),
         "map": _map(max(ratios)),
     }  # fmt: skip
-    return {**answer, "verdict": sentences(answer)}
+    notes = ["Their film, which the scene's has to be for the answer to be theirs, is flat and planar, constant over "
+             "the face, its pressure ambient where it diverges."]  # fmt: skip
+    return Answer(answer, _found(answer), _tables(answer), _panels(answer), notes)
 
 
 def own_guide(scene, ring) -> float:
@@ -192,55 +196,137 @@ def _heavier(rotor, factor):
                    polar_inertia=factor * rotor.polar_inertia)  # fmt: skip
 
 
-# --- in words ---------------------------------------------------------------------------------------------
+# --- what is told -----------------------------------------------------------------------------------------
 
 
-def tables(answer) -> list:
-    """The balance on the actual film, and what becomes of the released ring."""
-    q = ("F_s/F_d", "force_ratio")
-    balance = (q, ("h0 of the closed form, um", "closed_form.mean_film", 1e6),
-               ("static, um", "static.mean_film", 1e6), ("quasi-static, um", "quasi_static.mean_film", 1e6),
-               ("quasi-static", "quasi_static.status"))  # fmt: skip
-    released = (q, ("tilt spring", "support"), ("start", "start"), ("ring", "status"), ("h0, um", "film", 1e6),
-                ("h1/h0", "share"), ("foreseen h0, um", "foreseen.mean_film", 1e6),
-                ("on asperities, % of spring", "contact_share", 100))  # fmt: skip
-    return [(answer["balance"], balance),
-            ([{**row, "film": row.get("mean_film", [None])[0]} for row in answer["released"]], released)]  # fmt: skip
+def _found(numbers) -> str:
+    """What becomes of the released ring on its own support over the force ratio."""
+    own, low, high = _rows(numbers, OWN), *closed.film_range(numbers["guide"])
+    fates: list[tuple[str, list]] = []
+    for row in own:
+        if not fates or fates[-1][0] != row["status"]:
+            fates.append((row["status"], []))
+        fates[-1][1].append(row["force_ratio"])
+    words = ["{} at {}".format(fate, " to ".join(dict.fromkeys((f"{q[0]:g}", f"{q[-1]:g}")))) for fate, q in fates]
+    said = ", ".join(words) or "no run ended"
+    return f"The released ring over F_s/F_d: {said}; foreseen a film from {low:.4g} to {high:.4g}."
 
 
-def sentences(answer) -> list[str]:
-    """The verdict: the released ring on its own support, the balance that the closed form states, and the released
-    ring on a support that carries what the closed form leaves out."""
-    own, kept = _rows(answer, OWN), [row for row in _rows(answer, NEEDED) if row["status"] == "film"]
-    low, high = ludwig_allen.film_range(answer["guide"])
-    lines = [f"What friction makes of the ring on its own support (tilt spring {answer['guide']:.2g} R F_s), F_s/F_d: "
-             f"{_fates(own)}; foreseen a film from {low:.4g} to {high:.4g}."]  # fmt: skip
-    if static := [row for row in answer["balance"] if row.get("static")]:
-        off = max(abs(row["static"]["mean_film"] / row["closed_form"]["mean_film"] - 1) for row in static)
-        least, attracting = answer["least_force_ratio"], answer["least_attracting_force_ratio"]
-        lines.append(f"Ludwig & Allen's balance on the actual film has the closed form's h0 within {100 * off:.2g} %; "
-                     f"none below {least:.4f}, one that repels below {attracting:.4f}.")  # fmt: skip
-    if kept:
-        off = max(abs(row["ratio"]["mean_film"] - 1) for row in kept)
-        lines.append(f"With a tilt spring that carries R F_s h1/h0 the released ring keeps that h0 within "
-                     f"{100 * off:.2g} % for F_s/F_d {_listed([row['force_ratio'] for row in kept])}.")  # fmt: skip
-    return lines
+def _tables(numbers) -> list[Table]:
+    """The balance on the actual film, what becomes of the released ring, and how far the closed form carries."""
+    ratio, film = ("1", "F_s/F_d"), "film_thickness"
+    columns = [ratio, (film, "h0 of the closed form"), (film, "static"), (film, "quasi-static"), ("1", "quasi-static")]
+    names = ("closed_form", "static", "quasi_static")
+    rows = [[row["force_ratio"], *((row.get(name) or {}).get("mean_film") for name in names),
+             (row.get("quasi_static") or {}).get("status")] for row in numbers["balance"]]  # fmt: skip
+    balances = Table("balance", columns, rows)
+    columns = [ratio, ("1", "tilt spring"), ("1", "start"), ("1", "ring"), (film, "h0"), ("1", "h1/h0"),
+               (film, "foreseen h0"), ("share", "of the spring on asperities")]  # fmt: skip
+    rows = [[row["force_ratio"], row["support"], row["start"], row.get("status", "failed"),
+             row.get("mean_film", [None])[0], _first(row.get("share")), (row.get("foreseen") or {}).get("mean_film"),
+             _first(row.get("contact_share"))] for row in numbers["released"]]  # fmt: skip
+    released = Table("released", columns, rows)
+    columns = [("1", "tilt spring / R F_s"), ("1", "no balance below"), ("1", "repels below"),
+               ("share", "h0 off: actual film"), ("share", "released ring, spring as needed")]  # fmt: skip
+    static = [row for row in numbers["balance"] if row.get("static")]
+    kept = [row for row in _rows(numbers, NEEDED) if row["status"] == "film"]
+    off = [max((abs(row["static"]["mean_film"] / row["closed_form"]["mean_film"] - 1) for row in static), default=None),
+           max((abs(row["ratio"]["mean_film"] - 1) for row in kept), default=None)]  # fmt: skip
+    own = [numbers[name] for name in ("guide", "least_force_ratio", "least_attracting_force_ratio")]
+    return [balances, released, Table("closed form", columns, [[*own, *off]])]
 
 
-def _rows(answer, support):
-    rows = [row for row in answer["released"] if row["support"] == support and "failed" not in row]
+def _first(value):
+    """The mean of a mean, least and largest; a number itself."""
+    return value[0] if isinstance(value, list | tuple) else value
+
+
+def _rows(numbers, support) -> list[dict]:
+    """Released rings on a support that were run, of several starts those of the first."""
+    rows = [row for row in numbers["released"] if row["support"] == support and "failed" not in row]
     return [row for row in rows if row["start"] == rows[0]["start"]]
 
 
-def _fates(rows) -> str:
-    """ "hang-up at 1.2; film at 1.3 to 1.65; ..." """
-    words = []
-    for row in rows:
-        if not words or words[-1][0] != row["status"]:
-            words.append((row["status"], []))
-        words[-1][1].append(row["force_ratio"])
-    return "; ".join(f"{status} at {_listed(ratios)}" for status, ratios in words) or "no run ended"
+def _panels(numbers) -> list[Panel]:
+    """Sealing numbers; beside them how far the closed form carries, and where a released ring hangs up, rides or
+    straightens."""
+    # What was asked, and always where the closed form has no balance and where it has one.
+    ratios = [row["force_ratio"] for row in numbers["balance"]] + [1.2, 2.0 * numbers["least_force_ratio"]]
+    over = Axis("1", "q = F_s/F_d, spring force over friction of half the secondary seal", scale="log",
+                low=min(ratios) / 1.06, high=max(ratios) * 1.1)  # fmt: skip
+    rows = [row for row in numbers["released"] if "failed" not in row]
+    return [_numbers_panel(numbers, rows, over), _carried_panel(numbers, over), _fates_panel(numbers, over)]
 
 
-def _listed(ratios) -> str:
-    return f"{ratios[0]:g}" if ratios[0] == ratios[-1] else f"{ratios[0]:g} to {ratios[-1]:g}"
+def _numbers_panel(numbers, rows, over) -> Panel:
+    """Sealing number: what is claimed and what happens; where a ring hangs up there is no film to put a number to."""
+    columns, series = ("force_ratio", "sealing_number"), []
+    static = [{**row, **row["static"]} for row in numbers["balance"] if row.get("static")]
+    settled = [{**row, **row["quasi_static"]} for row in numbers["balance"]
+               if (row.get("quasi_static") or {}).get("status") == "settled"]  # fmt: skip
+    for kind, given, label, style in (
+        ("line", numbers["line"], "closed form, Ludwig & Allen", "black"),
+        ("line", numbers["foreseen"], "foreseen on its own support", "good dashed"),
+        ("marks", static, "same balance, actual film", "warn plus large"),
+        ("marks", settled, "same balance in time, settled", "blue open diamond large"),
+        ("marks", numbers["published"], "published rows", "black open star large"),
+    ):
+        x, y = ([row[name] for row in given] if isinstance(given, list) else given[name] for name in columns)
+        if x:
+            series.append(Series(kind, x, y, label=label, style=style))
+    flat = [row["sealing_number"][0] for row in rows if row["status"] != "hang-up"]
+    flat += numbers["line"]["sealing_number"][-1:]
+    low, top = 0.2 * min(flat), 10 * max(flat)
+    for fate, style in FATES.items():
+        for support, fill, words in ((OWN, "", "own support"), (NEEDED, " open", "tilt spring as needed")):
+            mine = [row for row in rows if row["support"] == support and row["status"] == fate]
+            if not mine:
+                continue
+            x, spread = [row["force_ratio"] for row in mine], [row["sealing_number"] for row in mine]
+            hung = fate == "hang-up"
+            y = [0.5 * top if hung else mean for mean, *_ in spread]
+            error = None if hung else [max(mean - least, most - mean, 0.0) for mean, least, most in spread]
+            series.append(Series("marks", x, y, label=f"{fate}, {words}", style=f"{style}{fill}", error=error))
+    least, attracting = numbers["least_force_ratio"], numbers["least_attracting_force_ratio"]
+    zones = [Level(over.low, "closed form: no balance", True, "grey", to=least, legend=True),
+             Level(least, "closed form: repels", True, "blue", to=attracting, legend=True)]  # fmt: skip
+    axis = Axis("1", "sealing number  h0² F_s / (µ U ΔR³)", scale="log", low=low, high=top)
+    return Panel("Mean film, as the sealing number (bars: its range)", over, axis, series, zones, wide=1.4)
+
+
+def _carried_panel(numbers, over) -> Panel:
+    """Film of the released ring over that of the closed form."""
+    title, series = "How far the closed form carries", []
+    for name, words, style in (("mean_film", "mean film h0", "blue"), ("least_film", "least film", "warn"),
+                               ("sealing_number", "sealing number", "good")):  # fmt: skip
+        for support, dashes, label in ((OWN, "circle small", words), (NEEDED, "dotted open circle small", "")):
+            mine = [row for row in _rows(numbers, support) if row["ratio"]]
+            if mine:
+                x, y = [row["force_ratio"] for row in mine], [row["ratio"][name] for row in mine]
+                series.append(Series("line", x, y, label=label, style=f"{style} {dashes}"))
+    if not series:
+        return Panel(title, note="no released ring and closed form have a film at one ratio")
+    note = "hollow: with a tilt spring that carries R F_s h1/h0"
+    return Panel(title, over, Axis("1", "released / closed form", scale="log"), series, [Level(1.0, style="black")],
+                 note=note)  # fmt: skip
+
+
+def _fates_panel(numbers, over) -> Panel:
+    """Fates over force ratio and what the support carries: foreseen, and run."""
+    found, need, last = numbers["map"], numbers["map"]["closed_form"], over.high / 1.1
+    series = [Series("line", found["hang_up_below"], found["guide"], label="hangs up left of", style="fourth thick"),
+              Series("line", found["straightens_above"], found["guide"], label="straightens right of",
+                     style="bad thick"),
+              Series("line", need["force_ratio"], need["guide"], label="closed form", style="black")]  # fmt: skip
+    for fate, style in FATES.items():
+        mine = [row for support in (OWN, NEEDED) for row in _rows(numbers, support) if row["status"] == fate]
+        if mine:
+            x, y = [row["force_ratio"] for row in mine], [row["guide"] for row in mine]
+            series.append(Series("marks", x, y, label=fate, style=f"{style} front"))
+    film = last**0.9
+    ends = [np.interp(film, found[name], found["guide"]) for name in ("hang_up_below", "straightens_above")]
+    places = {"hangs up": (1.3, 0.62), "straightens": (last**0.75, 0.12), "film": (film, min(0.5 * sum(ends), 1.0))}
+    x, y = zip(*places.values(), strict=True)
+    series.append(Series("words", x, y, names=list(places), style="grey"))
+    moment = Axis("1", "tilt moment of the support / R F_s", low=-0.02, high=1.08)
+    return Panel("What a released ring does: foreseen, and run (marks)", over, moment, series, below=True)
