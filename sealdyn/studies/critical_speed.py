@@ -365,12 +365,11 @@ def _tables(numbers) -> list[Table]:
     found = numbers["nonlinear"] or {}
     if "branch" not in found:
         return tables
-    touch, closed = found["contact_speed"], found["contact_tilt"]
+    touch, closed, last = found["contact_speed"], found["contact_tilt"], found["branch"]["amplitude"][-1]
     columns = [("1", "whirl"), ("speed", "touches at"), ("1", "of the threshold"), ("tilt", "followed to a tilt of"),
                ("1", "of that which closes the gap")]  # fmt: skip
-    last = found["branch"]["amplitude"][-1]
-    tables.append(Table("whirl", columns, [[found["kind"], touch, touch / eigen if touch else None, last,
-                                            last / closed]]))  # fmt: skip
+    row = [found["kind"], touch, touch / eigen if touch else None, last, last / closed]
+    tables.append(Table("whirl", columns, [row]))
     columns = [("speed", "speed"), ("1", "of the threshold"), ("tilt", "tilt that tips"), ("tilt", "whirl in time"),
                ("tilt", "whirl by continuation"), ("1", "difference"), ("1", "turns it would take")]  # fmt: skip
     rows = [[row["speed"], row["speed"] / eigen, *map(row.get, ("disturbance", "whirl", "branch", "difference",
