@@ -45,7 +45,7 @@ INFO = Info(
 )
 # How each method is drawn, and below which size a change per turn is rounding.
 STYLES = {"adams": "first circle", "bdf": "second square", "ida": "third diamond", "dop853": "fourth triangle",
-          "rk45": "fifth down", "radau": "sixth plus", "expm": "seventh star"}  # fmt: skip
+          "rk45": "fifth down", "radau": "sixth circle", "expm": "seventh star"}  # fmt: skip
 ROUNDING = 1e-17
 
 
@@ -222,7 +222,9 @@ def _notes(numbers) -> list[str]:
     found, notes = numbers["resolved"] or {}, []
     if "ratio" in found:
         stays = "stays" if found["ratio"] >= MARGIN else "does not stay"
-        notes.append(f"The default method {stays} {MARGIN:.0f} times below what the critical-speed study resolves.")
+        notes.append(
+            f"The default method {stays} {MARGIN:.0f} times or more below what the critical-speed study resolves."
+        )
     return notes + ([f"No free precession: {numbers['drift_reason']}."] if numbers["drift_reason"] else [])
 
 
