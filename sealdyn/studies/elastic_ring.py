@@ -144,7 +144,7 @@ def _table(numbers) -> Table:
         ("leakage", "leakage", "leakage"),
     )  # fmt: skip
     rows = [[point[key] for *_, key in names] for point in numbers["points"]]
-    return Table("operating points", [name[:2] for name in names], rows)
+    return Table("operating points", [name[:2] for name in names], rows, {"leakage": "ml/h"})
 
 
 def _panels(numbers) -> list[Panel]:
@@ -159,7 +159,7 @@ def _panels(numbers) -> list[Panel]:
             initial.append(Series("marks", at, [made] * len(at), label=words, style=style))
             load.append(Series("marks", at, [point["load_support"] for point in own], style=style))
     net = Axis("m", "net waviness", scale="log", low=curve["net"][0], high=curve["net"][-1])
-    level = Level(made, "made with", style="theory dashed", number=True)
+    level = Level(made, "made with", style="theory dashed", number=True, legend=True)
     return [
         Panel("Waviness made and left", net, Axis("m", "initial waviness", scale="log"), initial, [level]),
         Panel("", net, Axis("share", "load support"), load, below=True),
