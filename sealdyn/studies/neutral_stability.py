@@ -222,9 +222,7 @@ def _notes(numbers) -> list[str]:
     found, notes = numbers["resolved"] or {}, []
     if "ratio" in found:
         stays = "stays" if found["ratio"] >= MARGIN else "does not stay"
-        notes.append(
-            f"The default method {stays} {MARGIN:.0f} times or more below what the critical-speed study resolves."
-        )
+        notes.append(f"The default method {stays} {MARGIN:.0f} times or more below what critical-speed resolves.")
     return notes + ([f"No free precession: {numbers['drift_reason']}."] if numbers["drift_reason"] else [])
 
 
