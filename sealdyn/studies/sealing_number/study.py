@@ -31,6 +31,7 @@ RADIANS, ABOVE = 300.0, 1.02
 RATIOS = (1.2, 1.3, 1.45, 1.6, 1.65, 1.72, 1.8, 2.0, 2.5, 3.0, 5.0, 10.0, 20.0)
 Positive, Start = Annotated[float, Field(gt=0)], Literal["closed form", "open"]
 OWN, NEEDED = "own", "as the closed form needs"
+HOLLOW = "hollow: tilt spring as the closed form needs"
 # One fate, one colour and mark, in all panels.
 FATES = {"film": "good circle", "straightened": "bad down", "hang-up": "fourth cross", "rubs": "warn diamond",
          "moving": "blue square", "failed": "black plus"}  # fmt: skip
@@ -254,7 +255,9 @@ def _panels(numbers) -> list[Panel]:
     ratios = [row["force_ratio"] for row in numbers["balance"]] + [1.2, 2.0 * numbers["least_force_ratio"]]
     over = Axis("1", "q = F_s/F_d, spring force over friction of half the secondary seal", scale="log",
                 low=min(ratios) / 1.06, high=max(ratios) * 1.1)  # fmt: skip
-    rows = [row for row in numbers["released"] if "failed" not in row]
+    rows = [{**row, "status": row["status"] if row["status"] in FATES else "failed"} for row in numbers["released"]
+            if "failed" not in row]  # fmt: skip
+    numbers = {**numbers, "released": rows}
     return [_numbers_panel(numbers, rows, over), _carried_panel(numbers, over), _fates_panel(numbers, over)]
 
 
@@ -265,11 +268,11 @@ def _numbers_panel(numbers, rows, over) -> Panel:
     settled = [{**row, **row["quasi_static"]} for row in numbers["balance"]
                if (row.get("quasi_static") or {}).get("status") == "settled"]  # fmt: skip
     for kind, given, label, style in (
-        ("line", numbers["line"], "closed form, Ludwig & Allen", "black"),
-        ("line", numbers["foreseen"], "foreseen on its own support", "good dashed"),
-        ("marks", static, "same balance, actual film", "warn plus large"),
-        ("marks", settled, "same balance in time, settled", "blue open diamond large"),
-        ("marks", numbers["published"], "published rows", "black open star large"),
+        ("line", numbers["line"], "closed form", "black"),
+        ("line", numbers["foreseen"], "foreseen", "good dashed"),
+        ("marks", static, "balance", "warn plus large"),
+        ("marks", settled, "balance in time", "blue open diamond large"),
+        ("marks", numbers["published"], "published", "black open star large"),
     ):
         x, y = ([row[name] for row in given] if isinstance(given, list) else given[name] for name in columns)
         if x:
@@ -278,7 +281,8 @@ def _numbers_panel(numbers, rows, over) -> Panel:
     flat += numbers["line"]["sealing_number"][-1:]
     low, top = 0.2 * min(flat), 10 * max(flat)
     for fate, style in FATES.items():
-        for support, fill, words in ((OWN, "", "own support"), (NEEDED, " open", "tilt spring as needed")):
+        label = fate
+        for support, fill in ((OWN, ""), (NEEDED, " open")):
             mine = [row for row in rows if row["support"] == support and row["status"] == fate]
             if not mine:
                 continue
@@ -286,12 +290,13 @@ def _numbers_panel(numbers, rows, over) -> Panel:
             hung = fate == "hang-up"
             y = [0.5 * top if hung else mean for mean, *_ in spread]
             error = None if hung else [max(mean - least, most - mean, 0.0) for mean, least, most in spread]
-            series.append(Series("marks", x, y, label=f"{fate}, {words}", style=f"{style}{fill}", error=error))
+            series.append(Series("marks", x, y, label=label, style=f"{style}{fill}", error=error))
+            label = ""
     least, attracting = numbers["least_force_ratio"], numbers["least_attracting_force_ratio"]
-    zones = [Level(over.low, "closed form: no balance", True, "grey", to=least, legend=True),
-             Level(least, "closed form: repels", True, "blue", to=attracting, legend=True)]  # fmt: skip
+    zones = [Level(over.low, "no balance", True, "grey", to=least, legend=True),
+             Level(least, "repels", True, "blue", to=attracting, legend=True)]  # fmt: skip
     axis = Axis("1", "sealing number  h0² F_s / (µ U ΔR³)", scale="log", low=low, high=top)
-    return Panel("Mean film, as the sealing number (bars: its range)", over, axis, series, zones, wide=1.4)
+    return Panel("Mean film, as the sealing number (bars: its range)", over, axis, series, zones, note=HOLLOW, wide=1.4)
 
 
 def _carried_panel(numbers, over) -> Panel:
@@ -306,27 +311,26 @@ def _carried_panel(numbers, over) -> Panel:
                 series.append(Series("line", x, y, label=label, style=f"{style} {dashes}"))
     if not series:
         return Panel(title, note="no released ring and closed form have a film at one ratio")
-    note = "hollow: with a tilt spring that carries R F_s h1/h0"
     return Panel(title, over, Axis("1", "released / closed form", scale="log"), series, [Level(1.0, style="black")],
-                 note=note)  # fmt: skip
+                 note=HOLLOW)  # fmt: skip
 
 
 def _fates_panel(numbers, over) -> Panel:
     """Fates over force ratio and what the support carries: foreseen, and run."""
     found, need, last = numbers["map"], numbers["map"]["closed_form"], over.high / 1.1
-    series = [Series("line", found["hang_up_below"], found["guide"], label="hangs up left of", style="fourth thick"),
-              Series("line", found["straightens_above"], found["guide"], label="straightens right of",
+    series = [Series("line", found["hang_up_below"], found["guide"], style="fourth thick"),
+              Series("line", found["straightens_above"], found["guide"],
                      style="bad thick"),
               Series("line", need["force_ratio"], need["guide"], label="closed form", style="black")]  # fmt: skip
     for fate, style in FATES.items():
         mine = [row for support in (OWN, NEEDED) for row in _rows(numbers, support) if row["status"] == fate]
         if mine:
             x, y = [row["force_ratio"] for row in mine], [row["guide"] for row in mine]
-            series.append(Series("marks", x, y, label=fate, style=f"{style} front"))
+            series.append(Series("marks", x, y, style=f"{style} front"))
     film = last**0.9
     ends = [np.interp(film, found[name], found["guide"]) for name in ("hang_up_below", "straightens_above")]
     places = {"hangs up": (1.3, 0.62), "straightens": (last**0.75, 0.12), "film": (film, min(0.5 * sum(ends), 1.0))}
     x, y = zip(*places.values(), strict=True)
     series.append(Series("words", x, y, names=list(places), style="grey"))
-    moment = Axis("1", "tilt moment of the support / R F_s", low=-0.02, high=1.08)
-    return Panel("What a released ring does: foreseen, and run (marks)", over, moment, series, below=True)
+    moment = Axis("1", "support's tilt moment / R F_s", low=-0.02, high=1.08)
+    return Panel("What a released ring does (marks: run)", over, moment, series, below=True)
