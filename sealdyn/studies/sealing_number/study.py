@@ -311,8 +311,7 @@ def _carried_panel(numbers, over) -> Panel:
                 series.append(Series("line", x, y, label=label, style=f"{style} {dashes}"))
     if not series:
         return Panel(title, note="no released ring and closed form have a film at one ratio")
-    return Panel(title, over, Axis("1", "released / closed form", scale="log"), series, [Level(1.0, style="black")],
-                 note=HOLLOW)  # fmt: skip
+    return Panel(title, over, Axis("1", "released / closed form", scale="log"), series, [Level(1.0, style="black")])
 
 
 def _fates_panel(numbers, over) -> Panel:
