@@ -605,7 +605,6 @@ def _show_study(file, csv, mat, as_json, table):
     """The answer of a study; a table of it for other programs."""
     from .archive import answer_tables, read_study
     from .report.text import csv_lines, study_lines, tables_line
-    from .studies._runner import study_tables
 
     study = read_study(file)
     answer = study["answer"]
@@ -621,7 +620,7 @@ def _show_study(file, csv, mat, as_json, table):
         print(json.dumps(answer))
     else:
         print(f"{study['name']}, study {study['study']}:")
-        for line in [*study_lines(answer, study_tables(study["study"], answer)), *tables_line(answer_tables(study))]:
+        for line in [*study_lines(answer), *tables_line(answer_tables(study))]:
             print(line)
 
 
@@ -733,7 +732,6 @@ def report(
     """Write one page for a design review: it opens anywhere, without a network."""
     from .analysis.validation import sources_of_film
     from .report.review import review
-    from .studies._runner import study_tables
 
     if out.suffix not in (".html", ".htm"):
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .html')
@@ -743,7 +741,7 @@ def report(
     _say_compiling(file=sys.stderr)
     with _Progress() as bar, _reads(files[0]):
         try:
-            review(files, out, title, _rules_of, study_tables, sources_of_film, progress=bar)
+            review(files, out, title, _rules_of, sources_of_film, progress=bar)
         except OSError as error:
             raise _not_written(error, out, "the archives are whole") from None
     print(out)
@@ -772,11 +770,11 @@ def compare(
 
 def _in_words(file):
     """What tells a number at a key of the scene of a run, as `comparison_lines` wants it."""
+    from .quantities import in_words
     from .scenario.settings import with_own_unit
-    from .studies._words import quantity
 
     scene = _read(file, None).scene
-    return lambda key, value: quantity(value, with_own_unit(scene, {"key": key})["si"].replace("SI", ""), 6)
+    return lambda key, value: in_words(with_own_unit(scene, {"key": key})["si"].replace("SI", "1"), value, digits=6)
 
 
 def _rules_of(file, info) -> list[dict]:
@@ -887,7 +885,7 @@ def study(
     from .scenario.reader import ScenarioError
     from .scene.scene import SceneError
     from .studies import study_names
-    from .studies._runner import archive_of, journal_of, run_study, study_tables
+    from .studies._runner import archive_of, journal_of, run_study
 
     names = study_names()
     if name.replace("_", "-") not in names:
@@ -918,7 +916,7 @@ def study(
         print(json.dumps(answer))
     else:
         print(f"{scenario.name}, study {name}:")
-        for line in study_lines(answer, study_tables(name, answer)):
+        for line in study_lines(answer):
             print(line)
         print("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
     raise typer.Exit(EXIT[answer["status"]])

@@ -31,13 +31,13 @@ LARGEST, WIDTH, LONGEST = 12.5, 1030.0, 230
 POWER = re.compile(r"\b\d(?:\.\d+)?e\+0[1-6]\b")
 
 
-def review(archives, out_path, title: str = "", rules=None, tables=None, validation=None, progress=None) -> Path:
+def review(archives, out_path, title: str = "", rules=None, validation=None, progress=None) -> Path:
     """Write the page of some archives (paths) of runs and studies.
 
     `rules(path, info)` gives the rows of the design rules of a run (`findings` of analysis/design_rules.py),
-    `tables(name, answer)` those of a study (`study_tables` of studies), `validation(film)` the sources that a film was
-    held against (`of_film` of analysis/validation.py); `progress(done, archives, words)` is told of each.  Returns the
-    path.  **Raises** ArchiveError for what is no archive."""
+    `validation(film)` the sources that a film was held against (`sources_of_film` of analysis/validation.py);
+    `progress(done, archives, words)` is told of each.  Returns the path.  **Raises** ArchiveError for what is no
+    archive."""
     from jinja2 import Environment, StrictUndefined
 
     # A place that cannot be is found out before anything is drawn.
@@ -47,7 +47,7 @@ def review(archives, out_path, title: str = "", rules=None, tables=None, validat
     for path in paths:
         if progress:
             progress(len(parts), len(paths), f"{path.name} ({len(parts) + 1} of {len(paths)})")
-        parts.append(_study(path, tables) if is_study(path) else _run(path, rules, validation))
+        parts.append(_study(path) if is_study(path) else _run(path, rules, validation))
     if progress:
         progress(len(paths), len(paths), "writing the page")
     seals = _seals(parts)
@@ -139,10 +139,10 @@ def _run(path: Path, rules, validation) -> dict:
     }
 
 
-def _study(path: Path, tables) -> dict:
+def _study(path: Path) -> dict:
     study = read_study(path)
     answer = study["answer"]
-    lines = study_lines({**answer, "verdict": []}, tables(study["study"], answer) if tables else ())
+    lines = study_lines({**answer, "notes": []})[1:]
     return {
         "kind": f"study {study['study']}",
         "name": study["name"],

@@ -125,57 +125,12 @@ def _table_lines(name, value):
     return out
 
 
-# Rows of a study's table that are printed: of more, so many evenly spread ones.
-MOST_ROWS = 24
-
-
-def study_lines(answer: dict, tables) -> list[str]:
-    """The verdict of a study and its tables.
-
-    `tables`: pairs of rows (dicts) and columns `(heading, key of a row, factor)`, the factor 1 if left out; a dotted
-    key goes into the dicts of a row.  A row with the key `failed` ends with that reason.
-    """
-    if "found" in answer:
-        out = [f"  {answer['found']}"]
-        for table in answer["tables"]:
-            out += [f"    {line}" for line in table_lines(table, answer["written"])]
-        return out + [f"  {note}" for note in answer["notes"]]
-    out = [f"  {sentence}" for sentence in answer["verdict"]]
-    for rows, columns in tables:
-        if rows:
-            step = -(-len(rows) // MOST_ROWS)
-            out += [f"    {line}" for line in _aligned([*rows[:-1:step], rows[-1]], columns)]
-            out += [f"    ({len(rows)} rows in the archive)"] if step > 1 else []
-    return out
-
-
-def _aligned(rows, columns) -> list[str]:
-    """Headings and rows, each column as wide as its widest cell; numbers to the right, words to the left; after the
-    first no column without a value."""
-    first, *others = columns
-    columns = [first, *(column for column in others if any(_value(row, column[1]) is not None for row in rows))]
-    cells = [[heading, *(_cell(row, *where) for row in rows)] for heading, *where in columns]
-    widths = [max(map(len, column)) for column in cells]
-    words = [isinstance(_value(rows[0], key), str) for _, key, *_ in columns]
-    reasons = ["", *(row.get("failed") or "" for row in rows)]
-    return [
-        "  ".join([c.ljust(w) if left else c.rjust(w) for c, w, left in zip(line, widths, words, strict=True)] + [why])
-        .rstrip()
-        for *line, why in zip(*cells, reasons, strict=True)
-    ]  # fmt: skip
-
-
-def _cell(row, key, factor=1.0) -> str:
-    value = _value(row, key)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return value if isinstance(value, str) else number(value, factor)
-
-
-def _value(row, key):
-    for name in key.split("."):
-        row = row.get(name) if isinstance(row, dict) else None
-    return row
+def study_lines(answer: dict) -> list[str]:
+    """What a study found, its tables and its notes."""
+    out = [f"  {answer['found']}"]
+    for table in answer["tables"]:
+        out += [f"    {line}" for line in table_lines(table, answer["written"])]
+    return out + [f"  {note}" for note in answer["notes"]]
 
 
 def archive_lines(path, info: dict) -> list[str]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__, studies
-from ..answers import Answer, as_json, plain
+from ..answers import as_json, plain
 from ..archive import link_target, only_writer, write_study
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..report.text import written_units
@@ -25,12 +25,6 @@ from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..status import Status
 from . import Info
-
-
-def study_tables(name: str, answer: dict) -> list:
-    """The tables printed below the verdict of study `name`: pairs of rows and columns (report.text.study_lines)."""
-    tables = getattr(study_module(name.replace("-", "_")), "tables", None)
-    return tables(answer) if tables else []
 
 
 def archive_of(name: str, scenario, out=None) -> Path:
@@ -51,22 +45,7 @@ def study_module(name: str):
 
 def study_info(name: str) -> Info:
     """What study `name` (underscored) declares of itself."""
-    module = study_module(name)
-    if hasattr(module, "INFO"):
-        return module.INFO
-    old = {new: getattr(module, before) for new, before in OLD.items() if hasattr(module, before)}
-    seals = "any" if getattr(module, "ANY_SEAL", False) else "radial" if getattr(module, "RADIAL", False) else "face"
-    return Info(seals=seals, **old)
-
-
-OLD = {
-    "refuses": "REFUSES",
-    "wavy": "WITH_WAVES",
-    "of_waves": "OF_WAVES",
-    "units": "units",
-    "along": "ALONG",
-    "timed": "TIMED",
-}
+    return study_module(name).INFO
 
 
 @dataclass
@@ -151,19 +130,17 @@ def run_study(
         with _crew(workers, scheduler) as crew:
             tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
             answer = module.run(studied, settings, tools)
-        panels, notes, failures = [], [], tools.failures
-        known = " ".join([answer.found, *answer.notes] if isinstance(answer, Answer) else answer["verdict"])
+        notes, failures = [], tools.failures
+        known = " ".join([answer.found, *answer.notes])
         # Unless the study has told it itself.
         if failures and failures[0] not in known:
             notes.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
         if left_out:
             notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
-        if isinstance(answer, Answer):
-            panels = plain(answer.panels)
-            written = {**written_units({"scenario": scenario.text, "overrides": scenario.overrides}), **answer.written}
-            answer = as_json(replace(answer, notes=[*answer.notes, *notes], written=written))
-        else:
-            answer = {**answer, "verdict": [*answer["verdict"], *notes]}
+        panels = plain(answer.panels)
+        units = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
+        written = {**units, **answer.written}
+        answer = as_json(replace(answer, notes=[*answer.notes, *notes], written=written))
         answer = {"status": Status.OK, "message": " ".join(answer["verdict"]), "study": name, "left_out": left_out,
                   **answer}  # fmt: skip
         libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {

@@ -13,6 +13,7 @@ import xarray
 import sealdyn
 from sealdyn.archive import answer_tables, read_study, tables_as_dataset, write_study
 from sealdyn.archive.tables import columns
+from sealdyn.report.panels import draw
 from sealdyn.studies import study_names
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "cli"))
@@ -73,7 +74,11 @@ def test_an_archive_of_any_study_is_a_dataset_and_tables(name, tmp_path):
             assert column.attrs.get("units") or column.dtype.kind in "bU", variable
             for axis, dimension in enumerate(column.dims):
                 assert dimension != f"{variable}.{axis}" or column.shape[axis] <= SHORT, (variable, column.shape)
-    tables = answer_tables(read_study(tmp_path / "s.h5"))
+    kept = read_study(tmp_path / "s.h5")
+    # An answer has a sentence, a table, and panels unless its chart has a file of its own; the archive draws itself.
+    assert kept["answer"]["found"] and kept["answer"]["tables"] and bool(kept["panels"]) == bool(kept["asks"])
+    assert draw(tmp_path / "s.h5").axes
+    tables = answer_tables(kept)
     assert tables and all(len({len(column) for column in table.values()}) == 1 for table in tables.values())
     _is_printed(tables, tmp_path)
 

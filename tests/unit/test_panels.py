@@ -1,12 +1,14 @@
 """Panels of any answer: plain data that keeps every number, drawn in the units of the table."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from sealdyn import quantities, units
 from sealdyn.answers import Answer, Axis, Level, Panel, Series, Table, as_json, panels_of, plain
+from sealdyn.report import panels
 from sealdyn.report.panels import sheet_of
 from sealdyn.report.tables import table_lines
 
@@ -110,3 +112,10 @@ def test_a_long_table_is_thinned_but_keeps_both_ends():
         table = as_json(Answer({}, "", [Table("t", [("1", "n")], [[k] for k in range(count)])]))["tables"][0]
         numbers = [int(word) for word in map(str.strip, table_lines(table, {})[1:]) if word.isdecimal()]
         assert numbers[0] == 0 and numbers[-1] == count - 1 and len(numbers) <= 25
+
+
+def test_few_charts_of_studies_have_a_file_of_their_own():
+    charts = Path(panels.__file__).with_name("charts").glob("study_*.py")
+    assert sorted(path.stem for path in charts) == [
+        f"study_{n}" for n in ("rub", "runup", "tolerance", "work_precision")
+    ]

@@ -123,7 +123,7 @@ def _foreseen_line(scene, ring, highest) -> dict:
 def _map(highest) -> dict:
     """Where a released ring hangs up, rides and straightens, over the guide; and what the closed form needs."""
     guide = np.linspace(0.0, 1.0, 400, endpoint=False)
-    edges = np.minimum([ludwig_allen.film_range(k) for k in guide], 10 * highest)
+    edges = np.minimum([closed.film_range(k) for k in guide], 10 * highest)
     q = np.array(_line(highest)["force_ratio"])
     return {"guide": guide.tolist(), "hang_up_below": edges[:, 0].tolist(), "straightens_above": edges[:, 1].tolist(),
             "closed_form": {"force_ratio": q.tolist(), "guide": closed.amplitude_ratio(q).tolist()}}  # fmt: skip
@@ -161,7 +161,7 @@ def release(scene, point: dict) -> dict:
     """What becomes of the released ring at one force ratio."""
     ring, q = free.ring_of(scene), point["force_ratio"]
     scene = replace(scene, rotor=_heavier(scene.rotor, point["inertia"]))
-    guide = None if point["support"] == OWN else ludwig_allen.closed_form_guide(q)
+    guide = None if point["support"] == OWN else closed.closed_form_guide(q)
     scene = free.started(free.with_force_ratio(scene, q, guide), point["start"])
     # Landing on the asperities may defeat a method at one accuracy and not at the next.
     for accuracy in (point["accuracy"], point["accuracy"] / 3, 3 * point["accuracy"]):
