@@ -168,7 +168,6 @@ def nothing(data):
     return b""
 
 
-@pytest.mark.core
 @pytest.mark.parametrize("files", ["*.nbc", "*.nbi"])
 @pytest.mark.parametrize("damage", [cut, one_bit, nonsense, nothing])
 def test_damaged(tmp_path, damage, files):
