@@ -136,4 +136,4 @@ def test_every_file_of_physics_has_a_core_case():
     """Rooms whose files each hold one claim; elsewhere a file may be of sentences or of looks alone."""
     rooms = ("closed_form", "convergence", "failure", "ladder")
     files = [path for room in rooms for path in sorted((CONFTEST.parent / room).glob("test_*.py"))]
-    assert [path.name for path in files if "@pytest.mark.core" not in path.read_text()] == [] != files
+    assert [path.name for path in files if "pytest.mark.core" not in path.read_text()] == [] != files
