@@ -23,7 +23,7 @@ from ..scene.variants import unforced, with_values
 from ..solvers.contract import Counts, SolverFailure, attainable, tolerance_for
 from ..solvers.fixed_step import REFERENCE_METHODS
 from . import Info
-from .failures.cases import neutral_stability as exhibit
+from .failures.cases import integration as exhibit
 
 METHODS = ("adams", "bdf", "ida", "dop853", "rk45", "radau", "expm")
 DEFAULT = "adams"

@@ -162,12 +162,12 @@ def test_the_answer_speaks_of_this_seal(tmp_path):
 
 
 def test_an_exhibit_that_breaks_is_a_row_with_its_reason(tmp_path, monkeypatch):
-    from sealdyn.studies.failures.cases import touch_between_steps
+    from sealdyn.studies.failures.cases.integration import EXHIBITS
 
     def broken():
         raise ValueError("broken on purpose")
 
-    monkeypatch.setattr(touch_between_steps, "show", broken)
+    monkeypatch.setitem(EXHIBITS, "touch_between_steps", (3, broken, lambda scene, run: ""))
     out = tmp_path / "failures.h5"
     answer = run_study("failures", sealdyn.read_scenario(SCENARIO), out, flags={"items": 3}, workers=1)
     assert answer["status"] == "failed" and "broken on purpose" in answer["rows"][0]["failed"]

@@ -13,7 +13,7 @@ from sealdyn.report import panels
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import neutral_stability
 from sealdyn.studies._runner import run_study
-from sealdyn.studies.failures.cases import neutral_stability as exhibit
+from sealdyn.studies.failures.cases import integration as exhibit
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 THREE = ["rotor.polar_inertia=2.6667e-4"]

@@ -60,11 +60,18 @@ def run(scenario, settings, tools) -> Answer:
     return Answer(numbers, _found(numbers), _tables(numbers), _panels(rows), _notes(numbers))
 
 
+def exhibits() -> dict[str, tuple]:
+    """{name: (item, show, meets)} of the exhibits there are, by their items."""
+    files = [m.name for m in pkgutil.iter_modules(cases.__path__) if not m.name.startswith("_")]
+    found = {}
+    for name in files:
+        found |= importlib.import_module(f"{cases.__name__}.{name}").EXHIBITS
+    return dict(sorted(found.items(), key=lambda pair: pair[1][0]))
+
+
 def exhibit_names() -> dict[str, int]:
     """Names of the exhibits there are and their items, in order."""
-    found = [m.name for m in pkgutil.iter_modules(cases.__path__) if not m.name.startswith("_")]
-    items = {name: importlib.import_module(f"{cases.__name__}.{name}").ITEM for name in found}
-    return dict(sorted(items.items(), key=lambda pair: pair[1]))
+    return {name: item for name, (item, *_) in exhibits().items()}
 
 
 def place_of(name: str) -> str:
@@ -74,10 +81,11 @@ def place_of(name: str) -> str:
 
 def shown(point: dict) -> dict:
     """The rows of one exhibit."""
-    return {"rows": importlib.import_module(f"{cases.__name__}.{point['exhibit']}").show()}
+    _, show, _ = exhibits()[point["exhibit"]]
+    return {"rows": show()}
 
 
-def chosen_for(scenario, exhibits) -> tuple[dict, dict[str, str]]:
+def chosen_for(scenario, names) -> tuple[dict, dict[str, str]]:
     """Method, why, and warnings that the program has for the scenario before it runs; and {exhibit: what of the
     scenario brings it there, or empty}."""
     try:
@@ -90,9 +98,8 @@ def chosen_for(scenario, exhibits) -> tuple[dict, dict[str, str]]:
         "why": plan.why,
         "warnings": [caution.sentence for caution in run.cautions],
     }
-    return own, {
-        name: importlib.import_module(f"{cases.__name__}.{name}").meets(scenario.scene, run) for name in exhibits
-    }
+    known = exhibits()
+    return own, {name: known[name][2](scenario.scene, run) for name in names}
 
 
 def _tables(numbers) -> list[Table]:

@@ -1,8 +1,8 @@
-"""Exhibits: one file per place where a method fails, found by file name and shown in the order of `ITEM`.
+"""Exhibits: files by subject, of places where a method fails, shown in the order of their items.
 
-What every exhibit module offers (the contract):
+What every file offers (the contract): `EXHIBITS` {name: (item, show, meets)}:
 
-`ITEM`       int, its number; exhibits of one number belong to one place where methods fail.
+`item`       int; exhibits of one number belong to one place where methods fail.
 `show()`     list of rows, made by running the failing method and the survivor on a small scene of the reference seal
              (Green, 1989); at most some seconds.  A row is a dict: `item`, `title`, `failing` and `survivor` (what each
              is), `failing_error` and `survivor_error` (numbers in `unit`; None: no answer at all), `unit`, and

@@ -25,7 +25,6 @@ from ....scene.scene import Scene
 from ....simulation.selection import prepare_run
 from ._common import row
 
-ITEM = 10
 # Turns after which the digits of an angle are worth a thought.
 MANY = 1e5
 SPEED, TURNS, STEPS_PER_TURN = 1047.1975511965977, 1e6, 4
@@ -70,8 +69,8 @@ def phases() -> list[dict]:
     default = f"sets the clock anew every {LONGEST} turns and reduces each phase in exact arithmetic"
     survivor = "clock set anew, exact reduction", kept
     return [
-        row(ITEM, "Phase after 1e6 turns", ("cos(w t) in floats", product), survivor, "rad", default),
-        row(ITEM, "Angle added step by step", (f"{STEPS_PER_TURN} float steps a turn", added), survivor, "rad",
+        row(10, "Phase after 1e6 turns", ("cos(w t) in floats", product), survivor, "rad", default),
+        row(10, "Angle added step by step", (f"{STEPS_PER_TURN} float steps a turn", added), survivor, "rad",
             default),
     ]  # fmt: skip
 
@@ -96,13 +95,13 @@ def aliasing() -> dict:
     folded, right = apparent(SAMPLES), apparent(enough)
     said = "warned, and" if warns(SAMPLES) and not warns(enough) else "not warned;"
     return row(
-        ITEM, "5.4 kHz on a 16 Hz shaft", (f"{SAMPLES} samples a turn: seen at {folded:.0f} Hz", abs(folded - TONE)),
+        10, "5.4 kHz on a 16 Hz shaft", (f"{SAMPLES} samples a turn: seen at {folded:.0f} Hz", abs(folded - TONE)),
         (f"{said} right at {enough} a turn", abs(right - TONE)), "Hz off",
         "compares the fastest forcing with the sampling before the run and says how many samples it takes",
     )  # fmt: skip
 
 
-def meets(scene, run) -> str:
+def meets_long_runs(scene, run) -> str:
     """So many turns that the angle of the shaft loses digits, or a tone between the samples."""
     if any(caution.concern == Concern.ALIASING for caution in run.cautions):
         return "something is faster than its samples"
@@ -110,6 +109,9 @@ def meets(scene, run) -> str:
     return f"{turns:.3g} turns of the shaft" if turns > MANY else ""
 
 
-def show() -> list[dict]:
+def show_long_runs() -> list[dict]:
     """All three."""
     return [*phases(), aliasing()]
+
+
+EXHIBITS = {"long_runs": (10, show_long_runs, meets_long_runs)}

@@ -1,4 +1,4 @@
-"""Degenerate geometry: nearly flat faces in logarithmic formulas, zero tilt in Euler coordinates."""
+"""Faces and angles: degenerate geometry, fronts of cavities and of choking, phases of long runs."""
 
 import math
 from dataclasses import replace
@@ -9,12 +9,32 @@ from scipy.integrate import solve_ivp
 
 from ....analysis.sources.green_1989 import reference_scene
 from ....closed_form import film_coefficients
-from ....faces.geometry import DZ_RATE, FORCE, GAP_STATE_SIZE, VISCOSITY
+from ....closed_form.zuk_1972 import MIL
+from ....faces.geometry import (
+    DZ_RATE,
+    FORCE,
+    GAP_STATE_SIZE,
+    GY,
+    INNER_PRESSURE,
+    MEAN_SPIN,
+    MOMENT_Y,
+    OUTER_PRESSURE,
+    TEMPERATURE,
+    VISCOSITY,
+)
+from ....films import _gas_dam as sector
+from ....films._radial_quadrature import RADIAL_POINTS, RULE_SIZE, RULES
+from ....films.gas_dam import film as gas_dam
 from ....films.radial import film as radial
+from ....films.radial import floored
+from ....films.radial.cavitated_line import cavitated_line
 from ....scene.contact import waves_of
-from ._common import integrated, row, run_from
+from ....scene.gas import viscosity_of
+from ._common import cruise_dam, integrated, row, run_from
 
-ITEM = 5
+# --- degenerate geometry ---
+# Degenerate geometry: nearly flat faces in logarithmic formulas, zero tilt in Euler coordinates.
+
 # Coning, of the clearance, at which logarithms of film thicknesses cancel.
 FLAT = 0.01
 # Coning over the face, of the clearance: a nanometre.
@@ -53,7 +73,7 @@ def flat_faces() -> dict:
     radial.wrench(radial.parameters(film, h, 1e-13), s)
     found = -s[FORCE] / (12 * math.pi * (film.inner_radius + film.outer_radius))
     return row(
-        ITEM, "Flat faces", ("logarithmic formula cancels (1 nm of coning)", abs(naive / exact - 1)),
+        5, "Flat faces", ("logarithmic formula cancels (1 nm of coning)", abs(naive / exact - 1)),
         ("rational map of the radial film", abs(found / exact - 1)), "relative error of the film damping",
         "evaluates every film by a map without a singular limit: flat, converging and diverging faces alike",
     )  # fmt: skip
@@ -123,16 +143,16 @@ def zero_tilt() -> list[dict]:
     default = "integrates the two tilts about fixed axes, which do not know of the nutation"
     error = abs(nutation - exact) / scale
     return [
-        row(ITEM, "Zero tilt passed", ("Euler angles, 1 urad off zero tilt", error if np.isfinite(error) else None),
+        row(5, "Zero tilt passed", ("Euler angles, 1 urad off zero tilt", error if np.isfinite(error) else None),
             ("tilts about fixed axes", sound), "tilt, of clearance / radius", default),
-        row(ITEM, "Start at zero tilt",
+        row(5, "Start at zero tilt",
             (f"Euler angles: 0/0 after {stopped.nfev} evaluations", None if stopped.status < 0 else 0.0),
             ("tilts about fixed axes", apart), "tilt, of clearance / radius",
             default),
     ]  # fmt: skip
 
 
-def meets(scene, run) -> str:
+def meets_degenerate_geometry(scene, run) -> str:
     """Faces all but parallel, and not wavy."""
     if waves_of(scene):
         return ""
@@ -147,6 +167,114 @@ def meets(scene, run) -> str:
     )
 
 
-def show() -> list[dict]:
+def show_degenerate_geometry() -> list[dict]:
     """Both."""
     return [flat_faces(), *zero_tilt()]
+
+
+# --- fronts ---
+# Fronts: where a film begins to cavitate its force has a kink that an even grid around the circle never resolves;
+# where it begins to choke, a jump of its second derivative.
+
+ANGLES = 256
+
+
+def tilted_film(error: float):
+    """Block and gap state of flat faces without a pressure drop, tilted and turning: one half runs dry."""
+    film = replace(reference_scene("FMR").film, model="radial", coning=0.0, outer_pressure=0.0, cavitation_pressure=0.0)
+    s = np.zeros(GAP_STATE_SIZE)
+    s[VISCOSITY], s[MEAN_SPIN], s[GY] = film.viscosity, 500.0, 0.6 * film.clearance / film.outer_radius
+    # The ring also sinks, so that the front lies at no angle that a grid would have.
+    s[3] = -1e-4
+    return film, floored.parameters(film, film.clearance, error), s
+
+
+def by_trapezoid(angles: int) -> float:
+    """Force (N) with the floored lines of so many evenly spaced angles."""
+    film, f, s = tilted_film(1e-10)
+    rule = RULES + RULE_SIZE * (len(RADIAL_POINTS) - 1)
+    x, w = f[rule + 2 : rule + 2 + RADIAL_POINTS[-1]], f[rule + 2 + RADIAL_POINTS[-1] : rule + RULE_SIZE]
+    total = 0.0
+    for theta in (np.arange(angles) + 0.37) * 2 * math.pi / angles:
+        h_i, h_o = (film.clearance - r * s[GY] * math.cos(theta) for r in (film.inner_radius, film.outer_radius))
+        rate = s[MEAN_SPIN] * s[GY] * math.sin(theta)
+        total += cavitated_line(x, w, film.inner_radius, film.outer_radius, h_i, h_o, s[3], rate, False, False,
+                              s[VISCOSITY], 0.0, 0.0, 0.0, 0.0)[0]  # fmt: skip
+    return total * 2 * math.pi / angles
+
+
+def by_splitting(error: float) -> float:
+    """Force (N) of the package's film at an accuracy."""
+    _, f, s = tilted_film(error)
+    floored.wrench(f, s)
+    return s[FORCE]
+
+
+def cavitation() -> dict:
+    """Error of the film force; the reference is the trapezoid of 200 000 angles, extrapolated."""
+    coarse, fine = by_trapezoid(2**16), by_trapezoid(2**17)
+    exact = fine + (fine - coarse) / 3
+    return row(
+        8, "Cavitation front", (f"trapezoid of {ANGLES} angles", abs(by_trapezoid(ANGLES) / exact - 1)),
+        ("circle split at the fronts", abs(by_splitting(1e-10) / exact - 1)), "relative error of the film force",
+        "finds the angles where a line begins to be dry and integrates between them",
+    )  # fmt: skip
+
+
+# --- choking ------------------------------------------------------------------------------------------
+
+
+def tilted_dam():
+    """Block and gap state of Zuk's parallel dam at cruise, 0.22 mil and tilted by a fifth of that: choked on the wide
+    side only."""
+    film = cruise_dam(clearance=0.22 * MIL)
+    s = np.zeros(GAP_STATE_SIZE)
+    s[INNER_PRESSURE], s[OUTER_PRESSURE] = film.inner_pressure, film.outer_pressure
+    s[TEMPERATURE], s[VISCOSITY], s[GY] = film.temperature, viscosity_of(film), 0.2 * film.clearance / film.outer_radius
+    return film, gas_dam.parameters(film, film.clearance, 1e-8), s
+
+
+def moment_of_sectors(count: int) -> float:
+    """Moment (N m) about the tilt axis of so many evenly spaced sectors."""
+    film, f, s = tilted_dam()
+    g, out = f[gas_dam.DAM : gas_dam.DAM + sector.BLOCK_SIZE].copy(), np.empty(sector.DAM_SIZE)
+    g[sector.TEMPERATURE] = film.temperature
+    middle, total = 0.5 * (film.inner_radius + film.outer_radius), 0.0
+    for cos in np.cos(np.arange(count) * 2 * math.pi / count):
+        films = (film.clearance - r * s[GY] * cos for r in (film.inner_radius, film.outer_radius))
+        sector.dam(g, *films, film.inner_pressure, film.outer_pressure, out)
+        total -= (middle * out[sector.FORCE] + out[sector.MOMENT]) * cos
+    return total * 2 * math.pi * middle / count
+
+
+def choking() -> dict:
+    """Error of the film's moment; the reference has 8192 sectors, where the error falls with their cube."""
+    _, f, s = tilted_dam()
+    gas_dam.wrench(f, s)
+    exact, few = moment_of_sectors(2**13), gas_dam.sectors_for(f, s)
+    return row(
+        8, "Choking", (f"{few} sectors, enough for 1e-8 without choking", abs(moment_of_sectors(few) / exact - 1)),
+        ("more of them where some are choked", abs(s[MOMENT_Y] / exact - 1)), "relative error of the film moment",
+        "asks the thinnest and the thickest place first and takes more sectors if one of them is choked",
+    )  # fmt: skip
+
+
+def meets_fronts(scene, run) -> str:
+    """A film with a floor of its pressure, or a dam that chokes on a part of the circle."""
+    film = run.model.interface.film
+    if film.exit_mach is not None:
+        low, high = film.exit_mach(run.model.f, run.segment(0).gap_state(0.0, run.y0))
+        return "its gas is as fast as sound on a part of the circle" if low < 1.0 <= high else ""
+    floored = scene.film.cavitation_pressure is not None and run.model.unknowns.film_unknowns is None
+    return "film.cavitation_pressure: where the film tears its force has a kink" if floored else ""
+
+
+def show_fronts() -> list[dict]:
+    """Both fronts."""
+    return [cavitation(), choking()]
+
+
+EXHIBITS = {
+    "degenerate_geometry": (5, show_degenerate_geometry, meets_degenerate_geometry),
+    "fronts": (8, show_fronts, meets_fronts),
+}

@@ -1,10 +1,4 @@
-"""Choked gas flow: marched with the flow, a gas dam's equation is singular where it chokes and repels where it widens.
-
-    d(M^2)/dx = 2 M^2 (1 + d M^2) (g f M^2 - h')/((1 - M^2) h),   d = (g - 1)/2
-
-of Zuk (1972), laminar, at his cruise condition; followed upstream it is regular at M = 1 and comes nearer to the line
-M^2 = h'/(g f) instead of leaving it.
-"""
+"""Gas films: choked flow and trapped gas."""
 
 import math
 
@@ -13,10 +7,23 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import bisect, brentq
 
 from ....closed_form.zuk_1972 import CRUISE, MIL
+from ....dynamics.condensation import FilmDerivatives, LinearFilm
+from ....faces.geometry import GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, TEMPERATURE, VISCOSITY
 from ....films import _gas_dam as sector
+from ....films.gas_reynolds import film as gas
+from ....films.gas_reynolds.cells import GRADING
+from ....scene.film import Film
+from ....scene.gas import GasReynolds, gas_of
 from ._common import row
 
-ITEM = 13
+# --- choked gas ---
+# Choked gas flow: marched with the flow, a gas dam's equation is singular where it chokes and repels where it widens.
+#
+#     d(M^2)/dx = 2 M^2 (1 + d M^2) (g f M^2 - h')/((1 - M^2) h),   d = (g - 1)/2
+#
+# of Zuk (1972), laminar, at his cruise condition; followed upstream it is regular at M = 1 and comes nearer to the line
+# M^2 = h'/(g f) instead of leaving it.
+
 STEPS = 20
 # Faces that narrow outwards by 2 mrad at 0.3 mil; films from 0.45 to 1.35 mil.
 WIDTH = CRUISE.outer_radius - CRUISE.inner_radius
@@ -110,7 +117,7 @@ def upstream(films) -> float:
     return brentq(lambda mach: mach - arrived(mach), 1e-3, most, xtol=1e-14, rtol=1e-14)
 
 
-def meets(scene, run) -> str:
+def meets_choked_gas(scene, run) -> str:
     """A dam that chokes somewhere at the start."""
     film = run.model.interface.film
     if film.exit_mach is None:
@@ -119,7 +126,7 @@ def meets(scene, run) -> str:
     return "its gas is as fast as sound at the exit" if mach >= 1.0 else ""
 
 
-def show() -> list[dict]:
+def show_choked_gas() -> list[dict]:
     """Leakage of a choked dam, and where a march through a widening one arrives."""
     found, right = solved(NARROWING), entrance(upstream(NARROWING), NARROWING[0])[0]
     largest = bisect(lambda mach: -1.0 if runge_kutta(mach, NARROWING) < 1 else 1.0, 1e-3, 0.9)
@@ -128,14 +135,97 @@ def show() -> list[dict]:
     slow, fast = (with_the_flow(line * (1 + off), WIDENING) for off in (-OFF, OFF))
     return [
         row(
-            ITEM, "Choked exit", (f"Runge-Kutta, {STEPS} steps to the exit", marched / right - 1),
+            13, "Choked exit", (f"Runge-Kutta, {STEPS} steps to the exit", marched / right - 1),
             ("closed form, from the exit upstream", abs(found[sector.MASS_FLOW] / right - 1)), "leakage, relative",
             "follows the flow upstream in closed form: no steps, and nothing singular at M = 1",
         ),
         row(
-            ITEM, "Invariant line",
+            13, "Invariant line",
             (f"march: sonic at {100 * fast[0]:.0f} % of the dam, or M2 = {slow[1]:.2g}, {OFF:g} apart", 1 - slow[1]),
             ("closed form, from the sonic exit upstream", abs(line - truth)), "Mach number where it arrives",
             "goes upstream, where flows approach the line M^2 = h'/(g f), which they leave the other way",
         ),
     ]  # fmt: skip
+
+
+# --- trapped gas ---
+# Trapped gas: squeezed faster than it can flow out, a gas film is a spring, whatever it is to slow motion.
+#
+# Between narrow parallel faces at equal pressures p, squeezed at the frequency w, of p A/h
+#
+#     K + i w D = 1 - tanh z/z,   z = (L/2) sqrt(12 i w mu/(p h^2))
+#
+# at slow motion no stiffness and a damping of z^2/3, at fast motion p A/h and hardly any damping: what flows does so in
+# a layer at both edges, of a width L/|z|.
+# **Source** Langlois (1962), Quart. Appl. Math. 20, 131, for a long strip; derived here.
+
+PRESSURE, CLEARANCE, MU, INNER, OUTER = 2e5, 5e-6, 1.8e-5, 0.0396, 0.040
+# Squeeze numbers 12 w mu L^2/(p h^2) of a whirl in a stiff gas film, and of an edge layer of a twentieth of the width.
+FAST, FASTEST, CELLS = 1e3, 2e3, 24
+
+
+def exact(squeeze_number: float) -> complex:
+    """K + i w D over p A/h."""
+    z = 0.5 * np.sqrt(1j * squeeze_number)
+    return complex(1.0 - np.tanh(z) / z)
+
+
+def of_the_film(squeeze_number: float, grading: float = GRADING) -> tuple[complex, complex]:
+    """The same of the film's cells, at this frequency and with the stiffness and damping of slow motion."""
+    film = Film(
+        inner_radius=INNER, outer_radius=OUTER, inner_pressure=PRESSURE, outer_pressure=PRESSURE, viscosity=MU,
+        gas="air", temperature=300.0, model="gas_reynolds", clearance=CLEARANCE,
+        gas_reynolds=GasReynolds(cells=(CELLS, 8)),
+    )  # fmt: skip
+    f, s = gas.parameters(film, CLEARANCE, grading=grading), np.zeros(GAP_STATE_SIZE)
+    s[VISCOSITY], s[TEMPERATURE], s[INNER_PRESSURE], s[OUTER_PRESSURE] = MU, 300.0, PRESSURE, PRESSURE
+    unknowns = gas.unknowns(f)
+    x = np.empty(len(unknowns.names))
+    if gas.start(f, s, x):
+        raise RuntimeError("the gas film was not solved")
+    step, pace = 1e-2 * CLEARANCE, 1e3
+    steps = (step, step / OUTER, step * pace, step * pace / OUTER)
+    linear = LinearFilm.about(FilmDerivatives(gas.FILM, unknowns, f), s, x, steps)
+    omega = squeeze_number * PRESSURE * CLEARANCE**2 / (12.0 * MU * (OUTER - INNER) ** 2)
+    stiff = PRESSURE * math.pi * (OUTER**2 - INNER**2) / CLEARANCE
+    both = []
+    for frequency in (omega, 0.0):
+        k, d = linear.matrices(frequency)
+        both.append(complex(k[0, 0], omega * d[0, 0]) / stiff)
+    return both[0], both[1]
+
+
+def meets_trapped_gas(scene, run) -> str:
+    """A gas film that stores."""
+    stores = run.model.unknowns.film_unknowns is not None and gas_of(scene.film) is not None
+    return "its film stores gas" if stores else ""
+
+
+def show_trapped_gas() -> list[dict]:
+    """Dynamic stiffness by constant coefficients and at its own frequency; with even cells and with narrow ones."""
+    right, right_fast = exact(FAST), exact(FASTEST)
+    own, slow = of_the_film(FAST)
+    graded, even = (of_the_film(FASTEST, grading)[0] for grading in (GRADING, 0.0))
+
+    def off(found, true):
+        return abs(found - true) / abs(true)
+
+    return [
+        row(
+            13, "Trapped gas", (f"K and D of slow motion, at a squeeze number of {FAST:g}", off(slow, right)),
+            ("the film at its own frequency", off(own, right)), "dynamic stiffness, relative",
+            "keeps the gas of every cell as an unknown; modes and responses meet the film at their own frequency",
+        ),
+        row(
+            13, "Layer at the edge",
+            (f"{CELLS} even cells, at a squeeze number of {FASTEST:g}", off(even, right_fast)),
+            (f"{CELLS} cells, narrow at the edges", off(graded, right_fast)), "dynamic stiffness, relative",
+            "lays narrow cells where fast squeezed gas escapes, and says what half as many cells differ",
+        ),
+    ]  # fmt: skip
+
+
+EXHIBITS = {
+    "choked_gas": (13, show_choked_gas, meets_choked_gas),
+    "trapped_gas": (13, show_trapped_gas, meets_trapped_gas),
+}
