@@ -40,9 +40,7 @@ ONLY_IN = {
 
 # Files of circles that are still there.
 CIRCLES = {
-    *(f"sealdyn.films.radial.{name}" for name in ("film", "floored", "rough")),
     *(f"sealdyn.scenario.{name}" for name in ("reader", "settings")),
-    *(f"sealdyn.simulation.{name}" for name in ("radial", "simulate")),
 }
 
 
