@@ -546,7 +546,7 @@ def new(
 @app.command()
 def schema(radial: Annotated[bool, typer.Option("--radial", help="of lip and circumferential seals")] = False):
     """Print the JSON schema of scenario files, for editors."""
-    from .scenario.reader import RadialFile, ScenarioFile
+    from .scenario.tables import RadialFile, ScenarioFile
     from .studies._settings import schema_with_studies
 
     print(json.dumps(schema_with_studies(RadialFile if radial else ScenarioFile), indent=2))

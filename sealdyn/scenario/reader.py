@@ -1,42 +1,40 @@
-"""A scenario file becomes a scene: TOML in, dataclasses out.  All input errors end here, in one line each."""
+"""A scenario file becomes a scene, and the same scenario with other values: TOML in, dataclasses out.  All input errors
+end here, in one line each."""
 
 import dataclasses
 import difflib
-import math
 import os
-import re
 import stat
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Any, Self
 
-from pydantic import Field, TypeAdapter, ValidationError
-
-from ..films import all_film_names, film_of
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..scene.application import Application, RadialApplication, application_errors
-from ..scene.checks import scene_errors, unused
-from ..scene.excitation import Motion
-from ..scene.radial import RADIAL, RadialScene, radial_errors
-from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
-from ..scene.scene import Scene, SceneError
+from ..scene import variants
+from ..scene.application import Application, RadialApplication
+from ..scene.checks import unused
+from ..scene.radial import RadialScene
+from ..scene.rings import INERTIAL, RING_NAMES
+from ..scene.scene import Scene
 from ..toml_line import toml_text
-from ..units import Length, QuantityError, Time, is_gauge, quoted
+from ..units import is_gauge, quoted
 from .errors import (
-    CIRCUMFERENTIAL_RULES,
-    LIP_RULES,
     ScenarioError,
-    explained,
-    tables,
-    together,
-    unknown_rules,
-    without_indices,
 )
-from .motion_files import with_columns
-from .overrides import SCHEMA, override_key, radius_key, refuse_newer, unquoted_quantity, with_radii, without_arrays
+from .overrides import (
+    as_written,
+    key_and_words,
+    opened,
+    override_key,
+    override_of,
+    set_value,
+    unquoted_quantity,
+    value_of,
+    without_arrays,
+)
+from .tables import Run, entries_of, given_keys, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -45,76 +43,8 @@ __all__ = [
     "parse_scenario",
     "read_scenario",
 ]
-
-
-# Numbers in SI units beyond which nothing of this world is.
-SMALLEST, LARGEST = 1e-25, 1e15
 # Of a file.
 MOST_BYTES = 1 << 21
-STARTS = r"^(auto|rest|steady|.+\.h5)$"
-# What no number of a run hangs on.
-BESIDE_THE_RUN = ("study", "application", "schema")
-
-
-@dataclass(frozen=True)
-class Run:
-    """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
-
-    `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
-    all) or `samples` in all.  `start` "auto": on the linear steady response where that is stable and leaves the film
-    open; at rest with `[initial]`, and, unless the faces would overlap there, with contact, a secondary seal, a film
-    with unknowns of its own, or tables.
-    """
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
-    turns: Annotated[float, Field(gt=0)] | None = None
-    """Of the shaft (60 without `duration`)."""
-    duration: Time | None = None
-    """In place of `turns`."""
-    samples_per_turn: Annotated[int, Field(gt=0)] | None = None
-    """Of the archive (64 without `samples`; 1000 in all if the shaft stands)."""
-    samples: Annotated[int, Field(gt=0)] | None = None
-    """In all, in place of `samples_per_turn`."""
-    accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
-    """Asked error of displacements, relative to clearance, and of tilts, to clearance / outer radius."""
-    solver: Literal["auto", "adams", "bdf", "ida", "dop853", "radau", "expm", "trbdf2"] = "auto"
-    """Method; "auto" chooses by stiffness and inertia."""
-    start: Annotated[str, Field(pattern=STARTS)] = "auto"
-    """Untilted ("rest"), linear steady response ("steady"), end of an archive; "auto": steady if stable, else rest."""
-
-
-@dataclass(frozen=True)
-class ScenarioFile(Scene):
-    """A scenario file: the scene, how to run it, what the seal is for, and settings of studies (each study knows its
-    own)."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
-    run: Run = field(default_factory=Run)
-    """How long, how exact, by which method."""
-    application: Application | None = None
-    """What the seal is asked to do: for design rules, no number of a run hangs on it."""
-    study: dict[str, dict[str, Any]] = field(default_factory=dict)
-    """Settings of studies, one table [study.NAME] each."""
-    schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
-    """Version of these keys; without it the present one."""
-
-
-@dataclass(frozen=True)
-class RadialFile(RadialScene):
-    """A scenario file of a radial seal."""
-
-    __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
-
-    schema: Annotated[int, Field(ge=1, le=SCHEMA)] = SCHEMA
-    """Version of these keys; without it the present one."""
-    run: Run = field(default_factory=Run)
-    """How long, how exact, by which method."""
-    application: RadialApplication | None = None
-    """Which rules it breaks on purpose."""
-    study: dict[str, dict[str, Any]] = field(default_factory=dict)
-    """Settings of studies, one table [study.NAME] each."""
 
 
 @dataclass(frozen=True)
@@ -189,8 +119,6 @@ class Scenario:
         """The scenario with other values at dotted keys: `with_({"film.clearance": "5 um"})`, or with two underscores
         for each dot, `with_(film__clearance=5e-6)`.  Strings as the user writes them, SI numbers, tables.
         Raises ScenarioError."""
-        from .settings import with_values
-
         return with_values(self, {**(values or {}), **{key.replace("__", "."): value for key, value in more.items()}})
 
     def unused(self) -> list[str]:
@@ -253,82 +181,13 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     for override in overrides:
         override_key(raw, override, name)
     bare = frozenset(_bare_keys(raw))
-    gauge = frozenset(f"film.{key}" for key, value in _table(raw, "film").items() if is_gauge(value))
+    gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
     found = read_tables(raw, name, folder=path and path.parent, held=held)
     name = name.removesuffix(".toml")
     return Scenario(
         **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
         question=_question(text),
     )  # fmt: skip
-
-
-def read_tables(
-    raw: dict, name: str, given: frozenset[str] | None = None, folder: Path | None = None, held: dict | None = None
-) -> dict[str, Any]:
-    """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
-    written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
-    told, without those on which no run hangs; `folder` and `held` as of motion_files.py.
-    Raises `ScenarioError`."""
-    refuse_newer(raw, name)
-    kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
-    wrong = [*_odd_numbers(raw, name, kind=kind)]
-    raw, halved = with_radii(raw, kind, name, wrong)
-    given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
-    given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, name, folder, held or {}, wrong)
-    reading = _total_indicator_reading(raw)
-    _tilt_of_tir(raw)
-    wrong += [*_run_and_study(raw, name)]
-    try:
-        file = _reader(kind).validate_python(raw)
-    except ValidationError as error:
-        wrong += explained(name, kind, raw, error.errors(include_url=False))
-    if kind is RadialFile:
-        return {**_radial(file if not wrong else None, wrong, name), "given": given}
-    if not wrong:
-        # Powers of the numbers are taken from here on.
-        refuse_extremes(file, name)
-        wrong += _bodies(file, raw, name)
-    if wrong:
-        # What the values are together is asked where each can be.
-        raise together(wrong)
-    file = dataclasses.replace(file, rotor=with_inertia(file.rotor), stator=with_inertia(file.stator))
-    refuse_extremes(file, name)
-    if impossible := _impossible(file):
-        halves = [f"{e.found}, half of {halved[e.key]}" if e.key in halved else e.found for e in impossible]
-        found = zip(impossible, halves, strict=True)
-        raise together([ScenarioError(name, e.key, words, e.expected) for e, words in found])
-    if "run.samples_per_turn" in given and not _turns(file.shaft.speed):
-        raise ScenarioError(name, "run.samples_per_turn", "a shaft at rest", "[run] samples, the number in all")
-    scene = Scene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(Scene)})
-    parts = {"run": file.run, "application": file.application, "study": file.study}
-    return {"scene": scene, **parts, "given": given, "reading": reading}
-
-
-def _radial(file: RadialFile | None, wrong: list[ScenarioError], name: str) -> dict[str, Any]:
-    """What a Scenario of a radial seal holds; raises what is `wrong` with it."""
-    if wrong:
-        raise together(wrong)
-    refuse_extremes(file, name)
-    wrong = [ScenarioError(name, key, found, expected) for key, found, expected in radial_errors(file)]
-    if file.run.start not in ("auto", "steady"):
-        wrong.append(
-            ScenarioError(name, "run.start", quoted(file.run.start), '"auto": a radial seal begins on the shaft')
-        )
-    if file.run.solver in ("ida", "expm", "trbdf2"):
-        found = quoted(file.run.solver)
-        wrong.append(
-            ScenarioError(name, "run.solver", found, 'of a radial seal "auto", "dop853", "radau", "adams" or "bdf"')
-        )
-    if not wrong and file.run.turns is not None and not _turns(file.shaft.speed):
-        wrong.append(ScenarioError(name, "run.turns", "a shaft at rest", "[run] duration and samples"))
-    if file.application is not None:
-        unknown = unknown_rules(file.application.acknowledge, LIP_RULES if file.lip else CIRCUMFERENTIAL_RULES)
-        wrong += [ScenarioError(name, f"application.{key}", found, expected) for key, found, expected in unknown]
-    if wrong:
-        raise together(wrong)
-    scene = RadialScene(**{f.name: getattr(file, f.name) for f in dataclasses.fields(RadialScene)})
-    return {"scene": scene, "run": file.run, "application": file.application, "study": file.study}
 
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
@@ -339,43 +198,6 @@ def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
         found = f"what TOML cannot hold ({' '.join(str(error).split())[:200] or type(error).__name__})"
         raise ScenarioError(name, "", found, "tables of strings, numbers and lists") from None
     return "".join(f"# {line}".rstrip() + "\n" for line in question.splitlines()) + written
-
-
-def _impossible(file: ScenarioFile) -> list[SceneError]:
-    """What no scene can have together, and, where there is nothing of that kind, what its film does not take."""
-    bad = []
-    try:
-        _check_film_name(file.film.model)
-    except SceneError as error:
-        bad.append(error)
-    bad += scene_errors(file, file.run)
-    if file.application is not None:
-        wrong = application_errors(file.application) + unknown_rules(file.application.acknowledge)
-        bad += [SceneError(f"application.{key}", found, expected) for key, found, expected in wrong]
-    try:
-        _ = bad or film_of(file)
-    except SceneError as error:
-        bad.append(error)
-    return bad
-
-
-def film_choices() -> list[str]:
-    """What `film.model` takes."""
-    return ["auto", *all_film_names()]
-
-
-def _check_film_name(name: str) -> None:
-    if name not in film_choices():
-        near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
-        near = near or difflib.get_close_matches(name, film_choices(), 1)
-        expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
-        hint = "; nearest " + " and ".join(f"'{choice}'" for choice in near) if near else ""
-        raise SceneError("film.model", f'"{name[:40]}"', expected + hint)
-
-
-@cache
-def _reader(kind: type) -> TypeAdapter:
-    return TypeAdapter(kind)
 
 
 def _neighbours(path: Path) -> list[str]:
@@ -399,121 +221,6 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _odd_numbers(
-    tree: Any, name: str, key: str = "", depth: int = 0, kind: type = ScenarioFile
-) -> Iterator[ScenarioError]:
-    """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
-    if depth > 20:
-        raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
-    below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
-    for step, value in below:
-        path = f"{key}.{step}" if key else str(step)
-        if path not in ("study", "application.acknowledge"):
-            yield from _odd_numbers(value, name, path, depth + 1, kind)
-    if isinstance(tree, float) and not math.isfinite(tree):
-        yield ScenarioError(name, key, str(tree), "a finite number")
-    if isinstance(tree, bool) and key:
-        table, _, last = without_indices(key).rpartition(".")
-        if tables(kind).get(table, {}).get(last) is not bool:
-            yield ScenarioError(name, key, quoted(tree), "a number or a string with a unit")
-
-
-def refuse_extremes(value: Any, name: str, key: str = "", counted: float = LARGEST) -> None:
-    """Not a number, infinite, and numbers so large or small that products of a few of them are (in SI); whole numbers
-    are at most `counted`.  Raises ScenarioError that names the key below `key`."""
-    if isinstance(value, Motion):
-        # Of thousands of samples one may cross zero anywhere.
-        below = [(k, max(map(abs, held))) for k, held in vars(value).items() if isinstance(held, tuple) and held]
-    elif dataclasses.is_dataclass(value):
-        below = [(f.name, getattr(value, f.name)) for f in dataclasses.fields(value) if f.name != "study"]
-    else:
-        below = enumerate(value) if isinstance(value, (list, tuple)) else ()
-    for step, part in below:
-        # Of a table, its columns.
-        refuse_extremes(part, name, key if isinstance(step, int) else f"{key}.{step}" if key else step, counted)
-    if isinstance(value, int) and abs(value) > counted:
-        raise ScenarioError(name, key, quoted(value), f"at most {counted:g}")
-    if isinstance(value, int | float) and value != 0 and not SMALLEST <= abs(value) <= LARGEST:
-        found = f"{value:.3g}" if isinstance(value, float) else quoted(value)
-        raise ScenarioError(name, key, f"{found} (SI)", f"0, or a number from {SMALLEST:g} to {LARGEST:g} in size")
-
-
-def given_keys(tree: dict, key: str = "", kind: type = ScenarioFile) -> list[str]:
-    """Dotted keys of a scenario's tables (`tree`), down to what is no table; `key` is the path to the tree."""
-    found = []
-    for step, value in tree.items() if isinstance(tree, dict) else enumerate(tree):
-        path = f"{key}.{step}" if key else str(step)
-        is_table = without_indices(path) in tables(kind) and isinstance(value, (dict, list))
-        found += given_keys(value, path, kind) if is_table and path != "study" else [path]
-    return found
-
-
-def _total_indicator_reading(raw: dict) -> Any:
-    """`rotor.runout` as written where any of it is a total indicator reading, "20 um TIR"; else None."""
-    runout = _table(raw, "rotor").get("runout")
-    return runout if any(map(_reading, _entries(runout))) else None
-
-
-def _tilt_of_tir(raw: dict) -> None:
-    """`runout = "20 um TIR"`, the total indicator reading at the outer radius, becomes TIR / (2 r_o)."""
-    rotor, outer = _table(raw, "rotor"), _table(raw, "film").get("outer_radius")
-    runout = rotor.get("runout")
-    tilts = [_tilt(entry, outer) for entry in _entries(runout)]
-    if tilts and "runout" in rotor:
-        rotor["runout"] = {**runout, "value": tilts} if isinstance(runout, dict) else tilts[0]
-
-
-def _entries(runout: Any) -> list:
-    entries = runout.get("value") if isinstance(runout, dict) else [runout]
-    return entries if isinstance(entries, list) else []
-
-
-def _reading(entry: Any) -> re.Match | None:
-    return re.fullmatch(r"(.*\S)\s*\bTIR\s*", entry) if isinstance(entry, str) else None
-
-
-def _tilt(entry: Any, outer_radius: Any) -> Any:
-    """The tilt (rad) of a total indicator reading; anything else as it is."""
-    reading, length = _reading(entry), Length.__metadata__[0]
-    try:
-        return length.read(reading[1]) / (2 * length.read(outer_radius)) if reading else entry
-    except (QuantityError, ZeroDivisionError):
-        # The reader of the tables says what is wrong with either.
-        return entry
-
-
-def _table(raw: dict, key: str) -> dict:
-    """A table of the file, empty if it is none (the reader says so)."""
-    return raw[key] if isinstance(raw.get(key), dict) else {}
-
-
-def _bodies(file: ScenarioFile, raw: dict, name: str) -> Iterator[ScenarioError]:
-    """A ring has a mass, or a body that gives it, or both as `sealdyn check` prints them."""
-    for ring in (key for key in RING_NAMES if getattr(file, key).body):
-        own, by_body = getattr(file, ring), with_inertia(getattr(file, ring))
-        for key in INERTIAL:
-            value, follows = getattr(own, key), getattr(by_body, key)
-            if key in _table(raw, ring) and not math.isclose(value, follows, rel_tol=1e-9):
-                expected = f"nothing, or what follows from the body, {follows:g}"
-                yield ScenarioError(name, f"{ring}.{key}", f"{value:g} beside [{ring}.body]", expected)
-
-
-def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
-    """What depends on several keys: how long and how often, and that studies are tables."""
-    for study, settings in _table(raw, "study").items():
-        if not isinstance(settings, dict):
-            yield ScenarioError(name, f"study.{study}", quoted(settings), "a table [study.NAME] of a study's settings")
-    raw.setdefault("run", {})
-    run = _table(raw, "run")
-    for one, other in (("turns", "duration"), ("samples_per_turn", "samples")):
-        if one in run and other in run:
-            yield ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
-    if "duration" not in run:
-        run.setdefault("turns", 60)
-    if "samples" not in run:
-        run.setdefault("samples_per_turn", 64)
-
-
 def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
     """Dotted keys of numbers without a unit."""
     for key, value in tables.items():
@@ -525,12 +232,7 @@ def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
 
 def _is_bare(value: Any) -> bool:
     """Whether a value other than 0, or any of a table's, is written without a unit."""
-    return any(isinstance(entry, int | float) and entry != 0 for entry in _entries(value))
-
-
-def _turns(speed) -> bool:
-    """Whether the shaft ever turns."""
-    return any(speed.value) if isinstance(speed, PiecewiseLinear) else bool(speed)
+    return any(isinstance(entry, int | float) and entry != 0 for entry in entries_of(value))
 
 
 def _question(text: str) -> str:
@@ -551,3 +253,60 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_plain(v) for v in value]
     return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
+
+
+def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
+    """The scenario with other values at dotted keys, read and checked like a file's; its text is not read again.
+
+    `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
+    Raises ScenarioError.
+    """
+    values = {key: without_arrays(value) for key, value in values.items()}
+    more = [_written(key, value, scenario.name) for key, value in values.items()]
+    tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
+    rings = [ring for ring in RING_NAMES if ring in tables]
+    tables |= {"run": opened(scenario.run), "study": scenario.study}
+    tables |= {"application": opened(scenario.application)} if scenario.application is not None else {}
+    for ring in rings:
+        if body := tables[ring].pop("body", None):
+            # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
+            own = dict(zip(INERTIAL, body.inertia(), strict=True))
+            if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
+                tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
+    if scenario.reading is not None:
+        tables["rotor"]["runout"] = scenario.reading
+    given = set(scenario.given)
+    for (key, value), override in zip(values.items(), more, strict=True):
+        name = f"{scenario.name} (--set {quoted(override)})"
+        value = value_of(value) if isinstance(value, str) else value
+        set_value(tables, key, value, name)
+        table, _, last = key.rpartition(".")
+        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
+        given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
+        given |= {*given_keys({key: as_written(value)})}
+    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent)
+    return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
+
+
+def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
+    """The scenario itself or that of a file (TOML, or an archive), with `overrides`: {dotted key: value}, or strings
+    "key=value".  Raises ScenarioError, ArchiveError."""
+    if isinstance(overrides, Mapping):
+        if isinstance(source, Scenario):
+            return with_values(source, overrides) if overrides else source
+        overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
+    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
+    if not isinstance(source, Scenario):
+        return read_scenario(source, overrides)
+    # One after the other: a key may come twice.
+    for key, written in [key_and_words(override, source.name) for override in overrides]:
+        source = with_values(source, {key: written})
+    return source
+
+
+def _written(key: str, value: Any, name: str) -> str:
+    """The override that sets a value.  Raises ScenarioError, of the scenario `name`, for what no file can have."""
+    try:
+        return override_of(key, value)
+    except (TypeError, ValueError, RecursionError):
+        raise ScenarioError(name, str(key), quoted(str(value)), "a string, a number, a list or a table") from None

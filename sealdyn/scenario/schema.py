@@ -10,11 +10,11 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from .errors import diameters, table_in
-from .reader import ScenarioFile, film_choices
+from .tables import ScenarioFile, film_choices
 
 
 def json_schema(file: type = ScenarioFile) -> dict:
-    """JSON schema (draft 2020-12) of a scenario file, for editors; `file` reader.RadialFile for those of radial seals.
+    """JSON schema (draft 2020-12) of a scenario file, for editors; `file` tables.RadialFile for those of radial seals.
 
     The first line of a key's description is its meaning (the docstring below it in its class), the next what is
     expected; `quantity` and `unit` name what it holds."""

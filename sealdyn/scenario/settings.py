@@ -4,10 +4,8 @@ other values."""
 import contextlib
 import dataclasses
 import json
-import os
 import re
 import typing
-from collections.abc import Iterable, Mapping
 from types import UnionType
 from typing import Any
 
@@ -16,13 +14,12 @@ from pydantic import TypeAdapter, ValidationError
 
 from ..scene import variants
 from ..scene.checks import check_scene
-from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quoted
 from .errors import ScenarioError, nearest_of
-from .overrides import as_written, key_and_words, opened, override_of, set_value, value_of, without_arrays
-from .reader import Scenario, given_keys, read_scenario, read_tables, refuse_extremes
+from .reader import Scenario
+from .tables import refuse_extremes
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 # Points of a grid, and any count that a study is given.
@@ -88,63 +85,6 @@ def _plain(words: str):
     with contextlib.suppress(ValueError, RecursionError):
         return json.loads(words)
     return words
-
-
-def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
-    """The scenario with other values at dotted keys, read and checked like a file's; its text is not read again.
-
-    `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
-    Raises ScenarioError.
-    """
-    values = {key: without_arrays(value) for key, value in values.items()}
-    more = [_written(key, value, scenario.name) for key, value in values.items()]
-    tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
-    rings = [ring for ring in RING_NAMES if ring in tables]
-    tables |= {"run": opened(scenario.run), "study": scenario.study}
-    tables |= {"application": opened(scenario.application)} if scenario.application is not None else {}
-    for ring in rings:
-        if body := tables[ring].pop("body", None):
-            # A body's mass follows it; where a mass or an inertia is, or was, set, the others stay and the body goes.
-            own = dict(zip(INERTIAL, body.inertia(), strict=True))
-            if not any(f"{ring}.{key}" in values or tables[ring][key] != own[key] for key in INERTIAL):
-                tables[ring] = {key: held for key, held in tables[ring].items() if key not in INERTIAL} | {"body": body}
-    if scenario.reading is not None:
-        tables["rotor"]["runout"] = scenario.reading
-    given = set(scenario.given)
-    for (key, value), override in zip(values.items(), more, strict=True):
-        name = f"{scenario.name} (--set {quoted(override)})"
-        value = value_of(value) if isinstance(value, str) else value
-        set_value(tables, key, value, name)
-        table, _, last = key.rpartition(".")
-        gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
-        given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
-        given |= {*given_keys({key: as_written(value)})}
-    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent)
-    return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
-
-
-def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
-    """The scenario itself or that of a file (TOML, or an archive), with `overrides`: {dotted key: value}, or strings
-    "key=value".  Raises ScenarioError, ArchiveError."""
-    if isinstance(overrides, Mapping):
-        if isinstance(source, Scenario):
-            return with_values(source, overrides) if overrides else source
-        overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
-    overrides = [overrides] if isinstance(overrides, str) else list(overrides)
-    if not isinstance(source, Scenario):
-        return read_scenario(source, overrides)
-    # One after the other: a key may come twice.
-    for key, written in [key_and_words(override, source.name) for override in overrides]:
-        source = with_values(source, {key: written})
-    return source
-
-
-def _written(key: str, value: Any, name: str) -> str:
-    """The override that sets a value.  Raises ScenarioError, of the scenario `name`, for what no file can have."""
-    try:
-        return override_of(key, value)
-    except (TypeError, ValueError, RecursionError):
-        raise ScenarioError(name, str(key), quoted(str(value)), "a string, a number, a list or a table") from None
 
 
 def without(scenario: Scenario, what) -> tuple[Scenario, list[str]]:

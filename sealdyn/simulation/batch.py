@@ -20,8 +20,7 @@ from ..archive import as_dataset, columns_of
 from ..numerics.parallel import AT_ONCE, Together, processes
 from ..scenario.errors import ScenarioError
 from ..scenario.overrides import without_arrays
-from ..scenario.reader import Scenario
-from ..scenario.settings import scenario_of, with_values
+from ..scenario.reader import Scenario, scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..solvers.contract import Status

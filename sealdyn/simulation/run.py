@@ -11,8 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from ..scenario.errors import scene_errors_of
-from ..scenario.reader import Scenario
-from ..scenario.settings import scenario_of
+from ..scenario.reader import Scenario, scenario_of
 from ..status import Status
 from .batch import refuse_outputs, run_many
 from .result import Result

@@ -13,7 +13,8 @@ from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
 from ..dynamics.swept_motion import COARSE, PER_PERIOD, motions
 from ..faces.geometry import COLLAPSE, DZ, FLOOR
-from ..scenario.reader import Run, Scenario
+from ..scenario.reader import Scenario
+from ..scenario.tables import Run
 from ..scene.gas import viscosity_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..archive import answer_as_dataset
 from ..scenario.errors import ScenarioError, nearest_of, scene_errors_of
 from ..scenario.overrides import without_arrays
-from ..scenario.reader import Scenario
-from ..scenario.settings import scenario_of
+from ..scenario.reader import Scenario, scenario_of
 from ..simulation.result import at_hand
 from . import study_names
 from ._runner import run_study, study_info

@@ -5,9 +5,9 @@ import json
 from dataclasses import dataclass
 
 from ..scenario.errors import ScenarioError, nearest_of
-from ..scenario.reader import ScenarioFile
 from ..scenario.schema import json_schema, table_schema
 from ..scenario.settings import study_settings
+from ..scenario.tables import ScenarioFile
 from . import study_names
 from ._runner import study_info, study_module
 

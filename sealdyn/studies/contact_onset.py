@@ -15,7 +15,8 @@ from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import points
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import must_be_number, si_unit, with_values
+from ..scenario.reader import with_values
+from ..scenario.settings import must_be_number, si_unit
 from ..scene import variants
 from ..scene.checks import unused
 from ..scene.contact import touch_height

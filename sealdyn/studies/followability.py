@@ -15,7 +15,8 @@ from ..quantities import in_words, number
 from ..radial_seals.followers import followers_of, largest_eccentricity
 from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import axis, values_in_si, with_values
+from ..scenario.reader import with_values
+from ..scenario.settings import axis, values_in_si
 from ..scene.scene import SceneError
 from ..solvers.contract import Recorder, Status
 from ..solvers.integrate import solve

@@ -7,7 +7,8 @@ from functools import partial
 from ..answers import Answer, Axis, Panel, Series, Table
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import axis, with_own_unit, with_values
+from ..scenario.reader import with_values
+from ..scenario.settings import axis, with_own_unit
 from ..scene.scene import SceneError
 from ..scene.variants import frozen_at_start
 from . import Info

@@ -17,7 +17,7 @@ from ..faces.film_thickness import h_min
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
 from ..scenario.errors import ScenarioError
-from ..scenario.settings import with_values
+from ..scenario.reader import with_values
 from ..simulation.selection import choose_method
 from ..simulation.stability import critical_speed
 from ..solvers.contract import Recorder, Status

@@ -42,7 +42,7 @@ from judge import (
 from scenes import prepared, set_start
 
 from sealdyn.report.charts import palette
-from sealdyn.scenario.reader import Run
+from sealdyn.scenario.tables import Run
 from sealdyn.simulation.certificate import certificate, first_steps, judgement, next_plan
 from sealdyn.simulation.selection import Plan, choose_method, select_film
 from sealdyn.simulation.verification_run import QUANTITIES, Comparison, ErrorScales, clip_jumps

@@ -11,8 +11,8 @@ import re
 from pathlib import Path
 
 from sealdyn import read_scenario
-from sealdyn.scenario.reader import RadialFile
 from sealdyn.scenario.schema import json_schema
+from sealdyn.scenario.tables import RadialFile
 from sealdyn.studies import study_names
 from sealdyn.studies._settings import about, settings_of, time_of
 

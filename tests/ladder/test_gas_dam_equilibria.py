@@ -8,8 +8,7 @@ from scipy.optimize import brentq
 
 from sealdyn.closed_form.zuk_1972 import CRUISE, MIL
 from sealdyn.films.gas_dam import film as gas_dam
-from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.scene.film import Film
 from sealdyn.scene.gas import Gas, GasDam
 from sealdyn.studies import equilibrium

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 
 from sealdyn import read_scenario
 from sealdyn.dynamics import interface
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import with_values
 from sealdyn.studies import pressure
 from sealdyn.studies.pressure import Settings, sums
 

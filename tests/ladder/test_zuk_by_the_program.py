@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from sealdyn.closed_form import zuk_1972 as zuk
-from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.studies import pressure
 
 REFERENCE = Path(__file__).parents[2] / "scenarios" / "gas_dam_reference.toml"

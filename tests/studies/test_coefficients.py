@@ -15,7 +15,7 @@ from sealdyn.analysis.film_matrices import State, matrices
 from sealdyn.closed_form import radial_film_coefficients
 from sealdyn.dynamics.model import Model
 from sealdyn.report.panels import draw
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.studies import coefficients
 from sealdyn.studies.coefficients import Settings

@@ -13,8 +13,7 @@ from sealdyn.analysis.shooting import Follower, Shooter, TooMuchWork
 from sealdyn.archive import read_study
 from sealdyn.report.panels import sheet_of
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve
 from sealdyn.studies import contact_onset

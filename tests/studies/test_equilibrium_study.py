@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 import sealdyn
 from sealdyn import read_scenario
 from sealdyn.archive import read_study
-from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.studies import equilibrium
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.equilibrium import Settings

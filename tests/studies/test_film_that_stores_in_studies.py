@@ -12,7 +12,7 @@ from sealdyn.analysis.arrangements import seals_of
 from sealdyn.dynamics import interface, modes, stability_thresholds
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.stability_thresholds import one_by_one
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.simulation.simulate import simulate_in_memory
 from sealdyn.studies import campbell, contact_onset, critical_speed, steady_state

@@ -14,8 +14,7 @@ from scipy.optimize import brentq
 from sealdyn.analysis.arrangements import seals_of
 from sealdyn.analysis.whirl import growth_rate
 from sealdyn.dynamics.model import Model
-from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.scene.variants import frozen_at_start, unforced, without
 from sealdyn.solvers.contract import Recorder
 from sealdyn.solvers.integrate import solve

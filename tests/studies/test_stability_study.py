@@ -9,8 +9,7 @@ from in_process import InProcess
 from sealdyn import read_scenario
 from sealdyn.dynamics.model import Model
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scenario.reader import parse_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import parse_scenario, with_values
 from sealdyn.scene.variants import frozen_at_start
 from sealdyn.studies.stability import study as stability
 from sealdyn.studies.stability.grid import Grid, growth_rates

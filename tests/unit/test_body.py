@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
 from sealdyn.scenario.templates import template
 from sealdyn.scene import variants
 from sealdyn.scene.rings import DENSITIES, INERTIAL, Body

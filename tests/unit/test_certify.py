@@ -26,7 +26,8 @@ from scenes import (
 )
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import Run, read_scenario
+from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.tables import Run
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, Housing
 from sealdyn.scene.rings import Stator

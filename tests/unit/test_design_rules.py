@@ -15,7 +15,8 @@ from sealdyn.dynamics.interface import flow_at_rest, rest_state
 from sealdyn.faces.geometry import CONTACT_FORCE
 from sealdyn.scenario import errors
 from sealdyn.scenario.errors import tables
-from sealdyn.scenario.reader import ScenarioFile, parse_scenario
+from sealdyn.scenario.reader import parse_scenario
+from sealdyn.scenario.tables import ScenarioFile
 from sealdyn.scene.application import Application
 from sealdyn.simulation.simulate import prepare_run
 

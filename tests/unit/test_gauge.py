@@ -6,8 +6,8 @@ import pytest
 
 import sealdyn
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario.reader import ScenarioError, parse_scenario
-from sealdyn.scenario.settings import axis, values_in_si, with_values
+from sealdyn.scenario.reader import ScenarioError, parse_scenario, with_values
+from sealdyn.scenario.settings import axis, values_in_si
 from sealdyn.studies.tolerance.scatter import read_scatter
 
 FMR = (Path(__file__).parents[2] / "scenarios" / "fmr_reference.toml").read_text()

@@ -9,8 +9,7 @@ import pytest
 
 import sealdyn
 from sealdyn.scenario.errors import ScenarioError
-from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.simulation import batch
 from sealdyn.simulation.batch import SAMPLED, LoopedRun, NotSampled, integrate, run_many
 from sealdyn.simulation.result import leaves, output, plain

@@ -5,8 +5,8 @@ import re
 import pytest
 from benchmark import gallery, key_reference
 
-from sealdyn.scenario.reader import RadialFile
 from sealdyn.scenario.schema import json_schema
+from sealdyn.scenario.tables import RadialFile
 
 
 @pytest.mark.parametrize("made", [gallery, key_reference], ids=lambda made: made.__name__)

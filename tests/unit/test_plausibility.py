@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from sealdyn.dynamics.run_state import Concern
-from sealdyn.scenario.reader import read_scenario
-from sealdyn.scenario.settings import with_values
+from sealdyn.scenario.reader import read_scenario, with_values
 from sealdyn.simulation import plausibility, simulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

@@ -7,8 +7,9 @@ import pytest
 from scenes import film, fmr, started
 
 from sealdyn.report.text import resolved_lines
-from sealdyn.scenario.reader import Run, ScenarioError, parse_scenario
+from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scenario.schema import json_schema
+from sealdyn.scenario.tables import Run
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.film import Profile
 from sealdyn.scene.scene import SceneError

@@ -8,7 +8,7 @@ import pytest
 from scenes import fmr, fms
 
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
-from sealdyn.scenario import settings
+from sealdyn.scenario import reader
 from sealdyn.scenario.overrides import override_of
 from sealdyn.scenario.reader import ScenarioError, parse_scenario
 from sealdyn.scene.contact import Contact
@@ -94,7 +94,7 @@ def scenario(*overrides, text=TEXT):
     ids=lambda values: ",".join(values),
 )
 def test_values_are_those_of_overrides(values):
-    changed = settings.with_values(scenario("run.turns=5"), values)
+    changed = reader.with_values(scenario("run.turns=5"), values)
     written = scenario("run.turns=5", *(override_of(key, value) for key, value in values.items()))
     assert (changed.scene, changed.run, changed.given) == (written.scene, written.run, written.given)
     assert changed.overrides == written.overrides and changed.text == TEXT
@@ -124,7 +124,7 @@ def test_errors_are_those_of_overrides(values):
     with pytest.raises(ScenarioError) as written:
         scenario(*(override_of(key, value) for key, value in values.items()), text=text)
     with pytest.raises(ScenarioError) as changed:
-        settings.with_values(replace(scenario(text=text), name="seal.toml"), values)
+        reader.with_values(replace(scenario(text=text), name="seal.toml"), values)
     assert str(changed.value) == str(written.value)
 
 
@@ -132,10 +132,10 @@ def test_total_indicator_reading_follows_the_outer_radius():
     """TIR / (2 r_o), at whatever outer radius, until another runout is given."""
     read = scenario('rotor.runout="8 um TIR"')
     for _ in range(2):
-        read = settings.with_values(read, {"film.outer_radius": 0.05, "film.coning": 1e-3})
+        read = reader.with_values(read, {"film.outer_radius": 0.05, "film.coning": 1e-3})
         assert read.scene.rotor.runout == 8e-6 / (2 * 0.05)
-    read = settings.with_values(read, {"rotor.runout": 1e-5})
-    assert settings.with_values(read, {"film.outer_radius": 0.045}).scene.rotor.runout == 1e-5
+    read = reader.with_values(read, {"rotor.runout": 1e-5})
+    assert reader.with_values(read, {"film.outer_radius": 0.045}).scene.rotor.runout == 1e-5
 
 
 @pytest.mark.core
@@ -144,6 +144,6 @@ def test_what_was_read_is_not_changed_by_what_is_made_of_it():
         text=TEXT + '\n[[housing.axial]]\nfrequency = "50 Hz"\ndisplacement = "1 um"\n[study.rub]\ndown = true\n'
     )
     kept = pickle.dumps(read)
-    changed = settings.with_values(read, {"housing.axial.0.frequency": 70.0, "study.rub.down": False})
+    changed = reader.with_values(read, {"housing.axial.0.frequency": 70.0, "study.rub.down": False})
     assert changed.scene.housing.axial[0].frequency == 70.0 and changed.study["rub"]["down"] is False
     assert pickle.loads(kept) == read

@@ -9,7 +9,8 @@ from ...analysis.whirl import free_model
 from ...dynamics.modes import verdict
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...scenario.errors import ScenarioError
-from ...scenario.settings import si_unit, values_in_si, with_values
+from ...scenario.reader import with_values
+from ...scenario.settings import si_unit, values_in_si
 from ...scene import variants
 from ...scene.variants import part
 from ...simulation.stability import critical_speed, resonance_speeds

@@ -16,7 +16,7 @@ from ...dynamics.intervals import constant_and_slope
 from ...dynamics.run_state import RunState
 from ...faces.geometry import COLLAPSE, DZ, GX, GY, TOUCH
 from ...numerics.piecewise_linear import PiecewiseLinear
-from ...scenario.settings import with_values
+from ...scenario.reader import with_values
 from ...simulation.selection import prepare_run
 from ...solvers.contract import Status
 from ...solvers.integrate import solve

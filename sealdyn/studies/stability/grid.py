@@ -17,7 +17,7 @@ from ...dynamics.characteristic import roots
 from ...dynamics.linearisation import moves_with_speed
 from ...dynamics.model import Model
 from ...scenario.errors import ScenarioError
-from ...scenario.settings import with_values
+from ...scenario.reader import with_values
 from ...scene.contact import HALF_HEIGHT
 from ...scene.film import coning_varies
 from ...scene.scene import SceneError

@@ -19,8 +19,9 @@ from ...dynamics.run_state import RunState
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError, nearest_of
 from ...scenario.errors import tables as keys_of_tables
-from ...scenario.reader import ScenarioFile
-from ...scenario.settings import axis, with_values
+from ...scenario.reader import with_values
+from ...scenario.settings import axis
+from ...scenario.tables import ScenarioFile
 from ...scene.excitation import Housing, Shaft
 from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start

@@ -10,7 +10,7 @@ from ...dynamics.run_state import FilmClosed
 from ...numerics.parallel import Together
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
-from ...scenario.settings import with_values
+from ...scenario.reader import with_values
 from ...simulation.batch import run_many
 from ...simulation.result import unit_of
 from ...status import Status

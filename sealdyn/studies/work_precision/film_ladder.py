@@ -8,7 +8,7 @@ import numpy as np
 
 from ...dynamics import modes
 from ...films import film_named, film_names, film_of
-from ...scenario.settings import with_values
+from ...scenario.reader import with_values
 from ...scene.contact import waves_of
 from ...scene.film import Coefficients
 from ...simulation.selection import prepare_run

@@ -15,7 +15,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from ...answers import Answer, Table
-from ...scenario.settings import with_values
+from ...scenario.reader import with_values
 from ...scene.scene import SceneError
 from ...simulation.film_error import reynolds_comparison
 from ...simulation.selection import check_method, choose_method, prepare_run

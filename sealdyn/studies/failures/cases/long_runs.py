@@ -17,7 +17,8 @@ from ....dynamics.imposed_motion import (
 )
 from ....dynamics.intervals import LONGEST, TURN, split_at_breaks
 from ....dynamics.run_state import Concern
-from ....scenario.reader import Run, Scenario
+from ....scenario.reader import Scenario
+from ....scenario.tables import Run
 from ....scene.excitation import AxialVibration, Housing, Shaft
 from ....scene.film import Film
 from ....scene.rings import ROTOR, Rotor, Stator, Support
