@@ -110,7 +110,7 @@ class Cases:
     def __init__(self, config):
         self.config, self.clock, self.shared = config, 0.0, {}
         self.found, self.dropped, self.workers, self.measured = 0, 0, 0.0, ""
-        self.files, self.seconds = defaultdict(dict), defaultdict(Counter)
+        self.files, self.seconds, self.setups = defaultdict(dict), defaultdict(Counter), defaultdict(Counter)
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, config, items):
@@ -163,7 +163,8 @@ class Cases:
             seconds = self.seconds[file]
             seconds[name] += report.own
             for fixture, spent in report.shared.items():
-                seconds["@" + fixture] = max(spent, seconds["@" + fixture])
+                seconds["@" + fixture] += spent
+                self.setups[file]["@" + fixture] += 1
             if not slow:
                 self.files[file][name] = core, [tuple(one) for one in shared]
 
@@ -182,7 +183,11 @@ class Cases:
             self.workers += seconds
 
     def write(self):
-        """The times of what has run, a line for each file; what a file may take only when everything has run."""
+        """The times of what has run, a line for each file, of a shared fixture the mean of its parameters; what a file
+        may take only when everything has run."""
+        for file, setups in self.setups.items():
+            for fixture, count in setups.items():
+                self.seconds[file][fixture] /= count
         files = {
             file: {name: round(spent, 2) for name, spent in sorted(seconds.items()) if spent >= CHEAP}
             for file, seconds in self.seconds.items()
