@@ -32,7 +32,7 @@ class Answer:
 
     >>> answer = sealdyn.study("equilibrium", "fms.toml", points=11)
     >>> answer.verdict[0]
-    'Film and closing force balance at 1 clearance(s) from 1 to 100 um; stable: 10 um.'
+    'The seal rides at 10 um: the film carries the closing force there, stably.'
     >>> answer.data.coords["curve.clearance"].attrs["units"]
     'm'
     >>> answer.plot().savefig("equilibrium.svg")

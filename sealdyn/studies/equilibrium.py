@@ -239,13 +239,14 @@ def _range(film, surfaces, roots, settings) -> tuple[float, float]:
 
 def _found(numbers) -> str:
     """Where the seal rides."""
-    carried, rows = "film and asperities" if any(numbers["curve"]["contact_force"]) else "the film", numbers["roots"]
+    carried = "film and asperities carry" if any(numbers["curve"]["contact_force"]) else "the film carries"
+    rows = numbers["roots"]
     stable = [in_words("clearance", root["clearance"], digits=6) for root in rows if root["stable"]]
     low, high = (in_words("clearance", end) for end in numbers["range"])
     if stable:
-        return f"The seal rides at {' or '.join(stable)}: {carried} carry the closing force there, stably."
+        return f"The seal rides at {' or '.join(stable)}: {carried} the closing force there, stably."
     kind = "only unstably" if rows else "nowhere"
-    return f"Between {low} and {high} {carried} carry the closing force {kind}."
+    return f"Between {low} and {high} {carried} the closing force {kind}."
 
 
 def _tables(numbers) -> list[Table]:

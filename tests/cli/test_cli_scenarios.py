@@ -144,7 +144,7 @@ def test_archive_opens_for_a_stranger(run):
 def test_a_real_process_prints_what_an_engineer_reads_first(tmp_path):
     answer = finished(started("run", REFERENCE, *short(REFERENCE), "--no-plot", cwd=tmp_path))
     assert answer.code == 0, answer.err
-    for word in ("model", "h_min", "misalignment", "leakage", "friction", "stability", "energy audit", "files"):
+    for word in ("model", "h_min", "misalignment", "leakage", "friction", "stability", "accuracy", "files"):
         assert f"\n  {word} " in answer.out
     # Turbulence and inertia of this film; nothing else, and none of them by Python.
     assert answer.out.count("WARNING") == answer.out.count("\n  WARNING ") == 2

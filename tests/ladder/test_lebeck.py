@@ -15,7 +15,7 @@ from sealdyn.dynamics.interface import opening_parts, with_cells
 from sealdyn.dynamics.model import Model
 from sealdyn.dynamics.run_state import RunState
 from sealdyn.faces.geometry import FLOW_INNER, FLOW_OUTER
-from sealdyn.films.reynolds import film as reynolds_film
+from sealdyn.films.reynolds.film import FILM as REYNOLDS_FILM
 from sealdyn.films.reynolds.mesh import ANGLE_STEP, AREA, SECTORS, table
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
@@ -264,4 +264,4 @@ def test_the_friction_of_a_standing_shaft_asks_for_no_cells():
     scene = lebeck().scene
     film = replace(scene.film, reynolds=Reynolds(grid_accuracy=0.05))
     standing = replace(scene, film=film, shaft=replace(scene.shaft, speed=0.0))
-    assert with_cells(standing, reynolds_film).reynolds.cells_r <= 24
+    assert with_cells(standing, REYNOLDS_FILM).reynolds.cells_r <= 24

@@ -223,10 +223,3 @@ def test_a_seal_without_a_threshold_has_a_map_of_speeds_it_may_reach():
     speed = scenario.scene.shaft.speed
     found = stability.si_axis(scenario, stability._default_x(scenario.scene), "x")
     assert found["values"][-1] == pytest.approx(3 * speed)
-
-
-def test_points_that_are_not_confirmed_are_told_with_their_units():
-    axes = {"key": "shaft.speed", "unit": "rad/s"}, {"key": "stator.support.axial_damping", "unit": "N*s/m"}
-    words = stability._place(axes, {"x": 157.1, "y": 0.0})
-    assert words == "shaft.speed 157.1 rad/s (1500 rpm) and stator.support.axial_damping 0 N*s/m"
-    assert stability._with_unit(0.5, "1") == "0.5"

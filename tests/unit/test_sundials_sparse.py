@@ -179,7 +179,7 @@ def test_a_kernel_that_raises_an_error_is_not_believed(monkeypatch, name, choice
 
 
 def test_without_superlu_only_films_with_unknowns_go_through_scikit_sundae(monkeypatch):
-    monkeypatch.setattr(sundials_libraries, "SPARSE", "sunlinsolofanothername")
+    monkeypatch.setattr(sundials_libraries, "SPARSE_SOLVER", "sunlinsolofanothername")
     sundials_libraries.libraries.cache_clear()
     try:
         _, counts = end(on_film(fms(), 0.1 * TURN), METHODS["ida"], 1e-6)
