@@ -1,13 +1,15 @@
 """An answer declares what it is: numbers, one sentence, tables and panels, all plain data in SI.
 
 Whoever shows it (terminal, figure, page, file) takes names and units from `quantities`; nobody formats by hand.
-`plain` and `panels_of` carry panels through an archive.
+`plain` and `panels_of` carry panels through an archive; `toml_line` and `toml_text` write plain data as TOML.
 """
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass
 from typing import Any
+
+import tomlkit
 
 from .quantities import quantity
 
@@ -179,3 +181,27 @@ def _data(value):
 
 def _is_blank(value) -> bool:
     return value is None or (isinstance(value, str | list | tuple) and not value)
+
+
+def toml_line(value: Any) -> str:
+    """A dict, list, number, string or truth value on one line of TOML.  TOML has no null: keys of None are left out."""
+    return _item(value).as_string()
+
+
+def toml_text(tables: dict[str, Any]) -> str:
+    """Tables as the text of a TOML file.  Raises TypeError or ValueError for what TOML cannot hold."""
+    return tomlkit.dumps(tables)
+
+
+def _item(value: Any):
+    if isinstance(value, dict):
+        table = tomlkit.inline_table()
+        for key, held in value.items():
+            if held is not None:
+                table.append(key, _item(held))
+        return table
+    if isinstance(value, list | tuple):
+        array = tomlkit.array()
+        array.extend(map(_item, value))
+        return array
+    return tomlkit.item(value)

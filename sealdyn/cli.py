@@ -1,24 +1,36 @@
-"""The verbs: run, check, schema, list, show, plot, validate, study.  Everything heavy is imported by the verb that
-needs it."""
+"""The verbs of the command line.  Everything heavy is imported by the verb that needs it."""
 
-import atexit
 import contextlib
-import errno
-import gc
 import json
 import os
 import shlex
 import sys
 from pathlib import Path
-from threading import Lock, Timer
-from time import monotonic
 from typing import Annotated
 
 import typer
 from typer.core import TyperCommand
 
-from .numerics.interruption import CODE, VARIABLES, Interruption, deafen
+from .numerics.interruption import VARIABLES
 from .status import Status
+from .terminal import (
+    CHECK_FAILED,
+    DONE,
+    EXIT,
+    Progress,
+    Stop,
+    carried_out,
+    drawn,
+    interruption,
+    kept_of_run,
+    kept_of_study,
+    leaves,
+    left,
+    libraries_on_stderr,
+    not_written,
+    reads,
+    say_compiling,
+)  # fmt: skip
 
 # Before anything loads a BLAS.
 for _threads in VARIABLES:
@@ -28,28 +40,11 @@ os.environ["MPLBACKEND"] = "agg"
 # It would look for plugins in everything that is installed.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
-DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, CODE
-EXIT = {
-    Status.OK: DONE,
-    Status.INACCURATE: CHECK_FAILED,
-    Status.INVALID: BAD_INPUT,
-    Status.COLLAPSED: COLLAPSED,
-    Status.FAILED: FAILED,
-    Status.INTERRUPTED: INTERRUPTED,
-}
-
-# Time (s) after which a wait is worth a progress bar.
-PATIENCE = 1.0
-# Characters of an error.
-LONGEST = 1000
 # Bytes of an archive whose size is worth a line.
 WORTH_SAYING = 1e9
 # Figures of a run, and what they are written as.
 CHARTS = ("overview", "orbit", "film", "spectrum", "poincare")
 FIGURES = (".png", ".svg", ".pdf")
-# New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
-GARBAGE = 100_000
-
 # What `sealdyn` alone prints.
 FIRST_STEPS = (
     ("sealdyn new fms", "writes a commented seal to change: fms.toml"),
@@ -124,45 +119,12 @@ Overrides = Annotated[list[str] | None, typer.Option("--set", help='override, e.
 AsJson = Annotated[bool, typer.Option("--json", help="one JSON object on standard output, progress on standard error")]
 
 
-# SIGINT, SIGTERM and SIGHUP, and what they find: "words", a function that says what is kept, and whether the verb has
-# already "answered".
-interruption = Interruption()
-_left = {}
-
-
-def _leaves(words, answered=False):
-    """What an interruption finds from now on."""
-    _left.update(words=words, answered=answered)
-
-
-@contextlib.contextmanager
-def _libraries_on_stderr():
-    """Keep standard output ours: SUNDIALS prints its warnings there, straight from C."""
-    sys.stdout.flush()
-    ours = os.dup(1)
-    os.dup2(2, 1)
-    try:
-        yield
-    finally:
-        os.dup2(ours, 1)
-        os.close(ours)
-
-
-class Stop(Exception):
-    """Ends a verb with a status and a sentence; of a scenario with every ScenarioError, the sentence's own first."""
-
-    def __init__(self, status: str, message: str, code: int | None = None, errors=()):
-        super().__init__(message)
-        self.status, self.message, self.errors = status, message, errors
-        self.code = EXIT[status] if code is None else code
-
-
 def _read(path: Path, overrides):
     """Scenario of a TOML file or of an archive; input errors end here."""
     from .scenario.reader import ScenarioError, read_scenario
 
     try:
-        with _reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
+        with reads(path) if path.suffix == ".h5" else contextlib.nullcontext():
             scenario = read_scenario(path, overrides or ())
         if scenario.study:
             from .studies._settings import refuse_unknown_studies
@@ -171,27 +133,6 @@ def _read(path: Path, overrides):
         return scenario
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error, *error.others)) from None
-
-
-@contextlib.contextmanager
-def _reads(path):
-    """What is read and drawn of an archive: errors that a file made or changed elsewhere leads to end here."""
-    from numpy import errstate
-
-    from .archive import READING_ERRORS, ArchiveError
-
-    try:
-        # Numbers of no world, times what makes them micrometres.
-        with errstate(over="raise"):
-            yield
-    except ArchiveError as error:
-        raise Stop(Status.INVALID, str(error)) from None
-    except BrokenPipeError:
-        raise
-    except READING_ERRORS as error:
-        what = " ".join(str(error).split())[:200]
-        line = f"{path}: holds something that sealdyn did not write there ({type(error).__name__}: {what})"
-        raise Stop(Status.INVALID, line) from None
 
 
 @app.command()
@@ -221,10 +162,10 @@ def run(
     if resume:
         _check_resumable(out, scenario)
     yes = _large(file, scenario, yes)
-    _say_compiling(file=sys.stderr)
+    say_compiling()
     words = [str(file), *(f"--set {shlex.quote(word)}" for word in set or ()), "--out", str(out), "--continue"]
-    _leaves(lambda: _kept_of_run(partial_path(out), words))
-    with _Progress() as bar, _libraries_on_stderr(), interruption.looks():
+    leaves(lambda: kept_of_run(partial_path(out), words))
+    with Progress() as bar, libraries_on_stderr(), interruption.looks():
         try:
             result = simulate(
                 scenario, out, progress=bar, stop=lambda: bool(interruption.asked), resume=resume, allow_large=yes
@@ -232,44 +173,21 @@ def run(
         except (SceneError, ArchiveError) as error:
             raise Stop(Status.INVALID, f"{file}: {error}") from None
         except OSError as error:
-            raise _not_written(error, out, _left["words"]()) from None
+            raise not_written(error, out, left["words"]()) from None
     summary = {**result.summary, "figure": None}
     interrupted = result.status == Status.INTERRUPTED
     complete = f"the run is complete: {result.archive}"
-    _leaves(lambda: _kept_of_run(result.archive, words) if interrupted else complete)
+    leaves(lambda: kept_of_run(result.archive, words) if interrupted else complete)
     if plot and not interrupted and not interruption.asked:
-        summary["figure"] = _drawn("charts.overview", result.archive)
+        summary["figure"] = drawn("charts.overview", result.archive)
     if as_json:
         print(json.dumps(summary))
     else:
         written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
         for line in lines(scenario.name, run_answer(summary, written), verbose):
             print(line)
-    _left["answered"] = True
+    left["answered"] = True
     raise typer.Exit(EXIT[result.status])
-
-
-def _not_written(error: OSError, where, kept: str) -> Stop:
-    """What ends a verb whose output cannot be written: its place was wrong from the start, or the disk is full."""
-    from .archive import is_full
-
-    line = f"{where}: cannot be written ({error.strerror or error})"
-    return Stop(Status.FAILED, f"{line}; {kept}") if is_full(error) else Stop(Status.INVALID, line)
-
-
-def _drawn(chart: str, archive: Path) -> str | None:
-    """The figure beside an archive that is complete; if it cannot be drawn that is said, and changes nothing."""
-    import importlib
-
-    figure = archive.with_suffix(".png")
-    try:
-        importlib.import_module(f"sealdyn.report.{chart}").draw(archive, figure)
-    except Exception as error:
-        what = " ".join(str(error).split())[:200]
-        line = f"warning: {figure} was not drawn ({type(error).__name__}: {what}); the archive is whole"
-        print(line, file=sys.stderr, flush=True)
-        return None
-    return str(figure)
 
 
 def _large(file, scenario, yes: bool) -> bool:
@@ -298,7 +216,7 @@ def _check_resumable(out, scenario):
     source = partial_path(out) if partial_path(out).exists() else out
     if not source.exists():
         raise Stop(Status.INVALID, f"{source}: nothing to continue; run without --continue first")
-    with _reads(source):
+    with reads(source):
         info = read_info(source)
     if info["status"] not in (Status.RUNNING, Status.INTERRUPTED):
         raise Stop(Status.OK, f"{source}: nothing to continue, the run is complete ({info['status']})")
@@ -312,154 +230,29 @@ def _check_resumable(out, scenario):
         )
 
 
-def _kept_of_run(archive: Path, words: list[str]) -> str:
-    """What an interrupted run has left, and the words of the command that goes on."""
-    if not archive.exists():
-        return "nothing is kept"
-    return f"{archive} keeps the run so far; go on with: sealdyn run {' '.join(words)}"
-
-
-def _kept_of_study(journal: Path, results: Path | None) -> str:
-    """What an interrupted study has left."""
-    if results is not None:
-        return f"finished points are kept in {results}; the same command goes on"
-    count = len(journal.read_text().splitlines()) - 1 if journal.exists() else 0
-    if count < 1:
-        return "no point was finished, nothing is kept"
-    return f"{count} finished point{'s' * (count > 1)} kept in {journal}; the same command goes on"
-
-
-def _say_compiling(file):
-    """The first run on a machine compiles the kernels; say so before the wait."""
-    from .kernel_cache import kept_kernels
-
-    if not kept_kernels():
-        print("first run on this machine: compiling kernels once (a minute or so) ...", file=file, flush=True)
-
-
-class _Progress:
-    """Progress bar on standard error: how far, what is being done, and the time, which moves in any case.  What is done
-    in a second needs none."""
-
-    def __init__(self):
-        self.bar = self.task = None
-        self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
-        # A run that is done once more, sharper or to measure its error, begins again.
-        self.runs = 1
-        # Clock (s) and motion (s): two seconds ago or one, and one second ago or less.
-        self.marks = []
-        self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
-        self.timer.daemon = True
-
-    def __enter__(self):
-        self.timer.start()
-        return self
-
-    def __exit__(self, *error):
-        self.timer.cancel()
-        with self.lock:
-            if self.bar:
-                self.bar.stop()
-
-    def __call__(self, done: float, end: float, words: str | None = None):
-        """`done` of `end`; without `words` both are times (s)."""
-        again = done < self.now["completed"]
-        if words is None:
-            self.runs += again
-            self.marks = [] if again else self.marks
-            left = " s: summing up" if done >= end else f" of {end:.4g} s{self._pace(done)}"
-            moved = f"t = {done:.4g}{left}"
-            words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
-        self.now = {"completed": done, "total": end, "words": words}
-        if self.bar:
-            if again:
-                self.task = self._line(self.bar)
-            self.bar.update(self.task, **self.now)
-
-    def _line(self, bar):
-        """A line that has moved by nothing yet, in place of the one there was, its clock going on."""
-        before = [task.start_time for task in bar.tasks]
-        for task in bar.task_ids:
-            bar.remove_task(task)
-        line = bar.add_task("", visible=False, **self.now)
-        if before:
-            bar.tasks[0].start_time = before[0]
-        bar.update(line, visible=True)
-        return line
-
-    def _pace(self, done: float) -> str:
-        """How much motion a second of the clock brings: a run that crawls shows it."""
-        now = monotonic()
-        if not self.marks or now - self.marks[-1][0] > PATIENCE:
-            self.marks = [*self.marks[-1:], (now, done)]
-        since, was = self.marks[0]
-        return f", {(done - was) / (now - since):.2g} s each second" if now > since and done > was else ""
-
-    def _show(self):
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-        with self.lock:
-            if self.timer.finished.is_set():
-                return
-            bar = Progress(
-                TextColumn("{task.fields[words]}"),
-                BarColumn(),
-                TextColumn("{task.percentage:>3.0f}%"),
-                TimeElapsedColumn(),
-                TimeRemainingColumn(),
-                console=Console(stderr=True),
-                transient=False,
-            )
-            self.task = self._line(bar)
-            bar.start()
-            self.bar = bar
-
-
 @app.command()
 def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     """Read a scenario, say what is wrong with it or print it resolved to SI."""
-    from .analysis.design_rules import findings
+    from .analysis.check import checked
     from .archive import ArchiveError
     from .report.text import resolved_lines
-    from .scene.radial import RadialScene
     from .scene.scene import SceneError
-    from .simulation.film_error import reynolds_comparison
-    from .simulation.plausibility import scene_cautions, size_of
-    from .simulation.selection import prepare_run
-    from .simulation.summary import model_chosen
+    from .simulation.plausibility import size_of
 
     scenario = _read(file, set)
     if scenario.study:
         _refuse_settings(scenario)
-    _say_compiling(file=sys.stderr)
-    size = size_of(scenario)
-    if isinstance(scenario.scene, RadialScene):
-        return _check_radial(file, scenario, as_json)
+    say_compiling()
     try:
-        run, plan = prepare_run(scenario)
-        rules = findings(scenario, run.model)
+        found = checked(scenario)
     except (SceneError, ArchiveError) as error:
         raise Stop(Status.INVALID, f"{file}: {error}") from None
-    found = {
-        "status": Status.OK,
-        "message": "the scene is possible",
-        "scene": scenario.resolved(),
-        "gauge": sorted(scenario.gauge),
-        "model": model_chosen(scenario, run, plan),
-        "clearance": run.model.clearance,
-        "equilibria": [vars(e) for e in run.model.interface.equilibria],
-        "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model))],
-        "design_rules": rules,
-        "beside_reynolds": reynolds_comparison(run),
-        "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
-    }
     if as_json:
         print(json.dumps(found))
     else:
         for line in resolved_lines(found):
             print(line)
-        if size.bytes > WORTH_SAYING:
+        if (size := size_of(scenario)).bytes > WORTH_SAYING:
             print(f"  size          {size}")
 
 
@@ -472,35 +265,6 @@ def _refuse_settings(scenario):
         refuse_settings(scenario)
     except ScenarioError as error:
         raise Stop(Status.INVALID, str(error), errors=(error,)) from None
-
-
-def _check_radial(file, scenario, as_json):
-    """The same of a radial seal."""
-    from .analysis.radial_rules import findings
-    from .radial_seals.followers import closed_form_sentences
-    from .report.text import resolved_lines
-    from .scene.scene import SceneError
-    from .simulation.selection import prepare_run
-
-    try:
-        run, plan = prepare_run(scenario)
-    except SceneError as error:
-        raise Stop(Status.INVALID, f"{file}: {error}") from None
-    followers = run.model.followers
-    found = {
-        "status": Status.OK,
-        "message": "the scene is possible",
-        "scene": scenario.resolved(),
-        "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"]},
-        "closed_form": closed_form_sentences(followers, scenario.scene.shaft),
-        "design_rules": findings(scenario),
-        "equilibria": [],
-    }
-    if as_json:
-        print(json.dumps(found))
-    else:
-        for line in resolved_lines(found):
-            print(line)
 
 
 def _of_a_face_seal(file):
@@ -539,7 +303,7 @@ def new(
     except FileExistsError:
         raise Stop(Status.INVALID, f"{out}: is there already; expected --out with another name") from None
     except OSError as error:
-        raise _not_written(error, out, "nothing is kept") from None
+        raise not_written(error, out, "nothing is kept") from None
     print(f"{out}: try  sealdyn check {out}  and  sealdyn run {out}")
 
 
@@ -582,7 +346,7 @@ def show(
 
     if mat is not None and mat.suffix != ".mat":
         raise Stop(Status.INVALID, f'--mat: found "{mat}"; expected a file name ending in .mat')
-    with _reads(file):
+    with reads(file):
         if is_study(file):
             return _show_study(file, csv, mat, as_json, table)
         if table is not None:
@@ -676,7 +440,7 @@ def plot(
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in {", ".join(FIGURES)}')
     if out is None:
         out = file.with_name(file.stem + ("" if kind in (None, "overview") else f"-{kind}") + ".png")
-    with _reads(file):
+    with reads(file):
         name = kind or "overview"
         if is_study(file):
             if kind is not None:
@@ -691,7 +455,7 @@ def plot(
         try:
             importlib.import_module(f"sealdyn.report.{place}").draw(file, out)
         except OSError as error:
-            raise _not_written(error, out, "the archive is whole") from None
+            raise not_written(error, out, "the archive is whole") from None
     print(out)
 
 
@@ -708,7 +472,7 @@ def animate(
     from .report.charts.animation import animate
 
     out = out or file.with_suffix(".gif")
-    with _Progress() as bar, _reads(file):
+    with Progress() as bar, reads(file):
         if is_study(file):
             raise Stop(Status.INVALID, f"{file}: the archive of a study; expected that of a run")
         try:
@@ -719,7 +483,7 @@ def animate(
         except ValueError as error:
             raise Stop(Status.INVALID, f"animate: found {error}") from None
         except OSError as error:
-            raise _not_written(error, out, "the archive is whole") from None
+            raise not_written(error, out, "the archive is whole") from None
     print(out)
 
 
@@ -736,14 +500,13 @@ def report(
     if out.suffix not in (".html", ".htm"):
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .html')
     for file in files:
-        with _reads(file):
-            _must_be_archive(file)
-    _say_compiling(file=sys.stderr)
-    with _Progress() as bar, _reads(files[0]):
+        _must_be_archive(file)
+    say_compiling()
+    with Progress() as bar, reads(files[0]):
         try:
             review(files, out, title, _rules_of, sources_of_film, progress=bar)
         except OSError as error:
-            raise _not_written(error, out, "the archives are whole") from None
+            raise not_written(error, out, "the archives are whole") from None
     print(out)
 
 
@@ -757,9 +520,8 @@ def compare(
     from .report.comparison import comparison, comparison_lines
 
     for file in (one, other):
-        with _reads(file):
-            _must_be_archive(file)
-    with _reads(other):
+        _must_be_archive(file)
+    with reads(other):
         found = comparison(one, other)
     if as_json:
         print(json.dumps(found))
@@ -778,32 +540,24 @@ def _in_words(file):
 
 
 def _rules_of(file, info) -> list[dict]:
-    """What the design rules say of the scene of a run, the broken ones first."""
-    from .analysis import design_rules, radial_rules
+    """What the design rules say of the scene of a run."""
+    from .analysis.check import rules_of
     from .archive import ArchiveError
-    from .scene.radial import RadialScene
     from .scene.scene import SceneError
-    from .simulation.selection import prepare_run
 
-    scenario = _read(file, None)
     try:
-        found = (
-            radial_rules.findings(scenario)
-            if isinstance(scenario.scene, RadialScene)
-            else design_rules.findings(scenario, prepare_run(scenario)[0].model)
-        )
+        return rules_of(_read(file, None))
     except (SceneError, ArchiveError) as error:
         # It began from an archive, say, that is gone.
         print(f"warning: {file}: the page has no design rules ({error})", file=sys.stderr)
         return []
-    order = ("fail", "note", "acknowledged", "pass", "not applicable")
-    return sorted(found, key=lambda row: order.index(row["verdict"]))
 
 
 def _must_be_archive(file):
     from .archive import is_study, read_info, read_study
 
-    (read_study if is_study(file) else read_info)(file)
+    with reads(file):
+        (read_study if is_study(file) else read_info)(file)
 
 
 @app.command()
@@ -822,8 +576,8 @@ def validate(
     if not set(wanted) <= set(names):
         near = _nearest(wanted[0], names)
         raise Stop(Status.INVALID, f'source: found "{source}"; expected one of {", ".join(names)}{near}')
-    _say_compiling(file=sys.stderr)
-    with _libraries_on_stderr():
+    say_compiling()
+    with libraries_on_stderr():
         found = checks(wanted)
     rows = [row for part in found.values() for row in part]
     good = all(row["verdict"] != "FAILED" for row in rows)
@@ -839,24 +593,12 @@ class _StudyCommand(TyperCommand):
 
     def parse_args(self, context, args):
         if {"-h", "--help"} & set(args):
-            self.epilog = _about_study(next((word for word in args if word[0] != "-"), ""))
+            from rich.markup import escape
+
+            from .studies._settings import help_text
+
+            self.epilog = escape(help_text(next((word for word in args if word[0] != "-"), "")))
         return super().parse_args(context, args)
-
-
-def _about_study(name: str) -> str | None:
-    """What a study is, its settings and its time; of no study which there are."""
-    from rich.markup import escape
-
-    from .studies import study_names
-    from .studies._settings import about, settings_of, time_of
-
-    if name.replace("_", "-") not in study_names():
-        return escape("\n\n".join(f"{known}: {about(known)}" for known in study_names()))
-    lines = [
-        f"--{s.key.replace('_', '-')} ({s.holds}{f'; default {s.default}' if s.default else ''}): {s.meaning}"
-        for s in settings_of(name)
-    ]
-    return escape("\n\n".join([about(name), *lines, f"Time: {time_of(name)}."]))
 
 
 @app.command(cls=_StudyCommand, context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
@@ -893,10 +635,10 @@ def study(
     if scheduler is not None and workers is not None:
         raise Stop(Status.INVALID, f"--workers: found {workers}; expected nothing, the scheduler has its own")
     scenario = _read(file, set)
-    _say_compiling(file=sys.stderr)
+    say_compiling()
     out = archive_of(name, scenario, out)
-    _leaves(lambda: _kept_of_study(journal_of(out), results))
-    with _Progress() as bar, _libraries_on_stderr():
+    leaves(lambda: kept_of_study(journal_of(out), results))
+    with Progress() as bar, libraries_on_stderr():
         try:
             answer = run_study(
                 name, scenario, out, flags=_flags(context.args), workers=workers, scheduler=scheduler, results=results,
@@ -908,9 +650,9 @@ def study(
         except (ClusterError, ArchiveError) as error:
             raise Stop(Status.INVALID, str(error)) from None
         except OSError as error:
-            raise _not_written(error, error.filename or out, _left["words"]()) from None
-    _leaves(lambda: f"the study is complete: {answer['archive']}")
-    if plot and (figure := _drawn("panels", Path(answer["archive"]))):
+            raise not_written(error, error.filename or out, left["words"]()) from None
+    leaves(lambda: f"the study is complete: {answer['archive']}")
+    if plot and (figure := drawn("panels", Path(answer["archive"]))):
         answer["figure"] = figure
     if as_json:
         print(json.dumps(answer))
@@ -949,115 +691,8 @@ def _flags(words: list[str]) -> dict:
 
 
 def main():
-    """Entry point: one line for every error, never a traceback."""
-    _open_streams()
-    as_json = "--json" in sys.argv
-    gc.set_threshold(GARBAGE)
-    # Python would look through all that was loaded once more as it ends.
-    atexit.register(gc.freeze)
-    # What is done by then is done, and the exit code says how.
-    atexit.register(deafen)
-    _leaves(lambda: "nothing is kept")
-    try:
-        with interruption:
-            # Standard output itself: while libraries print, it is not where it was.
-            out = os.dup(1)
-            interruption.last_words = lambda: _break_off(as_json, out)
-            try:
-                _run(as_json)
-            finally:
-                os.close(out)
-    except KeyboardInterrupt:
-        # It came before the first thing was done, or after the last.
-        _tell_interrupted(as_json)
-        sys.exit(INTERRUPTED)
-
-
-def _open_streams():
-    """Standard streams that were closed lead nowhere: else the first file opened would take their place."""
-    for number in range(3):
-        try:
-            os.write(number, b"") if number else os.fstat(number)
-        except OSError as error:
-            # A full device is found out by what is written.
-            if error.errno != errno.EBADF:
-                continue
-            os.dup2(nowhere := os.open(os.devnull, os.O_RDWR), number)
-            if nowhere != number:
-                os.close(nowhere)
-    for name in ("stdin", "stdout", "stderr"):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, "r" if name == "stdin" else "w"))  # noqa: SIM115
-
-
-def _run(as_json: bool):
-    try:
-        code = app(standalone_mode=False)
-        sys.stdout.flush()
-        if code == INTERRUPTED:
-            # A KeyboardInterrupt comes out as this code, too.
-            _tell_interrupted(as_json)
-        sys.exit(code if isinstance(code, int) else DONE)
-    except Stop as stop:
-        _refuse(stop.status, stop.message, as_json, stop.errors)
-        sys.exit(stop.code)
-    except BrokenPipeError:
-        # Whoever read us has seen enough; keep the interpreter from complaining at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        sys.exit(DONE)
-    except OSError as error:
-        # Everything else that is written has its own words.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        line = f"standard output: cannot be written ({error.strerror or error})"
-        print(line, file=sys.stderr)
-        sys.exit(FAILED)
-    except KeyboardInterrupt:
-        _tell_interrupted(as_json)
-        sys.exit(INTERRUPTED)
-    except Exception as error:
-        if interruption.asked:
-            # A library that was being loaded has made another error of the KeyboardInterrupt, as pydantic does.
-            _tell_interrupted(as_json)
-            sys.exit(INTERRUPTED)
-        # A misused command line: the parser's own errors can say what they mean in one line.
-        if not hasattr(error, "format_message"):
-            raise
-        _refuse(Status.INVALID, f"sealdyn: {error.format_message()}  See sealdyn --help.", as_json)
-        sys.exit(BAD_INPUT)
-
-
-def _tell_interrupted(as_json: bool):
-    """What is kept, in a line, and as JSON unless that has been printed.  Nothing is imported any more: an import that
-    was broken off would begin anew, and some libraries say so."""
-    # Python ends itself with the signal, not with our code, if a text was being executed; the next one undoes that.
-    exec("")
-    line = f"interrupted: {_left['words']()}"
-    print(line, file=sys.stderr)
-    if as_json and not _left["answered"]:
-        print(json.dumps({"status": Status.INTERRUPTED, "message": line}))
-
-
-def _break_off(as_json: bool, out: int):
-    """Last words of a process that is ended at once, past Python's own streams."""
-    line = f"interrupted: {_left['words']()}"
-    # A progress bar hides the cursor.
-    os.write(2, f"{chr(27) + '[?25h' if os.isatty(2) else ''}{line}\n".encode())
-    if as_json and not _left["answered"]:
-        os.write(out, f"{json.dumps({'status': Status.INTERRUPTED, 'message': line})}\n".encode())
-
-
-def _refuse(status: str, message: str, as_json: bool, errors=()):
-    from .units import cut
-
-    lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
-    if not as_json:
-        print("\n".join(lines), file=sys.stderr)
-        return
-    told = {"status": status, "message": lines[0]}
-    if errors:
-        keys = [{"key": error.key, "found": error.found, "expected": error.expected} for error in errors]
-        told["errors"] = [{"message": line, **key} for line, key in zip(lines, keys, strict=True)]
-    print(json.dumps(told))
+    """Entry point."""
+    carried_out(app)
 
 
 if __name__ == "__main__":

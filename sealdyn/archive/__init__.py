@@ -1,12 +1,20 @@
 """HDF5 files that a stranger can read: run.py and run_writer.py for trajectories, study.py for the answers of studies,
 as xarray datasets in dataset.py; files.py for what all files have."""
 
-from .dataset import answer_as_dataset, answer_tables, as_dataset, open_archive, tables_as_dataset
 from .fields import FIELD_TIME, Fields, Series
 from .files import READING_ERRORS, ArchiveError, is_full, link_target, only_writer, partial_path
 from .run import column, field, last_state, read_info
 from .run_writer import ArchiveWriter
-from .study import is_study, read_study, write_study
+from .study import (
+    answer_as_dataset,
+    answer_tables,
+    as_dataset,
+    is_study,
+    open_archive,
+    read_study,
+    tables_as_dataset,
+    write_study,
+)
 from .tables import columns_of
 
 __all__ = [

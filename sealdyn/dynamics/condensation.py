@@ -10,15 +10,15 @@ from numba import float64, int64, types
 
 from ..faces.geometry import FORCE
 from ..films._contract import Film, FilmUnknowns
-from ..numerics.addresses import (
+from ..numerics.kernel import (
     MATRIX,
     VECTOR,
     call_film_jacobian,
     call_film_residual,
     call_load,
     call_wrench_jacobian,
+    outer_kernel,
 )
-from ..numerics.kernel import outer_kernel
 from ..scene.scene import SceneError
 from .native import LOAD_TYPE, Value
 

@@ -7,8 +7,16 @@ import numpy as np
 from numba import carray, float64, int32
 
 from ..faces.geometry import FORCE, MOMENT_X, MOMENT_Y, OUTER_RADIUS
-from ..numerics.addresses import ADDRESS, call_film_residual, call_load, floats, integers
-from ..numerics.kernel import c_function, inner_kernel, outer_kernel
+from ..numerics.kernel import (
+    ADDRESS,
+    c_function,
+    call_film_residual,
+    call_load,
+    floats,
+    inner_kernel,
+    integers,
+    outer_kernel,
+)
 from . import equations
 from .condensation import RESIDUAL, WRENCH, FilmDerivatives, residual_by_unknowns, wrench_by_unknowns
 from .native import ARRAYS, CONTACT, FILM, GAP, KERNEL, LOAD, PARAMETERS, SCRATCH, SIZE, WORK, Native, array, load_value

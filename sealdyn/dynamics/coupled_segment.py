@@ -8,8 +8,7 @@ from scipy.sparse import csc_array
 
 from ..faces import contact
 from ..faces.film_thickness import h_min
-from ..numerics.addresses import call_load, call_settle
-from ..numerics.kernel import inner_kernel, outer_kernel
+from ..numerics.kernel import call_load, call_settle, inner_kernel, outer_kernel
 from ..solvers.contract import SolverFailure
 from . import coupled_native, equations
 from .condensation import SETTLE, factored

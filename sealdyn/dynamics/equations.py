@@ -41,8 +41,7 @@ from ..faces.geometry import (
     TEMPERATURE,
     VISCOSITY,
 )
-from ..numerics.addresses import call_seal
-from ..numerics.kernel import inner_kernel, outer_kernel
+from ..numerics.kernel import call_seal, inner_kernel, outer_kernel
 from .imposed_motion import (
     CLOSING_AT,
     INNER_AT,

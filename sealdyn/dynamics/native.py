@@ -14,8 +14,19 @@ from numba import boolean, carray, float64, int32, int64, types
 from ..faces.contact import contact_load, contact_load_and_friction, no_load
 from ..faces.film_thickness import h_min_of
 from ..faces.geometry import FORCE
-from ..numerics.addresses import ADDRESS, MATRIX, VECTOR, call_film, call_load, call_rates, floats, integers
-from ..numerics.kernel import c_function, inner_kernel, lazy_kernel
+from ..numerics.kernel import (
+    ADDRESS,
+    MATRIX,
+    VECTOR,
+    c_function,
+    call_film,
+    call_load,
+    call_rates,
+    floats,
+    inner_kernel,
+    integers,
+    lazy_kernel,
+)
 from .equations import kinematics, rates, residual
 
 # --- Function values -----------------------------------------------------------------------------------

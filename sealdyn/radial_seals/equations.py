@@ -19,8 +19,7 @@ import numpy as np
 from numba import carray
 
 from ..dynamics.native import BLOCK, PARAMETERS, RATES, array
-from ..numerics.addresses import floats, integers
-from ..numerics.kernel import c_function, inner_kernel, outer_kernel
+from ..numerics.kernel import c_function, floats, inner_kernel, integers, outer_kernel
 
 COUNT, MASS, DAMPING, PRELOAD, FRICTION, OFFSET, OFFSET_DIRECTION, WAVES, HEAD = range(9)
 WAVE = 5

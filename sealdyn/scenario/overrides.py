@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .. import __version__
+from ..answers import toml_line
 from ..scene.variants import ALTERNATIVES
-from ..toml_line import toml_line
 from ..units import Length, QuantityError, quoted
 from .errors import ScenarioError, diameters, table_in, tables, without_indices
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Self
 
+from ..answers import toml_text
 from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene import variants
 from ..scene.application import Application, RadialApplication
@@ -18,7 +19,6 @@ from ..scene.checks import unused
 from ..scene.radial import RadialScene
 from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import Scene
-from ..toml_line import toml_text
 from ..units import is_gauge, quoted
 from .errors import (
     ScenarioError,

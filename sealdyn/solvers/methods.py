@@ -1,9 +1,63 @@
-"""The integrators by name: CVODE and IDA through scikit-sundae, SciPy's references, the matrix exponential."""
+"""The integrators by name: CVODE and IDA through scikit-sundae, SciPy's DOP853 and Radau as references, the matrix exponential."""
 
+import numpy as np
+
+from .contract import SolverFailure, absolute_tolerances, failure_message
 from .matrix_exponential import expm
-from .scipy_methods import dop853_or_radau
 from .sundials import cvode, ida
 from .trbdf2 import trbdf2
+
+
+def dop853_or_radau(segment, tau, y, method, tolerance, counts):
+    """Steps of SciPy's DOP853 or Radau, with the contract of contract.py.
+
+    **Source** Hairer, Norsett & Wanner (1993), Solving ODEs I (DOP853); Hairer & Wanner (1996), Solving ODEs II, IV.8
+    (Radau IIA).
+    """
+    from scipy.integrate import DOP853, Radau
+
+    kind = DOP853 if method == "dop853" else Radau
+    yield from scipy_steps(kind, kind is Radau, segment, tau, y, method, tolerance, counts)
+
+
+def scipy_steps(kind, implicit, segment, tau, y, method, tolerance, counts):
+    """Steps of one of SciPy's solvers (the class `kind`), other arguments as contract.py; an `implicit` one is given
+    the segment's Jacobian.  **Raises** SolverFailure."""
+    inner = segment.rhs
+
+    def counted(t, y):
+        counts.rhs += 1
+        yp = np.empty_like(y)
+        inner(t, y, yp)
+        return yp
+
+    def differences(t, y):
+        # SciPy's own steps of the tolerance times 1e-8 drown beside a clearance.
+        matrix = np.empty((segment.size, segment.size))
+        counts.jacobians += 1
+        counts.rhs += segment.n_mechanical
+        segment.jacobian(t, np.array(y), None, matrix)
+        return matrix
+
+    options = {"jac": differences} if implicit else {}
+    # SciPy's own floor on rtol is 100 eps; the absolute part carries the accuracy below it.  Its norm is an average:
+    # the unweighted last unknown would only loosen it, by sqrt(n/(n-1)).
+    relative, absolute = max(tolerance, 2.3e-14), absolute_tolerances(segment, tolerance)
+    solver = kind(
+        counted, tau, y, segment.length, rtol=relative, atol=absolute, max_step=segment.longest_step(), **options
+    )
+    while solver.status == "running":
+        # A trial stage may fly off and overflow; the error norm then refuses the step.
+        try:
+            with np.errstate(all="ignore"):
+                message = solver.step()
+        except (ValueError, np.linalg.LinAlgError) as error:
+            # A matrix that is no number: the film has no solution there.
+            raise SolverFailure(failure_message(method, str(error), solver.t)) from None
+        if solver.status == "failed":
+            raise SolverFailure(failure_message(method, message, solver.t))
+        yield np.array([solver.t]), solver.y[None, :].copy(), None
+
 
 METHODS = {
     "adams": cvode,

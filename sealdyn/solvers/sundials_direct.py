@@ -11,8 +11,19 @@ from contextlib import contextmanager
 import numpy as np
 from numba import carray, float64, int32, int64, types
 
-from ..numerics.addresses import ADDRESS, call_derivatives, call_rates, call_residual, floats, integers, short_integers
-from ..numerics.kernel import c_function, inner_kernel, lazy_kernel, outer_kernel
+from ..numerics.kernel import (
+    ADDRESS,
+    c_function,
+    call_derivatives,
+    call_rates,
+    call_residual,
+    floats,
+    inner_kernel,
+    integers,
+    lazy_kernel,
+    outer_kernel,
+    short_integers,
+)
 from .contract import FEW, SolverFailure, absolute_tolerances, failure_message
 from .sundials_libraries import (
     BLOCK,

@@ -11,7 +11,7 @@ import llvmlite.binding
 import numpy as np
 from numba import types
 
-from ..numerics.addresses import ADDRESS
+from ..numerics.kernel import ADDRESS
 from .contract import MOST_ORDERS
 
 # In the order in which they need each other.

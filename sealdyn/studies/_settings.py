@@ -56,6 +56,17 @@ def refuse_settings(scenario) -> None:
         study_settings(scenario, study, study_module(study).Settings, {})
 
 
+def help_text(name: str) -> str:
+    """What study `name` is, its settings and its time; of no study which there are."""
+    if name.replace("_", "-") not in study_names():
+        return "\n\n".join(f"{known}: {about(known)}" for known in study_names())
+    lines = [
+        f"--{s.key.replace('_', '-')} ({s.holds}{f'; default {s.default}' if s.default else ''}): {s.meaning}"
+        for s in settings_of(name)
+    ]
+    return "\n\n".join([about(name), *lines, f"Time: {time_of(name)}."])
+
+
 def time_of(name: str) -> str:
     """How long study `name` takes, in words."""
     words, seconds = study_info(name.replace("-", "_")).timed

@@ -18,7 +18,7 @@ from sealdyn.scene.film import Coefficients
 from sealdyn.solvers.fixed_step import REFERENCE_METHODS
 from sealdyn.studies._runner import run_study
 from sealdyn.studies.work_precision import errors, film_ladder, study
-from sealdyn.studies.work_precision.ranking import mark_slow_runs
+from sealdyn.studies.work_precision.study import mark_slow_runs
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 FEW = {"tolerances": 3, "loosest": 1e-3, "tightest": 1e-7, "repeats": 1, "samples": 40, "longest": 60}

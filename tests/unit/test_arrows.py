@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 ORDER = (
     ("status", "quantities"),
     ("answers",),
-    ("numerics", "closed_form", "archive", "kernel_cache", "toml_line", "unit_names"),
+    ("numerics", "closed_form", "archive", "kernel_cache", "unit_names"),
     ("units", "solvers", "report"),
     ("scene",),
     ("faces",),
@@ -21,6 +21,7 @@ ORDER = (
     ("simulation",),
     ("analysis",),
     ("studies",),
+    ("terminal",),
     ("cli",),
     ("__init__",),
 )
@@ -31,11 +32,11 @@ ONLY_IN = {
     "sksundae": ("solvers", "studies/failures/cases"),
     "h5py": ("archive",),
     "tomllib": ("scenario",),
-    "tomlkit": ("toml_line.py",),
+    "tomlkit": ("answers.py",),
     "pint": ("unit_names.py",),
     "matplotlib": ("report/charts", "report/panels.py"),
     "typer": ("cli.py",),
-    "rich": ("cli.py",),
+    "rich": ("cli.py", "terminal.py"),
 }
 
 

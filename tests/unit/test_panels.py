@@ -10,7 +10,7 @@ from sealdyn import quantities, units
 from sealdyn.answers import Answer, Axis, Level, Panel, Series, Table, as_json, panels_of, plain
 from sealdyn.report import panels
 from sealdyn.report.panels import sheet_of
-from sealdyn.report.tables import table_lines
+from sealdyn.report.text import table_lines
 
 SPEED, GAP = Axis("speed"), Axis("clearance")
 # A panel of every kind, zeros and gaps among its numbers.

@@ -4,16 +4,16 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn.cli import _Progress
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.studies._runner import StudyContext, run_study
+from sealdyn.terminal import Progress
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 
 @pytest.fixture
 def shown():
-    bar = _Progress()
+    bar = Progress()
     bar._show()
     yield bar
     bar.bar.stop()

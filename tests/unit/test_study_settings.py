@@ -7,13 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from sealdyn.cli import _about_study
 from sealdyn.scenario.errors import ScenarioError
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.scenario.settings import axis, si_unit, study_settings, values_in_si
 from sealdyn.studies import contact_onset, steady_state, study_names, sweep
 from sealdyn.studies._runner import study_info, study_module
-from sealdyn.studies._settings import schema_with_studies, settings_of
+from sealdyn.studies._settings import help_text, schema_with_studies, settings_of
 from sealdyn.studies.failures import study as failures
 from sealdyn.studies.rub import study as rub
 from sealdyn.studies.sealing_number import study as sealing_number
@@ -119,7 +118,7 @@ def test_units_of_keys():
 def test_every_setting_is_described_wherever_it_is_asked_for(name):
     """Help, JSON schema: what it holds, its unit, its default, what it means; and the time that the study takes."""
     _, seconds = study_info(name.replace("-", "_")).timed
-    help = " ".join(_about_study(name).replace("\\\\[", "[").split())
+    help = " ".join(help_text(name).split())
     table = schema_with_studies()["properties"]["study"]["properties"][name.replace("-", "_")]
     assert f"{seconds} s of processor time" in help and f"{seconds} s of processor time" in table["description"]
     fields = dataclasses.fields(study_module(name.replace("-", "_")).Settings)

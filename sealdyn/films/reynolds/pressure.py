@@ -44,9 +44,9 @@ from .mesh import (
     films,
     half_height,
     heights,
+    mean_reciprocal,
     table,
 )
-from .roughness import mean_reciprocal
 
 
 @inner_kernel()

@@ -16,8 +16,7 @@ from ...simulation.result import unit_of
 from ...status import Status
 from .. import Info
 from ..sweep import quantity_of
-from .effects import Sample, convergence, indices, tightened
-from .estimates import moments, number, probability, quantiles
+from .estimates import Sample, convergence, indices, moments, number, probability, quantiles, tightened
 from .scatter import SCRAMBLES, points, read_correlations, read_scatter
 
 INFO = Info(

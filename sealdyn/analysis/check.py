@@ -1,0 +1,47 @@
+"""What is known of a scenario before it runs: its scene in SI, the model chosen, cautions, and the design rules."""
+
+from ..radial_seals.followers import closed_form_sentences
+from ..scenario.reader import Scenario
+from ..scene.radial import RadialScene
+from ..simulation.film_error import reynolds_comparison
+from ..simulation.plausibility import scene_cautions, size_of
+from ..simulation.selection import prepare_run
+from ..simulation.summary import model_chosen
+from ..status import Status
+from . import design_rules, radial_rules
+
+
+def checked(scenario: Scenario) -> dict:
+    """The answer of `sealdyn check --json`, SI.  Raises SceneError and ArchiveError of a run that cannot be made
+    ready."""
+    found = {"status": Status.OK, "message": "the scene is possible", "scene": scenario.resolved()}
+    size = size_of(scenario)
+    run, plan = prepare_run(scenario)
+    if isinstance(scenario.scene, RadialScene):
+        followers = run.model.followers
+        return found | {
+            "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"]},
+            "closed_form": closed_form_sentences(followers, scenario.scene.shaft),
+            "design_rules": radial_rules.findings(scenario),
+            "equilibria": [],
+        }
+    return found | {
+        "gauge": sorted(scenario.gauge),
+        "model": model_chosen(scenario, run, plan),
+        "clearance": run.model.clearance,
+        "equilibria": [vars(e) for e in run.model.interface.equilibria],
+        "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model))],
+        "design_rules": design_rules.findings(scenario, run.model),
+        "beside_reynolds": reynolds_comparison(run),
+        "size": {key: getattr(size, key) for key in ("turns", "rows", "bytes", "seconds")},
+    }
+
+
+def rules_of(scenario: Scenario) -> list[dict]:
+    """What the design rules find of any scenario, broken ones first.  Raises as `checked`."""
+    if isinstance(scenario.scene, RadialScene):
+        found = radial_rules.findings(scenario)
+    else:
+        found = design_rules.findings(scenario, prepare_run(scenario)[0].model)
+    order = ("fail", "note", "acknowledged", "pass", "not applicable")
+    return sorted(found, key=lambda row: order.index(row["verdict"]))
