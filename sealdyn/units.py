@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass, is_dataclass
 from decimal import Decimal, DecimalException
 from functools import cache
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from .numerics.piecewise_linear import PiecewiseLinear
 from .unit_names import dimension_and_factor, unknown_unit
@@ -270,6 +270,17 @@ def _entries(quantity: Quantity, column: list, name: str) -> tuple[float, ...]:
         except QuantityError as error:
             raise QuantityError(f"{name}[{k}] = {error.found}", error.expected) from None
     return tuple(values)
+
+
+def quantity_of(holds: Any) -> "Quantity | None":
+    """The quantity that a field of type `holds` is one or several of, constant or not; None for plain numbers."""
+    for kind in (holds, *get_args(holds)):
+        # Only `Annotated` types have metadata.
+        for part in getattr(kind, "__metadata__", ()):
+            found = part if isinstance(part, Quantity) else getattr(part, "quantity", None)
+            if isinstance(found, Quantity):
+                return found
+    return None
 
 
 class Varying:

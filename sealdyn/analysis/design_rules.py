@@ -42,8 +42,7 @@ OTHER_SEALS = {
 SPRINGS = {"wave_washer": "a wave washer takes", "coil": "coil springs take", "bellows": "bellows take"}
 # Of the table's face width: how near counts as that width is not the guide's.
 NEAR = 0.1
-# Angles around the face: forty to a wave.
-ANGLES = np.linspace(0.0, 2 * np.pi, 40 * HIGHEST_ORDER + 1)
+ANGLES = np.linspace(0.0, 2 * np.pi, 40 * HIGHEST_ORDER + 1)  # forty to a wave
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from ..scene import variants
 from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
-from ..units import quoted
+from ..units import quantity_of, quoted
 from .errors import ScenarioError, nearest_of
 from .reader import Scenario
 from .tables import refuse_extremes
@@ -141,10 +141,8 @@ def si_unit(scene, key: str) -> str:
     key that there is not."""
     owner, _, name = key.rpartition(".")
     kind = typing.get_type_hints(type(variants.part(scene, owner)), include_extras=True)[name]
-    for told in [kind, *typing.get_args(kind)]:
-        for meta in getattr(told, "__metadata__", ()):
-            return getattr(meta, "quantity", meta).unit
-    return "SI"
+    held = quantity_of(kind)
+    return held.unit if held else "SI"
 
 
 def with_own_unit(scene, axis: dict) -> dict:

@@ -1,4 +1,4 @@
-"""The integrators by name: CVODE and IDA through scikit-sundae, SciPy's DOP853 and Radau as references, the matrix exponential."""
+"""The integrators by name: CVODE and IDA, SciPy's DOP853 and Radau as references, the matrix exponential, TR-BDF2."""
 
 import numpy as np
 

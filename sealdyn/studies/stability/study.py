@@ -27,6 +27,7 @@ from ...scene.scene import SceneError
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.selection import choose_method
 from ...simulation.stability import critical_speed, speeds_held, whirl_ratio
+from ...units import quantity_of
 from .. import Info
 from .grid import INERTIA_RATIO, Grid
 
@@ -119,7 +120,8 @@ def _held_by(scenario, where, key):
         raise ScenarioError(scenario.name, where, f'"{key}"', f"a scenario key or {INERTIA_RATIO}{hint}")
     if ".body." in key:
         raise ScenarioError(scenario.name, where, f'"{key}"', "mass or an inertia, which follow from the body")
-    return holds, _unit(holds)
+    held = quantity_of(holds)
+    return holds, held.unit if held else "1"
 
 
 def _value(scenario, where, key, holds, text) -> float:
@@ -136,13 +138,6 @@ def _number(text: str):
         return float(text)
     except ValueError:
         return text
-
-
-def _unit(holds) -> str:
-    """SI unit of what a key holds; "1" for plain numbers."""
-    for part in getattr(holds, "__metadata__", ()):
-        return getattr(part, "unit", None) or part.quantity.unit
-    return next((u for u in map(_unit, getattr(holds, "__args__", ())) if u != "1"), "1")
 
 
 def _default_x(scene) -> str:

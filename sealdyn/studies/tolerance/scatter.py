@@ -12,7 +12,7 @@ from ...scenario.errors import ScenarioError, diameters, nearest, nearest_of, ta
 from ...scenario.overrides import radius_key
 from ...scene import variants
 from ...scene.scene import Scene
-from ...units import Length, Quantity, QuantityError, quoted
+from ...units import Length, Quantity, QuantityError, quantity_of, quoted
 
 SCATTER, CORRELATIONS = "study.tolerance.scatter", "study.tolerance.correlations"
 # What a distribution takes, beside "MEAN +- WIDTH" and "+- WIDTH": counts of numbers, the last without the mean.
@@ -103,11 +103,9 @@ class _Entry:
             kind = typing.get_type_hints(type(owner), include_extras=True)[last]
         except (AttributeError, IndexError, KeyError, ValueError):
             raise self.wrong(f"{self.key}", f"a key of a table that the scenario has: no {table}") from None
-        for told in (kind, *typing.get_args(kind)):
-            for meta in getattr(told, "__metadata__", ()):
-                quantity = getattr(meta, "quantity", meta)
-                if isinstance(quantity, Quantity) and quantity.example:
-                    return quantity
+        quantity = quantity_of(kind)
+        if quantity and quantity.example:
+            return quantity
         if kind is float or float in typing.get_args(kind):
             return None
         raise self.wrong(f"{self.key}, which holds no number", "a key that holds a number, with or without unit")
