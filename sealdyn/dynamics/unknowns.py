@@ -9,7 +9,7 @@ from ..scene.contact import waves_of
 from ..scene.film import follows_speed
 from ..scene.rings import RING_NAMES, ROTOR, STATOR
 from ..scene.sweep import largest_amplitude, tilts
-from ..scene.variants import tilt_is_given, tilt_is_imposed
+from ..scene.symmetry import alike_sectors, face_orders, faces_tilt
 from . import equations
 from .imposed_motion import AXIAL, fluid_conditions, harmonics_of_segment
 from .intervals import largest_value
@@ -30,7 +30,8 @@ class Unknowns:
     `film_unknowns` what the film owns (films/_contract.py), None of an algebraic one; `has_residual_form` whether they
     obey a residual only, since a ring is massless or the film has unknowns; `ring_block` the constant part of the
     parameters; `floats` per ring, `seals` the rings with a secondary seal, `with_axial`, `with_tilt`, `linear`,
-    `constant` (no table anywhere), `extended` (contact or a secondary seal), `reasons`.
+    `constant` (no table anywhere), `extended` (contact or a secondary seal), `faces_tilt` (aligned faces press with a
+    moment), `reasons`.
     """
 
     def __init__(self, scene, closing, linear: bool, film_unknowns=None):
@@ -58,10 +59,17 @@ class Unknowns:
         self.constant = not any(isinstance(q, PiecewiseLinear) for q in (*loads, *others, *tilts))
         # Samples have no frequency and sweeps have many: nothing that needs one, a steady response, a period, is there.
         self.constant = self.constant and not (scene.shaft.motion or scene.housing.motion or scene.housing.sweeps)
-        self._choose(tilt_is_given(scene) or tilt_is_imposed(scene), shifted or _axial_motion_is_imposed(scene), loaded)
+        # Of films that take waves and pads, those without unknowns press as between plain faces.
+        pressed = film_unknowns is not None
+        self.faces_tilt = pressed and faces_tilt(scene)
+        tilted = alike_sectors(scene, pressed) == 1
+        self._choose(tilted, shifted or _axial_motion_is_imposed(scene), loaded)
         self.film_unknowns = film_unknowns
         self._place((scene.stator, scene.rotor))
-        if waves_of(scene) and not film_unknowns:
+        if self.faces_tilt:
+            orders = " and ".join(map(str, face_orders(scene)))
+            self.reasons.append(f"faces of order {orders} press with a moment when aligned: linear numbers lack it")
+        if waves_of(scene) and not pressed:
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         if self.massless:
             self.reasons.append("massless ring: no rates among its unknowns, first order in time (IDA)")

@@ -5,44 +5,14 @@ The counterpart carries the same ring on the other side: mass, inertias, support
 rigid partner gets the runout (FMS) or the fixed misalignment (FMR) that the other partner had.  The film stays.
 """
 
-import math
 from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import Any
 
-from ..numerics.piecewise_linear import PiecewiseLinear, points
-from .contact import waves_of
+from ..numerics.piecewise_linear import PiecewiseLinear
 from .excitation import Housing, Shaft
 from .rings import INERTIAL, RING_NAMES, Rotor, Stator, with_inertia
 from .scene import Closing, Initial, RingStart, Scene, SceneError
-
-
-def tilt_is_imposed(scene) -> bool:
-    """Whether anything but its own start ever tilts a ring."""
-    rotor, stator = scene.rotor, scene.stator
-    tilts = [rotor.misalignment if rotor.support else rotor.runout, stator.misalignment]
-    tilts += [whirl.angle for whirl in scene.shaft.whirl]
-    vibrations = (*scene.housing.angular_tones, *scene.housing.angular_sweep)
-    shaken = any(vibration.displacement or vibration.acceleration for vibration in vibrations)
-    sampled = (m for m in (scene.housing.motion, scene.shaft.motion) if m)
-    shaken = shaken or any(any(m.tilt_x or ()) or any(m.tilt_y or ()) for m in sampled)
-    return shaken or any(any(points(tilt)) for tilt in tilts)
-
-
-def tilt_is_given(scene) -> bool:
-    """Whether a floating ring starts with a tilt, or with a rate of it, by [initial]."""
-    starts = ((scene.rotor, scene.initial.rotor), (scene.stator, scene.initial.stator))
-    moved = [start for ring, start in starts if ring.support is not None]
-    return any(v for s in moved for v in (s.tilt_x, s.tilt_y, s.tilt_x_rate, s.tilt_y_rate))
-
-
-def alike_sectors(scene) -> int:
-    """Into how many sectors that are alike at any time the film of a scene falls: 1 where a ring tilts, as many as all
-    waves have in common where none does, 0 (any number) without waves."""
-    if tilt_is_imposed(scene) or tilt_is_given(scene):
-        return 1
-    return math.gcd(*(wave.order for wave in waves_of(scene) if wave.amplitude))
-
 
 # A key that is given takes its alternatives in the same table away.
 ALTERNATIVES = {
@@ -158,16 +128,22 @@ def frozen_at_start(scene: Scene, speed: float | None = None, clearance: float |
 
 def unforced(scene: Scene, speed: float) -> Scene:
     """The scene aligned and free of forcing, at constant conditions (functions of time at zero) and one shaft speed
-    (rad/s), with a tilt to start from so that its tilts are unknowns."""
-    scene, nudge = frozen_at_start(scene), RingStart(tilt_x=1e-6)
+    (rad/s), `tilting`."""
+    scene = tilting(frozen_at_start(scene))
     return replace(
         scene,
         shaft=Shaft(speed=speed),
         rotor=replace(scene.rotor, misalignment=0.0, runout=0.0, axial_runout=[]),
         stator=replace(scene.stator, misalignment=0.0),
         housing=Housing(),
-        initial=Initial(rotor=nudge, stator=nudge),
     )
+
+
+def tilting(scene: Scene) -> Scene:
+    """The scene with a tilt to start from, whatever its own symmetry: its tilts are unknowns, its film is that of the
+    whole circle, and it can be asked for tilted states."""
+    nudge = RingStart(tilt_x=1e-6)
+    return replace(scene, initial=Initial(rotor=nudge, stator=nudge))
 
 
 def _constant(scene: Scene, value_of: Callable[[PiecewiseLinear], float]) -> Scene:

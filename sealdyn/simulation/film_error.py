@@ -326,6 +326,8 @@ def steady_tilt(model: Model) -> tuple[complex, float, str]:
     """Relative tilt (rad, complex), its whirl (rad/s) and what it is, of the linear steady state."""
     if seals_that_stick(model.scene):
         return 0.0, 0.0, "a ring that its secondary seal holds has no linear steady state: aligned"
+    if model.unknowns.faces_tilt:
+        return 0.0, 0.0, "aligned faces that press with a moment are no linear steady state: aligned"
     if model.scene.shaft.motion or model.scene.housing.motion:
         return 0.0, 0.0, "a motion by samples has no linear steady state: aligned"
     segment = model.segment()

@@ -333,7 +333,7 @@ def _first(quantity, segment):
 def _linear_steady(segment, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
-    if not segment.harmonic:
+    if segment.model.unknowns.faces_tilt or not segment.harmonic:
         return None
     if period is None and len(rows):
         frequencies = [w for w in rows[:, 7] if w]
@@ -344,8 +344,8 @@ def _linear_steady(segment, linear, period):
 
 def _contact_margin(segment, linear, tilt):
     """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
-    there are any: 0 where they touch without forcing.  Unknown of wavy faces, and of a sweep, which is over in the last
-    segment."""
+    there are any: 0 where they touch without forcing.  Unknown of wavy faces, of aligned ones that press with a moment,
+    and of a sweep, which is over in the last segment."""
     model = segment.model
     if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan
@@ -365,6 +365,8 @@ def _contact_margin(segment, linear, tilt):
 def _closed_form(segment, linear, tilt):
     """Steady state of the linearised film: harmonic balance for any scene; for one flexible ring also the published
     formulas fed with the film's own coefficients."""
+    if segment.model.unknowns.faces_tilt:
+        return {"road": "none: aligned faces press with a moment, so that it is not about them that the rings move"}
     if tilt is None:
         return {"road": "none: conditions change with time"}
     if modes.verdict(linear.modes()) != "stable":

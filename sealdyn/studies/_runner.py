@@ -15,6 +15,7 @@ from typing import Any
 from .. import __version__, studies
 from ..answers import as_json, plain
 from ..archive import link_target, only_writer, write_study
+from ..films import film_of
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..report.text import written_units
 from ..scenario.reader import Scenario
@@ -23,6 +24,7 @@ from ..scene import variants
 from ..scene.contact import waves_of
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
+from ..scene.symmetry import face_orders, faces_tilt
 from ..status import Status
 from . import Info
 
@@ -135,6 +137,8 @@ def run_study(
         # Unless the study has told it itself.
         if failures and failures[0] not in known:
             notes.append(f"Failed points: {len(failures)}; the first: {failures[0]}")
+        if info.aligned and not _is_radial(studied.scene) and (askew := _moment(studied.scene)):
+            notes.append(f"The numbers are of aligned faces, which do not stay so: {askew}.")
         if left_out:
             notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
         panels = plain(answer.panels)
@@ -194,6 +198,16 @@ def _refuse(name: str, scene, refused):
     if "contact" in refused and scene.contact:
         raise SceneError("contact", f"faces that may touch, with which {study} does not reckon",
                          way.format("contact", "contact"))  # fmt: skip
+    if "moment" in refused and (askew := _moment(scene)):
+        found = f"aligned faces that do not stay so ({askew})"
+        raise SceneError("film.pads" if scene.film.pads else "stator.waviness", found, f"faces that do, for {study}")
+
+
+def _moment(scene) -> str:
+    """What turns aligned faces of a scene by itself, in words; "" where nothing does."""
+    if not faces_tilt(scene) or film_of(scene).unknowns is None:
+        return ""
+    return f"waves or pads of order {' and '.join(map(str, face_orders(scene)))} press with a moment"
 
 
 def _crew(workers: int | None, scheduler):

@@ -14,7 +14,7 @@ from ..quantities import in_words
 from ..scenario.settings import values_in_si
 from ..scene.contact import waves_of
 from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start, with_values
+from ..scene.variants import frozen_at_start, tilting, with_values
 from ..simulation.film_error import steady_tilt
 from ..units import Angle, Length, Speed
 from . import Info
@@ -29,6 +29,7 @@ INFO = Info(
     timed=("fmr_reference", 2),
     asks="How stiff is the film, and how does it damp?",
     wavy=True,
+    aligned=True,
     units={
         "speed": "rad/s", "frequency": "rad/s", "coning": "rad", "clearance": "m", "tilt": "rad", "axial_opening": "m",
         "stiffness": STIFFNESS_UNITS, "damping": DAMPING_UNITS,
@@ -83,6 +84,7 @@ def run(scenario, settings, tools) -> Answer:
     """Matrices aligned and tilted, and sweeps."""
     scene = frozen_at_start(scenario.scene)
     model, speed = Model(scene, ACCURACY), scene.shaft.speed
+    tilted = model if model.unknowns.with_tilt else Model(tilting(scene), ACCURACY)
     numbers = {
         "order": list(ORDER),
         "film": model.interface.name,
@@ -92,10 +94,10 @@ def run(scenario, settings, tools) -> Answer:
         "at": _at(model, State(), speed),
         "stator_speed": scene.stator.speed,
         "asperities": scene.contact is not None,
-        "tilted": _tilted(model, settings, speed),
+        "tilted": _tilted(tilted if settings.tilt else model, settings, speed),
         "against_speed": _against_speed(model, settings, speed),
         "against_clearance": _against_clearance(scene, model, settings),
-        "against_tilt": _against_tilt(model, settings),
+        "against_tilt": _against_tilt(tilted, settings),
     }
     asked = {
         name: None if given is None else values_in_si(scenario, str(given), unit, f"--{name}")

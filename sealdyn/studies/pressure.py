@@ -29,7 +29,7 @@ from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of
 from ..scene.gas import density_of
 from ..scene.scene import SceneError
-from ..scene.variants import frozen_at_start
+from ..scene.variants import frozen_at_start, tilting
 from ..units import Angle, Quantity, QuantityError, quoted
 from . import Info
 
@@ -100,9 +100,9 @@ def _clearances(name: str, beside) -> list[float]:
 
 def _at(scenario, place) -> tuple[dict, str]:
     """The answer at one place, and how its clearance was found, "" where it was given."""
-    scene = frozen_at_start(scenario.scene, clearance=place.get("clearance"))
+    scene, tilt = frozen_at_start(scenario.scene, clearance=place.get("clearance")), place.get("tilt", 0.0)
     try:
-        interface, tilt = Interface(scene, EXACT), place.get("tilt", 0.0)
+        interface = Interface(tilting(scene) if tilt else scene, EXACT)
     except SceneError as error:
         key = "study.pressure.at" if "clearance" in place else error.key
         raise ScenarioError(scenario.name, key, error.found, error.expected) from None

@@ -21,9 +21,10 @@ MOST_ROUNDS, ROUNDING = 200, 1e-13
 SHORT, SLOW = 1e-6, 1.0
 # Void below which a cell counts as full that is so at one step, and not at its neighbour.
 ALMOST = 1e-3
-UNSOLVED = 1
+UNSOLVED, ALIKE = 1, 2
 STATUS = {
-    UNSOLVED: "no pressures of the cavitating film are found (edges that are all at the cavitation pressure starve it)"
+    UNSOLVED: "no pressures of the cavitating film are found (edges that are all at the cavitation pressure starve it)",
+    ALIKE: "a tilt of a film of which one sector stands for all",
 }
 
 

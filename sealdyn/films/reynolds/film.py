@@ -13,17 +13,29 @@ from dataclasses import replace
 import numpy as np
 
 from ...faces.contact import lay_asperities
-from ...faces.geometry import CLEARANCE, FORCE, GAP_STATE_SIZE, MEAN_SPIN, SPIN_DIFFERENCE, VISCOSITY
+from ...faces.geometry import (
+    CLEARANCE,
+    FORCE,
+    GAP_STATE_SIZE,
+    GX,
+    GX_RATE,
+    GY,
+    GY_RATE,
+    MEAN_SPIN,
+    SPIN_DIFFERENCE,
+    VISCOSITY,
+)
 from ...faces.waviness import lay_waves
 from ...numerics.kernel import outer_kernel, value_kernel
 from ...numerics.piecewise_linear import initially
 from ...scene.contact import waves_of
 from ...scene.film import AROUND, PER_WAVE, Reynolds, cells_of
-from ...scene.variants import alike_sectors
+from ...scene.scene import SceneError
+from ...scene.symmetry import alike_sectors
 from .._contract import FILL, PRESSURE, Film, FilmUnknowns, force_over_clearance
 from . import OFFER
 from .balance import driest, jacobian, pattern, residual
-from .cavitation import STATUS, UNSOLVED, between, keep_void, settle, solve, solve_moving
+from .cavitation import ALIKE, STATUS, UNSOLVED, between, keep_void, settle, solve, solve_moving
 from .cavitation import unknowns as first_unknowns
 from .mesh import (
     ANGLE_STEP,
@@ -57,12 +69,15 @@ def accepts(film, waves=()) -> str:
 
 def prepared(scene):
     """The `Film` table with what the rest of the scene decides: the cells, and which part of the circle stands for
-    all of it."""
+    all of it.  Raises SceneError for sectors that are not alike."""
     film, orders = scene.film, [wave.order for wave in waves_of(scene) if wave.amplitude]
     options = film.reynolds or Reynolds()
     around, alike = options.cells_theta or max(AROUND, PER_WAVE * max(orders, default=0)), alike_sectors(scene)
     if options.sectors is None:
         options = replace(options, sectors=alike or around)
+    elif alike % options.sectors:
+        found = f"{options.sectors} alike sectors of a scene that has {alike}"
+        raise SceneError("film.reynolds.sectors", found, "a divisor of that, or nothing")
     cells_r, cells_theta, sectors = cells_of(replace(film, reynolds=options), orders)
     options = replace(options, cells_r=cells_r, cells_theta=cells_theta * sectors, sectors=sectors)
     return replace(film, reynolds=options)
@@ -144,6 +159,8 @@ def start(f, s, x):
     motion.  Returns 0, or a code where none are found."""
     angles, cells = int(f[ANGLES]), int(f[CELLS])
     n = angles * cells
+    if f[SECTORS] != 1.0 and (s[GX] != 0.0 or s[GY] != 0.0 or s[GX_RATE] != 0.0 or s[GY_RATE] != 0.0):
+        return ALIKE
     u, m = x[:n].reshape(angles, cells), x[n:].reshape(angles, cells)
     u[:] = 1.0
     if solve(f, s, u) == 0:

@@ -25,7 +25,7 @@ from .shaken_seal import ShakenSeal, measured
 INFO = Info(
     timed=("housing_vibration", 3),
     asks="At which vibration do the faces touch?",
-    refuses=("secondary-seal",),
+    refuses=("secondary-seal", "moment"),
     wavy=True,
     units={
         "axial_gain": "m/m", "angular_gain": "rad/rad", "axial_per_acceleration": "m/(m/s^2)",
