@@ -29,7 +29,8 @@ class Dam(NamedTuple):
 
 
 class Flow(NamedTuple):
-    """Per unit width at the mean radius: mass flow, gauge force; its centre over the dam's width from the entrance."""
+    """Per unit width at the mean radius: mass flow, gauge force (over true areas if friction is local); its centre over
+    the dam's width from the entrance."""
 
     mass_flow: float
     force: float
@@ -60,7 +61,7 @@ def marched(dam: Dam, mach: float, rtol: float):
         f = dam.friction(reynolds * r_mean / r) if dam.local else f_mean
         pressure = q / (area * math.sqrt(m * (1 + d * m)))
         step = (m - 1) * h
-        load = (p_3 - pressure) * step
+        load = (p_3 - pressure) * step * (r / r_mean if dam.local else 1.0)
         return [(1 + d * m) * 2 * (widening - g * f * m), step, load, load * x]
 
     def edge(_, y):

@@ -1,5 +1,5 @@
-"""Many runs in one compiled loop: each integrated by CVODE, its extremes and contacts followed, its samples
-interpolated, and nothing of Python between them.
+"""Many runs in one compiled loop: each integrated by CVODE, its extremes and contacts followed, its motion at the
+points of the tally (dynamics/tally.py) interpolated, and nothing of Python between them.
 
 The same kernels look at the same steps as in a run of its own (solvers/integrate.py), so that numbers are the same to
 the bit at the same tolerance.  A run that does not end well is left for that other way, which can say why.
@@ -13,6 +13,7 @@ from numba import carray
 
 from ..numerics.hermite import sample, sample_doubtful
 from ..numerics.kernel import call_rates, inner_kernel, integers, outer_kernel
+from ..numerics.quadrature import lobatto
 from ..solvers.contract import OVERLAP
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
@@ -21,13 +22,15 @@ from .contact_events import locate_contacts
 from .extrema import track_extremes
 from .native import BLOCK as WORDS
 from .native import FILM, GAP, PARAMETERS, SCRATCH, array
+from .tally import longest_panel
 
 # How a run ended: well, as one to be looked at alone, or not at all because the loop was told to stop.
 DONE, ALONE, STOPPED = range(3)
-# Of a stretch: address of its equations' block, its index in the run, its first output and the one after its last;
-# length (s), longest step (s, 0: any), start (s), pace of the scan and fastest motion of interest (rad/s).
-EQUATIONS, INDEX, FIRST_DUE, END_DUE = range(4)
-LENGTH, LONGEST, START, PACE, FASTEST = range(5)
+# Of a stretch: address of its equations' block, its index in the run, its first point of output and the one after its
+# last, which the loop writes; length (s), longest step (s, 0: any), start (s), pace of the scan and fastest motion of
+# interest (rad/s), longest panel of the tally (s).
+EQUATIONS, INDEX, FIRST, END = range(4)
+LENGTH, LONGEST, START, PACE, FASTEST, PANEL = range(6)
 
 
 class Integrator(NamedTuple):
@@ -47,7 +50,7 @@ class Runs(NamedTuple):
     displacements.
 
     `stretches` (m + 1,): run i has the stretches from stretches[i] to stretches[i + 1]; `whole` (l, 4) and `real` (l,
-    5) of each, see above, and `swing` (l, SWING) of dynamics/step_bounds.py; `tolerance` (m,); whether extremes are
+    6) of each, see above, and `swing` (l, SWING) of dynamics/step_bounds.py; `tolerance` (m,); whether extremes are
     `asked` for, their `slack` (m, 2) (m, rad), `level` (m,) (m), `windows` (m, WINDOWS, 2) (s) and `records` (m,
     WINDOWS, RECORD) of dynamics/extrema.py; `scales` (m, size); `y` (m, size) the start, then the end; `rate_places`
     (n,); `status` (m,); `counts` (m, 5): steps, evaluations, Jacobians, steps refused by error test and nonlinear
@@ -84,10 +87,12 @@ class Touching(NamedTuple):
 
 
 class Output(NamedTuple):
-    """Segment times `due` (k,) (s) of all stretches, one after the other, and displacements and rates (k, n) there;
-    `stiff` as of a Block."""
+    """Points of the tally: segment `times` (k,) (s) and `weights` (k,) (s), 0 before the loop, and displacements and
+    rates (k, n) there; `room` (m + 1,): run i has the places from room[i] to room[i + 1]; `stiff` as of a Block."""
 
-    due: np.ndarray
+    room: np.ndarray
+    times: np.ndarray
+    weights: np.ndarray
     q: np.ndarray
     q_rate: np.ndarray
     stiff: bool
@@ -96,13 +101,13 @@ class Output(NamedTuple):
 def numbers(segment) -> list[float]:
     """What a stretch has in `real`."""
     fastest = 2 * math.pi / segment.shortest_period
-    return [segment.length, longest_step(segment), segment.time, segment.pace, fastest]
+    return [segment.length, longest_step(segment), segment.time, segment.pace, fastest, longest_panel(segment)]
 
 
 @outer_kernel(nogil=True)
 def integrate_many(cvode, runs, thinnest, touching, output, told):
     """Integrate the runs one after the other; `thinnest` a function value, `touching` and `output` None where there is
-    no contact or nothing is due.  `told` (2,): the loop stops at once where the first is not zero; the second counts
+    no contact or no tally.  `told` (2,): the loop stops at once where the first is not zero; the second counts
     the runs that are done."""
     for i in range(len(runs.status)):
         runs.status[i] = _one(cvode, runs, i, thinnest, touching, output, told)
@@ -144,16 +149,19 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
     block = carray(integers(whole[EQUATIONS]), WORDS)
     p, w, s, f = array(block, PARAMETERS), array(block, SCRATCH), array(block, GAP), array(block, FILM)
     windows = runs.windows[i] - real[START]
-    most = BLOCK + OVERLAP + 1
+    most = BLOCK + 2 * OVERLAP + 1
     t, ys, reached = np.empty(most), np.empty((most, size)), np.zeros(1)
     q, q_rate, reach = np.empty((most, n)), np.empty((most, n)), np.empty(most)
     scratch, rates = np.zeros(size), np.zeros(size)
     t[0], ys[0] = 0.0, cvode.y
-    count, watched, done = 1, 0, whole[FIRST_DUE]
+    count, watched = 1, 0
+    if output is not None:
+        whole[FIRST] = whole[END] = output.room[i] if stretch == runs.stretches[i] else runs.whole[stretch - 1, END]
     while reached[0] < length:
         taken, flag = step_cvode(
-            cvode.memory, cvode.vector, cvode.y, reached, length, runs.orders[i], t[count:], ys[count:]
-        )
+            cvode.memory, cvode.vector, cvode.y, reached, length, runs.orders[i],
+            t[count : count + BLOCK], ys[count : count + BLOCK],
+        )  # fmt: skip
         if flag < 0:
             return ALONE
         runs.counts[i, 0] += taken
@@ -182,7 +190,9 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
                 if touching.found[i] == touching.rows.shape[1]:
                     return ALONE
             if output is not None:
-                done = _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, watched, upto, done, output)
+                room = output.room[i + 1]
+                if not _hand_over(cvode, runs, stretch, t, ys, q, q_rate, count, watched, upto, room, output):
+                    return ALONE
             # Neighbours to the left of what comes next.
             keep = max(0, upto - OVERLAP)
             for k in range(keep, count):
@@ -194,23 +204,26 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
 
 
 @inner_kernel()
-def _hand_over(cvode, runs, whole, t, ys, q, q_rate, count, begin, end, done, output):
-    """Output due in the steps [begin, end], as Block.at (solvers/contract.py); returns how many are done."""
-    last = done
-    while last < whole[END_DUE] and output.due[last] <= t[end]:
-        last += 1
-    if last == done:
-        return done
-    n, slopes = q.shape[1], np.empty(ys.shape[1])
-    accelerations, unused = np.empty_like(q), np.empty((last - done, n))
+def _hand_over(cvode, runs, stretch, t, ys, q, q_rate, count, begin, end, room, output):
+    """Points of the tally in the steps [begin, end], the motion there as Block.at (solvers/contract.py); whether there
+    was room for them."""
+    whole, n, slopes = runs.whole[stretch], q.shape[1], np.empty(ys.shape[1])
+    first = whole[END]
+    free = slice(first, room)
+    found = lobatto(t, begin, end, t[end], runs.real[stretch, PANEL], output.times[free], output.weights[free])
+    if found < 0:
+        return False
+    whole[END] += found
+    accelerations, unused = np.empty_like(q), np.empty((found, n))
     for k in range(max(0, begin - OVERLAP), min(count, end + OVERLAP + 1)):
         call_rates(cvode.words[FUNCTION], t[k], ys[k].ctypes.data, slopes.ctypes.data, cvode.words[DATA])
         for j in range(n):
             accelerations[k, j] = slopes[runs.rate_places[j]]
-    times = output.due[done:last]
-    sample(t, q, q_rate, count, begin, end, times, output.q[done:last], unused)
+    here = slice(first, first + found)
+    times = output.times[here]
+    sample(t, q, q_rate, count, begin, end, times, output.q[here], unused)
     if output.stiff:
-        sample_doubtful(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last])
+        sample_doubtful(t, q_rate, accelerations, count, begin, end, times, output.q_rate[here])
     else:
-        sample(t, q_rate, accelerations, count, begin, end, times, output.q_rate[done:last], unused)
-    return last
+        sample(t, q_rate, accelerations, count, begin, end, times, output.q_rate[here], unused)
+    return True

@@ -137,7 +137,7 @@ class Film:
     `grid(f)`          radii (m) and angles (rad, from the x axis), which do not change during a run.
     `fields(f, s, out)`
         compiled: their values at a gap state into `out` (fields, radii, angles), in the Fields' units.
-    `mean_circumference`
+    `mean_circumference(f)`
         whether pressure acts on the mean circumference, at whatever radius.
     `exit_mach(f, s)`  least and largest Mach number of the gas at its exit around the circle at a gap state.
 
@@ -204,7 +204,7 @@ class Film:
     quantities: tuple[Field, ...] = ()
     grid: Callable | None = None
     fields: Callable | None = None
-    mean_circumference: bool = False
+    mean_circumference: Callable | None = None
     exit_mach: Callable | None = None
 
     unknowns: Callable | None = None

@@ -67,8 +67,10 @@ class GasDam:
     """C_L: share of the isentropic entrance velocity that is reached, 1 without loss."""
     friction: Literal["blend", "laminar", "turbulent"] = "blend"
     """Fanning friction factor: 24/Re, 0.079/Re^0.25, or (f_l^8 + f_t^8)^(1/8), which cross at Re = 2045."""
-    width: Literal["radial", "constant"] = "radial"
-    """The circumference that the gas flows through: that of the radius, or everywhere that of the mean radius."""
+    width: Literal["radial", "constant", "zuk"] = "radial"
+    """"radial": at every radius the flow, its friction and the area it presses on are those of the radius; "constant":
+    those of the mean radius (parallel rows of Zuk 1972); "zuk": only the flow's area is that of the radius (his tilted
+    rows)."""
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,12 @@ import numpy as np
 from ..dynamics.contact_events import ROW
 from ..dynamics.extrema import slack, watched_level
 from ..dynamics.native import thinnest_value
+from ..dynamics.tally import Tally
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, tolerance_for
 from ..solvers.integrate import STIFF, Outcome
 from ..solvers.sundials import looped
-from .sinks import TallySink
 from .summary import parts
+from .verification_run import ProgressSink
 
 # What is asked of a face seal, and of a radial one, unless told.
 OUTPUTS = ("h_min.value", "relative_misalignment.max")
@@ -63,7 +64,7 @@ def simulate_many(
     """Many runs of a scenario in memory, as an `xarray.Dataset` over the dimension `run`.
 
     `sets`: of each run {dotted key: value}, values as for `with_values` (scenario/settings.py); `outputs`: dotted keys
-    of the run's summary, of which those made of samples ("leakage.mean") cost most, none the least; `workers`
+    of the run's summary, of which means and largest values ("leakage.mean") cost most, none the least; `workers`
     processes (None: all cores); `progress(done, all)`.  Variables are the outputs, of a face seal the end state
     (end.state.*, SI), `status` and `message`; a run that cannot be has the status "not possible" and its reason as
     message.
@@ -205,8 +206,8 @@ def _rows_in_loop(scenario, points) -> list:
         for k, run in some:
             if run.outcome:
                 row = _row_or_error(_row, run.parts(), points[k])
-                # What is made of samples after all, or is not there, is a matter for the whole summary.
-                rows[k] = None if isinstance(row, NotSampled) else row
+                # What is tallied after all, or is not there, is a matter for the whole summary.
+                rows[k] = None if isinstance(row, NotTallied) else row
     return [row if row is not None else _row_or_error(_single_run, scenario, points[k]) for k, row in enumerate(rows)]
 
 
@@ -226,10 +227,12 @@ def _row(parts, point) -> dict:
     return row if row["status"] == Status.OK else {**row, "message": parts["message"]}
 
 
-# Contacts of one run at most, numbers that a run may hand over, and seconds between two looks at the keyboard.
+# Contacts of one run at most, numbers that a run may hand over, and seconds between two looks at the keyboard; points
+# of the tally that there is room for: in any run, and in a shortest period.
 MOST_CONTACTS, MOST_OUTPUT, PATIENCE = 256, 4_000_000, 0.1
-# Parts of the summary that are made of samples, and what only a run of its own has.
-SAMPLED = (
+LEAST_ROOM, ROOM = 10_000, 200
+# Parts of the summary that are means or largest values, and what only a run of its own has.
+TALLIED = (
     "leakage", "friction", "relative_misalignment.mean", "contact.force", "contact.share_of_closing",
     "contact.share_of_load", "contact.torque", "contact.max_area_fraction", "contact.max_pressure", "contact.wear_rate",
     "film.max_cavitated_fraction", "warnings",
@@ -250,28 +253,28 @@ class LoopedRun:
         self.method = self.plan.method
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)
         self.structure = None
-        self.sampled, self.watched = (any(key.startswith(asked) for key in outputs) for asked in (SAMPLED, EXTREMES))
+        self.tallied, self.watched = (any(key.startswith(asked) for key in outputs) for asked in (TALLIED, EXTREMES))
         self.segments = [run.segment(index) for index in range(len(run.intervals))]
         alone = run.stick_slip or any(key.startswith(OWN) for key in outputs) or not looped(self.segments[0])
-        heavy = self.sampled and self.plan.count * unknowns.n > MOST_OUTPUT
+        self.room = LEAST_ROOM + int(ROOM * run.duration / run.model.shortest_period) if self.tallied else 0
+        heavy = self.room * unknowns.n > MOST_OUTPUT
         if alone or heavy or self.method not in ("adams", "bdf"):
             return
-        self.sink = TallySink(run, self.plan.interval, self.plan.count)
+        self.tally = Tally(run.model) if self.tallied else Untallied()
         thinnest, touching = thinnest_value(run.model.face), run.model.contact is not None
         places = tuple(unknowns.rate_places)
         kernels = thinnest, touching, unknowns.impulse
-        self.structure = self.method, unknowns.size, places, *kernels, self.sampled, self.watched
+        self.structure = self.method, unknowns.size, places, *kernels, self.tallied, self.watched
 
     def parts(self) -> dict:
         """The `parts` of its summary (summary.py), once it has ended."""
-        tally = self.sink.tally if self.sampled else Unsampled()
         plan = replace(self.plan, why=f"{self.plan.why}; one loop for many runs, cautious tolerance")
-        return parts(self.scenario, self.run, plan, self.outcome, tally, asks_speeds(self.outputs))
+        return parts(self.scenario, self.run, plan, self.outcome, self.tally, asks_speeds(self.outputs))
 
     def ends(self, runs, i, touching, output):
         """Take what the loop has left in row `i`."""
         run, last = self.run, self.segments[-1]
-        run.extrema.records = runs.records[i] if self.watched else Unsampled()
+        run.extrema.records = runs.records[i] if self.watched else Untallied()
         if touching:
             run.contacts.open[:] = touching.open[i]
             run.contacts.waiting = list(touching.rows[i, : touching.found[i]])
@@ -282,27 +285,29 @@ class LoopedRun:
         self.outcome = Outcome(
             Status.OK, Cause.DONE, said, counts, 0.0, last.index, last.length, y, self.tolerance, np.nan
         )
-        run.contacts.tell(self.sink.log, end=(run.end_time(last.index, last.length), y))
-        if self.sampled:
+        run.contacts.tell(ProgressSink(run).log, end=(run.end_time(last.index, last.length), y))
+        if self.tallied:
             for k, segment in enumerate(self.segments):
                 at = slice(*runs.whole[runs.stretches[i] + k, 2:4])
-                if at.stop > at.start:
-                    self.sink.take(segment, output.due[at], output.q[at], output.q_rate[at])
+                # A block of steps begins where the one before ends.
+                blocks = np.flatnonzero(np.diff(output.times[at]) <= 0.0) + 1
+                taken = (output.times, output.weights, output.q, output.q_rate)
+                for parts_of_block in zip(*(np.split(part[at], blocks) for part in taken), strict=True):
+                    self.tally.take_motion(segment, *parts_of_block)
 
 
-class NotSampled(Exception):
-    """A number made of samples, or an extreme between steps, was asked for, and there are none."""
+class NotTallied(Exception):
+    """A mean, a largest value or an extreme was asked for, and none were kept."""
 
 
-class Unsampled:
-    """In place of a tally where nothing was sampled, or of records where none were kept: all it has to say is
-    NotSampled."""
+class Untallied:
+    """In place of a tally or of records where none were kept: all it has to say is NotTallied."""
 
     def __getattr__(self, name):
-        raise NotSampled
+        raise NotTallied
 
     def __getitem__(self, key):
-        raise NotSampled
+        raise NotTallied
 
 
 def integrate(alike: list[LoopedRun]):
@@ -357,11 +362,9 @@ def _loop_arrays(alike, loop):
     models, count = [one.run.model for one in alike], len(alike)
     stretches = np.cumsum([0, *(len(one.segments) for one in alike)])
     segments = [segment for one in alike for segment in one.segments]
-    due = [one.sink.due(segment) if one.sampled else np.empty(0) for one in alike for segment in one.segments]
-    ends = np.cumsum([0, *map(len, due)])
     runs = loop.Runs(
         stretches,
-        np.array([[s.native.block.ctypes.data, s.index, ends[k], ends[k + 1]] for k, s in enumerate(segments)]),
+        np.array([[s.native.block.ctypes.data, s.index, 0, 0] for s in segments]),
         np.array([loop.numbers(segment) for segment in segments]),
         np.array([segment.swing for segment in segments]),
         np.array([one.tolerance for one in alike]),
@@ -386,7 +389,8 @@ def _loop_arrays(alike, loop):
             np.empty((count, MOST_CONTACTS, ROW)),
             np.zeros(count, dtype=np.int64),
         )
-    if alike[0].sampled:
-        q, q_rate = np.empty((2, ends[-1], models[0].unknowns.n))
-        output = loop.Output(np.concatenate(due), q, q_rate, alike[0].method in STIFF)
+    if alike[0].tallied:
+        room = np.cumsum([0, *(one.room for one in alike)])
+        q, q_rate = np.empty((2, room[-1], models[0].unknowns.n))
+        output = loop.Output(room, np.empty(room[-1]), np.zeros(room[-1]), q, q_rate, alike[0].method in STIFF)
     return runs, touching, output

@@ -197,7 +197,7 @@ def _gas_flow(model, leakage):
 def _wide_dam(film):
     """A dam so wide that the friction of its mean radius is not that of its edges: gauge forces of slow flow between
     parallel faces, p^2 linear in 1/r as the film has it beside ln r."""
-    if (film.gas_dam or GasDam()).width != "radial":
+    if (film.gas_dam or GasDam()).width != "zuk":
         return
     r = np.linspace(film.inner_radius, film.outer_radius, 201)
     ends = initially(film.inner_pressure) ** 2, initially(film.outer_pressure) ** 2

@@ -17,6 +17,7 @@ import numpy as np
 from .. import __version__, archive
 from ..archive import ArchiveWriter, only_writer, partial_path
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, H
+from ..dynamics.tally import Tally
 from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
@@ -24,7 +25,7 @@ from ..solvers.integrate import Outcome, solve
 from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
-from .sinks import ArchiveSink, RadialSink, Tally, TallySink, archived_series
+from .sinks import ArchiveSink, RadialSink, archived_series
 from .summary import parts
 from .verification_run import Comparison, ProgressSink, RadialComparison
 
@@ -74,7 +75,8 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
             resume=resume,
             expected_rows=plan.count,
         )
-        sink = kind_of_sink(run, writer, plan.interval, plan.count, Tally(), progress, stop)
+        tally = None if radial else Tally(run.model)
+        sink = kind_of_sink(run, writer, plan.interval, plan.count, tally, progress, stop)
         restart = _resume(run, scenario.scene, writer, sink) if resume and writer.rows else None
         trial, sink.errors = first_steps(run, plan)
         sink.seen = compared(run) if sink.errors is None and plan.method != "expm" else None
@@ -83,7 +85,7 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
         try:
             outcome = solve(
                 run, plan.method, run.model.accuracy, sink, audit=sink.audit, errors=sink.errors, seen=sink.seen,
-                resume=restart, **_solve_options(trial),
+                tally=tally, resume=restart, **_solve_options(trial),
             )  # fmt: skip
             found, outcome = certificate(run, plan, outcome, sink.errors, sink.seen, progress, stop)
         except KeyboardInterrupt:
@@ -138,12 +140,11 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
 def in_memory(scenario, speeds: bool = False) -> dict:
     """The same, as its `parts` (summary.py)."""
     run, plan = prepare_run(scenario)
-    radial = isinstance(scenario.scene, RadialScene)
-    sink = ProgressSink(run) if radial else TallySink(run, plan.interval, plan.count)
+    sink, tally = ProgressSink(run), None if isinstance(scenario.scene, RadialScene) else Tally(run.model)
     trial, errors = first_steps(run, plan)
-    outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, **_solve_options(trial))
+    outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally, **_solve_options(trial))
     run.contacts.tell(sink.log, end=(run.end_time(outcome.segment, outcome.tau), outcome.y))
-    return parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, sink.tally, speeds)
+    return parts(scenario, run, _completed_plan(plan, trial, outcome), outcome, tally, speeds)
 
 
 @contextmanager
@@ -162,8 +163,8 @@ def _resume(run, scene, writer, sink):
     state = writer.state
     with _own_state(writer):
         run.extrema.restore(state["records"])
-        tally = state["tally"]
-        sink.tally.rows, sink.tally.sums, sink.tally.largest = tally["rows"], tally["sums"], tally["largest"]
+        if sink.tally:
+            sink.tally.restore(state["tally"])
         sink.audit.restore(state["audit"])
         run.restore_modes(state["modes"])
         sink.logged = int(state["modes"]["logged"])

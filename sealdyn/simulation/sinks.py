@@ -1,7 +1,6 @@
-"""Where a run's samples go: into an archive, or into means and maxima only."""
+"""Where a run's samples go: into an archive."""
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
@@ -10,14 +9,12 @@ from ..archive import FIELD_TIME, Fields, Series
 from ..dynamics.signals import (
     DEGREES,
     MILLIMETRES,
-    TALLIED,
     field_grid,
     fields,
     fields_of,
     samples,
     series_of,
     signal_table,
-    signals,
 )
 from ..scene.radial import RadialScene
 from ..solvers.contract import Enough
@@ -32,30 +29,6 @@ KEPT = 32
 MOST_INSTANTS = KEPT + 1
 # Instants at which gap and load around the shaft of a radial seal are kept, at most.
 MOST_RADIAL = 600
-
-
-@dataclass
-class Tally:
-    """Running sums and maxima {series: SI value} of the sampled series, and the number of `rows`; kept in the archive
-    to go on from."""
-
-    rows: int = 0
-    sums: dict = None
-    largest: dict = None
-
-    def add(self, columns):
-        """Take in rows: `columns` {series: (m,)}."""
-        names = [name for name in TALLIED if name in columns]
-        self.sums = self.sums or dict.fromkeys(names, 0.0)
-        self.largest = self.largest or dict.fromkeys(names, -math.inf)
-        self.rows += len(columns["time"])
-        for name in self.sums:
-            self.sums[name] += float(columns[name].sum())
-            self.largest[name] = max(self.largest[name], float(columns[name].max()))
-
-    def mean(self, name: str) -> float:
-        """Mean (SI) of a series so far; NaN without one."""
-        return self.sums[name] / self.rows if self.rows and name in self.sums else math.nan
 
 
 def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
@@ -78,7 +51,8 @@ def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
 
 class ArchiveSink:
     """Takes what the solver has integrated: signals into the archive (`writer`), restart data beside them.  Samples
-    every `dt` (s), `count` intervals in all; `progress(t, end)` (s) and `stop() -> bool` as in `simulate`, or None."""
+    every `dt` (s), `count` intervals in all; `tally` (dynamics/tally.py) of the same run, or None; `progress(t, end)`
+    (s) and `stop() -> bool` as in `simulate`, or None."""
 
     def __init__(self, run, writer, dt, count, tally, progress, stop):
         self.run, self.writer, self.dt, self.count = run, writer, dt, count
@@ -107,7 +81,6 @@ class ArchiveSink:
         at = samples(segment, taus, q, q_rate, x)
         self.run.extrema.see(at)
         columns = series_of(at)
-        self.tally.add(columns)
         if fields_of(segment.model):
             self.keep_fields(at, columns["time"], x)
         self.waiting = _joined(self.waiting, columns)
@@ -156,7 +129,7 @@ class ArchiveSink:
             "tau": tau,
             "y": np.asarray(y),
             "records": run.extrema.state(),
-            "tally": {"rows": self.tally.rows, "sums": self.tally.sums, "largest": self.tally.largest},
+            "tally": self.tally and self.tally.state(),
             "audit": self.audit.state(),
             "errors": self.errors and self.errors.state(),
             "seen": self.seen and self.seen.state(),
@@ -190,29 +163,9 @@ class RadialSink(ArchiveSink):
         from ..radial_seals.observers import columns
 
         found, around = columns(segment, taus, q, q_rate)
-        self.tally.rows += len(taus)
         number = found["time"] / self.dt
         at = np.flatnonzero(np.isin(np.rint(number), self.kept) & (np.abs(number - np.rint(number)) < 1e-6))
         if len(at):
             fields = {FIELD_TIME: found["time"][at], **{name: values[at] for name, values in around.items()}}
             self.waiting_fields = _joined(self.waiting_fields, fields)
         self.waiting = _joined(self.waiting, found)
-
-
-class TallySink(ArchiveSink):
-    """Takes the same samples, and keeps their means and maxima only."""
-
-    def __init__(self, run, dt, count):
-        super().__init__(run, None, dt, count, Tally(), None, None)
-
-    def take(self, segment, taus, q, q_rate, x=None):
-        """Take signals into the tally, as `ArchiveSink.take`."""
-        self.tally.add(signals(segment, taus, q, q_rate, x, tallied=True))
-
-    def log(self, events):
-        """Events are not kept."""
-        pass
-
-    def flush(self, index, tau, y):
-        """There is nothing to write."""
-        pass

@@ -43,7 +43,7 @@ def model_chosen(scenario, run, plan) -> dict:
 
 def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
     """The summary (`run --json`, SI) of a finished run, in which what costs something is a function that finds it:
-    `plain` of it is JSON-ready.  `plan` as carried out, `outcome` of `solve`, `tally` of its sink; `speeds`: with
+    `plain` of it is JSON-ready.  `plan` as carried out, `outcome` of `solve`, its `tally`; `speeds`: with
     critical and resonance speeds, which cost more than a short run."""
     if isinstance(scenario.scene, RadialScene):
         from ..radial_seals.observers import summary_of
@@ -76,7 +76,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         "friction": lambda: {
             "torque": tally.mean("friction_torque"),
             "power": tally.mean("friction_power"),
-            "max_power": tally.largest["friction_power"] if tally.largest else math.nan,
+            "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
         "contact": _contact(run, tally),
@@ -169,8 +169,8 @@ def _cautions(scenario, run, outcome, tally) -> list[Caution]:
 
 def _blown_open(model, tally) -> list[Caution]:
     """A gap many times its clearance is no seal any more."""
-    widest = tally.largest["axial_gap_change"] / model.clearance if tally.largest else 0.0
-    if widest < 10:
+    widest = tally.most("axial_gap_change") / model.clearance
+    if not widest >= 10:
         return []
     sentence = (
         f"blown open: the gap grew by {widest:.3g} times the clearance; the closing force does not hold this film"
@@ -184,9 +184,6 @@ def _contact(run, tally):
     if model.contact is None:
         return None
     found, level = run.contacts.summary, model.face[TOUCH]
-
-    def largest(name):
-        return (tally.largest or {}).get(name)
 
     def share():
         closing = tally.mean("closing_force")
@@ -210,12 +207,12 @@ def _contact(run, tally):
         "depth": None if found.lowest is None else level - found.lowest,
         "longest": found.longest,
         "impulse": found.impulse,
-        "force": lambda: {"mean": tally.mean("contact_force"), "max": largest("contact_force")},
+        "force": lambda: {"mean": tally.mean("contact_force"), "max": tally.most("contact_force")},
         "share_of_closing": share,
         "share_of_load": share_of_load,
         "torque": lambda: tally.mean("contact_torque"),
-        "max_area_fraction": lambda: largest("contact_area_fraction"),
-        "max_pressure": lambda: largest("contact_pressure"),
+        "max_area_fraction": lambda: tally.most("contact_area_fraction"),
+        "max_pressure": lambda: tally.most("contact_pressure"),
         "wear_rate": lambda: tally.mean("wear_rate"),
         "wears": any((model.scene.contact.stator_wear_coefficient, model.scene.contact.rotor_wear_coefficient)),
     }
@@ -251,7 +248,7 @@ def _leakage(model, tally):
     mean = tally.mean(side)
     return {
         "mean": mean,
-        "max": tally.largest[side] if tally.largest else math.nan,
+        "max": tally.most(side),
         "mean_ml_per_h": mean * ML_PER_H,
         "mean_kg_per_h": mean * density_of(model.scene.film) * KG_PER_H,
         "conditions": None if model.scene.film.gas is None else NORMAL,
@@ -280,7 +277,7 @@ def _film(segment, linear, tally):
         "tilt_damping": d[1, 1],
         "cross_stiffness": k[1, 2],
         "exit_mach": lambda: _exit_mach(segment),
-        "max_cavitated_fraction": lambda: tally.largest["cavitated_fraction"] if tally.largest else math.nan,
+        "max_cavitated_fraction": lambda: tally.most("cavitated_fraction"),
         "equilibria": [
             {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
         ],

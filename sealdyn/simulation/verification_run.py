@@ -173,8 +173,6 @@ class RadialComparison(Comparison):
 class ProgressSink:
     """A sink that keeps nothing, tells how far it is, and can be stopped."""
 
-    tally = None
-
     def __init__(self, run, progress=None, stop=None):
         self.run, self.progress, self.stop = run, progress, stop
 

@@ -104,14 +104,14 @@ class Outcome:
 
 
 def solve(
-    run, method: str, accuracy: float, sink, *, audit=None, errors=None, seen=None, resume=None, steps=None,
+    run, method: str, accuracy: float, sink, *, audit=None, errors=None, seen=None, tally=None, resume=None, steps=None,
     tolerance=None,
 ) -> Outcome:  # fmt: skip
     """Integrate a run segment by segment, chunk by chunk, into a sink.
 
     `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with; `errors`
-    a GlobalErrorEstimate that is shown every step, or None, `seen` another observer, or None; `resume` = (segment
-    index, tau (s), y (size,)) continues.
+    a GlobalErrorEstimate that is shown every step, or None, `seen` and `tally` other observers, or None; `resume` =
+    (segment index, tau (s), y (size,)) continues.
     Another method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own
     `tolerance`.
     The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
@@ -121,7 +121,8 @@ def solve(
     """
     begun, counts, audit = clock.perf_counter(), Counts(), audit or EnergyAudit()
     steps, tolerance = steps or METHODS[method], tolerance or tolerance_for(method, accuracy, run.memory)
-    observers = [*([errors] if errors else []), run.extrema, run.contacts, audit, *([seen] if seen else [])]
+    others = [observer for observer in (seen, tally) if observer]
+    observers = [*([errors] if errors else []), run.extrema, run.contacts, audit, *others]
     if errors:
         errors.tolerance = tolerance
     index, tau, y = resume if resume else (0, 0.0, run.y0.copy())

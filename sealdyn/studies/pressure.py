@@ -204,9 +204,8 @@ def _over_face(interface, s, own, answer) -> dict:
     fields = np.empty((len(film.quantities), len(r), len(theta)))
     film.fields(f, s, *own, fields)
     p = fields[[field.name for field in film.quantities].index("pressure")]
-    force, moment, centre = sums(
-        r, theta, p, answer["edges"], answer["high_pressure"] == "outer", film.mean_circumference
-    )
+    narrow = film.mean_circumference is not None and film.mean_circumference(f)
+    force, moment, centre = sums(r, theta, p, answer["edges"], answer["high_pressure"] == "outer", narrow)
     around = np.array([film_thickness(f, s, 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]), angle) for angle in theta])
     middle = int(np.argmin(np.abs(r - 0.5 * (f[INNER_RADIUS] + f[OUTER_RADIUS]))))
     share = weights(theta) / (2 * np.pi)

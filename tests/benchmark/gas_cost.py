@@ -2,7 +2,7 @@
 
     python tests/benchmark/gas_cost.py
 
-One sector of a gas dam (microseconds a solve; constant width, radial width in 4 pieces), over random films at cruise
+One sector of a gas dam (microseconds a solve; constant width in one piece, others in 4), over random films at cruise
 (closed_form/zuk_1972.py), from within one compiled loop; a whole dam of 64 sectors; both against an empty loop of the
 same calls.
 """
@@ -45,7 +45,7 @@ def sectors():
     random = np.random.default_rng(1)
     mean, ratio = MIL * np.exp(random.uniform(np.log(0.06), 0.0, COUNT)), random.uniform(-0.9, 0.9, COUNT)
     films, out = np.column_stack([mean * (1 - ratio), mean * (1 + ratio)]), np.empty(sector.DAM_SIZE)
-    for width in ("constant", "radial"):
+    for width in ("constant", "zuk", "radial"):
         for friction in ("laminar", "blend"):
             f = sector.parameters(
                 CRUISE.inner_radius, CRUISE.outer_radius, CRUISE.temperature, gas_constant=CRUISE.gas_constant,
@@ -57,7 +57,7 @@ def sectors():
 
 def whole():
     """Tilted so that the rule takes 64 sectors or so: half as many, and one more, are solved, since it is even."""
-    for width in ("constant", "radial"):
+    for width in ("constant", "zuk", "radial"):
         film = Film(
             model="gas_dam", gas="air", temperature=CRUISE.temperature, inner_radius=CRUISE.inner_radius,
             outer_radius=CRUISE.outer_radius, inner_pressure=CRUISE.high_pressure, coning=-2e-3,

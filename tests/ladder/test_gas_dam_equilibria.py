@@ -25,7 +25,7 @@ def stiffness(mean_film, tilt, friction="blend"):
         model="gas_dam", gas=Gas(CRUISE.gas_constant, CRUISE.heat_ratio, reference, 273.15, s), clearance=clearance,
         temperature=CRUISE.temperature, inner_radius=CRUISE.inner_radius, outer_radius=CRUISE.outer_radius,
         inner_pressure=CRUISE.high_pressure, outer_pressure=CRUISE.low_pressure, coning=tilt,
-        gas_dam=GasDam(friction=friction, width="radial" if tilt else "constant"),
+        gas_dam=GasDam(friction=friction, width="zuk" if tilt else "constant"),
     )  # fmt: skip
     force, step = gas_dam.opening_law(table), 1e-3 * clearance
     ends = (force(clearance + x, CRUISE.high_pressure, CRUISE.low_pressure) for x in (-step, step))

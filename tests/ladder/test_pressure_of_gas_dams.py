@@ -33,11 +33,14 @@ def test_a_dam_without_a_solution_says_why(at, found):
     assert found in error.value.found and error.value.key == "study.pressure.at"
 
 
-def test_a_wide_dam_is_a_strip_too():
-    """Weighted with r the field of a dam so wide would sum up to other numbers."""
-    found = answer("", "film.inner_radius=2 in", "film.coning=0")
+@pytest.mark.parametrize("width", ["radial", "zuk", "constant"])
+def test_a_wide_dam_presses_where_its_width_says(width):
+    """On true areas, or everywhere on the mean circumference: on a dam so wide they differ by a tenth."""
+    found = answer("", "film.inner_radius=2 in", "film.coning=0", f'film.gas_dam={{width="{width}"}}')
     assert found["integrated"]["force"] == pytest.approx(found["force"], rel=2e-3)
     p, r = np.array(found["pressure"]["p"])[:, 0] - CRUISE.low_pressure, np.array(found["pressure"]["r"])
-    width = (r - r[0]) / (r[-1] - r[0])
-    centre = np.trapezoid(p * width, width) / np.trapezoid(p, width)
+    share = (r - r[0]) / (r[-1] - r[0])
+    p *= r if width == "radial" else 0.5 * (r[0] + r[-1])
+    assert found["gauge_force"] == pytest.approx(2 * np.pi * np.trapezoid(p, r), rel=2e-3)
+    centre = np.trapezoid(p * share, r) / np.trapezoid(p, r)
     assert found["centre_of_pressure"] == pytest.approx(centre, rel=0.01)

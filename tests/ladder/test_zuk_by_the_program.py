@@ -18,7 +18,7 @@ def answer(row):
     gas = {"gas_constant": zuk.CRUISE.gas_constant, "heat_ratio": zuk.CRUISE.heat_ratio,
            "reference_viscosity": factor * 273.15**1.5 / (273.15 + s), "sutherland_temperature": s}  # fmt: skip
     values = {
-        "film.gas": gas, "film.gas_dam": {"friction": "laminar", "width": "radial" if row.tilt else "constant"},
+        "film.gas": gas, "film.gas_dam": {"friction": "laminar", "width": "zuk" if row.tilt else "constant"},
         "film.coning": row.tilt, "film.clearance": row.mean_film - row.tilt * WIDTH / 2,
     }  # fmt: skip
     scenario = with_values(read_scenario(REFERENCE), values)

@@ -112,8 +112,8 @@ def test_pressure_field_sums_up_to_the_force():
     r = R_I + (R_O - R_I) * 0.5 * (1 - np.cos(np.pi * np.arange(1000) / 999))
     field = np.empty((1, 1000, len(theta)))
     gas_dam.fields(f, s, field)
-    mean, gauge = 0.5 * (R_I + R_O), np.trapezoid(field[0] - LOW, r, axis=0)
-    assert 2 * math.pi * mean * gauge.mean() == pytest.approx(
+    gauge = np.trapezoid((field[0] - LOW) * r[:, None], r, axis=0)
+    assert 2 * math.pi * gauge.mean() == pytest.approx(
         s[geometry.FORCE] - LOW * math.pi * (R_O - R_I) * (R_O + R_I), rel=2e-5
     )
     # From the reservoir, less what speeds the gas up, down to the low pressure or the choked one.

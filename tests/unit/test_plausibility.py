@@ -172,9 +172,11 @@ def test_a_gas_that_leaves_fast():
 
 def test_a_dam_too_wide_for_the_friction_of_its_mean_radius():
     path = SCENARIOS / "gas_dam_reference.toml"
-    (sentence,) = cautions(*GAS, "film.inner_radius=2.315 in", path=path)[Concern.WIDE_DAM]
+    zuk = 'film.gas_dam={width="zuk"}'
+    (sentence,) = cautions(*GAS, "film.inner_radius=2.315 in", zuk, path=path)[Concern.WIDE_DAM]
     # Slow flow with the friction of every radius, and with that of the mean one, integrated apart from the program.
     assert numbers(sentence) == [pytest.approx(100 * (9331.64 / 9746.03 - 1), abs=0.06)]
-    assert Concern.WIDE_DAM not in cautions(*GAS, path=path)
-    constant = 'film.gas_dam={width="constant"}'
-    assert Concern.WIDE_DAM not in cautions(*GAS, "film.inner_radius=2.315 in", constant, path=path)
+    assert Concern.WIDE_DAM not in cautions(*GAS, zuk, path=path)
+    for width in ("constant", "radial"):
+        other = f'film.gas_dam={{width="{width}"}}'
+        assert Concern.WIDE_DAM not in cautions(*GAS, "film.inner_radius=2.315 in", other, path=path)

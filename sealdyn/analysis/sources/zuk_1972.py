@@ -24,7 +24,7 @@ from ...films.gas_dam import film as gas_dam
 from ...scene.film import Film
 from ...scene.gas import Gas, GasDam, viscosity_of
 
-TITLE = "Zuk (1972), NASA TM X-68022, sealing dam at cruise; gas_dam, laminar, width constant (parallel) or radial"
+TITLE = "Zuk (1972), NASA TM X-68022, sealing dam at cruise; gas_dam, laminar, width constant (parallel) or zuk"
 FILM = "gas_dam"
 COVERS = "leakage, force, its centre and exit Mach number of a sealing dam"
 HEAD = ("tilt, mrad", "film, mil", "quantity", "published", "gas_dam", "independent", "tilt twice", "deviation",
@@ -74,7 +74,7 @@ def film_table(entry) -> Film:
         coning=entry.tilt,
         inner_pressure=CRUISE.high_pressure,
         outer_pressure=CRUISE.low_pressure,
-        gas_dam=GasDam(friction="laminar", width="radial" if entry.tilt else "constant"),
+        gas_dam=GasDam(friction="laminar", width="zuk" if entry.tilt else "constant"),
     )
 
 

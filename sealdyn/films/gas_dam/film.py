@@ -248,6 +248,11 @@ def sectors_for(f, s) -> int:
     return _sectors(f, _edges(f, s), False)
 
 
+def mean_circumference(f) -> bool:
+    """Whether the pressure acts on the mean circumference, at whatever radius."""
+    return f[DAM + sector.LOCAL] == 0.0
+
+
 def exit_mach(f, s) -> tuple[float, float]:
     """Least and largest Mach number at the exit around the circle at a gap state."""
     g, edges, out, found = _gas(f, s), _edges(f, s), np.empty(sector.DAM_SIZE), []
@@ -269,6 +274,6 @@ FILM = Film(
     quantities=(PRESSURE,),
     grid=grid,
     fields=fields,
-    mean_circumference=True,
+    mean_circumference=mean_circumference,
     exit_mach=exit_mach,
 )
