@@ -18,6 +18,8 @@ from ..numerics.piecewise_linear import PiecewiseLinear, initially
 LONGEST = 2000  # turns; then the clock is set anew
 FEW = 100  # intervals between two break points that stand for all
 
+INSTANTS = 1000  # of an interval are its end
+
 # 2 pi to 60 digits (mathematical constant).
 TURN = Decimal("6.28318530717958647692528676655900576839433879875021164194988918")
 getcontext().prec = max(getcontext().prec, 60)
@@ -108,6 +110,14 @@ class Intervals(Sequence):
         before = replace(whole, span=whole.span * share)
         angles = (a + angle_turned(w, before, whole) for a, w in zip(whole.angles, self._speeds, strict=True))
         return Interval(whole.start + before.span, whole.span / self._pieces[place], *angles)
+
+    @property
+    def end(self) -> Interval:
+        """The last instants: where what is imposed has come to by then."""
+        last = self[-1]
+        before = replace(last, span=last.span * (1 - Fraction(1, INSTANTS)))
+        angles = (a + angle_turned(w, before, last) for a, w in zip(last.angles, self._speeds, strict=True))
+        return Interval(last.start + before.span, last.span / INSTANTS, *angles)
 
     @property
     def few(self) -> list[Interval]:

@@ -19,6 +19,8 @@ from .swept_motion import motions
 
 # Works and the sum of their absolute values; with contact or a secondary seal two more works and an impulse.
 WORKS, MORE = 6, 3
+# A rate below this share of the largest is one of rounding: nothing moves at it.
+ROUNDING = 1e-13
 
 
 class Unknowns:
@@ -176,12 +178,15 @@ class Unknowns:
         length, tilt = model.clearance, model.clearance / scene.film.outer_radius
         displacement = np.array([length if name.endswith("_z") else tilt for name in self.names])
         values, _ = model.linear_scene().eigen()
-        slowest = float(np.max(np.abs(values), initial=0.0)) or 1.0
-        natural = float(np.max(np.abs(values.imag), initial=0.0)) or slowest
+        # What only decays sets no pace: a squeezed film forgets within nanoseconds, and the steps pass over that.  The
+        # slowest decay is the motion of a scene in which nothing turns, shakes or rings.
+        natural, sizes = float(np.max(np.abs(values.imag), initial=0.0)), np.abs(values)
+        slowest = float(np.min(sizes[sizes > ROUNDING * np.max(sizes, initial=0.0)], initial=np.inf))
         forced = [2 * math.pi * v.frequency for v in scene.housing.tones]
         forced += [2 * math.pi * max(sweep.frequency) for sweep in scene.housing.sweeps]
         forced += [sampled.rate for sampled in motions(scene).values()]
-        rate = largest_value(scene.shaft.speed) or max(forced, default=natural)
+        alone = natural or (slowest if slowest < np.inf else 1.0)
+        rate = largest_value(scene.shaft.speed) or max(forced, default=alone)
         scales = np.full(self.size, self._energy(model, length, tilt))
         scales[: self.n] = displacement
         for i, place in enumerate(self.rate_places):

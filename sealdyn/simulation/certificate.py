@@ -338,12 +338,30 @@ HELPED = 0.5
 WHOLE = 0.1
 # Steps of a run beyond which it is not done again, and beyond which not by a method that is not compiled.
 LONG, SLOW, COMPILED = 1_000_000, 1_000, ("adams", "bdf", "ida")
+# Evaluations that a retry may take, over those of the first run; how many compiled ones one in Python costs.
+BUDGET, INTERPRETED = 10.0, 30.0
+# Methods that crawl where decay is fast: none is tried where BDF was chosen for that.
+EXPLICIT = ("adams", "dop853")
 
 
 def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> Plan | None:
     """What to try after `plan`, whose certificate is `found`; None where it is exact enough, did not end well, or
     nothing more is to be hoped for.  `solver` as the scenario asks for it; `tries`: (Plan, tolerance, certificate) of
     those before.  Where a sharper one gives up, what those before have is not lost."""
+    again = _again(run, solver, plan, outcome, found, tries)
+    if again is None or again.last or plan.work < math.inf:
+        return again
+    # Only the first run has no bound: what it took is known now.
+    return replace(again, work=BUDGET * outcome.counts.rhs * price(plan.method))
+
+
+def price(method: str) -> float:
+    """Compiled evaluations that one of a method costs."""
+    return 1.0 if method in COMPILED else INTERPRETED
+
+
+def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> Plan | None:
+    """What to try after `plan`, before its work is bounded."""
     if outcome.status == Status.FAILED and tries and not plan.last:
         return _plan_after_failure(run, solver, plan, outcome, tries)
     if outcome.status != Status.OK or found["solver"] is None or found["solver"] <= found["asked"]:
@@ -358,16 +376,28 @@ def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -
     why = f"{plan.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"
     if len(tries) + 1 < MOST and not stuck and sharp < HELPED * outcome.tolerance:
         return replace(plan, tolerance=sharp, why=why)
-    other, tried = OTHER[plan.method], {before[0].method for before in tries}
     lost = (stuck and found["solver"] > WHOLE) or outcome.counts.steps > SLOW
-    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (plan.method, *tried)
-    if len(tries) + 1 < MOST and free and not lost:
-        tolerance = tolerance_for(other, run.model.accuracy, run.memory)
-        return replace(plan, method=other, tolerance=tolerance, why=f"{why}; by {other}")
+    other = _other_method(run, solver, plan, tries)
+    if other and not lost:
+        return _by_other(run, plan, other, why)
     best = min(measured, key=lambda before: before[2]["solver"], default=None)
     if best and best[2]["solver"] < HELPED * found["solver"]:
         return _best_again(best, why)
     return None
+
+
+def _other_method(run, solver: str, plan: Plan, tries: list) -> str | None:
+    """The method to try in place of `plan`'s; None where there is none that is free, or that has not been tried."""
+    other, tried = OTHER[plan.method], [*(before.method for before, *_ in tries), plan.method]
+    free = solver == "auto" and not run.model.unknowns.has_residual_form and len(tries) + 1 < MOST
+    crawls = tried[0] == "bdf" and other in EXPLICIT
+    return other if free and other not in tried and not crawls else None
+
+
+def _by_other(run, plan: Plan, method: str, why: str) -> Plan:
+    """The plan by another method, with its cautious tolerance."""
+    tolerance = tolerance_for(method, run.model.accuracy, run.memory)
+    return replace(plan, method=method, tolerance=tolerance, why=f"{why}; by {method}")
 
 
 def _measured_tries(tries: list) -> list:
@@ -377,12 +407,10 @@ def _measured_tries(tries: list) -> list:
 
 def _plan_after_failure(run, solver: str, plan: Plan, outcome, tries: list) -> Plan | None:
     """What to try where a sharper `plan` gave up: the other method, else the best of those before."""
-    other, tried = OTHER[plan.method], {before[0].method for before in tries}
     why = f"{plan.why}; at tolerance {outcome.tolerance:.1e} {plan.method} gave up"
-    free = solver == "auto" and not run.model.unknowns.has_residual_form and other not in (plan.method, *tried)
-    if len(tries) + 1 < MOST and free and (other in COMPILED or outcome.counts.steps <= SLOW):
-        tolerance = tolerance_for(other, run.model.accuracy, run.memory)
-        return replace(plan, method=other, tolerance=tolerance, why=f"{why}; by {other}")
+    other = _other_method(run, solver, plan, tries)
+    if other and (other in COMPILED or outcome.counts.steps <= SLOW):
+        return _by_other(run, plan, other, why)
     best = min(_measured_tries(tries), key=lambda before: before[2]["solver"], default=None)
     return best and _best_again(best, why)
 

@@ -42,7 +42,8 @@ class Plan:
     """What has been chosen for a run: the name of its `film` (empty of a radial seal), its `method` by the name in
     METHODS, the `tolerance` relative to the scales (None: by a trial, or the cautious one), its `start`, a sentence
     `why` on method and tolerance, the sample `interval` (s) and the `count` of intervals; `film_error` (relative) of a
-    linear film that was chosen (None: not estimated); `last`: no other method or tolerance is tried after it."""
+    linear film that was chosen (None: not estimated); `last`: no other method or tolerance is tried after it; `work`:
+    compiled evaluations that it may take."""
 
     film: str
     method: str
@@ -53,6 +54,7 @@ class Plan:
     count: int = 0
     film_error: float | None = None
     last: bool = False
+    work: float = math.inf
 
 
 def prepare_run(scenario: Scenario, allow_large: bool = True) -> tuple[RunState, Plan]:
@@ -241,11 +243,11 @@ def check_method(model: Model, method: str) -> None:
 
 def _fastest_decay(run) -> float:
     """Fastest decay (1/s) of the scene linearised where the run starts (a squeezed film is stiffer by the cube) and at
-    the equilibrium of each interval's loads."""
+    the equilibrium of the loads of each interval's start and of the run's end."""
     model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
     varying = (model.scene.shaft.speed, viscosity_of(model.scene.film))
     places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
-    for interval in run.intervals.few:
+    for interval in (*run.intervals.few, run.intervals.end):
         places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
     scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
     return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)

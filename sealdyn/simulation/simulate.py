@@ -22,7 +22,7 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
-from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
+from .certificate import TrialRun, certificate, first_steps, judgement, next_plan, price
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
 from .sinks import ArchiveSink, RadialSink, archived_series
@@ -85,7 +85,7 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
         try:
             outcome = solve(
                 run, plan.method, run.model.accuracy, sink, audit=sink.audit, errors=sink.errors, seen=sink.seen,
-                tally=tally, resume=restart, **_solve_options(trial),
+                tally=tally, resume=restart, work=plan.work / price(plan.method), **_solve_options(trial),
             )  # fmt: skip
             found, outcome = certificate(run, plan, outcome, sink.errors, sink.seen, progress, stop)
         except KeyboardInterrupt:

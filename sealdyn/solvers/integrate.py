@@ -5,6 +5,7 @@ A run offers `segment(index) -> Segment` for each of its `intervals`, `duration`
 A sink takes what has been integrated.  Nothing here knows of seals or files.
 """
 
+import math
 import time as clock
 from dataclasses import dataclass
 
@@ -31,13 +32,14 @@ from .methods import METHODS
 # A run that does not get on ends (Advance): so many accepted steps, or changes of the equations, must bring it on by
 # this share of what it has before it.
 STEPS, CHANGES = 20_000, 1000
-SHARE_STEPS, SHARE_CHANGES = 2e-7, 1e-6
+SHARE_STEPS, SHARE_CHANGES = 1e-5, 1e-6
 # What it has before it: the run, or so many of its shortest periods.
 PERIODS = 1e4
 _STEPS = (
     "no advance: {count} steps brought {span:.1e} s of motion, up to t = {time:.6g} s; try another run.solver (bdf or "
     "ida where the scene is stiff), a looser run.accuracy, or look whether the film is closing there"
 )
+_DEAR = "too dear: {count} evaluations brought this retry to t = {time:.6g} s, many times the work of the first run"
 _CHANGES = (
     "no advance: {count} changes between sticking and slipping within {span:.1e} s of motion, up to t = {time:.6g} s; "
     'dry friction cannot say what happens there: law = "regularised" and a width of the secondary seal can'
@@ -47,16 +49,20 @@ _CHANGES = (
 class Advance:
     """Watches how far a run of `length` (s) and shortest period `period` (s) gets.
 
-    At the pace at which it gives up, the run would take 1e11 steps or 1e9 changes (stick-slip chatter): weeks.  Counts
-    decide, not the clock: another machine finds the same."""
+    At the pace at which it gives up, the run would take 2e9 steps or 1e9 changes (stick-slip chatter): hours of
+    compiled steps, days of others.  `work`: evaluations that a retry may take in all.  Counts decide, not the clock:
+    another machine finds the same."""
 
-    def __init__(self, length: float, period: float):
-        self.ahead, self.changes = min(length, PERIODS * period), 0
+    def __init__(self, length: float, period: float, work: float = math.inf):
+        self.ahead, self.changes, self.work = min(length, PERIODS * period), 0, work
         # Time and count where a window began.
         self.since_step = self.since_change = None
 
-    def see(self, time: float, steps: int) -> None:
-        """So many `steps` were made, up to `time` (s).  Raises SolverFailure for a run that does not get on."""
+    def see(self, time: float, steps: int, work: int = 0) -> None:
+        """So many `steps` were made, with so many evaluations (`work`), up to `time` (s).  Raises SolverFailure for a
+        run that does not get on, or costs too much."""
+        if work > self.work:
+            raise SolverFailure(_DEAR.format(count=work, time=time))
         self.since_step = self._look(self.since_step, time, steps, STEPS, SHARE_STEPS * self.ahead, _STEPS)
 
     def change(self, time: float) -> None:
@@ -105,7 +111,7 @@ class Outcome:
 
 def solve(
     run, method: str, accuracy: float, sink, *, audit=None, errors=None, seen=None, tally=None, resume=None, steps=None,
-    tolerance=None,
+    tolerance=None, work: float = math.inf,
 ) -> Outcome:  # fmt: skip
     """Integrate a run segment by segment, chunk by chunk, into a sink.
 
@@ -113,7 +119,7 @@ def solve(
     a GlobalErrorEstimate that is shown every step, or None, `seen` and `tally` other observers, or None; `resume` =
     (segment index, tau (s), y (size,)) continues.
     Another method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own
-    `tolerance`.
+    `tolerance`.  `work`: evaluations of the right-hand side after which the run gives up.
     The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
     and rates (m, n), after them the film's unknowns (m, n) if it has any, `state(segment, tau, y)`,
     `event(segment, tau, event)`, and may raise Enough from `take` or `state` to stop.
@@ -126,7 +132,7 @@ def solve(
     if errors:
         errors.tolerance = tolerance
     index, tau, y = resume if resume else (0, 0.0, run.y0.copy())
-    advance = Advance(run.duration, run.segment(index).shortest_period)
+    advance = Advance(run.duration, run.segment(index).shortest_period, work)
     status, cause, message = Status.OK, Cause.DONE, str(Cause.DONE)
     segment = run.segment(index)
     if not resume:
@@ -184,7 +190,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else MANY):
         counts.steps += len(block_t)
         _must_move(segment, np.diff(block_t, prepend=t[-1]), block_y)
-        advance.see(segment.time + float(block_t[-1]), counts.steps)
+        advance.see(segment.time + float(block_t[-1]), counts.steps, counts.rhs)
         t, ys = np.concatenate([t, block_t]), np.concatenate([ys, block_y])
         yps = np.concatenate([yps, np.zeros_like(block_y) if block_yp is None else block_yp])
         if sticking:

@@ -6,8 +6,8 @@ from scenes import fms, started
 
 from sealdyn.simulation.certificate import next_plan
 from sealdyn.simulation.selection import Plan, Start
-from sealdyn.solvers.contract import Cause, Counts, Status
-from sealdyn.solvers.integrate import Outcome
+from sealdyn.solvers.contract import Cause, Counts, SolverFailure, Status
+from sealdyn.solvers.integrate import Advance, Outcome
 
 ASKED = 1e-5
 
@@ -27,10 +27,10 @@ TRIES = [
 ]
 
 
-def following(solver, one, error, tries):
+def following(solver, one, error, tries, steps=10_000, evaluations=0):
     """What follows `one`, which erred by `error`, or gave up where that is None."""
     counts = Counts()
-    counts.steps = 10_000
+    counts.steps, counts.rhs = steps, evaluations
     status, cause = (Status.OK, Cause.DONE) if error else (Status.FAILED, Cause.METHOD_GAVE_UP)
     outcome = Outcome(status, cause, "", counts, 1.0, 0, 0.01, np.zeros(1), one.tolerance or 1e-7)
     return next_plan(started(fms(), 0.01), solver, one, outcome, certificate(error), tries)
@@ -54,3 +54,25 @@ def test_a_sharper_try_that_gives_up_loses_nothing(solver):
 def test_a_first_try_that_gives_up_is_the_answer():
     assert following("auto", plan("adams", None, ""), None, []) is None
     assert following("auto", plan("adams", 1e-9, "", last=True), None, TRIES) is None
+
+
+def test_no_explicit_method_is_tried_where_decay_is_fast():
+    """A stiff scene has had BDF and Radau: DOP853 would take a day, and the best of those before is in hand."""
+    bdf = plan("bdf", None, "stiff")
+    radau = following("auto", plan("bdf", 1e-9, "sharper"), 1.4e-4, [(bdf, 1e-7, certificate(1.5e-4))], steps=400)
+    assert radau.method == "radau"
+    tries = [(bdf, 1e-7, certificate(1.5e-5)), (plan("bdf", 1e-9, ""), 1e-9, certificate(1.4e-5))]
+    assert following("auto", radau, 9e-5, tries, steps=400).last
+    # Where nothing is stiff the same goes on.
+    adams = [(plan("adams", None, ""), 1e-7, certificate(1.5e-5)), tries[1]]
+    assert following("auto", radau, 9e-5, adams, steps=400).method == "dop853"
+
+
+def test_a_retry_has_so_many_times_the_work_of_the_first_run():
+    first = plan("bdf", None, "stiff")
+    second = following("auto", first, 1.4e-4, [], evaluations=1000)
+    assert first.work == np.inf and 3_000 < second.work < 30_000
+    third = following("auto", second, 6e-5, [(first, 1e-7, certificate(1.4e-4))], evaluations=9000)
+    assert third.work == second.work
+    with pytest.raises(SolverFailure):
+        Advance(1.0, 1.0, second.work).see(0.5, 10, 30_001)
