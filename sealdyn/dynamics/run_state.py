@@ -147,7 +147,8 @@ class RunState:
         """Raises SceneError if the film is closed at the start."""
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
-            other = "" if self.start and self.start.taken == "steady" else ', or run.start = "steady"'
+            begun = self.start and self.start.taken == "steady"
+            other = "" if begun or self.model.no_steady_response() else ', or run.start = "steady"'
             raise FilmClosed(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
