@@ -289,7 +289,7 @@ def starts_of(scenario: Scenario) -> dict[str, bool]:
     run, _ = prepare_run(scenario)
     floor, rest = run.model.face[COLLAPSE], np.zeros(run.model.unknowns.size)
     steady = not run.model.no_steady_response() and run.start_film(run.steady_start()) > floor
-    return {"steady": steady, "rest": run.start_film(rest) > floor}
+    return {"steady": bool(steady), "rest": bool(run.start_film(rest) > floor)}
 
 
 def set_start(run, scene: Scene | RadialScene, start: Start) -> None:

@@ -236,18 +236,18 @@ RUNOUT, SPEED = "rotor.runout=1,333 urad", "shaft.speed=3e3,2e6 rpm"
         ([], [RUNOUT, SPEED], None),
     ],
 )
-def test_all_points_begin_alike_where_they_can(overrides, vary, common):
-    settings = study.Settings(vary=vary, outputs=["h_min.value"])
+def test_all_points_begin_alike_where_they_can(tmp_path, overrides, vary, common):
     pump = re.search(r"```toml\n(.*?)```", (PATH.parents[1] / "README.md").read_text(), re.DOTALL)[1]
     scenario = parse_scenario(pump, "pump", ["run.turns=1", "run.accuracy=1e-2", "rotor.runout=1 urad", *overrides])
-    answer = study.run(scenario, settings, InProcess())
-    rows = [row for row in answer.numbers["rows"] if "failed" not in row]
-    assert len(rows) == len(answer.numbers["rows"]) - (common is None)
+    flags = {"vary": vary, "outputs": "h_min.value"}
+    answer = run_study("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=1)
+    rows = [row for row in answer["rows"] if "failed" not in row]
+    assert len(rows) == len(answer["rows"]) - (common is None)
     starts = {row["model.start"] for row in rows}
     assert starts == ({common} if common else {"rest", "steady"})
     # A difference is a column.
-    assert ("model.start" in answer.numbers["outputs"]) == (common is None)
-    assert any("model.start" in note for note in answer.notes) == (common is None)
+    assert ("model.start" in answer["outputs"]) == (common is None)
+    assert any("model.start" in sentence for sentence in answer["verdict"]) == (common is None)
 
 
 @pytest.mark.parametrize("count, status", [(2, "failed"), (1, "ok")])
