@@ -132,8 +132,9 @@ class RunState:
     # --- the start ----------------------------------------------------------------------------------
 
     def steady_start(self) -> np.ndarray:
-        """Unknowns (size,) on the linear steady state at time zero."""
-        at, _, _ = self.segment(0).steady_motion()
+        """Unknowns (size,) on the linear steady state at time zero: of what turns and of tones; what samples and sweeps
+        impose begins with the run."""
+        at, _, _ = self.segment(0).periodic_motion
         q, rate = at(0.0)
         places = self.model.unknowns.among_three()
         return self.model.vector(q[places], rate[places])
