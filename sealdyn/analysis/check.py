@@ -5,6 +5,7 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..simulation.film_error import reynolds_comparison
 from ..simulation.plausibility import scene_cautions, size_of
+from ..simulation.result import plain
 from ..simulation.selection import prepare_run
 from ..simulation.summary import model_chosen
 from ..status import Status
@@ -27,7 +28,7 @@ def checked(scenario: Scenario) -> dict:
         }
     return found | {
         "gauge": sorted(scenario.gauge),
-        "model": model_chosen(scenario, run, plan),
+        "model": plain(model_chosen(scenario, run, plan)),
         "clearance": run.model.clearance,
         "equilibria": [vars(e) for e in run.model.interface.equilibria],
         "warnings": [caution.sentence for caution in (*run.cautions, *scene_cautions(scenario, run.model))],

@@ -418,7 +418,7 @@ class ExtremaTracker:
         """When, where, and what to try."""
         record, face = self.records[0], self.model.face
         limit = "floor" if self.model.contact is None else "all flat at"
-        other = "" if self.steady else ', run.start = "steady"'
+        other = "" if self.steady or self.model.no_steady_response() else ', run.start = "steady"'
         at = "at the {} radius".format("inner" if record[H_RADIUS] == face[INNER_RADIUS] else "outer")
         if record[H_RADIUS] not in face[[INNER_RADIUS, OUTER_RADIUS]]:
             at = "at the radius"

@@ -111,15 +111,19 @@ def _whirl(linear) -> Whirl | None:
     return Whirl(numbers, film_k[TILT].real, film_d[TILT].real, bounds, linear.rings[STATOR].spin)
 
 
-def harmonics(segment) -> list[Harmonic]:
-    """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed).  Raises SceneError
-    where samples or a sweep move a carrier."""
+def check_harmonic(segment) -> None:
+    """Raises SceneError where samples or a sweep move a carrier."""
     for ring in segment.sampled:
         key = "housing.motion" if ring == STATOR else "shaft.motion"
-        raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time from rest")
+        raise SceneError(key, "motion by samples, which has no harmonics", "tones, or a run in time")
     if not segment.harmonic:
         key, _ = sweeps_of(segment.model.scene)[0]
-        raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time from rest")
+        raise SceneError(key, "a sweep, which has no harmonics", "tones, or a run in time")
+
+
+def harmonics(segment) -> list[Harmonic]:
+    """The imposed oscillators of a segment as harmonics in its time (constant amplitude and speed), without what
+    samples and sweeps impose."""
     found = []
     for ring, kind, amplitude, _, cos, sin, a0, a1, _ in segment.rows.reshape(-1, ROW):
         phasor = amplitude * np.exp(1j * a0)

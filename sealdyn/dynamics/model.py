@@ -8,7 +8,7 @@ from ..faces.geometry import FACE_SIZE
 from ..scene.film import aligned_gaps, coning_change
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
-from . import equations, linearisation
+from . import equations, linearisation, modes
 from .equilibrium import axial_shift
 from .imposed_motion import fluid_conditions
 from .interface import FAST, Interface
@@ -135,6 +135,15 @@ class Model:
     def loads_are_balanced(self, interval: Interval) -> bool:
         """Whether there is a gap at which the film holds the loads of an interval's start."""
         return self._axial_shift(interval)[1]
+
+    def no_steady_response(self) -> str:
+        """Why no run can start on a linear steady response of the scene; else empty."""
+        if self.scene.initial.given:
+            return "[initial] gives the rest"
+        if not self.loads_are_balanced(self.start):
+            return "no gap at which the film holds the loads"
+        verdict = modes.verdict(self.linear_scene().modes())
+        return "" if verdict == "stable" else f"the linear steady response is {verdict}"
 
     def _axial_shift(self, interval: Interval) -> tuple[float, bool]:
         if interval.start not in self._shifts:

@@ -132,8 +132,9 @@ class RunState:
     # --- the start ----------------------------------------------------------------------------------
 
     def steady_start(self) -> np.ndarray:
-        """Unknowns (size,) on the linear steady state at time zero."""
-        at, _, _ = self.segment(0).steady_motion()
+        """Unknowns (size,) on the linear steady state at time zero: of what turns and of tones; what samples and sweeps
+        impose begins with the run."""
+        at, _, _ = self.segment(0).periodic_motion
         q, rate = at(0.0)
         places = self.model.unknowns.among_three()
         return self.model.vector(q[places], rate[places])
@@ -147,7 +148,8 @@ class RunState:
         """Raises SceneError if the film is closed at the start."""
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
-            other = "" if self.start and self.start.taken == "steady" else ', or run.start = "steady"'
+            begun = self.start and self.start.taken == "steady"
+            other = "" if begun or self.model.no_steady_response() else ', or run.start = "steady"'
             raise FilmClosed(
                 "film.clearance",
                 f"a film closed at the start (thinnest {low * 1e6:.4g} um)",

@@ -320,13 +320,16 @@ class Segment:
         return common_period([*moving, speed] if speed else moving)
 
     def harmonics(self) -> list:
-        """The imposed oscillators as harmonics in segment time."""
+        """The imposed oscillators as harmonics in segment time.  Raises SceneError where there are others."""
+        linearisation.check_harmonic(self)
         return linearisation.harmonics(self)
 
     def steady_motion(self):
-        """Linear steady state (linearisation.py), worked out once."""
-        return self._steady
+        """Linear steady state (linearisation.py).  Raises as `harmonics`."""
+        linearisation.check_harmonic(self)
+        return self.periodic_motion
 
     @cached_property
-    def _steady(self):
+    def periodic_motion(self):
+        """The same of what is periodic alone, without samples and sweeps, worked out once."""
         return linearisation.steady_motion(self)

@@ -43,8 +43,8 @@ NEAREST_SAMPLES = 1e-3
 
 @dataclass(frozen=True)
 class Motion:
-    """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, with a smooth curve
-    through them; it adds to runout, whirl and vibration."""
+    """Motion of the shaft under the rotor, or of the housing under the stator, given by samples, along the spline
+    of fifth degree through them; it adds to runout, whirl and vibration."""
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 

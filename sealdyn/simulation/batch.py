@@ -24,8 +24,17 @@ from ..scenario.reader import Scenario, scenario_of, with_values
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
-from .result import asks_speeds, common_outputs, missing_outputs, output, unit_of
-from .selection import prepare_run
+from .result import (
+    START,
+    asks_speeds,
+    common_outputs,
+    missing_outputs,
+    output,
+    unit_of,
+    with_choices,
+    without_equal_choices,
+)
+from .selection import prepare_run, starts_of
 from .simulate import in_memory
 from .summary import state_names
 
@@ -47,8 +56,10 @@ from .summary import parts
 from .verification_run import ProgressSink
 
 # What is asked of a face seal, and of a radial one, unless told.
-OUTPUTS = ("h_min.value", "relative_misalignment.max")
+OUTPUTS = ("h_min.value", "h_min.steady", "relative_misalignment.max")
 RADIAL_OUTPUTS = ("whole.largest_gap", "settled.contact_share")
+# Starts that all runs may share, the better first.
+ALIKE = ("steady", "rest")
 # Length (s) of a run that only shows what a summary has.
 MOMENT = 1e-6
 
@@ -81,7 +92,7 @@ def simulate_many(
     names = [] if _is_radial(scenario) else state_names(first.model.unknowns)
     outputs = _output_list(scenario, outputs)
     outputs = [*dict.fromkeys([*outputs, *(f"end.state.{name}" for name in names)])]
-    rows = rows_of(scenario, sets, outputs, workers, progress)
+    rows = rows_of(scenario, sets, with_choices(scenario.scene, outputs), workers, progress)
     units = {name: unit_of(name) for name in outputs}
     axis = {"key": "run", "values": range(len(sets)), "unit": None}
     return as_dataset({"keys": ["run"], "axes": [axis], "rows": rows, "outputs": outputs, "output_units": units})
@@ -121,7 +132,9 @@ def sweep(
     with suppress(SceneError):
         first_ready(scenario, sets)
     refuse_outputs(scenario, sets, outputs, "outputs")
-    rows = rows_of(scenario, sets, outputs, workers, progress)
+    asked = with_choices(scenario.scene, outputs)
+    rows = rows_of(scenario, sets, asked, workers, progress)
+    outputs = without_equal_choices(rows, asked, outputs, axes)
     names = list(axes)
     index = pandas.Index([place[0] for place in places], name=names[0]) if len(axes) == 1 else None
     index = pandas.MultiIndex.from_tuples(places, names=names) if index is None else index
@@ -143,14 +156,41 @@ def _output_list(scenario, outputs) -> list[str]:
 
 def rows_of(scenario, sets: list[dict], outputs: list[str], workers, progress) -> list[dict]:
     """A row of each run, in their order: its outputs, `status`, and `message` or `failed` unless it ended well."""
-    todo = {k: {"set": values, "outputs": outputs} for k, values in enumerate(sets)}
-    rows = [None] * len(sets)
-    with closing(processes(workers)(Together(partial(run_many, scenario)), todo, "runs")) as answers:
-        for done, (k, row, _) in enumerate(answers):
+
+    def evaluate(function, points):
+        rows = [None] * len(points)
+        with closing(processes(workers)(function, dict(enumerate(points)), "runs")) as answers:
+            for done, (k, row, _) in enumerate(answers):
+                rows[k] = row
+                if progress:
+                    progress(done + 1, len(points))
+        return rows
+
+    points = [{"set": values, "outputs": outputs} for values in sets]
+    return rows_alike(scenario, Together(partial(run_many, scenario)), points, evaluate)
+
+
+def rows_alike(scenario, function, points: list[dict], evaluate) -> list[dict]:
+    """Rows of `function` of the points (as `run_many` has them, START among their outputs), by `evaluate(function,
+    points)`: runs whose start is left open begin alike, on the steady response if all can, else at rest if all can.
+    What begins otherwise shows other numbers, whatever is varied; where neither can be, each keeps its own start."""
+    rows = evaluate(function, points)
+    starts = {row[START] for row in rows if row.get(START)}
+    if len(starts) < 2 or scenario.run.start != "auto" or any("run.start" in point["set"] for point in points):
+        return rows
+    begun = [{"set": point["set"]} for point, row in zip(points, rows, strict=True) if row.get(START)]
+    able = evaluate(partial(starts_at, scenario), begun)
+    if common := next((start for start in ALIKE if all(each[start] for each in able)), None):
+        again = [k for k, row in enumerate(rows) if row.get(START) not in (None, common)]
+        anew = [{**points[k], "set": {**points[k]["set"], "run.start": common}} for k in again]
+        for k, row in zip(again, evaluate(function, anew), strict=True):
             rows[k] = row
-            if progress:
-                progress(done + 1, len(sets))
     return rows
+
+
+def starts_at(scenario, point: dict) -> dict[str, bool]:
+    """`starts_of` (selection.py) the scenario with the values of a point."""
+    return starts_of(with_values(scenario, point["set"]))
 
 
 def first_ready(scenario, sets):

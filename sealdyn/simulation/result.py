@@ -102,9 +102,13 @@ UNITS |= {
     }.items()
 }  # fmt: skip
 
+# What is chosen for a run, and can differ from one to another, with the key that says it beforehand.
+START = "model.start"
+CHOICES = {START: "run.start", "model.film": "film.model", "model.solver": "run.solver"}
 # What every summary of a face seal has.
 COMMON = (
     "h_min.value",
+    "h_min.steady",
     "h_min.of_clearance",
     "film.clearance",
     "relative_misalignment.max",
@@ -113,6 +117,7 @@ COMMON = (
     "friction.power",
     "contact_margin",
     "stability.verdict",
+    START,
 )
 # What every summary of a radial seal has.
 RADIAL = (
@@ -123,6 +128,19 @@ RADIAL = (
     "settled.leakage_estimate",
     "closed_form.margin",
 )
+
+
+def with_choices(scene, outputs) -> list[str]:
+    """Outputs, and what is chosen for a run of a seal of this kind."""
+    choices = ("model.solver",) if isinstance(scene, RadialScene) else CHOICES
+    return list(dict.fromkeys([*outputs, *choices]))
+
+
+def without_equal_choices(rows: list[dict], outputs, asked, keys) -> list[str]:
+    """Of the outputs of the rows those `asked` for, and what was chosen differently, other than by the `keys` that say
+    it: no comparison is told without it."""
+    chosen = {name: {row[name] for row in rows if name in row} for name in CHOICES if CHOICES[name] not in keys}
+    return [name for name in outputs if name in asked or len(chosen.get(name, ())) > 1]
 
 
 def common_outputs(scene) -> tuple[str, ...]:

@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from .. import archive
-from ..dynamics import modes
 from ..dynamics.intervals import constant_and_slope, largest_value
 from ..dynamics.model import Model
 from ..dynamics.run_state import Caution, Concern, RunState
@@ -261,7 +260,7 @@ def choose_start(run: RunState, asked: str) -> Start:
     doubt = _response_is_doubtful(run)
     if doubt and not closed:
         return Start("rest", f"at rest: {doubt}")
-    ruled_out = _no_steady_response(run)
+    ruled_out = run.model.no_steady_response()
     if ruled_out:
         return Start("rest", f"at rest: {ruled_out}")
     if closed:
@@ -287,15 +286,12 @@ def _response_is_doubtful(run) -> str:
     return "" if unknowns.constant else "conditions change with time"
 
 
-def _no_steady_response(run) -> str:
-    """Why a run cannot start on a linear steady response; else empty."""
-    model = run.model
-    if model.scene.initial.given:
-        return "[initial] gives the rest"
-    if not model.loads_are_balanced(model.start):
-        return "no gap at which the film holds the loads"
-    verdict = modes.verdict(model.linear_scene().modes())
-    return "" if verdict == "stable" else f"the linear steady response is {verdict}"
+def starts_of(scenario: Scenario) -> dict[str, bool]:
+    """Whether a run can start "steady" and at "rest", where its film is open.  Raises as `prepare_run`."""
+    run, _ = prepare_run(scenario)
+    floor, rest = run.model.face[COLLAPSE], np.zeros(run.model.unknowns.size)
+    steady = not run.model.no_steady_response() and run.start_film(run.steady_start()) > floor
+    return {"steady": bool(steady), "rest": bool(run.start_film(rest) > floor)}
 
 
 def set_start(run, scene: Scene | RadialScene, start: Start) -> None:

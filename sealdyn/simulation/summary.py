@@ -37,7 +37,7 @@ def model_chosen(scenario, run, plan) -> dict:
         "solver": plan.method,
         "start": run.start.taken,
         "reasons": [*run.reasons, *begun, f"solver: {plan.why}", run.model.interface.message],
-        "unused": scenario.unused(),
+        "unused": scenario.unused,
     }
 
 
@@ -145,7 +145,8 @@ def _steady(run, outcome, period, begun_well):
         abs(last[H] - before[H]) / model.clearance,
     )
     if change > model.accuracy:
-        try_it = "run longer" if begun_well else 'run longer or use run.start = "steady"'
+        other = begun_well or model.no_steady_response()
+        try_it = "run longer" if other else 'run longer or use run.start = "steady"'
         return none(
             f"not steady: the last two forcing periods differ by {change:.1e} of the clearance "
             f"(accuracy {model.accuracy:.0e}); {try_it}"

@@ -15,8 +15,8 @@ from ..scenario.errors import ScenarioError
 from ..scenario.settings import MOST, axis, with_own_unit
 from ..scene.radial import RadialScene
 from ..scene.scene import SceneError
-from ..simulation.batch import first_ready, refuse_outputs, run_many
-from ..simulation.result import common_outputs, unit_of
+from ..simulation.batch import first_ready, refuse_outputs, rows_alike, run_many
+from ..simulation.result import START, common_outputs, unit_of, with_choices, without_equal_choices
 from ..status import Status
 from . import Info
 
@@ -31,7 +31,7 @@ LEAST, ROW = 2e-3, 500
 # Changes over a grid of fewer of the accuracy's errors than this may be errors.
 NEAR = 5.0
 # Outputs that are drawn.
-DRAWN = 8
+DRAWN = 9
 # A power law is looked for in so many points at least, over such a ratio of the key and such a one of the output; of
 # the range of its logarithm, how far it may be off.
 FEW, WIDE, MOVED, OFF = 4, 1.5, 1.05, 0.03
@@ -69,9 +69,11 @@ def run(scenario, settings, tools) -> Answer:
     with contextlib.suppress(SceneError):
         model = first_ready(scenario, grid).model
     refuse_outputs(scenario, grid, outputs, "study.sweep.outputs")
-    found = tools.map(
-        Together(partial(run_many, scenario)), [{"outputs": outputs, "set": values} for values in grid], "runs"
-    )
+    asked = with_choices(scenario.scene, outputs)
+    points = [{"outputs": asked, "set": values} for values in grid]
+    found = rows_alike(scenario, Together(partial(run_many, scenario)), points, partial(tools.map, what="runs"))
+    outputs = without_equal_choices(found, asked, outputs, keys)
+    unlike = len({row[START] for row in found if row.get(START)}) > 1 and "run.start" not in keys
     places = itertools.product(*(a["values"] for a in axes))
     rows = [{**dict(zip(keys, place, strict=True)), **row} for place, row in zip(places, found, strict=True)]
     numbers = {
@@ -85,6 +87,11 @@ def run(scenario, settings, tools) -> Answer:
     numbers["rows"] = rows
     ends = counted([_end(row) for row in rows])
     found, notes = f"{len(rows)} points over {' and '.join(keys)}: {ends}.", []
+    if unlike:
+        notes.append(
+            f"No one start is possible for all points ({START}): extremes of the whole run do not compare, settled "
+            "ones do (h_min.steady)."
+        )
     if lost := unresolved(outputs, rows, model):
         names = (f"{name} ({in_words(quantity_of(name), error, digits=3)})" for name, error in lost.items())
         short = f"by little more than run.accuracy = {model.accuracy:g} lets err; a smaller one would tell"

@@ -2,6 +2,7 @@
 
 import itertools
 import json
+import re
 import subprocess
 from pathlib import Path
 
@@ -150,7 +151,9 @@ def test_a_sweep_is_a_dataset_over_its_keys(tmp_path):
     answer = sweep(tmp_path, vary, outputs)
     with sealdyn.open_archive(answer["archive"]) as data:
         assert dict(data.sizes) == {"rotor.runout": 3, "film.clearance": 3, "film.model": 2}
-        assert set(data.data_vars) == {"h_min.value", "stability.verdict", "contact_margin", "status", "message"}
+        # The two models are integrated by different methods.
+        chosen = {"model.solver", "status", "message"}
+        assert set(data.data_vars) == {"h_min.value", "stability.verdict", "contact_margin", *chosen}
         assert data["rotor.runout"].values == pytest.approx([10, 20, 30]) and list(data["film.clearance"]) == [
             9,
             -9,
@@ -216,6 +219,35 @@ class Failing(InProcess):
 
     def map(self, function, points, what="points"):
         return [{"failed": "no"} if k < self.count else {"status": "ok"} for k in range(len(points))]
+
+
+ROUGH = ["contact.roughness='0.1 um'", "contact.compressive_strength='1 GPa'"]
+RUNOUT, SPEED = "rotor.runout=1,333 urad", "shaft.speed=3e3,2e6 rpm"
+
+
+@pytest.mark.parametrize(
+    "overrides, vary, common",
+    [
+        # At rest one would overlap; of the other, which starts at rest by itself, a response is only doubtful.
+        (ROUGH, [RUNOUT], "steady"),
+        # One is unstable: there is no response.
+        ([], [SPEED], "rest"),
+        # One of these here, one of those there.
+        ([], [RUNOUT, SPEED], None),
+    ],
+)
+def test_all_points_begin_alike_where_they_can(tmp_path, overrides, vary, common):
+    pump = re.search(r"```toml\n(.*?)```", (PATH.parents[1] / "README.md").read_text(), re.DOTALL)[1]
+    scenario = parse_scenario(pump, "pump", ["run.turns=1", "run.accuracy=1e-2", "rotor.runout=1 urad", *overrides])
+    flags = {"vary": vary, "outputs": "h_min.value"}
+    answer = run_study("sweep", scenario, tmp_path / "sweep.h5", flags=flags, workers=1)
+    rows = [row for row in answer["rows"] if "failed" not in row]
+    assert len(rows) == len(answer["rows"]) - (common is None)
+    starts = {row["model.start"] for row in rows}
+    assert starts == ({common} if common else {"rest", "steady"})
+    # A difference is a column.
+    assert ("model.start" in answer["outputs"]) == (common is None)
+    assert any("model.start" in sentence for sentence in answer["verdict"]) == (common is None)
 
 
 @pytest.mark.parametrize("count, status", [(2, "failed"), (1, "ok")])

@@ -134,7 +134,7 @@ def test_scene_takes_no_steady_response():
     method = plan.method
     assert ready.start.taken == "rest" and method != "expm" and ready.period(-1) is None
     with pytest.raises(SceneError) as error:
-        prepare_run(scenario.with_({"run.start": "steady"}))
+        ready.segment(0).steady_motion()
     assert error.value.key == "shaft.motion"
 
 

@@ -1,6 +1,7 @@
 """Sine sweeps of the housing: the compiled motion against mpmath, its bounds, where it meets a run, what is refused."""
 
 import math
+import re
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -241,9 +242,20 @@ def test_steady_starts_and_ends_are_beside_a_sweep():
     method = plan.method
     assert ready.start.taken == "steady" and method != "expm" and ready.period(-1) is not None
     assert prepare_run(scenario_of(LATE, **{"run.start": "auto"}))[0].start.taken == "rest"
-    with pytest.raises(SceneError) as error:
-        prepare_run(scenario_of(SHORT, **{"run.start": "steady"}))
-    assert error.value.key == "housing.axial_sweep.0"
+
+
+MEASURED = "[housing.motion]\ntime = [0, 0.02, 0.04, 0.06, 0.08, 0.1]\naxial = [0, 1e-7, 0, -1e-7, 0, 0]"
+PUMP = re.search(r"```toml\n(.*?)```", (Path(__file__).parents[2] / "README.md").read_text(), re.DOTALL)[1]
+
+
+@pytest.mark.parametrize("moved", [SHORT, MEASURED], ids=["sweep", "samples"])
+def test_a_seal_that_overlaps_at_rest_begins_on_the_response_of_what_turns(moved):
+    texts = (PUMP, f"{PUMP}\n{moved}\n")
+    still, moving = (prepare_run(parse_scenario(text, "pump", ["run.turns=1"]))[0] for text in texts)
+    assert moving.start.taken == "steady"
+    names = [run.model.unknowns.names for run in (still, moving)]
+    alike = [moving.y0[names[1].index(name)] for name in names[0]]
+    assert np.any(alike) and alike == pytest.approx(still.y0[: len(alike)], rel=1e-9)
 
 
 def test_no_scene_takes_a_sweep_that_comes_later_for_none():

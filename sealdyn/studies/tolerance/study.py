@@ -11,8 +11,8 @@ from ...numerics.parallel import Together
 from ...quantities import in_words
 from ...scenario.errors import ScenarioError
 from ...scenario.reader import with_values
-from ...simulation.batch import run_many
-from ...simulation.result import unit_of
+from ...simulation.batch import rows_alike, run_many
+from ...simulation.result import START, unit_of
 from ...status import Status
 from .. import Info
 from ..sweep import quantity_of
@@ -69,13 +69,18 @@ def run(scenario, settings, tools) -> Answer:
     outputs = list(dict.fromkeys(name.strip() for entry in listed(settings.outputs) for name in entry.split(",")))
     a, b = points(scatters, settings.samples, settings.seed, factor)
     check_used(scenario, keys, a[0])
-    asked = [*outputs, THINNEST, VERDICT, *([TOUCHES] if scenario.scene.contact else [])]
+    asked = [*outputs, THINNEST, VERDICT, *([TOUCHES] if scenario.scene.contact else []), START]
     nominal = nominal_run(scenario, asked, outputs)
     with_indices = settings.indices and factor is None
     designs = [a, b, *mixed(a, b)] if with_indices else [a]
     tools.tell(f"tolerance: {runs_of(settings.samples, len(keys), with_indices)}")
     sets = [dict(zip(keys, map(float, row), strict=True)) for design in designs for row in design]
-    rows = tools.map(Together(partial(seals, scenario)), [{"outputs": asked, "set": values} for values in sets], "runs")
+    todo = [{"outputs": asked, "set": values} for values in sets]
+    rows = rows_alike(scenario, Together(partial(seals, scenario)), todo, partial(tools.map, what="runs"))
+    starts = {row[START] for row in rows if row.get(START)}
+    if len(starts) == 1 and nominal[START] not in starts:
+        # The nominal seal begins as those that scatter about it.
+        nominal = nominal_run(with_values(scenario, {"run.start": starts.pop()}), asked, outputs)
 
     found = {name: column(rows, name).reshape(len(designs), -1) for name in outputs}
     contact = touched(rows, settings.margin).reshape(len(designs), -1)
