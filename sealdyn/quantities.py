@@ -5,6 +5,7 @@ A quantity that is not in the table is named by its SI unit ("m", "rad/s"); "1" 
 """
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -41,6 +42,12 @@ SIZES = {
     "Pa*m/s": ((0.0, "kPa m/s", 1e-3), (1e4, "MPa m/s", 1e-6)),
 }
 
+# SI unit -> unit of a series of any size: what archives say.
+EVERYDAY = {"m": "um", "rad": "urad", "m/s": "mm/s", "m^3/s": "ml/h", "kg/s": "g/h", "Pa": "MPa"}
+# As print has it, in place of what a terminal shows.
+PRINT = ((re.compile(r"\bu(m|rad|s)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"),
+         (re.compile(r"\^3\b"), "³"))  # fmt: skip
+
 QUANTITIES = {
     # Film and faces
     "clearance": Quantity("m", "clearance", scale="clearance"),
@@ -64,6 +71,7 @@ QUANTITIES = {
     "force": Quantity("N", "force", "N", 1.0),
     "moment": Quantity("N m", "moment", "N m", 1.0),
     "torque": Quantity("N m", "torque", "N m", 1.0),
+    "friction_torque": Quantity("N m", "friction torque", "mN m", 1e3),
     "power": Quantity("W", "power", "W", 1.0),
     "heat_flux": Quantity("W/m^2", "heat flux", "W/cm^2", 1e-4),
     "force_per_length": Quantity("N/m", "force per length", "N/m", 1.0),
@@ -78,6 +86,7 @@ QUANTITIES = {
     "time": Quantity("s", "time"),
     "turns": Quantity("1", "turns of the shaft"),
     "speed": Quantity("rad/s", "shaft speed"),
+    "speed_rpm": Quantity("rad/s", "shaft speed", "rpm", RPM),
     "frequency": Quantity("rad/s", "frequency", "Hz", HERTZ),
     "frequency_hz": Quantity("Hz", "frequency", "Hz", 1.0),
     "growth_rate": Quantity("1/s", "growth rate", "1/s", 1.0),
@@ -116,6 +125,29 @@ def shown_in(name: str, values: Iterable = (), written: Mapping[str, str] | None
         fits = sizes[1:2]
     _, unit, factor = fits[-1]
     return unit, factor
+
+
+def everyday(name: str) -> tuple[str, float]:
+    """Unit, as printed, in which a series of a quantity is read whatever its size, and its factor."""
+    held = quantity(name)
+    unit = held.shown or EVERYDAY.get(held.unit, held.unit)
+    return printed(unit), factor_of(held.unit, unit) or 1.0
+
+
+def by_size(unit: str, shown: str, factor: float, size: float) -> tuple[str, float]:
+    """Unit, as printed, that suits a `size` (SI `unit`) in place of the everyday one; another `shown`, which somebody
+    chose, stays with its factor."""
+    if shown != everyday(unit)[0] or shown not in {printed(name) for _, name, _ in SIZES.get(unit, ())}:
+        return shown, factor
+    fits, per = shown_in(unit, [size])
+    return printed(fits), per
+
+
+def printed(words: str) -> str:
+    """Words of a terminal with the units of print."""
+    for told, letters in PRINT:
+        words = told.sub(letters, words)
+    return words
 
 
 def factor_of(unit: str, shown: str) -> float | None:
