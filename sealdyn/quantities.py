@@ -160,11 +160,11 @@ def factor_of(unit: str, shown: str) -> float | None:
 
 
 def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:
-    """A number of so many digits, speeds and flows of five or six figures without an exponent; "-" of None."""
+    """A number of so many digits, large ones up to seven figures without an exponent; "-" of None."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
     words = f"{value * factor:.{digits}g}"
-    return f"{float(words):.0f}" if words.endswith(("e+04", "e+05", "e+06")) else words
+    return f"{float(words):.0f}" if words.endswith(("e+03", "e+04", "e+05", "e+06")) else words
 
 
 def in_words(name: str, value: float | None, written: Mapping[str, str] | None = None, digits: int = 4) -> str:

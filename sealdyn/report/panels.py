@@ -10,40 +10,24 @@ from matplotlib.ticker import LogLocator, MultipleLocator
 
 from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
-from ..quantities import quantity, shown_in
+from ..quantities import printed, quantity, shown_in
 from ..status import Status
-from .charts.face import annulus, in_the_middle
-from .charts.page import PAPER, absent, heading, logarithmic, look, number, power, printed, save, sheet
-from .charts.palette import (
-    BLACK,
-    BLUE,
-    CONTACT,
-    CYCLE,
-    FILM,
-    GREEN,
-    GREY,
-    LEAK,
-    ORANGE,
-    PALE,
-    PRESSURE,
-    RING,
-    STATUS,
-    THEORY,
-    THICKNESS,
-    TILT,
-    VERMILLION,
-)  # fmt: skip
-from .text import question_of
+from .charts.page import (
+    PAPER,
+    absent,
+    annulus,
+    heading,
+    logarithmic,
+    look,
+    no_label_cut,
+    number,
+    power,
+    save,
+    sheet,
+    study_words,
+)
+from .charts.palette import COLOURS, CYCLE, DASHES, GREY, MARKS, PALE, PRESSURE, THICKNESS
 
-COLOURS = {
-    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, "stator": RING["stator"],
-    "rotor": RING["rotor"], "good": GREEN, "bad": VERMILLION, "warn": ORANGE, "black": BLACK, "grey": GREY,
-    "pale": PALE, "blue": BLUE,
-}  # fmt: skip
-COLOURS |= dict(zip(("first", "second", "third", "fourth", "fifth", "sixth", "seventh"), CYCLE, strict=True))
-DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 1, 2))}
-MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
-         "star": "*", "tick": "_"}  # fmt: skip
 # Columns of panels side by side; width (inches) of a figure by their number; height of a panel alone and in a stack.
 ACROSS, WIDTHS, ALONE, STACKED = 3, (8.5, 11.5, 13.0, 13.5), 4.6, 3.0
 # Height of a panel of several rows, and from how many panels on four stand in a row.
@@ -63,20 +47,19 @@ def draw(path, out=None):
     own = f"{__package__}.charts.study_{study['study']}"
     if not study.get("panels") and importlib.util.find_spec(own):
         return importlib.import_module(own).draw(path, out)
-    answer, name = study["answer"], study["name"]
-    asked, below = question_of(study["question"]), name
-    title = study.get("asks") or asked or name
-    if asked and asked != title:
-        below = f"{name}: {asked}"
-    status = answer.get("status", Status.OK)
-    colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
+    answer = study["answer"]
     words = "\n".join([answer.get("found") or answer["message"], *answer.get("notes", [])[:2]])
-    figure = sheet_of(panels_of(study["panels"]), title, below, words, colour, study.get("written", {}))
+    figure = study_sheet(study, panels_of(study["panels"]), study.get("asks") or "", bold=words)
     return save(figure, out)
 
 
+def study_sheet(study, panels: list[Panel], title: str = "", below: str = "", bold: str = "", written=None):
+    """The figure of a study's panels; words above them as page.study_words has them."""
+    return sheet_of(panels, *study_words(study, title, below, bold), written or study.get("written", {}))
+
+
 @look()
-def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = BLACK, written=None):
+def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = "black", written=None):
     """A figure: heading, then the panels."""
     stacks = _stacks(panels_of(plain(panels)))
     most = ACROSS + (len(stacks) >= MANY)
@@ -90,9 +73,8 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
     heights = [max(_height(stack, alone) for stack in row) for row in rows]
     figure = sheet(WIDTHS[max(map(len, rows)) - 1], 1.1 + sum(heights))
     top = heading(figure, title, below, bold, colour)
-    width, height = figure.get_size_inches()
-    rect = (0.25 / width, 0.1 / height, 1 - 0.45 / width, top - 0.1 / height)
-    figure.set_layout_engine("constrained", rect=rect, wspace=0.04, hspace=0.04, w_pad=0.06, h_pad=0.06)
+    width = figure.get_figwidth()
+    no_label_cut(figure, top)
     grid = figure.add_gridspec(len(rows), 1, height_ratios=heights)
     for k, row in enumerate(rows):
         columns = grid[k].subgridspec(1, len(row), width_ratios=[stack[0].wide for stack in row])
@@ -168,7 +150,7 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
     if panel.polar:
         ax.set_xticks([])
         ends = y.of([end for one in panel.series if one.kind == "map" for end in (one.y[0], one.y[-1])])
-        in_the_middle(ax, "\n".join((printed(panel.title), annulus(ax, ends.min(), ends.max()))))
+        annulus(ax, ends.min(), ends.max(), printed(panel.title))
     else:
         x.finish(ax, "x")
         y.finish(ax, "y")
@@ -193,7 +175,7 @@ class _Scaled:
 
     def of(self, values) -> np.ndarray:
         """Numbers as drawn (NaN for None)."""
-        return self.factor * np.array([np.nan if v is None else v for v in values], float)
+        return self.factor * _numbers(values)
 
     @property
     def label(self) -> str:
@@ -239,18 +221,24 @@ def _signed(value: float) -> str:
     return ("−" if value < 0 else "") + power(round(np.log10(abs(value))))
 
 
-def _values(panel: Panel, which: str) -> list:
-    """Numbers (SI) along an axis: what decides its unit."""
-    found = [axis_end for axis in ((panel.x,) if which == "x" else ()) for axis_end in (axis.low, axis.high)]
+def _values(panel: Panel, which: str) -> list[float]:
+    """Ends (SI) of what is drawn along an axis: what decides its unit."""
+    found = [[panel.x.low, panel.x.high] if which == "x" else []]
     for one in panel.series:
         if which == "x":
-            found += one.x
+            found.append(one.x)
         elif one.right == (which == "right"):
-            found += one.y
-            found += one.z if one.kind == "shade" and one.z else []
+            found += [one.y, one.z if one.kind == "shade" and one.z is not None else []]
     if which != "right":
-        found += [one.value for one in panel.levels if one.upright == (which == "x")]
-    return [value for value in found if value is not None]
+        found.append([one.value for one in panel.levels if one.upright == (which == "x")])
+    known = [_numbers(values)[np.isfinite(_numbers(values))] for values in found]
+    return [end for values in known if len(values) for end in (float(values.min()), float(values.max()))]
+
+
+def _numbers(values) -> np.ndarray:
+    """Numbers of a list (NaN for None), or of an array as it is."""
+    held = values if isinstance(values, np.ndarray) else [np.nan if v is None else v for v in values]
+    return np.array(held, float)
 
 
 def _style(words: str, k: int) -> dict:
@@ -293,7 +281,7 @@ def _line(ax, panel, one: Series, x, y, style, written) -> None:
 
 def _marks(ax, panel, one, x, y, style, written) -> None:
     # One on the edge of a map is whole.
-    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None}
+    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None and style["zorder"] < 5}
     if style["marker"] in "x+_":
         style["mew"] = 1.8
     _line(ax, panel, one, x, y, style, written)
@@ -301,7 +289,7 @@ def _marks(ax, panel, one, x, y, style, written) -> None:
 
 def _shade(ax, panel, one, x, y, style, written) -> None:
     alpha = 0.18 if style["alpha"] == 1.0 else 0.08
-    ax.fill_between(x.of(one.x), y.of(one.y), y.of(one.z or [0.0] * len(one.y)), color=style["color"], alpha=alpha,
+    ax.fill_between(x.of(one.x), y.of(one.y), y.of(np.zeros(len(one.y)) if one.z is None else one.z), color=style["color"], alpha=alpha,
                     lw=0, label=printed(one.label))  # fmt: skip
 
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..archive import is_study, read_info, read_study
+from ..quantities import printed
 from ..toml_line import toml_line
-from .charts.page import printed
 from .summary import is_radial, run_answer
 from .text import line_words, question_of, study_lines, written_units
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from .page import absent, decades, look, number, run_page, save, written
 from .palette import CONTACT, FILM, LEAK, TILT
-from .record import Run, fitting
+from .record import Run
 
 MOST_ROWS = 1 << 14
 # Turns that a spectrum needs: the Hann window tells half the shaft speed from it only from four turns on.
@@ -70,7 +70,7 @@ def panel(ax, run: Run, turns: float | None = None) -> None:
     if not run.has(x, y) or not any(run.values(tilt, first).any() for tilt in (x, y)):
         return real_panel(ax, run, "axial_gap_change", "Axial motion in orders of shaft speed", turns)
     title = "Relative tilt in orders of shaft speed"
-    show(ax, run, lambda first: run.values(x, first) + 1j * run.values(y, first), title, run.shown(x), TILT, turns)
+    show(ax, run, lambda first: run.values(x, first) + 1j * run.values(y, first), title, x, TILT, turns)
 
 
 def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, said=True) -> None:
@@ -78,12 +78,12 @@ def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, 
     if not run.has(name):
         return absent(ax, title)
     colour = FILM if name == "h_min" else LEAK
-    show(ax, run, lambda first: run.values(name, first), title, run.shown(name), colour, turns, said)
+    show(ax, run, lambda first: run.values(name, first), title, name, colour, turns, said)
 
 
-def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None, said=True):
-    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), `shown` is the unit for people
-    and how many of it make one SI unit."""
+def show(ax, run: Run, read, title: str, name: str, colour: str, turns: float | None, said=True):
+    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), read in the unit of the series
+    `name` for its size."""
     if not _long_enough(run):
         return absent(ax, title, TOO_SHORT)
     first = _window(run, turns)
@@ -92,9 +92,8 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
     if not amplitude.max() > NOTHING:
         return absent(ax, title, "does not move")
-    unit, per = shown
-    unit, finer = fitting(unit, per * amplitude.max())
-    amplitude *= per * finer
+    unit, per = run.shown(name, size=amplitude.max())
+    amplitude *= per
     largest = amplitude.max()
     named = peaks(orders, amplitude)
     if orders[0] == 0:
