@@ -84,9 +84,12 @@ QUANTITIES = {
     "volume": Quantity("m^3", "volume"),
     # Motion
     "time": Quantity("s", "time"),
+    "count": Quantity("1", "runs"),
     "turns": Quantity("1", "turns of the shaft"),
     "speed": Quantity("rad/s", "shaft speed"),
     "speed_rpm": Quantity("rad/s", "shaft speed", "rpm", RPM),
+    "speed_ramp": Quantity("rad/s^2", "ramp rate", "rpm/s", RPM),
+    "pressure_ramp": Quantity("Pa/s", "ramp rate", "bar/s", 1e-5),
     "frequency": Quantity("rad/s", "frequency", "Hz", HERTZ),
     "frequency_hz": Quantity("Hz", "frequency", "Hz", 1.0),
     "growth_rate": Quantity("1/s", "growth rate", "1/s", 1.0),

@@ -11,6 +11,7 @@ from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SCENARIO, SUMMARY, drop, first, pressures, whirling, write
 
 from sealdyn.archive import ArchiveWriter, Series
+from sealdyn.numerics.order_spectrum import order_spectrum
 from sealdyn.report.charts import (
     film,
     orbit,
@@ -22,7 +23,6 @@ from sealdyn.report.charts import (
 from sealdyn.report.charts.film import thickness
 from sealdyn.report.charts.orbit import hull
 from sealdyn.report.charts.record import Run
-from sealdyn.report.charts.spectrum import order_spectrum
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 KINDS = {"overview": overview, "orbit": orbit, "film": film, "spectrum": spectrum, "poincare": poincare}

@@ -8,11 +8,11 @@ from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SUMMARY, drop, first, whirling, write
 from matplotlib.figure import Figure
 
+from sealdyn.numerics.order_spectrum import located, order_spectrum, peaks
 from sealdyn.report.charts import film, orbit, overview, poincare, sketch, spectrum
 from sealdyn.report.charts.housing_sweep import sweep_lines
 from sealdyn.report.charts.page import written
 from sealdyn.report.charts.record import Run
-from sealdyn.report.charts.spectrum import located, order_spectrum, peaks
 
 
 def names(ax):

@@ -231,16 +231,6 @@ def stacked(*panels) -> None:
         ax.tick_params(labelbottom=False, which="both")
 
 
-def right_axis(ax, label: str, colour: str):
-    """A second y axis on the right, its name in the colour of what is drawn against it."""
-    other = ax.twinx()
-    other.grid(False)
-    other.spines["right"].set_visible(True)
-    other.set_ylabel(label, color=colour)
-    other.tick_params(axis="y", colors=colour)
-    return other
-
-
 def logarithmic(ax, axis: str) -> None:
     """A logarithmic "x" or "y" axis with plain numbers at 1, 2 and 5 of every decade."""
     ax.set(**{f"{axis}scale": "log"})
