@@ -47,13 +47,14 @@ class Axis:
 class Series:
     """What is drawn over x and y (SI; None leaves a gap).
 
-    `kind`: "line"; "marks"; "shade" between y and `z` over x; "bars" at x as high as y (`flat`: lying, at y as long as
-    x); "map" of `z` [y][x] in colours; "contour" of `z` [y][x] at zero; "words": `names` at x, y.
+    `kind`: "line"; "marks"; "shade" between y and `z` over x; "bars" at x as high as y, from `z` on (lying, at y as
+    long as x, where the y axis has words); "map" of `z` [y][x] in colours; "contour" of `z` [y][x] at zero; "words":
+    `names` at x, y.
     `style`: words in any order: a role that has a colour of its own (film, tilt, leakage, contact, theory, stator,
     rotor, good, bad, warn, black, grey, pale; first, second ... seventh of a cycle; a number from 0 to 1, early to
     late), dashes (dashed, dotted, dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick),
-    open, thin, thick, faint, front (above all else).  `error`: bars of error on y.  `names`: a word at each mark or
-    bar.  `right`: belongs to the axis on the right."""
+    open, thin, thick, faint, small, large, front (above all else), wide (bars that touch).  `error`: bars of error on
+    y.  `names`: a word at each mark or bar.  `right`: belongs to the axis on the right."""
 
     kind: str
     x: Sequence = ()

@@ -5,6 +5,7 @@ A quantity that is not in the table is named by its SI unit ("m", "rad/s"); "1" 
 """
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -41,6 +42,12 @@ SIZES = {
     "Pa*m/s": ((0.0, "kPa m/s", 1e-3), (1e4, "MPa m/s", 1e-6)),
 }
 
+# SI unit -> unit of a series of any size: what archives say.
+EVERYDAY = {"m": "um", "rad": "urad", "m/s": "mm/s", "m^3/s": "ml/h", "kg/s": "g/h", "Pa": "MPa"}
+# As print has it, in place of what a terminal shows.
+PRINT = ((re.compile(r"\bu(m|rad|s)\b"), r"µ\1"), (re.compile(r" deg\b"), "°"), (re.compile(r"\^2\b"), "²"),
+         (re.compile(r"\^3\b"), "³"))  # fmt: skip
+
 QUANTITIES = {
     # Film and faces
     "clearance": Quantity("m", "clearance", scale="clearance"),
@@ -64,6 +71,7 @@ QUANTITIES = {
     "force": Quantity("N", "force", "N", 1.0),
     "moment": Quantity("N m", "moment", "N m", 1.0),
     "torque": Quantity("N m", "torque", "N m", 1.0),
+    "friction_torque": Quantity("N m", "friction torque", "mN m", 1e3),
     "power": Quantity("W", "power", "W", 1.0),
     "heat_flux": Quantity("W/m^2", "heat flux", "W/cm^2", 1e-4),
     "force_per_length": Quantity("N/m", "force per length", "N/m", 1.0),
@@ -76,8 +84,12 @@ QUANTITIES = {
     "volume": Quantity("m^3", "volume"),
     # Motion
     "time": Quantity("s", "time"),
+    "count": Quantity("1", "runs"),
     "turns": Quantity("1", "turns of the shaft"),
     "speed": Quantity("rad/s", "shaft speed"),
+    "speed_rpm": Quantity("rad/s", "shaft speed", "rpm", RPM),
+    "speed_ramp": Quantity("rad/s^2", "ramp rate", "rpm/s", RPM),
+    "pressure_ramp": Quantity("Pa/s", "ramp rate", "bar/s", 1e-5),
     "frequency": Quantity("rad/s", "frequency", "Hz", HERTZ),
     "frequency_hz": Quantity("Hz", "frequency", "Hz", 1.0),
     "growth_rate": Quantity("1/s", "growth rate", "1/s", 1.0),
@@ -118,6 +130,29 @@ def shown_in(name: str, values: Iterable = (), written: Mapping[str, str] | None
     return unit, factor
 
 
+def everyday(name: str) -> tuple[str, float]:
+    """Unit, as printed, in which a series of a quantity is read whatever its size, and its factor."""
+    held = quantity(name)
+    unit = held.shown or EVERYDAY.get(held.unit, held.unit)
+    return printed(unit), factor_of(held.unit, unit) or 1.0
+
+
+def by_size(unit: str, shown: str, factor: float, size: float) -> tuple[str, float]:
+    """Unit, as printed, that suits a `size` (SI `unit`) in place of the everyday one; another `shown`, which somebody
+    chose, stays with its factor."""
+    if shown != everyday(unit)[0] or shown not in {printed(name) for _, name, _ in SIZES.get(unit, ())}:
+        return shown, factor
+    fits, per = shown_in(unit, [size])
+    return printed(fits), per
+
+
+def printed(words: str) -> str:
+    """Words of a terminal with the units of print."""
+    for told, letters in PRINT:
+        words = told.sub(letters, words)
+    return words
+
+
 def factor_of(unit: str, shown: str) -> float | None:
     """How many of the unit `shown` make one of the SI `unit`, None where the table has no such pair."""
     if shown == unit:
@@ -128,11 +163,11 @@ def factor_of(unit: str, shown: str) -> float | None:
 
 
 def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:
-    """A number of so many digits, speeds and flows of five or six figures without an exponent; "-" of None."""
+    """A number of so many digits, large ones up to seven figures without an exponent; "-" of None."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
     words = f"{value * factor:.{digits}g}"
-    return f"{float(words):.0f}" if words.endswith(("e+04", "e+05", "e+06")) else words
+    return f"{float(words):.0f}" if words.endswith(("e+03", "e+04", "e+05", "e+06")) else words
 
 
 def in_words(name: str, value: float | None, written: Mapping[str, str] | None = None, digits: int = 4) -> str:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from sealdyn.archive import ArchiveWriter, Fields, Series
+from sealdyn.quantities import everyday
 
 FILM = {"inner_radius": 0.032, "outer_radius": 0.04, "clearance": 1e-5, "coning": 3e-3}
 SCENARIO = "# Does a flexibly mounted rotor follow a misaligned stator?  Expected: mostly.\n[shaft]\nspeed = 1000\n"
@@ -11,7 +12,7 @@ SUMMARY = {
     "stability": {"verdict": "stable", "whirl_ratio": 0.49, "critical_speed": 8684.0},
     "h_min": {"value": 2.3e-6, "of_clearance": 0.23, "time": 0.1},
     "relative_misalignment": {"max": 2.4e-4, "min": 3e-5, "mean": 1e-4, "steady_max": 2e-4, "steady_min": None},
-    "closed_form": {"relative_max": 2.1e-4, "relative_min": 4e-5}, "leakage": {"mean_ml_per_h": 43219.7},
+    "closed_form": {"relative_max": 2.1e-4, "relative_min": 4e-5}, "leakage": {"mean": 43219.7 / 3.6e9},
     "friction": {"power": 55.6, "torque": 0.0556}, "film": {"axial_stiffness": 1.02e7, "tilt_stiffness": 5100.0},
     "closing": {"force": 725.7, "balance_ratio": 0.802}, "contact_margin": 1.6, "energy_residual": 4.7e-8,
 }  # fmt: skip
@@ -43,10 +44,11 @@ def whirling(samples=3840, turns=60.0, tilt=1e-4, speed=1000.0, ramp=0.0):
 
 
 def series(name):
-    """A series as runs write it: thicknesses in µm, tilts in µrad, leakage in ml/h."""
-    lengths = {"h_min", "axial_gap_change"}
-    shown = ("µm", 1e6) if name in lengths else ("µrad", 1e6) if "tilt" in name or "misalignment" in name else ()
-    return Series("SI", name, *(shown or (("ml/h", 3.6e9) if "leakage" in name else ())))
+    """A series as runs write it: SI unit, and the everyday unit of thicknesses, tilts and leakage."""
+    lengths, angles = {"h_min", "axial_gap_change"}, "tilt" in name or "misalignment" in name
+    unit = "m" if name in lengths else "rad" if angles else "m^3/s" if "leakage" in name else "1"
+    unit = "N" if "force" in name else unit
+    return Series(unit, name, *everyday(unit))
 
 
 def pressures(rows):

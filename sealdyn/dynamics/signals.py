@@ -34,23 +34,13 @@ from ..faces.geometry import (
     WEAR,
 )
 from ..faces.waviness import wave_parts_along
+from ..quantities import everyday
 from ..scene.film import coning_varies
 from ..scene.gas import density_of
 from ..scene.rings import RING_NAMES
 from . import equations
 from .intervals import constant_and_slope, modulo_turn
 from .native import Value, load_value, states_along, thinnest_value
-
-# What people read instead of an SI unit, and how many of it make one.
-DISPLAY_UNITS = {
-    "m": ("µm", 1e6),
-    "rad": ("µrad", 1e6),
-    "m/s": ("mm/s", 1e3),
-    "m^3/s": ("ml/h", 3.6e9),
-    "kg/s": ("g/h", 3.6e6),
-    "Pa": ("MPa", 1e-6),
-}
-DEGREES, MILLIMETRES, MICROMETRES_PER_HOUR = ("deg", 180 / np.pi), ("mm", 1e3), ("µm/h", 3.6e9)
 
 
 @dataclass(frozen=True)
@@ -87,20 +77,20 @@ class Samples:
 
 @dataclass(frozen=True)
 class Signal:
-    """A series of the archive: SI unit, what it is, how to read it off `Samples`, (unit, factor) that people read it
-    in, and whether a run keeps its mean and maximum."""
+    """A series of the archive: SI unit, what it is, how to read it off `Samples`, the quantity by which people read
+    it (without one its unit), and whether a run keeps its mean and maximum."""
 
     name: str
     unit: str
     long_name: str
     values: Callable[[Samples], np.ndarray]
-    shown: tuple[str, float] | None = None
+    quantity: str = ""
     tallied: bool = False
 
     @property
     def display(self) -> tuple[str, float]:
         """Unit for people, and how many of it make one SI unit."""
-        return self.shown or DISPLAY_UNITS.get(self.unit, (self.unit, 1.0))
+        return everyday(self.quantity or self.unit)
 
 
 def _gap(slot):
@@ -137,18 +127,18 @@ def _mass_flow(slot):
 
 
 SHAFT_AND_FILM = (
-    Signal("shaft_angle", "rad", "shaft angle, modulo one turn", _shaft_angle, DEGREES),
+    Signal("shaft_angle", "rad", "shaft angle, modulo one turn", _shaft_angle, "angle"),
     Signal("shaft_speed", "rad/s", "shaft speed", lambda at: at.shaft[0] + at.shaft[1] * at.taus, tallied=True),
     Signal("relative_tilt_x", "rad", "relative tilt about the x axis, stator minus rotor", _gap(GX)),
     Signal("relative_tilt_y", "rad", "relative tilt about the y axis, stator minus rotor", _gap(GY)),
     Signal("relative_misalignment", "rad", "relative misalignment of the faces", lambda at: np.abs(at.tilt),
            tallied=True),
     Signal("relative_precession", "rad", "direction of the relative tilt, from the x axis",
-           lambda at: np.angle(at.tilt), DEGREES),
+           lambda at: np.angle(at.tilt), "angle"),
     Signal("axial_gap_change", "m", "change of the axial gap from the design clearance", _gap(DZ), tallied=True),
     Signal("h_min", "m", "smallest film thickness over the face", _low(0)),
-    Signal("h_min_angle", "rad", "angle of the smallest film thickness, from the x axis", _low(1), DEGREES),
-    Signal("h_min_radius", "m", "radius of the smallest film thickness", _low(2), MILLIMETRES),
+    Signal("h_min_angle", "rad", "angle of the smallest film thickness, from the x axis", _low(1), "angle"),
+    Signal("h_min_radius", "m", "radius of the smallest film thickness", _low(2), "radius"),
     Signal("film_force", "N", "opening force of the film", _gap(FORCE), tallied=True),
     Signal("film_moment_x", "N m", "film moment on the stator about the x axis", _gap(MOMENT_X)),
     Signal("film_moment_y", "N m", "film moment on the stator about the y axis", _gap(MOMENT_Y)),
@@ -170,7 +160,7 @@ CONTACT = (
     Signal("contact_torque", "N m", "friction torque of contact on the rotor", _gap(CONTACT_TORQUE), tallied=True),
     Signal("contact_area_fraction", "1", "share of the face that touches", _gap(CONTACT_AREA), tallied=True),
     Signal("contact_pressure", "Pa", "largest contact pressure", _gap(CONTACT_PRESSURE), tallied=True),
-    Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), MICROMETRES_PER_HOUR,
+    Signal("wear_rate", "m/s", "wear depth rate of both faces, mean over the face", _gap(WEAR), "wear_rate",
            tallied=True),
 )  # fmt: skip
 # Of faces whose coning changes.

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..faces.geometry import CLEARANCE, FLOOR, FORCE, INNER_PRESSURE, OUTER_PRESSURE
+from ..quantities import everyday
 
 if TYPE_CHECKING:
     # Sparse matrices are loaded for a film with unknowns only.
@@ -51,8 +52,8 @@ class Field(NamedTuple):
     shown: tuple[str, float]
 
 
-PRESSURE = Field("pressure", "Pa", "film pressure, absolute", ("MPa", 1e-6))
-FILL = Field("fill", "1", "share of the film that is liquid", ("%", 100.0))
+PRESSURE = Field("pressure", "Pa", "film pressure, absolute", everyday("Pa"))
+FILL = Field("fill", "1", "share of the film that is liquid", everyday("share"))
 
 
 @dataclass(frozen=True, eq=False)

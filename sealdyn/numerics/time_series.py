@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
+from .order_spectrum import HANN
+
 # Returns closer than this (in units of the scale) are the same point; longest period looked for.
 SAME, LONGEST = 2e-3, 16
 # Repeated this much better still, points may lie close together.
@@ -241,11 +243,6 @@ def horizon(exponent: float, error: float, scale: float = 1.0) -> float:
 # other, and sees everything that happens while the shaft turns through it as one: the speed then changes by rate
 # times its duration. **Source** Fyfe and Munck (1997), Mech. Systems and Signal Processing 11(2), order tracking;
 # Harris (1978), windows.
-
-# Equivalent noise bandwidth of the Hann window, in bins: what `resolution` means.
-HANN = 1.5
-# Share of the power in the top tenth of the band above which a spectrum may be folded.
-FOLDED = 1e-4
 
 
 def hann(count: int) -> np.ndarray:

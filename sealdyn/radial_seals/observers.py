@@ -9,6 +9,7 @@ from scipy.optimize import minimize_scalar
 
 from ..archive import Fields, Series
 from ..dynamics.intervals import constant_and_slope, modulo_turn
+from ..quantities import everyday, quantity
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .equations import HELD, RIDING
@@ -104,20 +105,20 @@ class Watch:
         return times / self.time if self.time else np.full(len(times), math.nan)
 
 
-# Name: SI unit, meaning, unit for people and how many of it make one.
+# Name: quantity or SI unit, and meaning.
 SERIES = {
-    "shaft_angle": ("rad", "shaft angle", "deg", 180 / math.pi),
-    "shaft_speed": ("rad/s", "shaft speed", "rpm", 30 / math.pi),
-    "largest_gap": ("m", "largest gap between seal and shaft", "µm", 1e6),
-    "contact_share": ("1", "share of the followers that ride on the shaft", "%", 100.0),
-    "least_load": ("N", "least load of a follower that rides, 0 if none does", "N", 1.0),
-    "load": ("N", "load of all followers on the shaft", "N", 1.0),
-    "friction_torque": ("N m", "friction torque on the shaft", "mN m", 1e3),
-    "leakage_estimate": ("m^3/s", "leakage estimate: laminar flow through the gaps", "ml/h", 3.6e9),
+    "shaft_angle": ("angle", "shaft angle"),
+    "shaft_speed": ("speed_rpm", "shaft speed"),
+    "largest_gap": ("m", "largest gap between seal and shaft"),
+    "contact_share": ("share", "share of the followers that ride on the shaft"),
+    "least_load": ("N", "least load of a follower that rides, 0 if none does"),
+    "load": ("N", "load of all followers on the shaft"),
+    "friction_torque": ("friction_torque", "friction torque on the shaft"),
+    "leakage_estimate": ("m^3/s", "leakage estimate: laminar flow through the gaps"),
 }
 FIELDS = {
-    "gap": ("m", "gap between seal and shaft", "µm", 1e6),
-    "follower_load": ("N", "load of a follower on the shaft", "N", 1.0),
+    "gap": ("m", "gap between seal and shaft"),
+    "follower_load": ("N", "load of a follower on the shaft"),
 }
 
 
@@ -142,8 +143,12 @@ class RadialErrorScales:
 
 def archived_series(model, instants: int) -> tuple[dict[str, Series], Fields]:
     """Series by name and fields at so many instants, as an archive of this model keeps them."""
-    grid = {"theta": (Series("rad", "angle, from the x axis", "deg", 180 / math.pi), model.followers.angles)}
-    series, fields = ({name: Series(*row) for name, row in table.items()} for table in (SERIES, FIELDS))
+
+    def told(held, words):
+        return Series(quantity(held).unit, words, *everyday(held))
+
+    grid = {"theta": (told("angle", "angle, from the x axis"), model.followers.angles)}
+    series, fields = ({name: told(*row) for name, row in table.items()} for table in (SERIES, FIELDS))
     return series, Fields(fields, grid, instants)
 
 

@@ -2,6 +2,7 @@
 
 import importlib.util
 from itertools import groupby
+from textwrap import fill
 
 import numpy as np
 from matplotlib import colormaps
@@ -10,46 +11,30 @@ from matplotlib.ticker import LogLocator, MultipleLocator
 
 from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
-from ..quantities import quantity, shown_in
+from ..quantities import printed, quantity, shown_in
 from ..status import Status
-from .charts.face import annulus, in_the_middle
-from .charts.page import PAPER, absent, heading, logarithmic, look, number, power, printed, save, sheet
-from .charts.palette import (
-    BLACK,
-    BLUE,
-    CONTACT,
-    CYCLE,
-    FILM,
-    GREEN,
-    GREY,
-    LEAK,
-    ORANGE,
-    PALE,
-    PRESSURE,
-    RING,
-    STATUS,
-    THEORY,
-    THICKNESS,
-    TILT,
-    VERMILLION,
-)  # fmt: skip
-from .text import question_of
+from .charts.page import (
+    PAPER,
+    absent,
+    annulus,
+    heading,
+    logarithmic,
+    look,
+    no_label_cut,
+    number,
+    power,
+    save,
+    sheet,
+    study_words,
+)
+from .charts.palette import COLOURS, CYCLE, DASHES, GREY, MARKS, PALE, PRESSURE, THICKNESS
 
-COLOURS = {
-    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, "stator": RING["stator"],
-    "rotor": RING["rotor"], "good": GREEN, "bad": VERMILLION, "warn": ORANGE, "black": BLACK, "grey": GREY,
-    "pale": PALE, "blue": BLUE,
-}  # fmt: skip
-COLOURS |= dict(zip(("first", "second", "third", "fourth", "fifth", "sixth", "seventh"), CYCLE, strict=True))
-DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 1, 2))}
-MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
-         "star": "*", "tick": "_"}  # fmt: skip
 # Columns of panels side by side; width (inches) of a figure by their number; height of a panel alone and in a stack.
 ACROSS, WIDTHS, ALONE, STACKED = 3, (8.5, 11.5, 13.0, 13.5), 4.6, 3.0
 # Height of a panel of several rows, and from how many panels on four stand in a row.
 IN_ROWS, MANY = 3.4, 7
-# Letters of a legend that an inch has room for, and points of height that a row of it takes.
-LETTERS, ROW = 11.0, 12.0
+# Letters of a legend and of a title that an inch has room for, and points of height that a row of a legend takes.
+LETTERS, BOLD, ROW = 11.0, 9.0, 12.0
 # Of the largest value of a diverging map: below, its colours are linear.
 LINEAR = 1 / 300
 # A point of a curve's label away from its mark.
@@ -63,24 +48,24 @@ def draw(path, out=None):
     own = f"{__package__}.charts.study_{study['study']}"
     if not study.get("panels") and importlib.util.find_spec(own):
         return importlib.import_module(own).draw(path, out)
-    answer, name = study["answer"], study["name"]
-    asked, below = question_of(study["question"]), name
-    title = study.get("asks") or asked or name
-    if asked and asked != title:
-        below = f"{name}: {asked}"
-    status = answer.get("status", Status.OK)
-    colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
+    answer = study["answer"]
     words = "\n".join([answer.get("found") or answer["message"], *answer.get("notes", [])[:2]])
-    figure = sheet_of(panels_of(study["panels"]), title, below, words, colour, study.get("written", {}))
+    figure = study_sheet(study, panels_of(study["panels"]), study.get("asks") or "", bold=words)
     return save(figure, out)
 
 
+def study_sheet(study, panels: list[Panel], title: str = "", below: str = "", bold: str = "", written=None):
+    """The figure of a study's panels; words above them as page.study_words has them."""
+    return sheet_of(panels, *study_words(study, title, below, bold), written or study.get("written", {}))
+
+
 @look()
-def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = BLACK, written=None):
+def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = "black", written=None):
     """A figure: heading, then the panels."""
     stacks = _stacks(panels_of(plain(panels)))
     most = ACROSS + (len(stacks) >= MANY)
-    across = -(-len(stacks) // -(-len(stacks) // most))
+    # Rows that nobody began are of one length.
+    across = most if any(stack[0].first for stack in stacks) else -(-len(stacks) // -(-len(stacks) // most))
     rows: list[list] = []
     for stack in stacks:
         if not rows or len(rows[-1]) == across or stack[0].first:
@@ -90,9 +75,8 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
     heights = [max(_height(stack, alone) for stack in row) for row in rows]
     figure = sheet(WIDTHS[max(map(len, rows)) - 1], 1.1 + sum(heights))
     top = heading(figure, title, below, bold, colour)
-    width, height = figure.get_size_inches()
-    rect = (0.25 / width, 0.1 / height, 1 - 0.45 / width, top - 0.1 / height)
-    figure.set_layout_engine("constrained", rect=rect, wspace=0.04, hspace=0.04, w_pad=0.06, h_pad=0.06)
+    width = figure.get_figwidth()
+    no_label_cut(figure, top)
     grid = figure.add_gridspec(len(rows), 1, height_ratios=heights)
     for k, row in enumerate(rows):
         columns = grid[k].subgridspec(1, len(row), width_ratios=[stack[0].wide for stack in row])
@@ -168,7 +152,7 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
     if panel.polar:
         ax.set_xticks([])
         ends = y.of([end for one in panel.series if one.kind == "map" for end in (one.y[0], one.y[-1])])
-        in_the_middle(ax, "\n".join((printed(panel.title), annulus(ax, ends.min(), ends.max()))))
+        annulus(ax, ends.min(), ends.max(), printed(panel.title))
     else:
         x.finish(ax, "x")
         y.finish(ax, "y")
@@ -177,11 +161,12 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
     if panel.down:
         ax.invert_yaxis()
     if panel.equal:
-        ax.set_aspect("equal", "datalim")
+        ax.set_aspect("equal", "datalim" if panel.y.low is None else "box")
     if panel.note:
         ax.text(0.985, 0.03, printed(panel.note), transform=ax.transAxes, ha="right", va="bottom", fontsize=8,
                 color=GREY, bbox=PAPER, zorder=6)  # fmt: skip
-    _title_and_legend(ax, beside, panel, width)
+    # Words along the y axis take of the width.
+    _title_and_legend(ax, beside, panel, width - max(map(len, panel.y.words), default=0) / LETTERS)
 
 
 class _Scaled:
@@ -193,7 +178,7 @@ class _Scaled:
 
     def of(self, values) -> np.ndarray:
         """Numbers as drawn (NaN for None)."""
-        return self.factor * np.array([np.nan if v is None else v for v in values], float)
+        return self.factor * _numbers(values)
 
     @property
     def label(self) -> str:
@@ -216,7 +201,7 @@ class _Scaled:
             getattr(ax, f"set_{which}lim")(low, high)
         if self.axis.words:
             put(range(len(self.axis.words)), [printed(word) for word in self.axis.words])
-            if which == "x" and sum(map(len, self.axis.words)) > 60:
+            if which == "x" and sum(max(map(len, word.split("\n"))) for word in self.axis.words) > 60:
                 ax.tick_params(axis="x", labelrotation=30)
         elif self.axis.scale == "asinh":
             ends, least = axis.get_view_interval(), self.factor * (self.axis.width or 1.0)
@@ -228,6 +213,8 @@ class _Scaled:
             axis.set_major_formatter(lambda at, _: number(at) if 1e-3 <= abs(at) < 1e5 or at == 0 else _signed(at))
         elif self.unit == "deg" and np.ptp(axis.get_view_interval()) > 180.0:
             axis.set_major_locator(MultipleLocator(60.0 if which == "x" else 90.0))
+        elif self.axis.quantity == "count" and self.axis.scale == "linear":
+            axis.get_major_locator().set_params(integer=True)
         elif self.axis.scale == "log":
             low, high = axis.get_view_interval()
             if low > 0 and high / low > 300:
@@ -239,18 +226,24 @@ def _signed(value: float) -> str:
     return ("−" if value < 0 else "") + power(round(np.log10(abs(value))))
 
 
-def _values(panel: Panel, which: str) -> list:
-    """Numbers (SI) along an axis: what decides its unit."""
-    found = [axis_end for axis in ((panel.x,) if which == "x" else ()) for axis_end in (axis.low, axis.high)]
+def _values(panel: Panel, which: str) -> list[float]:
+    """Ends (SI) of what is drawn along an axis: what decides its unit."""
+    found = [[panel.x.low, panel.x.high] if which == "x" else []]
     for one in panel.series:
         if which == "x":
-            found += one.x
+            found.append(one.x)
         elif one.right == (which == "right"):
-            found += one.y
-            found += one.z if one.kind == "shade" and one.z else []
+            found += [one.y, one.z if one.kind == "shade" and one.z is not None else []]
     if which != "right":
-        found += [one.value for one in panel.levels if one.upright == (which == "x")]
-    return [value for value in found if value is not None]
+        found.append([one.value for one in panel.levels if one.upright == (which == "x")])
+    known = [_numbers(values)[np.isfinite(_numbers(values))] for values in found]
+    return [end for values in known if len(values) for end in (float(values.min()), float(values.max()))]
+
+
+def _numbers(values) -> np.ndarray:
+    """Numbers of a list (NaN for None), or of an array as it is."""
+    held = values if isinstance(values, np.ndarray) else [np.nan if v is None else v for v in values]
+    return np.array(held, float)
 
 
 def _style(words: str, k: int) -> dict:
@@ -267,7 +260,7 @@ def _style(words: str, k: int) -> dict:
             look["marker"] = MARKS[word]
         elif word[0].isdigit():
             look["color"] = colormaps[THICKNESS].reversed()(float(word))
-        elif word not in ("open", "thin", "thick", "faint", "front", "small", "large"):
+        elif word not in ("open", "thin", "thick", "faint", "front", "small", "large", "wide"):
             raise ValueError(f"style: found {word!r}")
     if "open" in given:
         look["mfc"] = "white"
@@ -293,7 +286,7 @@ def _line(ax, panel, one: Series, x, y, style, written) -> None:
 
 def _marks(ax, panel, one, x, y, style, written) -> None:
     # One on the edge of a map is whole.
-    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None}
+    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None and style["zorder"] < 5}
     if style["marker"] in "x+_":
         style["mew"] = 1.8
     _line(ax, panel, one, x, y, style, written)
@@ -301,8 +294,9 @@ def _marks(ax, panel, one, x, y, style, written) -> None:
 
 def _shade(ax, panel, one, x, y, style, written) -> None:
     alpha = 0.18 if style["alpha"] == 1.0 else 0.08
-    ax.fill_between(x.of(one.x), y.of(one.y), y.of(one.z or [0.0] * len(one.y)), color=style["color"], alpha=alpha,
-                    lw=0, label=printed(one.label))  # fmt: skip
+    base = np.zeros(len(one.y)) if one.z is None else one.z
+    ax.fill_between(x.of(one.x), y.of(one.y), y.of(base), color=style["color"], alpha=alpha, lw=0,
+                    label=printed(one.label))  # fmt: skip
 
 
 def _bars(ax, panel, one, x, y, style, written) -> None:
@@ -310,8 +304,11 @@ def _bars(ax, panel, one, x, y, style, written) -> None:
     lying = bool(panel.y.words)
     at, length = (y.of(one.y), x.of(one.x)) if lying else (x.of(one.x), y.of(one.y))
     put, error = (ax.barh, "xerr") if lying else (ax.bar, "yerr")
-    size = 0.6 * (np.min(np.diff(np.sort(at))) if len(at) > 1 and len(set(at)) == len(at) else 1.0)
+    size = (1.0 if "wide" in one.style else 0.6) * (
+        np.min(np.diff(np.sort(at))) if len(at) > 1 and len(set(at)) == len(at) else 1.0
+    )
     bars = {} if one.error is None else {error: (x if lying else y).of(one.error), "capsize": 3}
+    bars |= {} if one.z is None else {"left" if lying else "bottom": (x if lying else y).of(one.z)}
     put(at, length, size, color=style["color"], alpha=style["alpha"], label=printed(one.label), **bars)
     for px, py, word in zip(at, length, one.names, strict=False):
         ax.annotate(f" {printed(word)}", (py, px) if lying else (px, py), ha="left" if lying else "center",
@@ -325,7 +322,8 @@ def _map(ax, panel, one, x, y, style, written) -> None:
     """Colours over x and y: of words, on both sides of zero, or from low to high; hatched where there is no value."""
     colour = panel.colour or Axis()
     cells = np.array([[np.nan if v is None else v for v in row] for row in one.z], float)
-    finite = cells[np.isfinite(cells)]
+    # Ends of the colours, where they are not to fit what is drawn.
+    finite = np.append(cells[np.isfinite(cells)], [end for end in (colour.low, colour.high) if end is not None])
     scaled = _Scaled(colour, finite.tolist(), written)
     shown = np.ma.masked_invalid(scaled.factor * cells)
     ax.grid(False)
@@ -334,8 +332,8 @@ def _map(ax, panel, one, x, y, style, written) -> None:
         ax.patch.set(hatch="///", edgecolor="white")
     norm, colours, ticks = _colours_of(colour, scaled.factor * finite)
     at = (x.of(one.x), y.of(one.y))
-    shading = "gouraud" if panel.polar else "nearest"
-    drawn = ax.pcolormesh(*at, shown, norm=norm, cmap=colours, shading=shading, rasterized=True)
+    ends, shading = (at, "gouraud") if panel.polar else (map(_edges, at), "flat")
+    drawn = ax.pcolormesh(*ends, shown, norm=norm, cmap=colours, shading=shading, rasterized=True)
     below = {"location": "bottom", "shrink": 0.8} if panel.polar else {"fraction": 0.05}
     bar = ax.figure.colorbar(drawn, ax=ax, pad=0.03, ticks=ticks, label=scaled.label, **below)
     bar.ax.minorticks_off()
@@ -347,6 +345,12 @@ def _map(ax, panel, one, x, y, style, written) -> None:
     for axis, values, scale in (("x", at[0], panel.x), ("y", at[1], panel.y)):
         if len(values) <= 6 and not scale.words and not panel.polar:
             getattr(ax, f"set_{axis}ticks")(values, [number(value, ".4g") for value in values])
+
+
+def _edges(at) -> np.ndarray:
+    """Ends of the cells around values of an axis; a single one has a cell of one."""
+    half = 0.5 * np.diff(at) if len(at) > 1 else np.array([0.5])
+    return np.concatenate([at[:1] - half[:1], at[:-1] + half[: len(at) - 1], at[-1:] + half[-1:]])
 
 
 def _colours_of(colour: Axis, values):
@@ -431,6 +435,7 @@ def _title_and_legend(ax, beside, panel: Panel, width: float) -> None:
     if beside is not None:
         more = beside.get_legend_handles_labels()
         handles, labels = handles + more[0], labels + more[1]
+    title = fill(printed(panel.title), max(24, int(BOLD * width)), break_long_words=False)
     named = {label: handle for handle, label in zip(handles, labels, strict=True) if label}
     if panel.polar:
         # The title stands in the middle; one above would lie on the heading.
@@ -438,11 +443,11 @@ def _title_and_legend(ax, beside, panel: Panel, width: float) -> None:
             ax.legend(named.values(), named.keys(), loc="upper center", bbox_to_anchor=(0.5, 0.44), fontsize=8)
         return
     if not named:
-        ax.set_title(printed(panel.title))
+        ax.set_title(title)
         return
     longest = max(map(len, named)) + 5
     columns = max(1, min(len(named), int(LETTERS * (width - 0.8) / longest)))
     rows = -(-len(named) // columns)
     ax.legend(named.values(), named.keys(), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=8,
               borderaxespad=0.2, handlelength=2.2, columnspacing=1.2, labelspacing=0.25, borderpad=0.1)  # fmt: skip
-    ax.set_title(printed(panel.title), pad=6.0 + ROW * rows)
+    ax.set_title(title, pad=6.0 + ROW * rows)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..answers import toml_line
 from ..archive import is_study, read_info, read_study
-from .charts.page import printed
+from ..quantities import printed
 from .summary import is_radial, run_answer
 from .text import line_words, question_of, study_lines, written_units
 

@@ -76,8 +76,8 @@ def test_chart_holds_every_turn_every_exponent_and_a_section(reference, tmp_path
     assert set(drawn_there) >= {round(row["exponent"], 9) for row in answer["rows"]}
     last = [row for row in answer["rows"] if row["direction"] == "up"][-1]
     (section,) = [ax for ax in figure.axes if ax.get_title(loc="left").endswith(last["class"])]
-    assert has_points(section, *(1e3 * np.array(last["section"]).T))
-    assert "µm" in diagram.get_ylabel() and "mrad" in exponents.get_xlabel() and "mrad" in section.get_ylabel()
+    assert has_points(section, *(1e6 * np.array(last["section"]).T))
+    assert "µm" in diagram.get_ylabel() and "mrad" in exponents.get_xlabel() and "µrad" in section.get_ylabel()
     assert text_trouble(figure)[1] == []
 
 

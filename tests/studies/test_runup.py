@@ -222,7 +222,7 @@ def test_pressure_ramps_and_a_step(tmp_path):
     figure = drawn(study_runup, tmp_path / "r.h5", tmp_path / "r.png")
     ramps = [row for row in answer["rows"] if row["rate"]]
     films = [1e6 * row["h_min"] for row in ramps]
-    assert has_points(panel(figure, "Thinnest film, µm"), [1e-5 * row["rate"] for row in ramps], films)
+    assert has_points(panel(figure, "Thinnest film:"), [1e-5 * row["rate"] for row in ramps], films)
     assert text_trouble(figure)[1] == []
 
 

@@ -8,11 +8,11 @@ from drawn import drawn, panel, text_trouble
 from made_up_run import FILM, SUMMARY, drop, first, whirling, write
 from matplotlib.figure import Figure
 
+from sealdyn.numerics.order_spectrum import located, order_spectrum, peaks
 from sealdyn.report.charts import film, orbit, overview, poincare, sketch, spectrum
 from sealdyn.report.charts.housing_sweep import sweep_lines
-from sealdyn.report.charts.page import free_side, written
+from sealdyn.report.charts.page import written
 from sealdyn.report.charts.record import Run
-from sealdyn.report.charts.spectrum import located, order_spectrum, peaks
 
 
 def names(ax):
@@ -39,13 +39,14 @@ def test_stiffnesses_are_told_without_powers_of_ten(tmp_path, stiffness, told):
 def test_leakage_has_one_unit_on_the_page(tmp_path):
     columns = whirling(samples=800)
     much = {name: 60 * columns[name] for name in ("leakage_inner", "leakage_outer")}
-    summary = SUMMARY | {"leakage": {"mean_ml_per_h": 60 * 43219.7}}
+    summary = SUMMARY | {"leakage": {"mean": 60 * 43219.7 / 3.6e9}}
     figure = drawn(overview, write(tmp_path / "a.h5", columns | much, summary=summary), tmp_path / "c.png")
     assert panel(figure, "Leakage").get_ylabel() == "l/min" and "43.22 l/min" in names(panel(figure, "Key numbers"))
-    gas = SUMMARY | {"leakage": {"mean_ml_per_h": 3600.0, "conditions": {"pressure": 101325.0}}}
+    gas = SUMMARY | {"leakage": {"mean": 1e-6, "conditions": {"pressure": 101325.0}}}
     figure = drawn(overview, write(tmp_path / "b.h5", columns, summary=gas), tmp_path / "c.png")
     normal = panel(figure, "Leakage").get_ylabel()
-    assert normal.startswith("l/min (0 °C") and f"0.06 {normal}" in names(panel(figure, "Key numbers"))
+    conditions = normal.removeprefix("l/min")
+    assert conditions and f"3600 ml/h{conditions}" in names(panel(figure, "Key numbers"))
     running = write(tmp_path / "c.h5", columns, "running", film=FILM | {"gas": "air"})
     figure = drawn(overview, running, tmp_path / "c.png")
     assert panel(figure, "Leakage").get_ylabel() == normal
@@ -61,19 +62,18 @@ def test_contact_beside_a_spectrum(tmp_path, brief):
     figure = drawn(overview, archive, tmp_path / "chart.png")
     assert text_trouble(figure) == ([], [])
     ax = panel(figure, "Contact force")
-    assert "at most 20" in names(ax)[0] and "0.663 %" in names(ax)[0]
+    (told,) = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert "20 N" in told and "0.663 %" in told
     marks = [line.get_data() for line in ax.lines if line.get_marker() == "o"]
     assert len(marks) == brief and all(x == 0 and y == 20 for x, y in marks)
 
 
 def test_names_of_levels_leave_a_film_that_swings_through_them(tmp_path):
-    x = np.linspace(0.0, 1.0, 401)
-    assert free_side(x, [0.1 * np.sin(300 * x)], 0.0, 0.1) is None
     columns = whirling(samples=1600)
     columns["h_min"] = 1e-5 * (1 + 0.1 * np.sin(columns["time"] * 2000))
     figure = drawn(overview, write(tmp_path / "seal.h5", columns), tmp_path / "chart.png")
     ax = panel(figure, "Smallest film thickness")
-    assert not any(names(ax)) and [t.get_text() for t in ax.get_legend().get_texts()] == ["clearance", "contact"]
+    assert not any(names(ax)) and [t.get_text() for t in ax.get_legend().get_texts()] == ["clearance 10 µm", "contact"]
     figure.draw_without_rendering()
     box = ax.get_legend().get_window_extent()
     points = ax.transData.transform(np.column_stack(ax.lines[0].get_data()))

@@ -32,11 +32,11 @@ def scattered(keys, outputs, indices=True, runs=(16, 32)):
 FILM = {"h_min.value": ("m", 1e-6)}
 
 
-def test_the_name_of_a_band_is_seen_on_the_band(tmp_path):
-    key = panel(study(tmp_path, "tolerance", scattered(["film.coning"], FILM)), "h_min.value").get_legend()
-    assert "5 to 95 %" in [text.get_text() for text in key.get_texts()]
-    frame = key.get_frame()
-    assert key.get_frame_on() and frame.get_facecolor()[:3] == (1.0, 1.0, 1.0) and frame.get_alpha() >= 0.8
+def test_the_name_of_a_band_stands_off_the_bars(tmp_path):
+    ax = panel(study(tmp_path, "tolerance", scattered(["film.coning"], FILM)), "h_min.value")
+    ax.figure.draw_without_rendering()
+    (band,) = [text for text in ax.get_legend().get_texts() if text.get_text() == "5 to 95 %"]
+    assert band.get_window_extent().y0 > ax.get_window_extent().y1
 
 
 def test_scatter_is_read_in_the_units_of_its_text(tmp_path):

@@ -8,13 +8,12 @@ from matplotlib import colormaps
 from ...archive import ArchiveError
 from ..summary import is_radial
 from . import followers_animation
-from .face import annulus, in_the_middle
 from .film import around, thickness
 from .moving import PER_TURN, check_name, moments, now, round_times, write
 from .orbit import contact_circle
-from .page import absent, flatten, level
+from .page import absent, annulus, flatten, level
 from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
-from .record import Run
+from .record import MM, UM, Run
 
 # Radii of the face in the map, and its colours.
 RADII, STEPS = 5, 24
@@ -106,7 +105,7 @@ def _section(ax, run: Run, rows: _Rows):
         way = radii if side == plane else -radii
         rotor = rows.when("rotor_z", moment) + times * way * np.interp(moment, rows.at, rotor_lean)
         more = (times - 1) * way * np.interp(moment, rows.at, relative_lean)
-        return 1e6 * rotor, 1e6 * (rotor + rows.thickness(radii, side, moment) + more)
+        return UM * rotor, UM * (rotor + rows.thickness(radii, side, moment) + more)
 
     ends = np.array([heights(moment, angle) for moment in looked for angle in sides])
     low, high = ends.min(), ends.max()
@@ -115,7 +114,7 @@ def _section(ax, run: Run, rows: _Rows):
     for k, angle in enumerate(sides):
         two = [ax.fill([0], [0], color=RING[ring], alpha=0.75, lw=0, label="_" * k + ring)[0] for ring in RINGS]
         bodies.append((angle, two))
-    width = 1e3 * radii[-1]
+    width = MM * radii[-1]
     ax.set(xlim=(-1.08 * width, 1.08 * width), ylim=(low - thick, high + thick))
     ax.set_title("Section" if times == 1 else f"Section, tilts {times:g} times enlarged")
     ax.set(xlabel=f"at {np.degrees(plane):.0f}° (right) and opposite, mm", ylabel="along the shaft, µm")
@@ -125,7 +124,7 @@ def _section(ax, run: Run, rows: _Rows):
     def move(moment):
         for angle, (stator, rotor) in bodies:
             below, above = heights(moment, angle)
-            across = 1e3 * (radii if angle == plane else -radii)
+            across = MM * (radii if angle == plane else -radii)
             stator.set_xy(_closed(across, above, high + 2 * thick))
             rotor.set_xy(_closed(across, below, low - 2 * thick))
 
@@ -154,10 +153,10 @@ def _face(ax, run: Run, rows: _Rows):
     every = np.array([rows.thickness(radius, angle, moment) for moment in rows.at[:: max(1, len(rows.at) // 60)]])
     low, high = shown[1] * every.min(), shown[1] * max(every.max(), every.min() * (1 + 2e-3))
     image = ax.pcolormesh(
-        angle[0], 1e3 * radius[:, 0], shown[1] * every[0], shading="nearest", vmin=low, vmax=high,
+        angle[0], MM * radius[:, 0], shown[1] * every[0], shading="nearest", vmin=low, vmax=high,
         cmap=colormaps[THICKNESS].resampled(STEPS),
     )  # fmt: skip
-    in_the_middle(ax, annulus(ax, 1e3 * inner, 1e3 * outer))
+    annulus(ax, MM * inner, MM * outer)
     ax.set_title("Film thickness over the face", pad=16, loc="center")
     # Room for the mark on the rotor.
     ax.tick_params(axis="x", pad=7)
@@ -176,8 +175,8 @@ def _face(ax, run: Run, rows: _Rows):
         over = rows.thickness(radius, angle, moment)
         image.set_array((shown[1] * over).ravel())
         at = np.unravel_index(np.argmin(over), over.shape)
-        thinnest.set_data([angle[0][at[1]]], [1e3 * radius[at[0]][0]])
-        mark.set_data([np.interp(moment, rows.at, turned)], [1e3 * (outer + 0.06 * (outer - inner))])
+        thinnest.set_data([angle[0][at[1]]], [MM * radius[at[0]][0]])
+        mark.set_data([np.interp(moment, rows.at, turned)], [MM * (outer + 0.06 * (outer - inner))])
 
     return move
 

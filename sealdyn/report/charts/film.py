@@ -6,10 +6,9 @@ from matplotlib.colors import Normalize
 from matplotlib.ticker import MaxNLocator
 
 from ...archive import FIELD_TIME, field
-from .face import annulus, in_the_middle
-from .page import EVEN, absent, header, look, save, sheet
+from .page import EVEN, absent, annulus, header, look, save, sheet
 from .palette import CONTACT, FILM, PRESSURE, SKY, THICKNESS
-from .record import BLOCK, Run
+from .record import BLOCK, MM, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
 # Inches: the sheet, and what the pressure adds to it.
@@ -151,7 +150,7 @@ def map_over_turns(ax, run: Run, turns: float):
     ax.set_title(title)
     ax.grid(False)
     ax.set(xlabel=run.progress_label, yticks=range(0, 361, 60))
-    ax.set_ylabel(f"angle from the x axis, degrees, at r = {1e3 * radius:.4g} mm")
+    ax.set_ylabel(f"angle from the x axis, degrees, at r = {MM * radius:.4g} mm")
     return image
 
 
@@ -200,14 +199,14 @@ def pressure(ax, run: Run):
 def _over_face(ax, radius, angle, over, colours: str):
     """Values (radii, angles) over the face."""
     image = ax.pcolormesh(
-        angle, 1e3 * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=scale(over)
+        angle, MM * radius, over, shading="gouraud", cmap=colormaps[colours].resampled(STEPS), norm=scale(over)
     )
-    in_the_middle(ax, annulus(ax, 1e3 * radius[0], 1e3 * radius[-1]))
+    annulus(ax, MM * radius[0], MM * radius[-1])
     return image
 
 
 def _thinnest_place(ax, angle, radius) -> None:
-    ax.plot(angle, 1e3 * radius, "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
+    ax.plot(angle, MM * radius, "o", ms=7, mfc="none", mec=CONTACT, mew=1.8, clip_on=False)
 
 
 def _when(run: Run, row: int) -> str:

@@ -14,7 +14,7 @@ from .moving import moments, now, round_times, write
 from .orbit import window
 from .page import legend, stacked
 from .palette import CONTACT, FILM, GREY, LEAK, MARK, PALE
-from .record import Run, fitting
+from .record import MM, Run
 
 # Of the radius: how far what moves may reach, height of a foot and of the body on it, and room around all.
 REACH, FOOT, BODY, ROOM = 0.2, 0.24, 0.16, 0.03
@@ -110,9 +110,9 @@ def body(share: float) -> np.ndarray:
 
 def _section(ax, run: Run, around: Around, at):
     """The shaft, and the followers around it: radii to scale, what moves enlarged."""
-    radius, n = 1e3 * around.shaft["radius"], len(around.theta)
+    radius, n = MM * around.shaft["radius"], len(around.theta)
     theta = np.linspace(0.0, 2.0 * np.pi, POINTS)
-    reach = 1e3 * around.reach(at)
+    reach = MM * around.reach(at)
     times = round_times(REACH * radius / reach) if reach else 1.0
     circle, towards = (np.column_stack([np.cos(angles), np.sin(angles)]) for angles in (theta, around.theta))
     outline = radius * body(2.0 * np.pi / n)
@@ -133,18 +133,18 @@ def _section(ax, run: Run, around: Around, at):
     stretch = window(run, int(np.searchsorted(run.progress, at[0])))
     ax.set_xlabel(f"shaft of {2 * radius:.4g} mm; dotted: concentric; {len(at)} kept instants, {stretch}")
     ax.legend(loc="upper right", borderaxespad=0.0)
-    offset, direction = 1e3 * times * around.shaft["offset"], around.shaft["offset_direction"]
+    offset, direction = MM * times * around.shaft["offset"], around.shaft["offset_direction"]
     middle = offset * np.array([np.cos(direction), np.sin(direction)])
     centre.set_data([middle[0]], [middle[1]])
     colours = np.array([to_rgba(CONTACT), to_rgba(FILM)])
 
     def move(moment):
-        shaft.set_xy((radius + 1e3 * times * around.surface(theta, moment))[:, None] * circle)
-        away = 1e3 * times * around.displacement(moment)
+        shaft.set_xy((radius + MM * times * around.surface(theta, moment))[:, None] * circle)
+        away = MM * times * around.displacement(moment)
         feet.set_verts(turned + (away[:, None] * towards)[:, None, :])
         feet.set_facecolor(colours[(around.values("follower_load", moment) <= 0.0).astype(int)])
         angle = around.angle[np.searchsorted(around.at, moment)]
-        end = radius + 1e3 * times * around.surface(angle, moment)
+        end = radius + MM * times * around.surface(angle, moment)
         spoke.set_data([middle[0], end * np.cos(angle)], [middle[1], end * np.sin(angle)])
 
     return move
@@ -152,9 +152,8 @@ def _section(ax, run: Run, around: Around, at):
 
 def _bars(ax, run: Run, around: Around, at, name: str, title: str, colour: str):
     """A field around the shaft, a step for each follower."""
-    about, every = run.info["fields"][name], around.values(name, at)
-    unit, finer = fitting(about.display_unit, about.display_factor * float(every.max()))
-    per = about.display_factor * finer
+    every = around.values(name, at)
+    unit, per = run.field_shown(name, float(every.max()))
     theta, n = np.degrees(around.theta), len(around.theta)
     steps = ax.stairs(np.zeros(n), np.append(theta, 360.0) - 180.0 / n, fill=True, color=colour, baseline=0.0)
     top = per * float(every.max()) or 1.0

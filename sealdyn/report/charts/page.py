@@ -1,7 +1,6 @@
 """The page of a chart: heading, panels in the house's look, what panels have in common, and a file at the end."""
 
 import os
-import re
 from pathlib import Path
 from textwrap import shorten, wrap
 
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, LogFormatter, LogLocator, MaxNLocator, NullFormatter
 from PIL import Image
 
+from ...quantities import printed
 from ...status import Status
 from ..text import question_of
 from .palette import BLACK, GREY, PALE, STATUS
@@ -32,15 +32,10 @@ ROUNDING = 1e-6
 EVEN = 1e-4
 # Lines of a heading that a sheet has room for, and the most it has: it grows by what is beyond.
 ROOM, MOST_LINES = 3, 14
+# Faces narrower than this share of their radius are drawn wider.
+NARROW = 0.1
 # Of an archive that is being written, or whose run was killed.
 NO_END = "the archive has no end yet; a run that was killed goes on with --continue"
-# As print has it, in place of what a terminal shows.
-PRINT = (
-    (re.compile(r"\bu(m|rad)\b"), r"µ\1"),
-    (re.compile(r" deg\b"), "°"),
-    (re.compile(r"\^2\b"), "²"),
-    (re.compile(r"\^3\b"), "³"),
-)
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 PAPER = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.5}
 
@@ -63,14 +58,16 @@ def study_page(study, width: float, height: float, mosaic, title: str = "", belo
     """Figure (inches) and axes by name for a study: `mosaic` and `layout` as of matplotlib's subplot_mosaic.  The title
     is by default the scenario's question; below it stand `below`, by default name and question, and in bold letters, of
     a failed study in its colour, `bold`."""
-    figure, question = sheet(width, height), study["question"]
-    title = title or question_of(question) or study["name"]
-    status = study["answer"].get("status", Status.OK)
-    colour = BLACK if status == Status.OK else STATUS.get(status, BLACK)
-    asked = question_of(question)
+    figure = sheet(width, height)
+    return figure, panels(figure, heading(figure, *study_words(study, title, below, bold)), mosaic, **layout)
+
+
+def study_words(study, title: str = "", below: str = "", bold: str = "") -> tuple[str, str, str, str]:
+    """Title, lines below, bold ones and their colour, as `study_page` has them."""
+    asked, status = question_of(study["question"]), study["answer"].get("status", Status.OK)
+    title = title or asked or study["name"]
     below = below or (f"{study['name']}: {asked}" if asked and asked != title else study["name"])
-    top = heading(figure, title, below, bold, colour)
-    return figure, panels(figure, top, mosaic, **layout)
+    return title, below, bold, BLACK if status == Status.OK else STATUS.get(status, BLACK)
 
 
 def sheet(width: float, height: float):
@@ -81,12 +78,17 @@ def sheet(width: float, height: float):
 
 
 def panels(figure, top: float, mosaic, space: float = 0.04, **layout) -> dict:
-    """Axes by name below `top` (share of the height), placed so that no label is cut; `space` between them, as a share
-    of their size."""
+    """Axes by name below `top` (share of the height), as `no_label_cut` places them."""
+    no_label_cut(figure, top, space)
+    return figure.subplot_mosaic(mosaic, **layout)
+
+
+def no_label_cut(figure, top: float, space: float = 0.04) -> None:
+    """Has axes placed below `top` (share of the height) so that no label is cut; `space` between them, as a share of
+    their size."""
     width, height = figure.get_size_inches()
     rect = (0.25 / width, 0.1 / height, 1 - 0.45 / width, top - 0.1 / height)
     figure.set_layout_engine("constrained", rect=rect, wspace=space, hspace=space, w_pad=0.06, h_pad=0.06)
-    return figure.subplot_mosaic(mosaic, **layout)
 
 
 def header(figure, run) -> float:
@@ -121,13 +123,6 @@ def heading(figure, title: str, below: str, bold: str = "", colour: str = BLACK)
     for k, (words, style) in enumerate(lines):
         figure.text(0.4 / width, 1 - (0.52 + more + 0.2 * k) / height, words, fontsize=9, va="center", **style)
     return 1 - (0.48 + more + 0.2 * len(lines)) / height
-
-
-def printed(words: str) -> str:
-    """Words of a terminal with the units of print."""
-    for told, letters in PRINT:
-        words = told.sub(letters, words)
-    return words
 
 
 def _lines(words: str, length: int) -> list[str]:
@@ -209,19 +204,6 @@ def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", be
                 bbox=PAPER)  # fmt: skip
 
 
-def free_side(x, curves, at: float, room: float) -> dict | None:
-    """Where the name of a level hides none of the curves over `x`: `side` and `below` of `level`, None where it hides
-    one everywhere; `room` is the height that the name takes, in data."""
-    start, end = x[0], x[-1]
-    for below in (False, True):
-        for side in ("right", "left"):
-            part = x >= end - 0.3 * (end - start) if side == "right" else x <= start + 0.3 * (end - start)
-            away = [(at - y if below else y - at)[part] for y in curves]
-            if not any(((0.15 * room < far) & (far < room)).any() for far in away):
-                return {"side": side, "below": below}
-    return None
-
-
 def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", bbox=None,
             **line) -> None:  # fmt: skip
     """A vertical line with its name beside it at a `height` (share of the panel), on a `bbox` before colours."""
@@ -247,16 +229,6 @@ def stacked(*panels) -> None:
     for ax in panels[:-1]:
         ax.sharex(panels[-1])
         ax.tick_params(labelbottom=False, which="both")
-
-
-def right_axis(ax, label: str, colour: str):
-    """A second y axis on the right, its name in the colour of what is drawn against it."""
-    other = ax.twinx()
-    other.grid(False)
-    other.spines["right"].set_visible(True)
-    other.set_ylabel(label, color=colour)
-    other.tick_params(axis="y", colors=colour)
-    return other
 
 
 def logarithmic(ax, axis: str) -> None:
@@ -311,3 +283,20 @@ def written(value: float, digits: int) -> str:
     rounded = float(f"{value:.{digits}g}")
     whole = f"{rounded:,.0f}".replace(",", " ") if abs(rounded) >= 1e4 else f"{rounded:.{max(digits, 4)}g}"
     return whole.replace("-", "−")
+
+
+# --- the face of a seal on polar axes ---------------------------------------------------------------------
+
+
+def annulus(ax, inner: float, outer: float, title: str = "") -> None:
+    """Limits of polar axes for a face between two radii (mm), which stands to scale unless it would be a line, and in
+    the middle the `title` and the radii."""
+    words, width = f"{inner:.4g}–{outer:.4g} mm", outer - inner
+    if width < NARROW * outer:
+        ax.set(ylim=(inner, outer), rorigin=inner - 2.0 * width, yticks=[])
+        words += "\nwidth stretched"
+    else:
+        ax.set(ylim=(0, outer), yticks=[])
+    ax.grid(False)
+    words = f"{title}\n{words}" if title else words
+    ax.text(0.5, 0.5, words, ha="center", va="center", linespacing=1.6, transform=ax.transAxes)

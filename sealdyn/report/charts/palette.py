@@ -27,6 +27,17 @@ STATUS = {Status.OK: GREEN, Status.INACCURATE: ORANGE, Status.COLLAPSED: VERMILL
 
 # Colours of lines that have no meaning of their own, in order.
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+CYCLED = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
+
+# Words of a style: colours by their meaning, dashes, marks.
+COLOURS = {
+    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, **RING, **STATUS, "good": GREEN,
+    "bad": VERMILLION, "warn": ORANGE, "black": BLACK, "grey": GREY, "pale": PALE, "blue": BLUE, "yellow": YELLOW,
+}  # fmt: skip
+COLOURS |= dict(zip(CYCLED, CYCLE, strict=True))
+DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 1, 2))}
+MARKS = {"circle": "o", "square": "s", "diamond": "D", "triangle": "^", "down": "v", "cross": "x", "plus": "+",
+         "star": "*", "tick": "_", "point": "."}  # fmt: skip
 
 # Colour, line and marker of every method: the house's own in full lines, SciPy's dashed, fixed steps dotted.
 LOOKS = {

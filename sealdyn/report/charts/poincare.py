@@ -3,16 +3,17 @@
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
+from ...numerics.order_spectrum import cubic
 from .page import EVEN, absent, look, run_page, save
 from .palette import FILM, THICKNESS, TILT
 from .record import Run
-from .spectrum import cubic
 
 MOST = 4000  # crossings drawn, the last ones
 # Samples of a turn between which a passage can be interpolated.
 PER_TURN = 8
 # Of the reach of all passages: a last half that is smaller is what the panel shows.
 SETTLED = 0.1
+NOTHING = 1e-18  # below any tilt in any unit
 
 
 @look()
@@ -52,13 +53,13 @@ def section(run: Run, names):
     return whole, np.array([cubic(whole, phase, column) for column in columns])
 
 
-def frame(ax, x, y, least: float = 0.0, whole: float = 0.0) -> None:
-    """Limits around a section, the same scale in both directions, at `least` so far apart; what is one point beside
+def around(x, y, least: float = 0.0, whole: float = 0.0) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Limits around a section in x and in y, equally far apart, at `least` so far apart; what is one point beside
     its own size or that of the `whole` motion, to plotting accuracy, is shown where it lies."""
-    size, reach = max(np.abs(x).max(), np.abs(y).max(), whole, 1e-12), max(np.ptp(x), np.ptp(y), least)
+    size, reach = max(np.abs(x).max(), np.abs(y).max(), whole, NOTHING), max(np.ptp(x), np.ptp(y), least)
     half = 0.6 * (reach if reach > EVEN * size else 0.2 * size)
     (x, y) = (0.5 * (values.min() + values.max()) for values in (x, y))
-    ax.set(xlim=(x - half, x + half), ylim=(y - half, y + half), aspect="equal")
+    return (x - half, x + half), (y - half, y + half)
 
 
 def _plane(ax, run, turns, values):
@@ -68,7 +69,8 @@ def _plane(ax, run, turns, values):
     ax.plot(x[-1], y[-1], "o", mfc="none", mec=TILT, ms=10, label=f"last of {len(turns)} passages")
     late = run.last(run.turns[-1] / 2, run.rows)
     settled = slice(_settled(x, y, per * run.largest("relative_tilt_x", late)), None)
-    frame(ax, x[settled], y[settled], whole=per * run.largest("relative_tilt_x", late))
+    xlim, ylim = around(x[settled], y[settled], whole=per * run.largest("relative_tilt_x", late))
+    ax.set(xlim=xlim, ylim=ylim, aspect="equal")
     if settled.start:
         ax.set_title(f"Once per turn: relative tilt, last {len(x) - settled.start} passages")
     ax.set(xlabel=f"tilt about x, {unit}", ylabel=f"tilt about y, {unit}")

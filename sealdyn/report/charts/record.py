@@ -7,35 +7,14 @@ from itertools import takewhile
 import numpy as np
 
 from ...archive import column, read_info
+from ...quantities import by_size, everyday, factor_of
 from ..text import question_of
 
 BLOCK = 1 << 16
 POINTS = 20_000
-
-
-# SI unit of a key -> what its values are read in, and how many of that make one; radii and other lengths that are no
-# films from LONG (m) on in mm.
-READ_IN = {"m": ("µm", 1e6), "rad": ("mrad", 1e3), "Pa": ("bar", 1e-5), "Pa*s": ("mPa s", 1e3)}
-LONG = 2e-3
-# A number in µ below this is read better in n, in n below it in p.
-SMALL = 0.05
-
-
-def fitting(unit: str, size: float) -> tuple[str, float]:
-    """A unit finer than one in µ where numbers of this size would be mostly zeros, and how many of it make one."""
-    if unit[:1] != "µ" or not 0 < size < SMALL:
-        return unit, 1.0
-    return ("n" + unit[1:], 1e3) if size >= 1e-3 * SMALL else ("p" + unit[1:], 1e6)
-
-
-def read_in(unit: str, values, speeds: tuple[str, float] = ("rad/s", 1.0)) -> tuple[str, float]:
-    """What the values (SI) of a scenario key are read in, speeds as in `speeds`, and how many of it make one of its SI
-    `unit`."""
-    if unit == "rad/s":
-        return speeds
-    if unit == "m" and max(map(abs, values), default=0.0) > LONG:
-        return "mm", 1e3
-    return READ_IN.get(unit, ("" if unit == "1" else unit.replace("*", " "), 1.0))
+MILLISECONDS = factor_of("s", "ms") or 1.0
+# How many of the everyday unit of radii, and of that of films, make a metre.
+MM, UM = everyday("radius")[1], everyday("m")[1]
 
 
 def done(rows) -> list[dict]:
@@ -62,14 +41,17 @@ class Run:
         """Rows `start` to `stop` of a series (SI)."""
         return column(self.path, name, slice(start, self.rows if stop is None else min(stop, self.rows)))
 
-    def shown(self, name: str, first: int = 0) -> tuple[str, float]:
+    def shown(self, name: str, first: int = 0, size: float | None = None) -> tuple[str, float]:
         """The unit that people read a series in from row `first` on, and how many of it make one SI unit: what the
-        archive says, or a finer one where that would leave zeros before the first digit.  Both components of a tilt
-        have one unit."""
+        archive says, the everyday one by size, by default the largest.  Both components of a tilt have one unit."""
         series = self.info["series"][name]
-        unit, per = series.display_unit or series.units, series.display_factor
-        unit, finer = fitting(unit, per * self.largest(name, first))
-        return unit, per * finer
+        shown = series.display_unit or series.units, series.display_factor
+        return by_size(series.units, *shown, self.largest(name, first) if size is None else size)
+
+    def field_shown(self, name: str, size: float) -> tuple[str, float]:
+        """The same of a field over the face or around the shaft of a `size` (SI)."""
+        field = self.info["fields"][name]
+        return by_size(field.units, field.display_unit or field.units, field.display_factor, size)
 
     def largest(self, name: str, first: int = 0) -> float:
         """Largest magnitude of a series (SI), or of both components of a tilt."""
@@ -107,11 +89,15 @@ class Run:
     @cached_property
     def progress(self) -> np.ndarray:
         """What the x axes show: turns, or milliseconds when the shaft stands still."""
-        return self.turns if self.turning else 1e3 * (self.values("time") - self.values("time", 0, 1))
+        return self.turns if self.turning else MILLISECONDS * (self.values("time") - self.values("time", 0, 1))
+
+    @property
+    def progress_unit(self) -> str:
+        return "turns" if self.turning else "ms"
 
     @property
     def progress_label(self) -> str:
-        return "turns of the shaft" if self.turning else "time, ms"
+        return "turns of the shaft" if self.turning else f"time, {self.progress_unit}"
 
     def last(self, amount: float, most_rows: int = POINTS) -> int:
         """First row of the last `amount` of turns (of everything, if the shaft stands still), at most

@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.patches import Polygon, Rectangle
 
+from ...quantities import in_words, printed, shown_in
 from .page import PAPER, look, save, sheet, written
 from .palette import BLACK, CONTACT, GREY, PALE, RING, SKY
-from .record import Run
+from .record import MM, Run
 
 # Along the shaft, in widths of the face: length of a ring, clearance, cone, room for a support, and the part of a ring
 # that reaches to a support or an O-ring beyond its face.
@@ -25,7 +26,7 @@ def draw(archive_path, out_path):
 
 def panel(ax, run: Run) -> None:
     """Rings, film, supports, secondary seals and balance radius over the radius (mm)."""
-    inner, outer = 1e3 * run.film("inner_radius"), 1e3 * run.film("outer_radius")
+    inner, outer = MM * run.film("inner_radius"), MM * run.film("outer_radius")
     width = outer - inner
     radii, gap = np.linspace(inner, outer, RADII), width * _gap(run)
     back = CLEARANCE * width + CONE * width + LONG * width
@@ -66,9 +67,10 @@ def _pressures(ax, run: Run, inner: float, outer: float, width: float, gap) -> N
         value = (run.resolved.get("film") or {}).get(key)
         values = value["value"] if isinstance(value, dict) else [value]
         if None not in values:
-            words = " to ".join(dict.fromkeys(f"{1e-5 * p:.4g}" for p in (min(values), max(values))))
+            unit, per = shown_in("pressure")
+            words = " to ".join(dict.fromkeys(f"{per * p:.4g}" for p in (min(values), max(values))))
             side = "bottom" if way > 0 else "top"
-            ax.text(0.5 * at, radius + way * 0.06 * width, f"{words} bar abs.", ha="center", va=side, fontsize=8)
+            ax.text(0.5 * at, radius + way * 0.06 * width, f"{words} {unit} abs.", ha="center", va=side, fontsize=8)
 
 
 def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: float | None) -> list[float]:
@@ -76,12 +78,12 @@ def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: 
     the radii (mm) that this reaches."""
     table = run.resolved.get(ring) or {}
     support, seal = table.get("support"), table.get("secondary_seal")
-    inner, outer = 1e3 * run.film("inner_radius"), 1e3 * run.film("outer_radius")
+    inner, outer = MM * run.film("inner_radius"), MM * run.film("outer_radius")
     middle, wall = 0.5 * (inner + outer), end + way * ROOM * width
     reached = []
     if support:
         given = _has_radius(support)
-        radius = 1e3 * support["radius"] if given else middle
+        radius = MM * support["radius"] if given else middle
         tilt = support.get("tilt_stiffness") or 0.0
         words = f"support, r {radius:.4g}" if given else f"support,\n{written(tilt, 3)} N m/rad"
         ax.plot(np.linspace(end, wall, len(COIL)), radius + 0.09 * width * COIL, color=BLACK, lw=1.2)
@@ -96,7 +98,7 @@ def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: 
         fixed = "on the shaft" if ring == "rotor" else "on its carrier" if table.get("speed") else "in the housing"
         ax.text(0.5 * (end + wall), middle, fixed, ha="center", va="center", fontsize=7.5, rotation=90)
     if seal:
-        radius = 1e3 * seal["radius"]
+        radius = MM * seal["radius"]
         place = end - way * 0.2 * LONG * width
         ax.plot(place, radius, "o", ms=11, color=BLACK, zorder=4)
         # Beyond the ring, where its name does not lie on that of the ring.
@@ -105,7 +107,7 @@ def _held(ax, run: Run, ring: str, end: float, way: int, width: float, balance: 
         ax.text(place, beyond + side * 0.14 * width, f"O-ring, r {radius:.4g}", ha="center",
                 va="bottom" if side > 0 else "top", fontsize=7.5, bbox=PAPER)  # fmt: skip
         reached += [radius, beyond + side * 0.2 * width]
-    carried = [1e3 * table[part]["radius"] for part in ("support", "secondary_seal") if _has_radius(table.get(part))]
+    carried = [MM * table[part]["radius"] for part in ("support", "secondary_seal") if _has_radius(table.get(part))]
     if carried:
         _collar(ax, ring, end, way, (inner, outer), carried)
     return reached
@@ -139,12 +141,16 @@ def _balance(run: Run, inner: float, outer: float) -> tuple[float | None, float]
     return (square**0.5 if square > 0 else None), ratio
 
 
+def _length(value: float) -> str:
+    return printed(in_words("m", value, digits=3))
+
+
 def _not_drawn(run: Run) -> list[str]:
     """What the faces have around the circle, which a section does not show."""
     found = []
     for ring in RING:
         waves = (run.resolved.get(ring) or {}).get("waviness") or []
-        found += [f"{wave['order']} waves of {1e6 * wave['amplitude']:.3g} µm in the {ring}'s face" for wave in waves]
+        found += [f"{wave['order']} waves of {_length(wave['amplitude'])} in the {ring}'s face" for wave in waves]
     pads = (run.resolved.get("film") or {}).get("pads") or []
-    found += [f"{pad['count']} pads {1e6 * pad['depth']:.3g} µm deep" for pad in pads]
+    found += [f"{pad['count']} pads {_length(pad['depth'])} deep" for pad in pads]
     return [f"not drawn: {', '.join(found)}"] if found else []

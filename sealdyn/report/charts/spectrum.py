@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from ...numerics.order_spectrum import FOLDED, at_the_edge, located, order_spectrum, peaks
 from .page import absent, decades, look, number, run_page, save, written
 from .palette import CONTACT, FILM, LEAK, TILT
-from .record import Run, fitting
+from .record import Run
 
 MOST_ROWS = 1 << 14
 # Turns that a spectrum needs: the Hann window tells half the shaft speed from it only from four turns on.
@@ -12,13 +13,6 @@ LEAST_TURNS = 4
 TOO_SHORT = "fewer than four turns: no spectrum"
 FLOOR = 1e-5
 NOTHING = 1e-13  # m or rad: below what any run resolves
-CLEAR = 4  # lines
-NEAR = 0.1  # lines: an order this near is that of the line
-CLEAN = 0.02  # of a peak: by which the lines beside one that is clear of others are off
-HANN_BANDWIDTH = 1.5  # equivalent noise bandwidth of the Hann window, in bins
-# Power in the top tenth of the band, of all that moves, above which a spectrum may be folded.  Measured: below 3e-7 in
-# well sampled runs; 9e-4 with the housing's 5.4 kHz at order 33.75 of 160 Hz, 64 samples a turn.
-FOLDED = 1e-4
 # Tables of the housing whose frequencies are those of a band.
 BANDS = ("axial_random", "angular_random", "axial_sweep", "angular_sweep")
 
@@ -70,7 +64,7 @@ def panel(ax, run: Run, turns: float | None = None) -> None:
     if not run.has(x, y) or not any(run.values(tilt, first).any() for tilt in (x, y)):
         return real_panel(ax, run, "axial_gap_change", "Axial motion in orders of shaft speed", turns)
     title = "Relative tilt in orders of shaft speed"
-    show(ax, run, lambda first: run.values(x, first) + 1j * run.values(y, first), title, run.shown(x), TILT, turns)
+    show(ax, run, lambda first: run.values(x, first) + 1j * run.values(y, first), title, x, TILT, turns)
 
 
 def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, said=True) -> None:
@@ -78,12 +72,12 @@ def real_panel(ax, run: Run, name: str, title: str, turns: float | None = None, 
     if not run.has(name):
         return absent(ax, title)
     colour = FILM if name == "h_min" else LEAK
-    show(ax, run, lambda first: run.values(name, first), title, run.shown(name), colour, turns, said)
+    show(ax, run, lambda first: run.values(name, first), title, name, colour, turns, said)
 
 
-def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None, said=True):
-    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), `shown` is the unit for people
-    and how many of it make one SI unit."""
+def show(ax, run: Run, read, title: str, name: str, colour: str, turns: float | None, said=True):
+    """Draws one spectrum and names its peaks; `read(first_row)` gives the signal (SI), read in the unit of the series
+    `name` for its size."""
     if not _long_enough(run):
         return absent(ax, title, TOO_SHORT)
     first = _window(run, turns)
@@ -92,9 +86,8 @@ def show(ax, run: Run, read, title: str, shown, colour: str, turns: float | None
     orders, amplitude, resolution, resampled = order_spectrum(run.turns[first:], read(first))
     if not amplitude.max() > NOTHING:
         return absent(ax, title, "does not move")
-    unit, per = shown
-    unit, finer = fitting(unit, per * amplitude.max())
-    amplitude *= per * finer
+    unit, per = run.shown(name, size=amplitude.max())
+    amplitude *= per
     largest = amplitude.max()
     named = peaks(orders, amplitude)
     if orders[0] == 0:
@@ -144,81 +137,3 @@ def folded(run: Run, first: int, highest: float) -> str:
     tones += [max(band["frequency"]) for band in bands]
     fast = [f for f in tones if isinstance(f, int | float) and 2 * np.pi * f > highest * slowest]
     return f"\n{max(fast):.4g} Hz, above order {highest:.3g}, folds back: raise samples_per_turn" if fast else ""
-
-
-def at_the_edge(orders, amplitude, resolution: float) -> float:
-    """Share of the power of all that moves (constant part left out) in the top tenth of the sampled band: a response
-    that has not died out there goes on beyond, and shows folded at orders that are not its own."""
-    power = np.where(np.abs(orders) > resolution, amplitude**2, 0.0)
-    total = power.sum()
-    return float(power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum() / total) if total > 0 else 0.0
-
-
-def order_spectrum(turns, signal):
-    """Amplitude spectrum of `signal` (real or complex) over shaft angle, Hann window.
-
-    `turns` rise; where they do not rise evenly the signal is resampled by cubic interpolation.  Cut to a
-    whole number of turns, so that integer orders fall on a line of the spectrum.  Returns orders,
-    amplitudes (of a cosine if real, of the rotating vector if complex), resolution (orders), resampled.
-    """
-    step = (turns[-1] - turns[0]) / (len(turns) - 1)
-    resampled = bool(np.abs(np.diff(turns) / step - 1).max() > 1e-3)
-    if resampled:
-        grid = np.linspace(turns[0], turns[-1], len(turns))
-        signal = cubic(grid, turns, signal)
-    if step < 0.5:
-        whole = np.floor((turns[-1] - turns[0]) / 1.0 + 1e-6)
-        signal = signal[-max(2, round(whole / step)) :]
-    if np.isrealobj(signal):
-        signal = signal - signal.mean()
-    count = len(signal)
-    hann = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)
-    if np.iscomplexobj(signal):
-        lines = np.fft.fftshift(np.fft.fft(hann * signal))
-        orders = np.fft.fftshift(np.fft.fftfreq(count, step))
-        amplitude = np.abs(lines) / hann.sum()
-    else:
-        orders, amplitude = np.fft.rfftfreq(count, step), 2 * np.abs(np.fft.rfft(hann * signal)) / hann.sum()
-    return orders, amplitude, HANN_BANDWIDTH / (count * step), resampled
-
-
-def cubic(at, x, y):
-    """Lagrange interpolation through the four nearest rows; `x` rises, unevenly."""
-    k = np.clip(np.searchsorted(x, at) - 2, 0, len(x) - 4)
-    total = np.zeros(len(at), y.dtype)
-    for i in range(4):
-        weight = np.ones(len(at))
-        for j in range(4):
-            if j != i:
-                weight *= (at - x[k + j]) / (x[k + i] - x[k + j])
-        total += weight * y[k + i]
-    return total
-
-
-def peaks(orders, amplitude, most: int = 5) -> np.ndarray:
-    """Rows of the largest local maxima, above 1 % of the largest and clear of one another."""
-    inside = np.r_[False, (amplitude[1:-1] >= amplitude[:-2]) & (amplitude[1:-1] > amplitude[2:]), False]
-    # A peak stands at least twice above a valley a few lines to its left, and one to its right.
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(amplitude, CLEAR, mode="reflect"), CLEAR)
-    inside &= amplitude > 2 * np.maximum(around[: -CLEAR - 1].min(1), around[CLEAR + 1 :].min(1))
-    ranked = np.flatnonzero(inside & (amplitude > 0.01 * amplitude.max()))
-    kept: list[int] = []
-    for at in ranked[np.argsort(-amplitude[ranked])]:
-        if all(abs(orders[at] - orders[other]) > 0.3 for other in kept) and len(kept) < most:
-            kept.append(int(at))
-    return np.array(kept, int)
-
-
-def located(orders, amplitude, at: int) -> tuple[float, float]:
-    """Order and amplitude of a peak between the lines of a spectrum with a Hann window, from its line and the larger
-    one beside it: with the ratio r of these it lies d = (2 r - 1)/(r + 1) of a line towards that one.  The line on the
-    other side, (1 - d)/(2 + d) of its own, tells whether it is clear of others; else it is taken as it stands.
-
-    **Source** Grandke (1983), IEEE Trans. Instrum. Meas. 32, 350.  **Valid** of one order, clear of others."""
-    towards = 1 if amplitude[at + 1] > amplitude[at - 1] else -1
-    near, far = (amplitude[at + side] / amplitude[at] for side in (towards, -towards))
-    off = (2 * near - 1) / (near + 1)
-    if not NEAR <= off <= 0.5 or abs(far - (1 - off) / (2 + off)) > CLEAN:
-        return float(orders[at]), float(amplitude[at])
-    order = orders[at] + towards * off * (orders[1] - orders[0])
-    return float(order), float(amplitude[at] * (1 - off**2) / np.sinc(off))

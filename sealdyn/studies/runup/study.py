@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from ...answers import Answer, Table
+from ...numerics.order_spectrum import FOLDED
 from ...numerics.piecewise_linear import PiecewiseLinear
 from ...quantities import in_words
 from ...scenario.settings import si_unit
@@ -32,7 +33,7 @@ RAMPS = (100.0, 10.0, 1.0)
 LISTS = ("time", "value", "film", "tilt", "flow")
 WAYS = ("up", "down")
 # Up to this share of the tilt that touches, a seal is near its aligned film; of the power that may be folded.
-NEAR, FOLDED = 0.5, 1e-4
+NEAR = 0.5
 INFO = Info(
     timed=("runup_past_threshold", 6),
     # What follows the shaft's speed; of another key, of its rate and of an amplitude the answer knows the unit.
