@@ -9,7 +9,7 @@ import numpy as np
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scene.contact import Contact, Waviness
 from sealdyn.scene.excitation import AngularVibration, AxialVibration, Housing, Shaft, Whirl
-from sealdyn.scene.film import Film, Reynolds
+from sealdyn.scene.film import Film, Pads, Reynolds
 from sealdyn.scene.gas import GASES, GasDam, GasReynolds
 from sealdyn.scene.rings import AxialRunout, Rotor, SecondarySeal, Stator, Support
 from sealdyn.scene.scene import Initial, RingStart, Scene
@@ -171,6 +171,40 @@ def reynolds(random) -> Drawn:
         wave = Waviness(int(random.integers(2, 5)), film.clearance * log(0.01, 0.6), float(random.uniform(0, 6)))
         scene, words = replace(scene, stator=replace(scene.stator, waviness=[wave])), [*words, "waves"]
     return Drawn(scene, drawn.duration, log(1e-3, 3e-2), "rest", tuple(words))
+
+
+# How often the faces of `patterned` repeat themselves: by waves, and by sets of pads.  Some have a divisor in common.
+WAVES = ((2, 3), (3, 4), (2, 5), (2, 4), (3,))
+PADS = ((1,), (2, 3), (3,), (2, 4))
+TILTING = ("angular tone", "whirl", "misalignment table", "rub", "waves")
+
+
+def patterned(random) -> Drawn:
+    """A scene of `reynolds` or `gas_reynolds` that nothing tilts but its faces: waves of several orders, or sets of
+    pads under a gas; some of which tilt nothing either."""
+    liquid = bool(random.random() < 0.5)
+    while (drawn := reynolds(random) if liquid else gas_reynolds(random, other_faces=False)).scene.stator.speed != 0.0:
+        pass
+    scene, film, words = drawn.scene, drawn.scene.film, [word for word in drawn.words if word not in TILTING]
+    if liquid or random.random() < 0.5:
+        orders, height = WAVES[random.integers(len(WAVES))], film.clearance * logarithmic(random, 0.1, 0.4)
+        waves = [Waviness(order, height, float(random.uniform(0, 6))) for order in orders]
+        stator, words = replace(scene.stator, waviness=waves), [*words, f"waves {orders}"]
+    else:
+        counts, width = PADS[random.integers(len(PADS))], film.outer_radius - film.inner_radius
+        size = dict(inner_radius=film.inner_radius, outer_radius=film.outer_radius, edge=0.24 * width)
+        pads = [Pads(count, film.clearance * logarithmic(random, 0.1, 1.0), float(random.uniform(1.5, 3.0)) / count,
+                     phase=float(random.uniform(0, 6)), **size) for count in counts]  # fmt: skip
+        film = replace(film, pads=pads, gas_reynolds=replace(film.gas_reynolds, cells=(6, 96)))
+        stator, words = scene.stator, [*words, f"pads {counts}"]
+    # A throw keeps its way along the shaft.
+    straight = {name: RingStart(z_rate=getattr(scene.initial, name).z_rate) for name in ("rotor", "stator")}
+    scene = replace(
+        scene, film=film, shaft=replace(scene.shaft, whirl=[]), housing=Housing(axial=scene.housing.axial),
+        rotor=replace(scene.rotor, misalignment=0.0, runout=0.0), stator=replace(stator, misalignment=0.0),
+        initial=Initial(**straight),
+    )  # fmt: skip
+    return replace(drawn, scene=scene, words=tuple(words))
 
 
 def _with_other_faces(random, scene, duration, words):

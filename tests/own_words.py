@@ -94,7 +94,7 @@ class OwnSeal:
                 raise NotImplementedError(f"{name}: a ring without inertia")
         known = ("auto", "radial") if film.gas is None else ("gas_reynolds",)
         plain = film.geometry == "cylindrical" and film.tilt_radius == "local" and film.model in known
-        extra = (film.inertia, film.profile, film.cavitation_pressure is not None, film.clearance is None)
+        extra = (film.inertia, film.profile, film.pads, film.cavitation_pressure is not None, film.clearance is None)
         # Between equal pressures the balance ratio is nothing.
         equal = film.inner_pressure == film.outer_pressure
         given = (scene.closing.balance_ratio is not None and not equal, scene.closing.spring_force is not None)
