@@ -328,6 +328,21 @@ def verdict(modes: list[Mode]) -> str:
 # --- Extremes of a steady motion -----------------------------------------------------------------------
 
 
+def largest_tilt(motion) -> float:
+    """Largest tilt (rad) of one harmonic motion, complex amplitudes (3,) of (z, tilt_x, tilt_y)."""
+    return float(0.5 * (abs(motion[1] + 1j * motion[2]) + abs(motion[1] - 1j * motion[2])))
+
+
+def tilt_bound(answers) -> float:
+    """Bound on the tilt (rad) of any part in a linear steady state, by its amplitudes: of rings, of what carries them
+    and of their own misalignments.  `answers` pairs each Harmonic with its response (3 rings,)."""
+    parts = [[h.carrier * (h.ring == k) for h, _ in answers] for k in (0, 1)]
+    parts += [[h.own * (h.ring == k) for h, _ in answers] for k in (0, 1)]
+    floating = len(answers[0][1]) // 3 if answers else 0
+    parts += [[answer[3 * k : 3 * k + 3] for _, answer in answers] for k in range(floating)]
+    return max((sum(map(largest_tilt, part)) for part in parts), default=0.0)
+
+
 def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple[float, float, float]:
     """Largest and smallest relative misalignment (rad) and largest axial closing (m) of a linear steady state.
 
@@ -338,8 +353,7 @@ def steady_extremes(linear: LinearScene, answers, period: float | None) -> tuple
     if not relative:
         return 0.0, 0.0, 0.0
     if period is None:
-        tilt = sum(0.5 * (abs(r[1] + 1j * r[2]) + abs(r[1] - 1j * r[2])) for _, r in relative)
-        return float(tilt), 0.0, float(sum(abs(r[0]) for _, r in relative))
+        return sum(largest_tilt(r) for _, r in relative), 0.0, float(sum(abs(r[0]) for _, r in relative))
 
     frequencies, amplitudes = np.array([w for w, _ in relative]), np.array([r for _, r in relative])
 

@@ -62,7 +62,7 @@ def _face_lines(summary) -> Iterator[Line]:
     yield from _computation(model, counts, summary["wall_time"])
     yield from _film_lines(summary)
     if summary["contact_margin"] is not None:
-        yield _margin(summary["contact_margin"], contact)
+        yield _margin(summary, contact)
     where = " at 0 degC and 1.01325 bar" if leak["conditions"] else ""
     yield Line("leakage", [("mean", leak["mean"], "leakage"), (where.strip(), None, ""),
                            ("", leak["mean_kg_per_h"] and leak["mean_kg_per_h"] / 3600.0, "mass_flow")])  # fmt: skip
@@ -163,10 +163,14 @@ def _settled_throughout(summary) -> bool:
     return all(f"{a:.4g}" == f"{b:.4g}" or abs(a - b) <= apart for a, b, apart in pairs)
 
 
-def _margin(margin: float, contact) -> Line:
+def _margin(summary, contact) -> Line:
     """By how much the forcing may grow, of linear theory."""
+    margin = summary["contact_margin"]
     if margin == 0.0:
         return Line("margin", [("the asperities touch without any forcing", None, "")])
+    if summary.get("contact_margin_limit") == "small tilts":
+        parts = [("not limited by touch within small tilts, which are over at", margin, "1"), ("times", None, "")]
+        return Line("margin", [*parts, ("this forcing (linear theory)", None, "")])
     words = "times this forcing touches (linear theory)"
     also = "the faces touched in this run" if contact and contact["touches"] and margin >= 1.0 else ""
     return Line("margin", [("", margin, "1"), (words, None, ""), (also, None, "")])

@@ -25,6 +25,9 @@ from ..units import (
 )
 from .contact import Waviness
 
+# Tilt (rad) up to which the equations hold, which are linear in tilts: gap and pressure are then off by 2e-4, half its
+# square, and no seal runs so far off.
+SMALL_TILT = 0.02
 # What a body gives its ring.
 INERTIAL = ("mass", "transverse_inertia", "polar_inertia")
 # kg/m^3.  Faces: data sheet of a maker of seal faces, Omegaslate (UK) Ltd, "Physical and mechanical properties of

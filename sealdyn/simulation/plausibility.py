@@ -20,6 +20,7 @@ from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
 from ..scene.radial import RadialScene
+from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
 from .film_error import TORN, reynolds_comparison
 
@@ -274,7 +275,7 @@ class Usual(NamedTuple):
 
 
 WEARS = Usual(0.0, 1e-11, "1/Pa", "mm^3/(N m)", 1e9)
-SMALL_ANGLE = Usual(-0.02, 0.02, "rad", "mrad", 1e3)
+SMALL_ANGLE = Usual(-SMALL_TILT, SMALL_TILT, "rad", "mrad", 1e3)
 ABSOLUTE = Usual(1e3, 1e9, "Pa", "bar", 1e-5)
 OF_A_FACE = Usual(0.0, 1.0, "m", "mm", 1e3)
 OF_A_RING = Usual(0.0, 100.0, "kg", "g", 1e3)

@@ -17,13 +17,15 @@ from ..numerics.piecewise_linear import PiecewiseLinear
 from ..scene.contact import waves_of
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.radial import RadialScene
-from ..scene.rings import RING_NAMES, ROTOR, STATOR
+from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions
 from .stability import stability
 
+# What ends the growth of the forcing, unless tilts are small no more.
+TOUCHED = "touch"
 ML_PER_H, KG_PER_H = 3.6e9, 3.6e3
 
 
@@ -54,6 +56,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
     whole = cache(lambda: run.extrema.extremes()[0])
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
     tilt = cache(lambda: _linear_steady(segment, linear, period))
+    margin = cache(lambda: _contact_margin(segment, linear, tilt()))
     return {
         "status": outcome.status,
         "message": outcome.message,
@@ -83,7 +86,8 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         "secondary_seal": _secondary_seal(run),
         "film": _film(segment, linear, tally),
         "closing": _closing(segment),
-        "contact_margin": lambda: _contact_margin(segment, linear, tilt()),
+        "contact_margin": lambda: margin()[0],
+        "contact_margin_limit": lambda: margin()[1],
         "closed_form": lambda: _closed_form(segment, linear, tilt()),
         "stability": lambda: stability(model, segment.interval, linear, speeds),
         "energy_residual": outcome.energy_residual,
@@ -341,23 +345,28 @@ def _linear_steady(segment, linear, period):
 
 
 def _contact_margin(segment, linear, tilt):
-    """Factor on the forcing at which linear theory closes the gap at either edge, to the height of the asperities where
-    there are any: 0 where they touch without forcing.  Unknown of wavy faces, of aligned ones that press with a moment,
-    and of a sweep, which is over in the last segment."""
+    """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
+    to the height of the asperities where there are any (0 where they touch without forcing), "small tilts" are over
+    before (SMALL_TILT).  Unknown of wavy faces, of aligned ones that press with a
+    moment, and of a sweep, which is over in the last segment."""
     model = segment.model
     if waves_of(model.scene) or model.scene.housing.sweeps:
-        return math.nan
+        return math.nan, None
     face = model.face
     inner = model.clearance + model.axial_shift(segment.interval)
     outer = inner + (face[3] + model.coning_change(segment.interval)) * (face[1] - face[0])
     height = max(face[TOUCH], 0.0)
     if min(inner, outer) <= height:
-        return 0.0
+        return 0.0, TOUCHED
     if tilt is None or modes.verdict(linear.modes()) != "stable":
-        return math.nan
+        return math.nan, None
     most, _, closing, _ = tilt
     reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
-    return min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
+    margin = min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
+    tilted = modes.tilt_bound(segment.steady_motion()[1])
+    if tilted > 0.0 and margin > SMALL_TILT / tilted:
+        return SMALL_TILT / tilted, "small tilts"
+    return margin, TOUCHED if math.isfinite(margin) else None
 
 
 def _closed_form(segment, linear, tilt):

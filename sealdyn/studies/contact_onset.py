@@ -20,6 +20,7 @@ from ..scenario.settings import must_be_number, si_unit
 from ..scene import variants
 from ..scene.checks import unused
 from ..scene.contact import touch_height
+from ..scene.rings import SMALL_TILT
 from ..status import Status
 from . import Info
 
@@ -36,8 +37,6 @@ INFO = Info(
     },
     along={"path": ("forcing",), "linear": ("forcing",), "curve": ("value",)},
 )  # fmt: skip
-# A tilt (rad) that nobody calls small: gap and pressure are then wrong by a thousandth, and no seal runs so far off.
-SMALL_TILT = 0.05
 # Beyond this value of a key, SI, linear theory is not asked any more.
 LARGEST = 1e9
 # Onsets further apart than this are seen on a logarithmic axis only.

@@ -23,7 +23,16 @@ CONTRACT = {
     "film": {"axial_stiffness", "tilt_stiffness"}, "closing": {"force", "balance_ratio"}, "closed_form": set(),
     "stability": {"verdict", "whirl_ratio", "critical_speed", "resonance_speeds"}, "counts": {"rhs", "steps"},
 }  # fmt: skip
-PLAIN = {"status", "message", "contact_margin", "energy_residual", "wall_time", "archive", "figure"}
+PLAIN = {
+    "status",
+    "message",
+    "contact_margin",
+    "contact_margin_limit",
+    "energy_residual",
+    "wall_time",
+    "archive",
+    "figure",
+}
 TILT_SCALE = 1e-5 / 0.04
 
 

@@ -1,5 +1,6 @@
 """What a summary advises."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,19 +13,22 @@ from sealdyn.dynamics.signals import signals
 from sealdyn.report.charts import overview
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words, lines
-from sealdyn.scenario.reader import read_scenario
+from sealdyn.scenario.reader import parse_scenario, read_scenario
+from sealdyn.scene.rings import SMALL_TILT
 from sealdyn.simulation.simulate import prepare_run, simulate_in_memory
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SEAL = SCENARIOS / "fms_reference.toml"
 
 
-@pytest.mark.parametrize("start", ["rest", "steady"])
-def test_a_run_that_is_not_steady_is_not_told_to_start_as_it_did(start):
+@pytest.mark.parametrize(
+    "start, speed, advised", [("rest", 1000, True), ("rest", 6500, False), ("steady", 6500, False)]
+)
+def test_a_run_that_is_not_steady_is_told_to_start_otherwise_where_that_helps(start, speed, advised):
     """Above its threshold the reference seal's whirl grows from any start."""
-    changes = ["run.turns=3", "run.accuracy=1e-8", "shaft.speed=6500 rad/s", f"run.start='{start}'"]
+    changes = ["run.turns=3", "run.accuracy=1e-8", f"shaft.speed={speed} rad/s", f"run.start='{start}'"]
     sentence = simulate_in_memory(read_scenario(SEAL, changes))["relative_misalignment"]["steady_said"]
-    assert sentence.startswith("not steady") and ("run.start" in sentence) == (start == "rest")
+    assert sentence.startswith("not steady") and ("run.start" in sentence) == advised
 
 
 def test_a_run_that_begins_settled_has_no_transient():
@@ -163,6 +167,18 @@ def test_the_margin_ends_where_asperities_meet():
     smooth = simulate_in_memory(read_scenario(SEAL, rough[1:]))["contact_margin"]
     assert margins[0.1] == pytest.approx(smooth * (10 - 0.3) / 10, rel=1e-6)
     assert margins[1.0] == pytest.approx(smooth * (10 - 3.0) / 10, rel=1e-6)
+
+
+def test_a_margin_ends_where_tilts_are_small_no_more():
+    """A stator that follows the runout: what is left between the faces would let the forcing grow without end."""
+    pump = re.search(r"```toml\n(.*?)```", (SCENARIOS.parent / "README.md").read_text(), re.DOTALL)[1]
+    scenario = parse_scenario(pump, "pump", ["run.turns=1"])
+    found = simulate_in_memory(scenario)
+    own = found["closed_form"]["relative_max"] * found["contact_margin"] * scenario.scene.film.outer_radius
+    assert found["contact_margin_limit"] == "small tilts" and own < 0.1 * found["film"]["clearance"]
+    # The ring tilts by as much as the rotor is out of square, and a ten-thousandth more.
+    assert found["contact_margin"] * scenario.scene.rotor.runout == pytest.approx(SMALL_TILT, rel=1e-3)
+    assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["contact_margin_limit"] == "touch"
 
 
 def test_asperities_that_touch_without_forcing_leave_no_margin():

@@ -26,11 +26,11 @@ from ...report.text import speed_unit
 from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps, coned, coning_change
 from ...scene.gas import viscosity_of
+from ...scene.rings import SMALL_TILT
 from ...scene.variants import arrangement, frozen_at_start
 from ...simulation.stability import critical_speed, held_speeds
 from ...units import Speed
 from .. import Info
-from ..contact_onset import SMALL_TILT
 from .in_time import PHASES, QUANTITIES, curves, phases_apart, points_in_time
 
 INFO = Info(
