@@ -8,8 +8,6 @@ import numpy as np
 
 from ..archive import FIELD_TIME, Fields, Series
 from ..dynamics.signals import (
-    DEGREES,
-    MILLIMETRES,
     TALLIED,
     field_grid,
     fields,
@@ -19,6 +17,7 @@ from ..dynamics.signals import (
     signal_table,
     signals,
 )
+from ..quantities import everyday
 from ..scene.radial import RadialScene
 from ..solvers.contract import Enough
 from ..solvers.energy_audit import EnergyAudit
@@ -70,8 +69,8 @@ def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
         return series, None
     r, theta = field_grid(model)
     grid = {
-        "r": (Series("m", "radius", *MILLIMETRES), r),
-        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
+        "r": (Series("m", "radius", *everyday("radius")), r),
+        "theta": (Series("rad", "angle, from the x axis", *everyday("angle")), theta),
     }
     return series, Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 
