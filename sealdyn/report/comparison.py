@@ -175,7 +175,7 @@ def _change_words(change) -> str:
     if times <= 0.0:
         return "  (changes its sign)" if times else "  (to nothing)"
     if 1.0 / MANY < times < MANY:
-        return f"  ({100 * change:+.3g} %)"
+        return f"  ({'+' if change >= 0 else ''}{in_words('share', change, digits=3)})"
     return f"  ({times:.3g} times as much)" if times > 1.0 else f"  (a {1.0 / times:.3g}th)"
 
 

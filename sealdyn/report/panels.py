@@ -12,7 +12,6 @@ from matplotlib.ticker import LogLocator, MultipleLocator
 from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
 from ..quantities import printed, quantity, shown_in
-from ..status import Status
 from .charts.page import (
     PAPER,
     absent,
@@ -37,6 +36,8 @@ IN_ROWS, MANY = 3.4, 7
 LETTERS, BOLD, ROW = 11.0, 9.0, 12.0
 # Of the largest value of a diverging map: below, its colours are linear.
 LINEAR = 1 / 300
+# Of the value: the finest scale of colours.
+FINEST = 2e-3
 # A point of a curve's label away from its mark.
 BESIDE = (6, 5)
 
@@ -249,8 +250,8 @@ def _numbers(values) -> np.ndarray:
 def _style(words: str, k: int) -> dict:
     """Colour, dashes, mark and the rest of a series, from the words of its style."""
     given = words.split()
-    look = {"color": CYCLE[k % len(CYCLE)], "ls": "-", "marker": "", "lw": 1.5, "ms": 5.0, "mfc": None, "alpha": 1.0,
-            "zorder": 2.0}  # fmt: skip
+    look = {"color": CYCLE[k % len(CYCLE)], "ls": "-", "marker": "", "lw": 1.5, "markersize": 5.0, "mfc": None,
+            "alpha": 1.0, "zorder": 2.0}  # fmt: skip
     for word in given:
         if word in COLOURS:
             look["color"] = COLOURS[word]
@@ -265,7 +266,7 @@ def _style(words: str, k: int) -> dict:
     if "open" in given:
         look["mfc"] = "white"
     look["lw"] = 0.9 if "thin" in given else 2.4 if "thick" in given else look["lw"]
-    look["ms"] = 3.5 if "small" in given else 9.0 if "large" in given else look["ms"]
+    look["markersize"] = 3.5 if "small" in given else 9.0 if "large" in given else look["markersize"]
     look["alpha"] = 0.45 if "faint" in given else 1.0
     look["zorder"] = 5.0 if "front" in given else look["zorder"]
     return look
@@ -357,8 +358,8 @@ def _colours_of(colour: Axis, values):
     """Scale, colours and ticks of a map."""
     if colour.words:
         count = len(colour.words)
-        return (BoundaryNorm(np.arange(count + 1) - 0.5, count), ListedColormap([COLOURS.get(w) or CYCLE[k % len(CYCLE)]
-                for k, w in enumerate(_roles(colour.words))]), range(count))  # fmt: skip
+        return (BoundaryNorm(np.arange(count + 1) - 0.5, count), ListedColormap([COLOURS.get(w, CYCLE[k % len(CYCLE)])
+                for k, w in enumerate(colour.words)]), range(count))  # fmt: skip
     low, high = (float(np.min(values)), float(np.max(values))) if len(values) else (0.0, 1.0)
     if colour.scale == "asinh":
         most = max(abs(low), abs(high)) or 1.0
@@ -373,16 +374,8 @@ def _colours_of(colour: Axis, values):
     if colour.scale == "log" and low > 0:
         return LogNorm(low, max(high, low * 1.001)), THICKNESS, None
     colours = PRESSURE if quantity(colour.quantity).unit == "Pa" else THICKNESS
-    return Normalize(low, max(high, low + 1e-9 * max(abs(high), abs(low), 1e-300))), colours, None
-
-
-# Words whose colours mean something.
-MEANING = {"stable": "good", Status.OK: "good", "unstable": "bad", Status.COLLAPSED: "bad", Status.FAILED: "bad",
-           "contact": "bad", "neutral": "warn", Status.INACCURATE: "warn"}  # fmt: skip
-
-
-def _roles(words):
-    return [MEANING.get(word, "") for word in words]
+    # Never a scale so fine that nothing happens all over it.
+    return Normalize(low, max(high, low + FINEST * max(abs(high), abs(low), 1e-300))), colours, None
 
 
 def _contour(ax, panel, one, x, y, style, written) -> None:

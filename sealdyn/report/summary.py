@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 
 from ..answers import Answer, Line
-from ..quantities import in_words
+from ..quantities import everyday, in_words
 from ..status import Status
 
 # Share by which a mean and its end differ where a run came from elsewhere.
@@ -63,9 +63,10 @@ def _face_lines(summary) -> Iterator[Line]:
     yield from _film_lines(summary)
     if summary["contact_margin"] is not None:
         yield _margin(summary, contact)
+    flow = leak["mean_kg_per_h"]
     where = " at 0 degC and 1.01325 bar" if leak["conditions"] else ""
     yield Line("leakage", [("mean", leak["mean"], "leakage"), (where.strip(), None, ""),
-                           ("", leak["mean_kg_per_h"] and leak["mean_kg_per_h"] / 3600.0, "mass_flow")])  # fmt: skip
+                           ("", flow and flow / everyday("mass_flow")[1], "mass_flow")])  # fmt: skip
     if _another(film.get("leakage"), leak["mean"]):
         yield Line("", [("aligned, at the end", film["leakage"], "leakage")], detail=True)
     if film.get("exit_mach") is not None:

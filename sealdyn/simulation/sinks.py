@@ -7,8 +7,6 @@ import numpy as np
 
 from ..archive import FIELD_TIME, Fields, Series
 from ..dynamics.signals import (
-    DEGREES,
-    MILLIMETRES,
     field_grid,
     fields,
     fields_of,
@@ -16,6 +14,7 @@ from ..dynamics.signals import (
     series_of,
     signal_table,
 )
+from ..quantities import everyday
 from ..scene.radial import RadialScene
 from ..solvers.contract import Enough
 from ..solvers.energy_audit import EnergyAudit
@@ -43,8 +42,8 @@ def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
         return series, None
     r, theta = field_grid(model)
     grid = {
-        "r": (Series("m", "radius", *MILLIMETRES), r),
-        "theta": (Series("rad", "angle, from the x axis", *DEGREES), theta),
+        "r": (Series("m", "radius", *everyday("radius")), r),
+        "theta": (Series("rad", "angle, from the x axis", *everyday("angle")), theta),
     }
     return series, Fields({x.name: Series(x.unit, x.long_name, *x.shown) for x in table}, grid, MOST_INSTANTS)
 

@@ -27,7 +27,7 @@ INFO = Info(
     wavy=True,
 )
 # Seconds of a run at least, bytes of its row.
-LEAST, ROW = 2e-3, 500
+LEAST, ROW, GIGABYTE = 2e-3, 500, 1e9
 # Changes over a grid of fewer of the accuracy's errors than this may be errors.
 NEAR = 5.0
 # Outputs that are drawn.
@@ -61,7 +61,8 @@ def run(scenario, settings, tools) -> Answer:
         raise ScenarioError(scenario.name, "study.sweep.vary", f"keys {', '.join(keys)}", "each key once")
     count = math.prod(len(a["given"]) for a in axes)
     if count > MOST:
-        size = f"a grid of {count:.3g} runs: {count * LEAST / 3600:.2g} h at least, {count * ROW / 1e9:.2g} GB"
+        spent = in_words("time", count * LEAST, digits=2)
+        size = f"a grid of {count:.3g} runs: {spent} at least, {count * ROW / GIGABYTE:.2g} GB"
         raise ScenarioError(scenario.name, "study.sweep.vary", size, f"at most {MOST:g} runs; sweep a part at a time")
     grid = [dict(zip(keys, values, strict=True)) for values in itertools.product(*(a["given"] for a in axes))]
     # What is wrong with every point is found before any is run; a point that cannot run is a row.

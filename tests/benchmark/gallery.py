@@ -23,7 +23,7 @@ CAPTIONS = Path(__file__).with_name("gallery.md")
 def page() -> str:
     """The captions, each `{{ name }}` replaced by the table of that name."""
     text = CAPTIONS.read_text()
-    for rows in (fastest, models, machine, scenarios, *FAMILIES, failures, robustness):
+    for rows in (fastest, models, machine, scenarios, honesty, failures, robustness):
         head, *below = [f"| {' | '.join(row)} |" for row in rows()]
         lines = [head, "|---" * (head.count(" | ") + 1) + "|", *below]
         text = text.replace("{{ " + rows.__name__ + " }}", "\n".join(lines))
@@ -76,49 +76,35 @@ def winner(row: dict) -> str:
 
 
 def honesty():
-    """The automatic choice on random scenes."""
-    yield from _honesty("honesty.json")
+    """The automatic choice on random scenes of every family."""
+    found = [json.loads((GALLERY / f"{name}.json").read_text()) for name in FAMILIES.values()]
+    yield "measured", *FAMILIES
+    for measured, told in HONESTY.items():
+        yield measured, *map(told, found)
 
 
-def honesty_reynolds():
-    """The same with films that tear."""
-    yield from _honesty("honesty_reynolds.json")
+def _drawn_anew(found) -> str:
+    return ", ".join(str(found["dropped"].get(why, 0)) for why in ("known for less than a turn", "not judged"))
 
 
-def honesty_gas():
-    """The same with gas dams."""
-    yield from _honesty("honesty_gas.json")
-
-
-def honesty_gas_reynolds():
-    """The same with gas that stores."""
-    yield from _honesty("honesty_gas_reynolds.json")
-
-
-def _honesty(name):
-    found = json.loads((GALLERY / name).read_text())
-    least, low, middle, high = map(number, found["estimate_over_error"])
-    yield "measured", "value"
-    yield "seed, random scenes", f"{found['seed']}, {found['scenes']}"
-    yield (
-        "drawn anew: known for less than a turn, or no two references",
-        (", ".join(str(found["dropped"].get(why, 0)) for why in ("known for less than a turn", "not judged"))),
-    )
-    yield "judged by equations of their own", str(found["own_words"])
-    yield "asked accuracies", " to ".join(number(asked) for asked in found["asked"])
-    yield "runs right in everything within the asked accuracy", str(found["honest"])
-    yield "wrong, and saying so; wrong without a word", f"{found['spoken']}; {found['wrong']}"
-    yield "runs that ended without a promise (collapsed, or not as exact as asked)", str(found["over_asked"])
-    yield "contacts of the faces, missed or too many", f"{found['contacts']}, {found['contacts_wrong']}"
-    yield (
-        "estimate over true error where that exceeds a hundredth of the accuracy: least, 10 %, median, 90 %",
-        f"{least}, {low}, {middle}, {high}",
-    )
-    yield (
-        "cost of choosing, running and certifying over the cheapest in hindsight, median of "
-        f"{found['smooth']} smooth scenes",
-        number(found["median_cost"]),
-    )
+# Families of random scenes and the names of their data; what is told of each.
+FAMILIES = {"all liquids": "honesty", "gas dams": "honesty_gas", "films that tear": "honesty_reynolds",
+            "gas that stores": "honesty_gas_reynolds"}  # fmt: skip
+HONESTY = {
+    "seed, random scenes": lambda found: f"{found['seed']}, {found['scenes']}",
+    "drawn anew: known for less than a turn, or no two references": _drawn_anew,
+    "judged by equations of their own": lambda found: str(found["own_words"]),
+    "asked accuracies": lambda found: " to ".join(number(asked) for asked in found["asked"]),
+    "runs right in everything within the asked accuracy": lambda found: str(found["honest"]),
+    "wrong, and saying so; wrong without a word": lambda found: f"{found['spoken']}; {found['wrong']}",
+    "ended without a promise (collapsed, or not as exact as asked)": lambda found: str(found["over_asked"]),
+    "contacts, missed or too many": lambda found: f"{found['contacts']}, {found['contacts_wrong']}",
+    "estimate over true error above a hundredth of the accuracy: least, 10 %, median, 90 %": lambda found: ", ".join(
+        map(number, found["estimate_over_error"])
+    ),
+    "cost over the cheapest in hindsight, median": lambda found: number(found["median_cost"]),
+    "of so many smooth scenes": lambda found: str(found["smooth"]),
+}
 
 
 def failures():
@@ -143,8 +129,6 @@ def robustness():
         went = ", ".join(f"{outcome} {count}" for outcome, count in outcomes.items() if outcome != "escaped")
         yield what, str(outcomes.total()), went, str(outcomes["escaped"]), number(hours[what])
 
-
-FAMILIES = honesty, honesty_reynolds, honesty_gas, honesty_gas_reynolds
 
 if __name__ == "__main__":
     PAGE.write_text(page())

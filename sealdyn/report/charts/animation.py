@@ -5,15 +5,17 @@ from pathlib import Path
 import numpy as np
 from matplotlib import colormaps
 
+from ...answers import Axis, Level, Panel, Series
 from ...archive import ArchiveError
+from ..panels import draw_panel
 from ..summary import is_radial
 from . import followers_animation
 from .film import around, thickness
 from .moving import PER_TURN, check_name, moments, now, round_times, write
 from .orbit import contact_circle
-from .page import absent, annulus, flatten, level
-from .palette import CONTACT, FILM, GREY, MARK, RING, THICKNESS, TILT
-from .record import MM, UM, Run
+from .page import absent, annulus, flatten
+from .palette import CONTACT, GREY, MARK, RING, THICKNESS, TILT
+from .record import DEG, MM, UM, Run
 
 # Radii of the face in the map, and its colours.
 RADII, STEPS = 5, 24
@@ -117,7 +119,7 @@ def _section(ax, run: Run, rows: _Rows):
     width = MM * radii[-1]
     ax.set(xlim=(-1.08 * width, 1.08 * width), ylim=(low - thick, high + thick))
     ax.set_title("Section" if times == 1 else f"Section, tilts {times:g} times enlarged")
-    ax.set(xlabel=f"at {np.degrees(plane):.0f}° (right) and opposite, mm", ylabel="along the shaft, µm")
+    ax.set(xlabel=f"at {DEG * plane:.0f}° (right) and opposite, mm", ylabel="along the shaft, µm")
     ax.axvline(0, color=GREY, lw=0.8, ls="-.")
     ax.legend(loc="center")
 
@@ -212,12 +214,10 @@ def _orbit(ax, run: Run, rows: _Rows):
 def _line(ax, run: Run, rows: _Rows):
     """Thinnest film over all of the stretch, and now."""
     unit, per = run.shown("h_min")
-    ax.plot(rows.at, per * rows.values("h_min"), color=FILM)
-    if run.touch_at or run.touches:
-        at = per * run.touch_at
-        level(ax, at, "asperities meet", CONTACT, side="left", below=at > 0.5 * sum(ax.get_ylim()))
-    # Above it: beside it long numbers would push the name off the page.
-    ax.set_title(f"h_min, {unit}", fontsize=8.5, weight="normal", pad=3)
+    touch = [Level(per * run.touch_at, "asperities meet", style="contact dashed", legend=True)]
+    film = [Series("line", rows.at, per * rows.values("h_min"), label=f"h_min, {unit}", style="film thin")]
+    # Its name above it: beside it long numbers would push the name off the page.
+    draw_panel(ax, Panel("", y=Axis("1", " "), series=film, levels=touch if run.touch_at or run.touches else []))
     moves = now(ax, run, rows.at)
     flatten(ax)
     return moves

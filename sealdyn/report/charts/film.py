@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 from ...archive import FIELD_TIME, field
 from .page import EVEN, absent, annulus, header, look, save, sheet
 from .palette import CONTACT, FILM, PRESSURE, SKY, THICKNESS
-from .record import BLOCK, MM, Run
+from .record import BLOCK, DEG, MM, Run
 
 MOST_COLUMNS, STEPS = 1500, 20
 # Inches: the sheet, and what the pressure adds to it.
@@ -144,7 +144,7 @@ def map_over_turns(ax, run: Run, turns: float):
     )
     title = "Film thickness around the circle"
     if run.has("h_min_angle"):
-        angle = np.degrees(run.values("h_min_angle", first)[rows - first]) % 360
+        angle = DEG * run.values("h_min_angle", first)[rows - first] % 360
         ax.plot(progress, angle, ".", ms=1.6, color="white")
         title += "  (white: where it is thinnest)"
     ax.set_title(title)

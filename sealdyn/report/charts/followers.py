@@ -4,12 +4,13 @@ from textwrap import wrap
 
 import numpy as np
 
+from ...answers import Axis, Level, Panel, Series
 from ...archive import FIELD_TIME, field
+from ...quantities import printed
+from ..panels import draw_panel
 from ..summary import run_answer
 from ..text import line_words
-from .film import scale
-from .page import EVEN, absent, header, look, panels, printed, save, sheet
-from .palette import CONTACT, FILM, LEAK, PRESSURE, THEORY, THICKNESS
+from .page import absent, header, look, panels, save, sheet
 from .record import Run
 
 NUMBERS = ("follower", "contact", "largest gap", "load", "leakage", "closed form", "energy audit", "accuracy")
@@ -30,67 +31,45 @@ def draw(archive_path, out_path, turns: float = 4.0):
     figure = sheet(13.0, HIGH if lost else LOW)
     layout = {"height_ratios": (1, 3)} if lost else {}
     ax = panels(figure, header(figure, run), LOST if lost else RIDES, **layout)
-    _load(ax["load"], run)
+    # The least load beside the preload, from which it falls by what a follower's motion takes.
+    preload = preload_level(run)
+    most = max((one.value for one in preload), default=0.0)
+    _line(ax["load"], run, "least_load", "Least load of those that ride", "leakage", preload, 1.05 * most)
     if lost:
-        _line(ax["gap"], run, "largest_gap", "Largest gap", FILM)
-        _line(ax["share"], run, "contact_share", "Share of followers on the shaft", CONTACT)
-        ax["share"].set_ylim(-3, 105)
-        _map(ax["gaps"], run, "gap", "Gap around the shaft", THICKNESS, turns)
-    _map(ax["loads"], run, "follower_load", "Load around the shaft", PRESSURE, turns)
+        _line(ax["gap"], run, "largest_gap", "Largest gap", "film")
+        _line(ax["share"], run, "contact_share", "Share of followers on the shaft", "contact", most=100.0)
+        _map(ax["gaps"], run, "gap", "Gap around the shaft", turns)
+    _map(ax["loads"], run, "follower_load", "Load around the shaft", turns)
     _numbers(ax["numbers"], run)
     return save(figure, out_path)
 
 
-def _line(ax, run, name, title, colour) -> float:
-    """One series over the whole run, from zero; returns its largest value."""
+def _line(ax, run, name, title, style, levels=(), most: float = 0.0) -> None:
+    """One series over the whole run, from zero to at least `most`, in the unit in which it is read."""
     if not run.has(name):
-        absent(ax, title, "no rows yet")
-        return 0.0
+        return absent(ax, title, "no rows yet")
     x, values, unit = run.drawn(name)
-    ax.plot(x, values, color=colour)
-    top = max(float(np.nanmax(values)), 0.0)
-    ax.set(title=title, xlabel=run.progress_label, ylabel=unit, xlim=(run.progress[0], run.progress[-1]))
-    ax.set_ylim(-0.03 * (top or 1.0), 1.2 * (top or 1.0))
-    return top
+    top = max(float(np.nanmax(values)), most) or 1.0
+    along = Axis("1", run.progress_label, low=run.progress[0], high=run.progress[-1])
+    y = Axis(unit, " ", low=-0.03 * top, high=1.05 * top)
+    draw_panel(ax, Panel(title, along, y, [Series("line", x, values, style=f"{style} thin")], levels))
 
 
-def _load(ax, run) -> None:
-    """The least load beside the preload, from which it falls by what a follower's motion takes."""
-    top = _line(ax, run, "least_load", "Least load of those that ride", LEAK)
-    if preload := preload_level(ax, run):
-        top = max(top, preload)
-        ax.set_ylim(-0.03 * top, 1.25 * top)
-        ax.legend(loc="upper right", borderaxespad=0.0)
+def preload_level(run) -> list[Level]:
+    """A follower's preload (N), where the archive tells it."""
+    preload = run.summary.get("follower", {}).get("preload")
+    return [Level(preload, "preload", style="theory dashed", number=True)] if preload else []
 
 
-def preload_level(ax, run) -> float | None:
-    """Draws and returns a follower's preload (N), where the archive tells it."""
-    if preload := run.summary.get("follower", {}).get("preload"):
-        ax.axhline(preload, color=THEORY, ls="--", label="preload", zorder=1.5)
-    return preload
-
-
-def _map(ax, run, name, title, colours, turns):
-    instants = run.info["grid"].get(FIELD_TIME, 0)
-    if instants < 3:
+def _map(ax, run, name, title, turns):
+    if run.info["grid"].get(FIELD_TIME, 0) < 3:
         return absent(ax, title, "no instants kept")
     times, values = field(run.path, FIELD_TIME), field(run.path, name)
-    theta = np.degrees(field(run.path, "theta"))
-    about = run.info["fields"][name]
     x = np.interp(times, run.values("time"), run.progress)
     shown = x >= x[-1] - turns
-    step = theta[1] - theta[0] if len(theta) > 1 else 360.0
-    edges = np.append(theta - 0.5 * step, theta[-1] + 0.5 * step)
-    x, values = x[shown], about.display_factor * values[shown]
-    middles = 0.5 * (x[1:] + x[:-1])
-    image = ax.pcolormesh(middles, edges, values[1:-1].T, cmap=colours, shading="flat", rasterized=True,
-                          norm=scale(values))  # fmt: skip
-    even = np.ptp(values) <= EVEN * np.abs(values).max()
-    ax.figure.colorbar(image, ax=ax, fraction=0.03, pad=0.01, label=about.display_unit,
-                       ticks=[values.min()] if even else None, format="{x:.4g}")  # fmt: skip
-    ax.grid(False)
-    ax.set(title=title, xlabel=run.progress_label, ylabel="angle, degrees", yticks=range(0, 360, 60))
-    return None
+    unit, per = run.field_shown(name, float(np.abs(values[shown]).max()))
+    series = [Series("map", x[shown], field(run.path, "theta"), per * values[shown].T)]
+    draw_panel(ax, Panel(title, Axis("1", run.progress_label), Axis("angle"), series, colour=Axis(unit, " ")))
 
 
 def _numbers(ax, run):

@@ -12,9 +12,8 @@ from ...archive import FIELD_TIME, ArchiveError, field
 from .followers import preload_level
 from .moving import moments, now, round_times, write
 from .orbit import window
-from .page import legend, stacked
-from .palette import CONTACT, FILM, GREY, LEAK, MARK, PALE
-from .record import MM, Run
+from .palette import CONTACT, FILM, GREY, LEAK, MARK, PALE, THEORY
+from .record import DEG, MM, Run
 
 # Of the radius: how far what moves may reach, height of a foot and of the body on it, and room around all.
 REACH, FOOT, BODY, ROOM = 0.2, 0.24, 0.16, 0.03
@@ -82,14 +81,14 @@ def panels(around: Around, figure, run: Run, at: np.ndarray, top: float) -> list
     for k, name in enumerate(names):
         ax[name] = figure.add_axes((0.565, 0.35 + k * (each + 0.01), 0.41, each - 0.05))
     if lost:
-        stacked(ax["gap"], ax["load"])
-        ax["gap"].set_xlabel("")
+        ax["gap"].sharex(ax["load"])
+        ax["gap"].tick_params(labelbottom=False)
     movers = [_section(section, run, around, at)]
     movers.append(_bars(ax["load"], run, around, at, "follower_load", "Load around the shaft", LEAK))
-    if preload := preload_level(ax["load"], run):
-        low, high = ax["load"].get_ylim()
-        ax["load"].set_ylim(low, max(high, 1.1 * preload))
-        legend(ax["load"], "above")
+    for preload in preload_level(run):
+        ax["load"].axhline(preload.value, color=THEORY, ls="--", label=preload.meaning, zorder=1.5)
+        ax["load"].set_ylim(0.0, max(ax["load"].get_ylim()[1], 1.1 * preload.value))
+        ax["load"].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     if lost:
         movers.append(_bars(ax["gap"], run, around, at, "gap", "Gap around the shaft", FILM))
     ax["load"].set_xlabel("angle, degrees")
@@ -154,7 +153,7 @@ def _bars(ax, run: Run, around: Around, at, name: str, title: str, colour: str):
     """A field around the shaft, a step for each follower."""
     every = around.values(name, at)
     unit, per = run.field_shown(name, float(every.max()))
-    theta, n = np.degrees(around.theta), len(around.theta)
+    theta, n = DEG * around.theta, len(around.theta)
     steps = ax.stairs(np.zeros(n), np.append(theta, 360.0) - 180.0 / n, fill=True, color=colour, baseline=0.0)
     top = per * float(every.max()) or 1.0
     ax.set(title=title, ylabel=unit, ylim=(0.0, 1.1 * top), xlim=(-180.0 / n, 360.0 - 180.0 / n))

@@ -9,7 +9,7 @@ from PIL import Image
 
 from .page import header, look, sheet
 from .palette import MARK
-from .record import Run
+from .record import MILLISECONDS, Run
 
 # Pictures of a turn by default, and of a second; pictures at most; inches of a picture and dots of an inch.
 PER_TURN, PER_SECOND, MOST, SIZE, DPI = 36, 15, 2000, (11.0, 6.2), 80
@@ -85,7 +85,7 @@ def _write(pictures: Iterator[Image.Image], path: Path) -> None:
         # Not the commonest colours: a mark of a few dots keeps its own.
         palette = palette or picture.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
         few.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
-    more = {"save_all": True, "append_images": few[1:], "duration": round(1000 / PER_SECOND), "loop": 0}
+    more = {"save_all": True, "append_images": few[1:], "duration": round(MILLISECONDS / PER_SECOND), "loop": 0}
     few[0].save(path, **(more if path.suffix == ".gif" else {}))
 
 

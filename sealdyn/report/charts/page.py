@@ -195,40 +195,9 @@ def flatten(ax) -> None:
         ax.set_ylim(middle - 0.1 * abs(middle), middle + 0.1 * abs(middle))
 
 
-def level(ax, at: float, words: str, colour: str = GREY, side: str = "right", below: bool = False, **line) -> None:
-    """A horizontal line with its name above its end on one side, or below it."""
-    ax.axhline(at, color=colour, **{"lw": 0.9, "ls": "--", **line})
-    right, offset = side == "right", -2 if below else 2
-    ax.annotate(words, (right, at), xycoords=("axes fraction", "data"), xytext=(-2 if right else 2, offset),
-                textcoords="offset points", color=colour, fontsize=8, ha=side, va="top" if below else "bottom",
-                bbox=PAPER)  # fmt: skip
-
-
-def upright(ax, at: float, words: str, colour: str = GREY, height: float = 0.02, ha: str = "left", bbox=None,
-            **line) -> None:  # fmt: skip
-    """A vertical line with its name beside it at a `height` (share of the panel), on a `bbox` before colours."""
-    ax.axvline(at, color=colour, **{"lw": 1.0, **line})
-    ax.text(at, height, f" {words} ", transform=ax.get_xaxis_transform(), color=colour, fontsize=8, ha=ha, bbox=bbox)
-
-
-def legend(ax, loc: str, **look) -> None:
-    """The legend, if there is something to name; `loc` "above" is on the right above the panel, beside its title."""
-    if loc == "above":
-        loc, look = "lower right", {"bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.1, **look}
-    if ax.get_legend_handles_labels()[0]:
-        ax.legend(loc=loc, **look)
-
-
 def once(ax, label: str) -> str:
     """`label` the first time, then nothing, so that a legend names it once."""
     return "_" if label in ax.get_legend_handles_labels()[1] else label
-
-
-def stacked(*panels) -> None:
-    """Panels above one another share the x axis; the lowest has its numbers.  To be said before anything is drawn."""
-    for ax in panels[:-1]:
-        ax.sharex(panels[-1])
-        ax.tick_params(labelbottom=False, which="both")
 
 
 def logarithmic(ax, axis: str) -> None:

@@ -31,8 +31,9 @@ CYCLED = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
 # Words of a style: colours by their meaning, dashes, marks.
 COLOURS = {
-    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, **RING, **STATUS, "good": GREEN,
-    "bad": VERMILLION, "warn": ORANGE, "black": BLACK, "grey": GREY, "pale": PALE, "blue": BLUE, "yellow": YELLOW,
+    "film": FILM, "tilt": TILT, "leakage": LEAK, "contact": CONTACT, "theory": THEORY, **RING, **STATUS,
+    "stable": GREEN, "unstable": VERMILLION, "neutral": ORANGE, "good": GREEN, "bad": VERMILLION, "warn": ORANGE,
+    "black": BLACK, "grey": GREY, "pale": PALE, "blue": BLUE, "yellow": YELLOW,
 }  # fmt: skip
 COLOURS |= dict(zip(CYCLED, CYCLE, strict=True))
 DASHES = {"dashed": (0, (5, 2)), "dotted": (0, (1, 1.5)), "dashdot": (0, (5, 2, 1, 2))}

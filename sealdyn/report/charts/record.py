@@ -13,8 +13,8 @@ from ..text import question_of
 BLOCK = 1 << 16
 POINTS = 20_000
 MILLISECONDS = factor_of("s", "ms") or 1.0
-# How many of the everyday unit of radii, and of that of films, make a metre.
-MM, UM = everyday("radius")[1], everyday("m")[1]
+# How many of the everyday unit of radii, of that of films, and of that of angles make one in SI.
+MM, UM, DEG = (everyday(name)[1] for name in ("radius", "m", "angle"))
 
 
 def done(rows) -> list[dict]:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...numerics.order_spectrum import FOLDED, at_the_edge, located, order_spectrum, peaks
+from ...quantities import in_words
 from .page import absent, decades, look, number, run_page, save, written
 from .palette import CONTACT, FILM, LEAK, TILT
 from .record import Run
@@ -118,7 +119,8 @@ def show(ax, run: Run, read, title: str, name: str, colour: str, turns: float | 
         ax.annotate(words, (orders[at], amplitude[at]), xytext=(2 * edge, 3), textcoords="offset points",
                     ha="left" if edge else "center", fontsize=7.5)  # fmt: skip
     if share > FOLDED:
-        words = f"{100 * share:.2g} % of the power in the top tenth of the band:\nmay be folded, raise samples_per_turn"
+        words = f"{in_words('share', share, digits=2)} of the power in the top tenth of the band:\n"
+        words += "may be folded, raise samples_per_turn"
         ax.text(0.99, 0.97, words, transform=ax.transAxes, ha="right", va="top", fontsize=7.5, color=CONTACT)
     sides = "against the shaft  ←   order   →  with the shaft" if two_sided else "order of shaft speed"
     ax.set(title=title, ylabel=f"amplitude, {unit}")

@@ -12,7 +12,10 @@ from ...status import Status
 from ..text import question_of
 from .page import absent, look, save, shortened, study_page
 from .palette import BLUE, CONTACT, GREEN, GREY, LOOKS, ORANGE, PALE, PURPLE, SHORT, SKY, VERMILLION
+from .record import MILLISECONDS
 
+# Of a cost: how many of its unit make one.
+UNITS = {"wall": MILLISECONDS, "rhs": 1.0}
 # Errors beyond so many clearances are all as bad.
 MOST = 1e3
 TITLES = {"end": "error at the end", "over_time": "largest error over time", "steady": "error of the steady state"}
@@ -49,7 +52,7 @@ def precision(ax, answer, where: str, cost: str, labels: bool = True, title: str
     for name, row in answer["methods"].items():
         colour, line, marker = LOOKS.get(name, (GREY, "-", "o"))
         error = _errors(row, where)
-        spent = np.array(row[cost], dtype=float) * (1e3 if cost == "wall" else 1.0)
+        spent = np.array(row[cost], dtype=float) * UNITS[cost]
         good = np.array([s in (Status.OK, "slow") for s in row["status"]]) & np.isfinite(error)
         slow = np.array([s == "slow" for s in row["status"]])
         if good.any():
@@ -93,7 +96,7 @@ def limits(ax, answer, where, cost):
     low = max(min(low, 1e-9), 0.3 * min(band, low) if band < 1e-8 else low, 1e-16)
     _error_axis(ax, high, low / 40)
     spent = [c for row in answer["methods"].values() for c in row[cost] if c > 0]
-    factor = 1e3 if cost == "wall" else 1.0
+    factor = UNITS[cost]
     ax.set_ylim(factor * min(spent, default=1e-3) * 0.5, factor * max(spent, default=1.0) * 2.5)
     ax.yaxis.set_minor_formatter(NullFormatter())
 
@@ -107,7 +110,7 @@ def _error_axis(ax, high, least):
 
 def _crosses(ax, answer, where, cost):
     """Runs without an error stand at the left edge, or where the error was to be expected."""
-    factor, left = 1e3 if cost == "wall" else 1.0, ax.get_xlim()[0]
+    factor, left = UNITS[cost], ax.get_xlim()[0]
     for name, row in answer["methods"].items():
         colour = LOOKS.get(name, (GREY,))[0]
         for k, status in enumerate(row["status"]):
@@ -149,7 +152,7 @@ def models(ax, answer):
     if not rows:
         return absent(ax, title, "no rung to compare")
     edge = sorted(
-        (e, 1e3 * w)
+        (e, MILLISECONDS * w)
         for row in answer["methods"].values()
         for e, w, s in zip(_errors(row, where), row["wall"], row["status"], strict=True)
         if s == Status.OK and np.isfinite(e)
@@ -159,14 +162,14 @@ def models(ax, answer):
     if edge:
         ax.plot([e for e, _ in edge], best, "-", color=GREY, lw=1.2, drawstyle="steps-post",
                 label="fastest solver of this scene")  # fmt: skip
-    walls = [1e3 * row["wall"] for row in rows] + list(best)
+    walls = [MILLISECONDS * row["wall"] for row in rows] + list(best)
     errors = [max(row["error"][where], 1e-12) for row in rows] + [e for e, _ in edge]
     _error_axis(ax, max(errors), max(min(errors), 1e-13) / 5)
     ax.set_ylim(min(walls) * 0.25, max(walls) * 200)
     for k, row in enumerate(rows):
-        words = f"{row['label']}: {row['error'][where]:.1e}, {1e3 * row['wall']:.2g} ms"
+        words = f"{row['label']}: {row['error'][where]:.1e}, {MILLISECONDS * row['wall']:.2g} ms"
         mark, colour = MODELS[k % len(MODELS)], RUNGS[k % len(RUNGS)]
-        at = max(row["error"][where], 1e-12), 1e3 * row["wall"]
+        at = max(row["error"][where], 1e-12), MILLISECONDS * row["wall"]
         ax.plot(*at, mark, ms=9, color=colour, mec="white", zorder=4, label=words)
     for row in (row for row in answer["models"] if row["failed"]):
         ax.plot([], [], "x", color=CONTACT, label=shortened(f"{row['label']}: {row['failed']}", 76))

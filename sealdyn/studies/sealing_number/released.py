@@ -18,6 +18,7 @@ from ...dynamics.model import Model
 from ...dynamics.run_state import RunState
 from ...dynamics.signals import signals
 from ...numerics.piecewise_linear import initially
+from ...quantities import in_words
 from ...scene.film import coned
 from ...scene.rings import Support
 from ...scene.scene import Initial, RingStart, Scene, SceneError
@@ -258,17 +259,15 @@ def _spread(h) -> tuple[float, float, float]:
 
 def _fate(told: Released, force_ratio: float) -> tuple[str, str]:
     mean, low, high = told.mean_film
-    where = f"h0 = {mean * 1e6:.4g} um, h1/h0 = {told.share:.3g}, q = F_s/F_d = {force_ratio:.4g}"
+    where = f"h0 = {in_words('h_min', mean)}, h1/h0 = {told.share:.3g}, q = F_s/F_d = {force_ratio:.4g}"
     if told.stuck_share > COUNTS:
         return "hang-up", f"hang-up: the secondary seal holds the ring open ({where}); less friction or more spring"
+    carried = f"asperities carry {in_words('share', told.contact_share, digits=3)} of the spring"
     if told.share < STRAIGHT and told.contact_share > COUNTS:
-        carried = f"asperities carry {100 * told.contact_share:.3g} % of the spring"
         return "straightened", f"straightened and squeezed onto its seat: {carried} ({where})"
     if told.contact_share > COUNTS:
-        return "rubs", f"rubs: asperities carry {100 * told.contact_share:.3g} % of the spring ({where})"
+        return "rubs", f"rubs: {carried} ({where})"
     if high - low < STEADY * mean and told.amplitude[2] - told.amplitude[1] < STEADY * mean:
         return "film", f"rides on a steady film: {where}"
-    return (
-        "moving",
-        f"not settled: h0 from {low * 1e6:.4g} to {high * 1e6:.4g} um, {told.whirl:+.3g} turns a turn ({where})",
-    )
+    films = " to ".join(in_words("h_min", film) for film in (low, high))
+    return "moving", f"not settled: h0 from {films}, {told.whirl:+.3g} turns a turn ({where})"

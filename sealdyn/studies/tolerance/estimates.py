@@ -5,18 +5,20 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import binomtest, spearmanr
 
+from ...quantities import everyday
 from .scatter import SCRAMBLES
 
 LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 CONFIDENCE = 0.95
 RESAMPLES = 1000
+PERCENT = everyday("share")[1]
 
 
 def quantiles(values) -> dict[str, float | None]:
     """{percent: value} of the numbers among the values (n,)."""
     known = values[np.isfinite(values)]
     found = np.quantile(known, LEVELS) if len(known) else [np.nan] * len(LEVELS)
-    return {f"{100 * level:g}": number(value) for level, value in zip(LEVELS, found, strict=True)}
+    return {f"{PERCENT * level:g}": number(value) for level, value in zip(LEVELS, found, strict=True)}
 
 
 def moments(values, scrambles) -> dict:

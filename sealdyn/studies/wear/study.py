@@ -167,7 +167,8 @@ def _ended(rows, settings, control) -> dict | None:
         return {"kind": "duration", "time": time, "said": f"worn for {_time(time)}"}
     if settings.run_in != "go on" and unevenness(rate) < settings.even:
         said = (
-            f"run in after {_time(time)}: the depth rates over the face are even within {100 * settings.even:.3g} %, "
+            f"run in after {_time(time)}: the depth rates over the face are even within "
+            f"{in_words('share', settings.even, digits=3)}, "
             f"{in_words('wear_rate', rate.mean())}"
         )
         return {"kind": "run-in", "time": time, "said": said}

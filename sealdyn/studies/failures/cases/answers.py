@@ -14,6 +14,7 @@ from ....dynamics.model import Model
 from ....dynamics.modes import steady_extremes
 from ....dynamics.run_state import RunState
 from ....films import film_named
+from ....quantities import everyday, in_words
 from ....scene.contact import Contact
 from ....scene.excitation import Shaft
 from ....scene.film import Film
@@ -53,8 +54,8 @@ def closed_start() -> dict:
     except SceneError:
         said, refused = "refused with a sentence, no step taken", 0.0
     return row(
-        7, "Start inside the other face", ("film of mean thickness: a success, says LSODA", closed * 1e6),
-        (said, refused * 1e6), "overlap of the faces accepted, um",
+        7, "Start inside the other face", ("film of mean thickness: a success, says LSODA", closed * everyday("m")[1]),
+        (said, refused * everyday("m")[1]), "overlap of the faces accepted, um",
         "refuses a start below the film's floor and names the key, what was found and what to try",
     )  # fmt: skip
 
@@ -84,7 +85,8 @@ def no_equilibrium() -> dict:
     except SceneError:
         said, left = "refused with a sentence", 0.0
     return row(
-        7, "Loads without an equilibrium", (f"Newton leaves the film at {c * 1e6:.2g} um", abs(excess(c)) / closing),
+        7, "Loads without an equilibrium",
+        (f"Newton leaves the film at {in_words('h_min', c, digits=2)}", abs(excess(c)) / closing),
         (said, left), "force left unbalanced, of the closing force",
         "searches every clearance from a thousandth to a thousand times the coning and says what could be carried",
     )  # fmt: skip
@@ -197,7 +199,7 @@ def one_that_holds() -> dict:
     off, residual = min(abs(alone - c) for c in held), max(abs(_excess(model, c)) for c in held)
     return row(
         11, "Several clearances",
-        (f"Newton from 10 um: {alone * 1e6:.3g} um, which does not hold", off / held[0]),
+        (f"Newton from 10 um: {in_words('h_min', alone, digits=3)}, which does not hold", off / held[0]),
         (f"every clearance searched: {len(roots)} found, {len(held)} holds", residual),
         "off the clearance that holds, relative",
         "starts at the widest clearance that holds and says how many there are (study equilibrium lists them)",
@@ -210,10 +212,11 @@ def another_that_holds() -> dict:
     roots = model.interface.equilibria
     held = sorted(root.clearance for root in roots if root.stable)
     alone, residual = _from(model, 10e-6), max(abs(_excess(model, c)) for c in held)
+    told = in_words("h_min", alone, digits=3)
     return row(
         11, "Two stable clearances",
-        (f"Newton from 10 um: {alone * 1e6:.3g} um, which holds", max(abs(alone / c - 1) for c in held)),
-        (f"every clearance searched: {', '.join(f'{c * 1e6:.3g}' for c in held)} um hold", residual),
+        (f"Newton from 10 um: {told}, which holds", max(abs(alone / c - 1) for c in held)),
+        (f"every clearance searched: {', '.join(in_words('h_min', c, digits=3) for c in held)} hold", residual),
         "off the other clearance that holds, relative",
         "starts at the widest clearance that holds and says how many there are (study equilibrium lists them)",
     )  # fmt: skip
@@ -326,7 +329,7 @@ def show_linear_theory() -> list[dict]:
     return [
         row(
             12, "Linear theory at large tilt",
-            (f"linear film: touch at {touching * 1e3:.3g} mrad", abs(found - linear_gap(touching))),
+            (f"linear film: touch at {in_words('tilt', touching, digits=3)}", abs(found - linear_gap(touching))),
             (f"radial film: open, and {still:.2g} C left at 1.2 times that", abs(in_time - found)),
             "smallest film, of clearance",
             'takes the radial film (film.model = "auto") unless the tilt is small enough for the linear one',

@@ -12,6 +12,7 @@ from ....faces.geometry import GAP_STATE_SIZE, INNER_PRESSURE, OUTER_PRESSURE, T
 from ....films import _gas_dam as sector
 from ....films.gas_reynolds import film as gas
 from ....films.gas_reynolds.cells import GRADING
+from ....quantities import in_words
 from ....scene.film import Film
 from ....scene.gas import GasReynolds, gas_of
 from ._common import row
@@ -141,7 +142,8 @@ def show_choked_gas() -> list[dict]:
         ),
         row(
             13, "Invariant line",
-            (f"march: sonic at {100 * fast[0]:.0f} % of the dam, or M2 = {slow[1]:.2g}, {OFF:g} apart", 1 - slow[1]),
+            (f"march: sonic at {in_words('share', fast[0], digits=2)} of the dam, or M2 = {slow[1]:.2g}, {OFF:g} apart",
+             1 - slow[1]),
             ("closed form, from the sonic exit upstream", abs(line - truth)), "Mach number where it arrives",
             "goes upstream, where flows approach the line M^2 = h'/(g f), which they leave the other way",
         ),

@@ -28,6 +28,7 @@ from ....films.gas_dam import film as gas_dam
 from ....films.radial import film as radial
 from ....films.radial import floored
 from ....films.radial.cavitated_line import cavitated_line
+from ....quantities import in_words
 from ....scene.contact import waves_of
 from ....scene.gas import viscosity_of
 from ._common import cruise_dam, integrated, row, run_from
@@ -161,7 +162,7 @@ def meets_degenerate_geometry(scene, run) -> str:
     if apart == 0.0:
         return "its faces are parallel"
     return (
-        f"its film is {100 * apart:.2g} % of the clearance thicker at one edge than at the other"
+        f"its film is {in_words('share', apart, digits=2)} of the clearance thicker at one edge than at the other"
         if apart < FLAT
         else ""
     )

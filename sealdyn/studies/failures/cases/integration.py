@@ -12,6 +12,7 @@ from ....dynamics.modes import verdict
 from ....dynamics.run_state import RunState
 from ....dynamics.signals import signals
 from ....numerics.piecewise_linear import PiecewiseLinear
+from ....quantities import in_words
 from ....scene.contact import Contact, contact_thresholds
 from ....scene.rings import RING_NAMES, AxialRunout, Rotor, SecondarySeal, Stator
 from ....simulation.selection import choose_method
@@ -64,7 +65,11 @@ def meets_neutral_stability(scene, run) -> str:
     whirls = [mode.value for mode in run.model.linear_scene().modes() if mode.value.imag]
     slowest = min(whirls, key=lambda value: abs(value.real / value.imag), default=1.0 + 1.0j)
     share = math.expm1(2 * math.pi * slowest.real / abs(slowest.imag))
-    return f"a whirl that grows or decays by {100 * abs(share):.1g} % a turn of its own" if abs(share) < SLOW else ""
+    return (
+        f"a whirl that grows or decays by {in_words('share', abs(share), digits=1)} a turn of its own"
+        if abs(share) < SLOW
+        else ""
+    )
 
 
 def show_neutral_stability() -> list[dict]:
