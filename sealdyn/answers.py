@@ -11,19 +11,17 @@ from typing import Any
 
 import tomlkit
 
-from .quantities import quantity
+from .quantities import quantity, units_read
 
 
 @dataclass(frozen=True)
 class Table:
     """Rows of numbers (SI), words, truths or None below `columns`, pairs of a quantity (or SI unit) and a heading.
-    `written` {quantity or SI unit: unit} goes before the units that a scenario wrote.  Columns of the quantity "row"
-    hold numbers of the quantity (or SI unit) that `of_rows` names for each row."""
+    Columns of the quantity "row" hold numbers of the quantity (or SI unit) that `of_rows` names for each row."""
 
     name: str
     columns: Sequence[tuple[str, str]]
     rows: Sequence[Sequence[Any]]
-    written: Mapping[str, str] = field(default_factory=dict)
     of_rows: Sequence[str] = ()
 
 
@@ -118,15 +116,15 @@ class Line:
 @dataclass(frozen=True)
 class Answer:
     """`numbers` (SI, nested: what `--json` prints), what was `found` in one sentence, `tables`, `panels`, `notes` (what
-    a number cannot say: limits, failed points), `written` {quantity or SI unit: unit} as the scenario has it,
-    and the `lines` of a run's summary."""
+    a number cannot say: limits, failed points), `written` {quantity or SI unit: unit}, in which it is read (those of
+    `reading_in` where it is made), and the `lines` of a run's summary."""
 
     numbers: dict[str, Any]
     found: str
     tables: Sequence[Table] = ()
     panels: Sequence[Panel] = ()
     notes: Sequence[str] = ()
-    written: Mapping[str, str] = field(default_factory=dict)
+    written: Mapping[str, str] = field(default_factory=units_read)
     lines: Sequence[Line] = ()
 
     def __getitem__(self, key: str) -> Any:
@@ -146,9 +144,8 @@ def as_json(answer: Answer) -> dict[str, Any]:
 def _table(table: Table) -> dict:
     """A table as JSON has it; its columns keep their quantity, from which names and units follow."""
     columns = [{"name": name, "unit": quantity(held).unit, "quantity": held} for held, name in table.columns]
-    more = {"written": dict(table.written)} if table.written else {}
-    if table.of_rows:
-        more["of_rows"] = [{"unit": quantity(held).unit, "quantity": held} for held in table.of_rows]
+    of_rows = [{"unit": quantity(held).unit, "quantity": held} for held in table.of_rows]
+    more = {"of_rows": of_rows} if of_rows else {}
     return {"name": table.name, "columns": columns, "rows": _data(table.rows), **more}
 
 

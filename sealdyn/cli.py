@@ -148,6 +148,7 @@ def run(
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
     from .archive import ArchiveError, partial_path
+    from .quantities import reading_in
     from .report.summary import run_answer
     from .report.text import lines, written_units
     from .scene.scene import SceneError
@@ -183,9 +184,8 @@ def run(
     if as_json:
         print(json.dumps(summary))
     else:
-        written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
-        for line in lines(scenario.name, run_answer(summary, written), verbose):
-            print(line)
+        with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
+            print(*lines(scenario.name, run_answer(summary), verbose), sep="\n")
     left["answered"] = True
     raise typer.Exit(EXIT[result.status])
 

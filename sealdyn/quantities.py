@@ -7,9 +7,15 @@ A quantity that is not in the table is named by its SI unit ("m", "rad/s"); "1" 
 import math
 import re
 from collections.abc import Iterable, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from types import MappingProxyType
 from typing import NamedTuple
 
 RPM, HERTZ, DEGREES = 30 / math.pi, 0.5 / math.pi, 180 / math.pi
+
+# Units that go before the table, {quantity or SI unit: unit}.
+_READ_IN: ContextVar[Mapping[str, str]] = ContextVar("read_in", default=MappingProxyType({}))
 
 
 class Quantity(NamedTuple):
@@ -106,14 +112,30 @@ def quantity(name: str) -> Quantity:
     return QUANTITIES.get(name) or Quantity(name or "1")
 
 
-def shown_in(name: str, values: Iterable = (), written: Mapping[str, str] | None = None) -> tuple[str, float]:
+def units_read() -> dict[str, str]:
+    """Units that go before the table here, {quantity or SI unit: unit}."""
+    return dict(_READ_IN.get())
+
+
+@contextmanager
+def reading_in(units: Mapping[str, str] | None):
+    """Within it numbers are read in these `units` {quantity or SI unit: unit}, as a person wrote them, which go before
+    those around it and before the table."""
+    token = _READ_IN.set({**_READ_IN.get(), **(units or {})})
+    try:
+        yield
+    finally:
+        _READ_IN.reset(token)
+
+
+def shown_in(name: str, values: Iterable = ()) -> tuple[str, float]:
     """Unit in which `values` (SI) of a quantity are read, and its factor.
 
-    `written`: {quantity or SI unit: unit} as a scenario wrote it, which goes before the table.  Otherwise the table's
-    unit, or for a quantity of many sizes the one that suits the largest value.  "" of a pure number.
+    The unit of `reading_in`, or the table's, or for a quantity of many sizes the one that suits the largest value.  ""
+    of a pure number.
     """
-    held = quantity(name)
-    asked = (written or {}).get(name) or (None if held.shown else (written or {}).get(held.unit))
+    held, written = quantity(name), _READ_IN.get()
+    asked = written.get(name) or (None if held.shown else written.get(held.unit))
     if asked and (factor := factor_of(held.unit, asked)):
         return asked, factor
     if held.shown or name == "transmissibility":
@@ -170,7 +192,7 @@ def number(value: float | None, factor: float = 1.0, digits: int = 4) -> str:
     return f"{float(words):.0f}" if words.endswith(("e+03", "e+04", "e+05", "e+06")) else words
 
 
-def in_words(name: str, value: float | None, written: Mapping[str, str] | None = None, digits: int = 4) -> str:
+def in_words(name: str, value: float | None, digits: int = 4) -> str:
     """A value (SI) with its unit: "4.898 mrad", "9549 rpm"."""
-    unit, factor = shown_in(name, [value], written)
+    unit, factor = shown_in(name, [value])
     return f"{number(value, factor, digits)} {unit}".strip()

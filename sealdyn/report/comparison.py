@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
-from ..quantities import in_words, number, shown_in
+from ..quantities import in_words, number, reading_in, shown_in
 from .summary import BELOW, is_radial, tilt_resolved
 from .text import speed_unit
 
@@ -87,11 +87,11 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
     ]
     out += [] if found["scene"] else ["  scene         the same"]
     rows = {row["key"]: row for row in found["summary"]}
-    written = {"rad/s": found.get("speeds", "rad/s")}
     printed = [(heading, quantity, rows[key]) for key, quantity, heading in FIRST if key in rows]
     for heading, quantity, row in printed:
         # One unit on both sides.
-        unit, factor = shown_in(quantity, row["values"], written)
+        with reading_in({"rad/s": found.get("speeds", "rad/s")}):
+            unit, factor = shown_in(quantity, row["values"])
         words = [
             BELOW + number(near, factor, 3) if value is not None and 0.0 < abs(value) < near else number(value, factor)
             for value, near in zip(row["values"], _nears(row), strict=True)

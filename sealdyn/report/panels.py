@@ -11,7 +11,7 @@ from matplotlib.ticker import LogLocator, MultipleLocator
 
 from ..answers import Axis, Panel, Series, panels_of, plain
 from ..archive import read_study
-from ..quantities import printed, quantity, shown_in
+from ..quantities import printed, quantity, reading_in, shown_in
 from .charts.page import (
     PAPER,
     absent,
@@ -55,13 +55,14 @@ def draw(path, out=None):
     return save(figure, out)
 
 
-def study_sheet(study, panels: list[Panel], title: str = "", below: str = "", bold: str = "", written=None):
+def study_sheet(study, panels: list[Panel], title: str = "", below: str = "", bold: str = ""):
     """The figure of a study's panels; words above them as page.study_words has them."""
-    return sheet_of(panels, *study_words(study, title, below, bold), written or study.get("written", {}))
+    with reading_in(study.get("written")):
+        return sheet_of(panels, *study_words(study, title, below, bold))
 
 
 @look()
-def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = "black", written=None):
+def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str = "black"):
     """A figure: heading, then the panels."""
     stacks = _stacks(panels_of(plain(panels)))
     most = ACROSS + (len(stacks) >= MANY)
@@ -83,7 +84,7 @@ def sheet_of(panels: list[Panel], title: str, below: str, bold: str, colour: str
         columns = grid[k].subgridspec(1, len(row), width_ratios=[stack[0].wide for stack in row])
         for j, stack in enumerate(row):
             share = width * stack[0].wide / sum(other[0].wide for other in row)
-            _draw_stack(figure, columns[j], stack, share, written or {})
+            _draw_stack(figure, columns[j], stack, share)
     return figure
 
 
@@ -101,7 +102,7 @@ def _height(stack, alone: float) -> float:
     return alone * stack[0].tall if len(stack) == 1 else STACKED * sum(panel.tall for panel in stack)
 
 
-def _draw_stack(figure, place, stack, width: float, written) -> None:
+def _draw_stack(figure, place, stack, width: float) -> None:
     """Panels above one another; neighbours of one quantity along x share that axis."""
     cells = place.subgridspec(len(stack), 1, height_ratios=[panel.tall for panel in stack])
     alike = [list(group) for _, group in groupby(enumerate(stack), key=lambda held: _along(held[1]))]
@@ -111,7 +112,7 @@ def _draw_stack(figure, place, stack, width: float, written) -> None:
             kind = {"projection": "polar"} if panel.polar else {"sharex": shared}
             ax = figure.add_subplot(cells[k], **kind)
             shared = shared or ax
-            draw_panel(ax, panel, written, width)
+            draw_panel(ax, panel, width)
             if k != group[-1][0]:
                 ax.set_xlabel("")
                 ax.tick_params(labelbottom=False, which="both")
@@ -124,18 +125,17 @@ def _along(panel):
 # --- one panel -------------------------------------------------------------------------------------------
 
 
-def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
+def draw_panel(ax, panel: Panel, width: float = 8.0) -> None:
     """Series, levels, axes and legend of a panel on axes `ax` that are `width` inches wide or so."""
-    written = written or {}
     if not panel.series:
         absent(ax, panel.title, panel.note or "nothing to draw")
         return
-    x, y = (_Scaled(axis, _values(panel, which), written) for which, axis in (("x", panel.x), ("y", panel.y)))
+    x, y = (_Scaled(axis, _values(panel, which)) for which, axis in (("x", panel.x), ("y", panel.y)))
     # matplotlib's own angles.
     x.factor = 1.0 if panel.polar else x.factor
     other = beside = None
     if panel.right:
-        other = _Scaled(panel.right, _values(panel, "right"), written)
+        other = _Scaled(panel.right, _values(panel, "right"))
         beside = ax.twinx()
         beside.grid(False)
         beside.spines["right"].set_visible(True)
@@ -147,7 +147,7 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
             other.scale(beside, "y")
     for k, one in enumerate(panel.series):
         target, across = (beside, other) if one.right else (ax, y)
-        DRAWN[one.kind](target, panel, one, x, across, _style(one.style, k), written)
+        DRAWN[one.kind](target, panel, one, x, across, _style(one.style, k))
     for one in panel.levels:
         _level(ax, one, x if one.upright else y)
     if panel.polar:
@@ -173,9 +173,9 @@ def draw_panel(ax, panel: Panel, written=None, width: float = 8.0) -> None:
 class _Scaled:
     """An axis in the unit of a person: name, factor, numbers."""
 
-    def __init__(self, axis: Axis, values, written):
+    def __init__(self, axis: Axis, values):
         self.axis = axis
-        self.unit, self.factor = ("", 1.0) if axis.words else shown_in(axis.quantity, values, written)
+        self.unit, self.factor = ("", 1.0) if axis.words else shown_in(axis.quantity, values)
 
     def of(self, values) -> np.ndarray:
         """Numbers as drawn (NaN for None)."""
@@ -272,7 +272,7 @@ def _style(words: str, k: int) -> dict:
     return look
 
 
-def _line(ax, panel, one: Series, x, y, style, written) -> None:
+def _line(ax, panel, one: Series, x, y, style) -> None:
     at, value = x.of(one.x), y.of(one.y)
     mfc = style.pop("mfc") or style["color"]
     if one.error is not None:
@@ -285,22 +285,22 @@ def _line(ax, panel, one: Series, x, y, style, written) -> None:
                     color=style["color"], bbox=PAPER, zorder=6)  # fmt: skip
 
 
-def _marks(ax, panel, one, x, y, style, written) -> None:
+def _marks(ax, panel, one, x, y, style) -> None:
     # One on the edge of a map is whole.
     style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None and style["zorder"] < 5}
     if style["marker"] in "x+_":
         style["mew"] = 1.8
-    _line(ax, panel, one, x, y, style, written)
+    _line(ax, panel, one, x, y, style)
 
 
-def _shade(ax, panel, one, x, y, style, written) -> None:
+def _shade(ax, panel, one, x, y, style) -> None:
     alpha = 0.18 if style["alpha"] == 1.0 else 0.08
     base = np.zeros(len(one.y)) if one.z is None else one.z
     ax.fill_between(x.of(one.x), y.of(one.y), y.of(base), color=style["color"], alpha=alpha, lw=0,
                     label=printed(one.label))  # fmt: skip
 
 
-def _bars(ax, panel, one, x, y, style, written) -> None:
+def _bars(ax, panel, one, x, y, style) -> None:
     """Bars standing on zero, or lying where the y axis has words."""
     lying = bool(panel.y.words)
     at, length = (y.of(one.y), x.of(one.x)) if lying else (x.of(one.x), y.of(one.y))
@@ -319,13 +319,13 @@ def _bars(ax, panel, one, x, y, style, written) -> None:
         ax.grid(False, axis="y")
 
 
-def _map(ax, panel, one, x, y, style, written) -> None:
+def _map(ax, panel, one, x, y, style) -> None:
     """Colours over x and y: of words, on both sides of zero, or from low to high; hatched where there is no value."""
     colour = panel.colour or Axis()
     cells = np.array([[np.nan if v is None else v for v in row] for row in one.z], float)
     # Ends of the colours, where they are not to fit what is drawn.
     finite = np.append(cells[np.isfinite(cells)], [end for end in (colour.low, colour.high) if end is not None])
-    scaled = _Scaled(colour, finite.tolist(), written)
+    scaled = _Scaled(colour, finite.tolist())
     shown = np.ma.masked_invalid(scaled.factor * cells)
     ax.grid(False)
     if not panel.polar:
@@ -378,14 +378,14 @@ def _colours_of(colour: Axis, values):
     return Normalize(low, max(high, low + FINEST * max(abs(high), abs(low), 1e-300))), colours, None
 
 
-def _contour(ax, panel, one, x, y, style, written) -> None:
+def _contour(ax, panel, one, x, y, style) -> None:
     cells = np.ma.masked_invalid([[np.nan if v is None else v for v in row] for row in one.z])
     if cells.count() and cells.min() < 0 < cells.max():
         ax.contour(x.of(one.x), y.of(one.y), cells, [0.0], colors=style["color"], linewidths=style["lw"])
         ax.plot([], [], color=style["color"], lw=style["lw"], label=printed(one.label))
 
 
-def _words(ax, panel, one, x, y, style, written) -> None:
+def _words(ax, panel, one, x, y, style) -> None:
     for at, value, word in zip(x.of(one.x), y.of(one.y), one.names, strict=True):
         ax.text(at, value, printed(word), color=style["color"], ha="center", va="center", weight="bold", fontsize=9,
                 bbox=PAPER, clip_on=True, zorder=5)  # fmt: skip

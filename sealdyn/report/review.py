@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..answers import toml_line
 from ..archive import is_study, read_info, read_study
-from ..quantities import printed
+from ..quantities import printed, reading_in
 from .summary import is_radial, run_answer
 from .text import line_words, question_of, study_lines, written_units
 
@@ -110,8 +110,9 @@ def _title(parts: list[dict], seals: list[list[str]]) -> str:
 def _run(path: Path, rules, validation) -> dict:
     info = read_info(path)
     summary = info["summary"]
-    answer = run_answer(summary, written_units(info)) if summary else None
-    rows = [(line.label, told(line_words(line, answer.written))) for line in answer.lines] if answer else []
+    with reading_in(written_units(info)):
+        answer = run_answer(summary) if summary else None
+        rows = [(line.label, told(line_words(line))) for line in answer.lines] if answer else []
     figures = RADIAL_FIGURES if is_radial(info) else dict(FIGURES)
     if summary and summary.get("relative_misalignment", {}).get("max") == 0:
         # Aligned faces have none.

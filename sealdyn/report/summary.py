@@ -24,13 +24,13 @@ def is_radial(info: dict) -> bool:
     return any((info.get("resolved") or {}).get(table) for table in ("lip", "circumferential"))
 
 
-def run_answer(summary: dict, written: dict[str, str]) -> Answer:
-    """The answer of a run of a face or a radial seal, speeds in the unit `written` for "rad/s"."""
+def run_answer(summary: dict) -> Answer:
+    """The answer of a run of a face or a radial seal."""
     lines = list(_radial_lines(summary) if "follower" in summary else _face_lines(summary))
     files = ", ".join(filter(None, (summary["archive"], summary.get("figure"))))
     lines.append(Line("files", [(files, None, "")]))
     message = summary["message"] if summary["status"] != Status.OK else ""
-    return Answer(summary, message, notes=summary["warnings"], written=written, lines=lines)
+    return Answer(summary, message, notes=summary["warnings"], lines=lines)
 
 
 def tilt_resolved(summary: dict) -> float:
@@ -39,10 +39,10 @@ def tilt_resolved(summary: dict) -> float:
     return summary["accuracy"] * clearance / radius if clearance and radius else 0.0
 
 
-def if_resolved(name: str, value: float | None, near: float, digits: int = 4, written=None) -> str:
+def if_resolved(name: str, value: float | None, near: float, digits: int = 4) -> str:
     """A number (SI) of a quantity in words; one below what the accuracy resolves, `near` (SI), as that."""
     below = value is not None and 0.0 < abs(value) < near
-    return BELOW + in_words(name, near, written, 3) if below else in_words(name, value, written, digits)
+    return BELOW + in_words(name, near, 3) if below else in_words(name, value, digits)
 
 
 def _another(end: float | None, mean: float | None) -> bool:

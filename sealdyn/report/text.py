@@ -5,15 +5,15 @@ import re
 from collections.abc import Mapping
 
 from ..answers import toml_line
-from ..quantities import in_words, number, shown_in
+from ..quantities import in_words, number, reading_in, shown_in
 from ..status import Status
 
 
 def lines(name: str, answer, verbose: bool = False) -> list[str]:
     """The summary of a run (report.summary.run_answer): how it ended, labelled lines, warnings, files; `verbose` with
     its details."""
-    summary, written = answer.numbers, answer.written
-    rows = [(line.label, line_words(line, written)) for line in answer.lines if verbose or not line.detail]
+    summary = answer.numbers
+    rows = [(line.label, line_words(line)) for line in answer.lines if verbose or not line.detail]
     rows[-1:-1] = [("WARNING", warning) for warning in answer.notes]
     return _table(name, summary["status"], answer.found, rows)
 
@@ -22,12 +22,12 @@ def lines(name: str, answer, verbose: bool = False) -> list[str]:
 JOINED = ("to", "at", "or", "times")
 
 
-def line_words(line, written) -> str:
+def line_words(line) -> str:
     """The parts of a line of a summary: words and numbers with their units."""
     told = ""
     for words, value, *quantity in line.parts:
         if value is not None:
-            value = value if isinstance(value, str) else in_words(quantity[0], value, written, *quantity[1:])
+            value = value if isinstance(value, str) else in_words(quantity[0], value, *quantity[1:])
         if part := " ".join(filter(None, (words, value))):
             goes_on = not told or part.split()[0] in JOINED
             told += f"{' ' if goes_on else ', '}{part}"
@@ -54,7 +54,8 @@ def written_units(info: dict) -> dict[str, str]:
 
 def speed_unit(info: dict) -> tuple[str, float]:
     """The same of speeds, and how many of it make one rad/s."""
-    return shown_in("speed", (), written_units(info))
+    with reading_in(written_units(info)):
+        return shown_in("speed")
 
 
 def _table(title, status, message, rows) -> list[str]:
@@ -128,8 +129,9 @@ def _table_lines(name, value):
 def study_lines(answer: dict) -> list[str]:
     """What a study found, its tables and its notes."""
     out = [f"  {answer['found']}"]
-    for table in answer["tables"]:
-        out += [f"    {line}" for line in table_lines(table, answer["written"])]
+    with reading_in(answer["written"]):
+        for table in answer["tables"]:
+            out += [f"    {line}" for line in table_lines(table)]
     return out + [f"  {note}" for note in answer["notes"]]
 
 
@@ -205,9 +207,9 @@ def tables_line(tables: dict) -> list[str]:
 MOST_ROWS = 24
 
 
-def table_lines(table: Mapping, written: Mapping[str, str]) -> list[str]:
-    """A table of an answer as JSON has it (answers.as_json), units as `written` in its scenario: headings, then rows,
-    numbers to the right, words to the left; no column without a value but the first."""
+def table_lines(table: Mapping) -> list[str]:
+    """A table of an answer as JSON has it (answers.as_json): headings, then rows, numbers to the right, words to the
+    left; no column without a value but the first."""
     rows = table["rows"]
     if not rows:
         return []
@@ -215,29 +217,29 @@ def table_lines(table: Mapping, written: Mapping[str, str]) -> list[str]:
     printed = [*rows[:-1:step], rows[-1]]
     held = [one["quantity"] for one in table.get("of_rows", ())]
     held = [*held[:-1:step], *held[-1:]]
-    units, columns = {**written, **table.get("written", {})}, []
+    columns = []
     for k, column in enumerate(table["columns"]):
         values = [row[k] for row in rows]
         if k == 0 or any(value is not None for value in values):
-            columns.append(_column(column, values, [row[k] for row in printed], units, held))
+            columns.append(_column(column, values, [row[k] for row in printed], held))
     lines = ["  ".join(cells).rstrip() for cells in zip(*columns, strict=True)]
     return lines + ([f"({len(rows)} rows in the archive)"] if step > 1 else [])
 
 
-def _column(column, values, printed, written, of_rows) -> list[str]:
+def _column(column, values, printed, of_rows) -> list[str]:
     """Heading and cells of equal width; `of_rows` the quantity of each row."""
     words = any(isinstance(value, str) for value in values)
     if column["quantity"] == "row":
-        cells = [column["name"], *(_of_row(*pair, written) for pair in zip(of_rows, printed, strict=True))]
+        cells = [column["name"], *(_of_row(*pair) for pair in zip(of_rows, printed, strict=True))]
     else:
-        unit, factor = shown_in(column["quantity"], values, written)
+        unit, factor = shown_in(column["quantity"], values)
         cells = [", ".join(filter(None, (column["name"], "" if words else unit))), *(_cell(v, factor) for v in printed)]
     width = max(map(len, cells))
     return [cell.ljust(width) if words else cell.rjust(width) for cell in cells]
 
 
-def _of_row(held: str, value, written) -> str:
-    return value if isinstance(value, str) else in_words(held, value, written) if value is not None else "-"
+def _of_row(held: str, value) -> str:
+    return value if isinstance(value, str) else in_words(held, value) if value is not None else "-"
 
 
 def _cell(value, factor: float) -> str:

@@ -17,6 +17,7 @@ from ..answers import as_json, plain
 from ..archive import link_target, only_writer, write_study
 from ..films import film_of
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
+from ..quantities import reading_in
 from ..report.text import written_units
 from ..scenario.reader import Scenario
 from ..scenario.settings import study_settings, without
@@ -131,7 +132,8 @@ def run_study(
         kept = _folder(results) if results else None
         with _crew(workers, scheduler) as crew:
             tools = StudyContext(journal, crew, progress, kept, name=name.replace("_", "-"))
-            answer = module.run(studied, settings, tools)
+            with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
+                answer = module.run(studied, settings, tools)
         notes, failures = [], tools.failures
         known = " ".join([answer.found, *answer.notes])
         # Unless the study has told it itself.
@@ -142,9 +144,7 @@ def run_study(
         if left_out:
             notes.append(f"Left out as asked: {', '.join(f'[{table}]' for table in left_out)}.")
         panels = plain(answer.panels)
-        units = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
-        written = {**units, **answer.written}
-        answer = as_json(replace(answer, notes=[*answer.notes, *notes], written=written))
+        answer = as_json(replace(answer, notes=[*answer.notes, *notes]))
         answer = {"status": Status.OK, "message": " ".join(answer["verdict"]), "study": name, "left_out": left_out,
                   **answer}  # fmt: skip
         libraries = {n: version(n) for n in ("numpy", "scipy", "scikit-sundae", "numba")} | {

@@ -10,7 +10,7 @@ from scipy.optimize import brentq, linear_sum_assignment
 
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
-from ..quantities import in_words
+from ..quantities import in_words, reading_in
 from ..scene.variants import frozen_at_start
 from ..simulation.stability import held_speeds
 from ..units import Speed
@@ -88,8 +88,8 @@ def run(scenario, settings, tools) -> Answer:
         "stator_speed": scene.stator.speed,
         "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
     }
-    written = {"rad/s": settings.unit}
-    return Answer(numbers, _found(numbers, written), [_table(numbers)], _panels(numbers), written=written)
+    with reading_in({"rad/s": settings.unit}):
+        return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers))
 
 
 # --- following modes -----------------------------------------------------------------------------------
@@ -276,7 +276,7 @@ def thresholds(modes, speeds) -> list[dict]:
     return found
 
 
-def _found(numbers, written) -> str:
+def _found(numbers) -> str:
     """The first loss of damping, or what there is in its place."""
     turns = [point for point in numbers["thresholds"] if point["what"] == "damping"]
     growing = [number for number, mode in enumerate(numbers["modes"], 1) if _grows(mode)]
@@ -287,10 +287,10 @@ def _found(numbers, written) -> str:
         first = min(turns, key=lambda point: point["speed"])
         mode, k = numbers["modes"][first["mode"] - 1], np.searchsorted(numbers["speed"], first["speed"])
         change = "loses" if mode["growth_rate"][min(k, len(numbers["speed"]) - 1)] > 0.0 else "regains"
-        return f"Mode {first['mode']} {change} its damping at {in_words('speed', first['speed'], written, 5)}."
+        return f"Mode {first['mode']} {change} its damping at {in_words('speed', first['speed'], 5)}."
     if met:
         first = min(met, key=lambda crossing: crossing["speed"])
-        return f"Mode {first['mode']} meets once per turn at {in_words('speed', first['speed'], written, 5)}."
+        return f"Mode {first['mode']} meets once per turn at {in_words('speed', first['speed'], 5)}."
     return "No mode meets once per turn or changes its damping in this range."
 
 

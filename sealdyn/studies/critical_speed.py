@@ -29,7 +29,6 @@ from ..dynamics.linearisation import moves_with_speed
 from ..dynamics.run_state import RunState
 from ..numerics.piecewise_linear import initially
 from ..quantities import in_words
-from ..report.text import written_units
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing
 from ..scene.variants import with_values
@@ -99,10 +98,9 @@ def run(scenario, settings, tools) -> Answer:
     answer = {"formula": formula, "formula_reason": why, "eigenvalue": eigenvalue, "unit": "rad/s"}
     answer["speeds_held"], answer["own_speed"] = speeds_held(model), abs(scene.shaft.speed)
     answer |= in_time(scene, model, eigenvalue, how, tools, pace)
-    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
-    answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools, written)
-    found, panels = _found(answer, written), [_growth_panel(answer), *_whirl_panel(answer)]
-    return Answer(answer, found, _tables(answer), panels, _notes(answer), written)
+    answer["nonlinear"] = beyond(model, scene, eigenvalue, settings, tools)
+    found, panels = _found(answer), [_growth_panel(answer), *_whirl_panel(answer)]
+    return Answer(answer, found, _tables(answer), panels, _notes(answer))
 
 
 def by_formula(model) -> tuple[float | None, str]:
@@ -251,7 +249,7 @@ def fate(scene, point: dict) -> dict:
     return bounded_or_not(scene, point["speed"], point["start"], point["shape"], point["frequency"])
 
 
-def beyond(model, scene, threshold, settings, tools, written) -> dict | None:
+def beyond(model, scene, threshold, settings, tools) -> dict | None:
     """Family of whirls from the threshold to contact, tipping disturbances, and runs up and down in speed."""
     if not settings.beyond:
         return None
@@ -292,7 +290,7 @@ def beyond(model, scene, threshold, settings, tools, written) -> dict | None:
         compared({"speed": p["speed"], "start": p["start"], **row}, family, True)
         for p, row in zip(points, rows, strict=True)
     ]
-    return {"verdict": whirl_verdict(found, written), **found}
+    return {"verdict": whirl_verdict(found), **found}
 
 
 def _not_followed(why: str) -> dict:
@@ -302,10 +300,10 @@ def _not_followed(why: str) -> dict:
 # --- what is told ---------------------------------------------------------------------------------------
 
 
-def whirl_verdict(nonlinear, written) -> str:
+def whirl_verdict(nonlinear) -> str:
     """What bounds or tips the whirl, by the kind of its family."""
     kind, touches = nonlinear["kind"], nonlinear["contact_speed"]
-    last = in_words("speed", touches or min(nonlinear["branch"]["speed"]), written)
+    last = in_words("speed", touches or min(nonlinear["branch"]["speed"]))
     if kind == "subcritical":
         beside = "between rest and contact" if touches else "beside rest, as far as it was followed"
         return f"Nothing bounds the whirl above it; below, down to {last}, an unstable whirl stands {beside}."
@@ -315,15 +313,15 @@ def whirl_verdict(nonlinear, written) -> str:
     return f"The family of whirls turns back on its way to contact, and {ends}: hysteresis between the turns."
 
 
-def _found(numbers, written) -> str:
+def _found(numbers) -> str:
     eigen, time, nonlinear = numbers["eigenvalue"], numbers["time_domain"], numbers["nonlinear"] or {}
     if eigen is None:
         reach = ""
         if held := numbers["speeds_held"]:
-            reach = f" up to {in_words('speed', held[1], written, 5)}, beyond which no film holds the closing force"
+            reach = f" up to {in_words('speed', held[1], 5)}, beyond which no film holds the closing force"
         return f"No critical speed{reach}: eigenvalues cross at no speed; in time {time['reason']}."
     then = f": {nonlinear['verdict'][0].lower()}{nonlinear['verdict'][1:]}" if "branch" in nonlinear else "."
-    return f"Critical speed {in_words('speed', eigen, written, 6)}{then}"
+    return f"Critical speed {in_words('speed', eigen, 6)}{then}"
 
 
 def _notes(numbers) -> list[str]:

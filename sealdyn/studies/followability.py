@@ -11,7 +11,7 @@ import numpy as np
 from ..analysis import radial_rules
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.intervals import largest_value
-from ..quantities import in_words, number
+from ..quantities import in_words, number, reading_in
 from ..radial_seals.followers import followers_of, largest_eccentricity
 from ..radial_seals.model import RadialModel, RadialRun
 from ..scenario.errors import ScenarioError
@@ -86,8 +86,9 @@ def run(scenario, settings, tools) -> Answer:
         "runs": runs,
         "guide": guide(scenario.scene),
     }  # fmt: skip
-    found, written = _found(scenario, numbers), {"rad/s": "rpm"}
-    return Answer(numbers, found, _tables(numbers), _panels(numbers), _notes(numbers), written)
+    with reading_in({"rad/s": "rpm"}):
+        found = _found(scenario, numbers)
+        return Answer(numbers, found, _tables(numbers), _panels(numbers), _notes(numbers))
 
 
 def _aligned(scene):

@@ -15,7 +15,6 @@ from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.model import Model
 from ..dynamics.run_state import RunState
 from ..quantities import in_words, number
-from ..report.text import written_units
 from ..scene.film import Coefficients
 from ..scene.rings import ROTOR, STATOR
 from ..scene.scene import Closing, SceneError
@@ -90,8 +89,7 @@ def run(scenario, settings, tools) -> Answer:
         drift_why = str(error)
     answer = {"critical_speed": speed, "reason": why, "damping": damping, "resolved": resolved, "drift": drift,
               "drift_reason": drift_why, "turns": settings.turns}  # fmt: skip
-    written = written_units({"scenario": scenario.text, "overrides": scenario.overrides})
-    return Answer(answer, _found(answer, written), _tables(answer), _panels(answer), _notes(answer), written)
+    return Answer(answer, _found(answer), _tables(answer), _panels(answer), _notes(answer))
 
 
 def joined(points, rows) -> list[dict]:
@@ -206,11 +204,11 @@ def _told(numbers) -> list[dict]:
     return [row for row in numbers["damping"] if row.get("growth") is not None and row["accuracy"] == TOLD]
 
 
-def _found(numbers, written) -> str:
+def _found(numbers) -> str:
     """The least and the largest growth per turn that is a method's own."""
     if not numbers["critical_speed"]:
         return f"No numerical damping measured: {numbers['reason']}."
-    where = f"at the threshold, {in_words('speed', numbers['critical_speed'], written, 5)}, and accuracy {TOLD:.0e}"
+    where = f"at the threshold, {in_words('speed', numbers['critical_speed'], 5)}, and accuracy {TOLD:.0e}"
     rows = sorted(_told(numbers), key=lambda row: abs(row["growth"]))
     if not rows:
         return f"No method kept to the bound on its cost {where}."

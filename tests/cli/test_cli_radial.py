@@ -93,8 +93,8 @@ def test_what_is_settled_and_what_is_of_the_whole_run_says_so(folder, rides):
     of["whole run"] |= {summary["contact"][name] for name in ("lift", "land")}
     assert not of["settled"] & of["whole run"] - {None}
     found = {"settled": set(), "whole run": set()}
-    for line in run_answer(summary, {}).lines:
-        words = line_words(line, {})
+    for line in run_answer(summary).lines:
+        words = line_words(line)
         for part, numbers in of.items():
             if there := {value for _, value, *_ in line.parts if value is not None} & numbers:
                 assert part in words, words
@@ -211,7 +211,7 @@ def test_a_run_that_ends_before_anything_settles(tmp_path):
     assert found.plot.overview().axes
 
     def rows_of(summary):
-        return [line_words(line, {}) for line in run_answer(summary, {}).lines]
+        return [line_words(line) for line in run_answer(summary).lines]
 
     rows = rows_of(found.summary)
     assert any("whole run, in all" in words for words in rows)

@@ -338,7 +338,7 @@ def test_lines_of_a_summary_have_its_numbers(watched):
     _, summary = watched
 
     def numbers(found):
-        rows = run_answer({**found, "wall_time": 1.0, "archive": "x.h5"}, {}).lines
+        rows = run_answer({**found, "wall_time": 1.0, "archive": "x.h5"}).lines
         return [value for line in rows for _, value, *_ in line.parts if isinstance(value, float | int)]
 
     arc, settled, whole = 2 * math.pi * R / 6, summary["settled"], summary["whole"]

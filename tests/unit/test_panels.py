@@ -100,7 +100,7 @@ def test_tables_of_an_answer_are_json_and_lines():
     found = json.loads(json.dumps(as_json(Answer({"own": 1.0}, "It whirls.", [table], notes=["Mind this."]))))
     assert found["verdict"] == ["It whirls.", "Mind this."] and found["own"] == 1.0
     assert found["tables"][0]["columns"][1] == {"name": "critical", "unit": "rad/s", "quantity": "speed"}
-    head, one, other = table_lines(found["tables"][0], {})
+    head, one, other = table_lines(found["tables"][0])
     assert head.split("  ") == ["mode", "critical, rpm", "stable"] and one.split() == ["1", "954.9", "yes"]
     assert other.split() == ["2", "-", "no"]
     with pytest.raises(ValueError, match="tables"):
@@ -110,7 +110,7 @@ def test_tables_of_an_answer_are_json_and_lines():
 def test_a_long_table_is_thinned_but_keeps_both_ends():
     for count in (1, 24, 25, 1000):
         table = as_json(Answer({}, "", [Table("t", [("1", "n")], [[k] for k in range(count)])]))["tables"][0]
-        numbers = [int(word) for word in map(str.strip, table_lines(table, {})[1:]) if word.isdecimal()]
+        numbers = [int(word) for word in map(str.strip, table_lines(table)[1:]) if word.isdecimal()]
         assert numbers[0] == 0 and numbers[-1] == count - 1 and len(numbers) <= 25
 
 

@@ -91,7 +91,7 @@ def test_leakage_runs_from_high_to_low_pressure_also_where_they_turn(film):
 def parts_of(summary):
     """{label: parts} of all lines of a summary; those that go on join the last label."""
     found, label = {}, ""
-    for line in run_answer({**summary, "archive": "x.h5", "figure": None, "wall_time": 1.0}, {}).lines:
+    for line in run_answer({**summary, "archive": "x.h5", "figure": None, "wall_time": 1.0}).lines:
         label = line.label or label
         found.setdefault(label, []).extend(line.parts)
     return found
@@ -104,14 +104,14 @@ def numbers_of(summary, label):
 
 def words_of(summary):
     """{label: words} of what is printed."""
-    return {label: line_words(Line(label, parts), {}) for label, parts in parts_of(summary).items()}
+    return {label: line_words(Line(label, parts)) for label, parts in parts_of(summary).items()}
 
 
 @pytest.mark.parametrize("name", ["fms_reference", "run_in", "gas_dam_reference", "hang_up"])
 def test_what_is_printed_first_is_at_most_fifteen_lines(name):
     scenario = read_scenario(SCENARIOS / f"{name}.toml", ["run.turns=1", "run.accuracy=1e-3"])
     summary = simulate_in_memory(scenario, speeds=True) | {"archive": "x.h5", "figure": None, "wall_time": 1.0}
-    answer = run_answer(summary, {})
+    answer = run_answer(summary)
     few, all_of_it = (lines(name, answer, verbose) for verbose in (False, True))
     assert len(few) - len(answer.notes) <= 16 and set(few) <= set(all_of_it)
     assert all(any(warning in line for line in few) for warning in summary["warnings"])

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib import rc_context
 
 from ...answers import Axis, Level, Panel, Series
-from ...quantities import in_words, printed, shown_in
+from ...quantities import in_words, printed, reading_in, shown_in
 from ...status import Status
 from ..panels import draw_panel
 from ..summary import is_radial
@@ -220,7 +220,8 @@ def key_numbers(ax, run: Run) -> None:
     """A short table from the summary; rows the run does not have are left out."""
     ax.set_axis_off()
     ax.set_title("Key numbers")
-    rows = list(_numbers(run.summary, written_units(run.info))) or [("no summary", run.status)]
+    with reading_in(written_units(run.info)):
+        rows = list(_numbers(run.summary)) or [("no summary", run.status)]
     step = min(0.082, 0.97 / len(rows))
     for line, (name, value) in enumerate(rows):
         for x, words, colour in ((0.0, name, GREY), (0.44, value, BLACK)):
@@ -229,9 +230,8 @@ def key_numbers(ax, run: Run) -> None:
     ax.hlines(below, 0, 1, color=PALE, lw=0.5, capstyle="projecting", transform=ax.transAxes)
 
 
-def _numbers(summary: dict, speeds: dict):
-    """(name, value in words) of what the summary holds; with strokes in the name, values of one unit in its order.
-    `speeds`: units as of `written_units`."""
+def _numbers(summary: dict):
+    """(name, value in words) of what the summary holds; with strokes in the name, values of one unit in its order."""
     for name, *parts in NUMBERS:
         values = [_value(summary, key) for key, *_ in parts]
         known = [value for value in values if value is not None]
@@ -246,7 +246,7 @@ def _numbers(summary: dict, speeds: dict):
             told = " / ".join("–" if v is None else number(factor * v, f".{parts[0][2]}g") for v in values) + f" {unit}"
         else:
             told = ", ".join(
-                in_words(held, v, speeds, digits) + words
+                in_words(held, v, digits) + words
                 for v, (_, held, digits, words) in zip(values, parts, strict=True)
                 if v is not None
             )

@@ -8,7 +8,6 @@ from ...archive import read_study
 from ...quantities import in_words
 from ...status import Status
 from ..panels import study_sheet
-from ..text import written_units
 from .page import save
 from .palette import CYCLED
 from .poincare import around
@@ -29,17 +28,17 @@ MOST = 3
 def draw(archive_path, out_path):
     """The figure of a study's archive."""
     study = read_study(archive_path)
-    answer, written = study["answer"], written_units(study)
+    answer = study["answer"]
     rows = [row for row in answer["rows"] if row["status"] == Status.OK]
     along = _key(answer)
     panels = [_diagram(along, answer, rows), _exponents(along, answer, rows)]
     for k, row in enumerate(_chosen(rows, answer)):
-        value = in_words(along.quantity, row["value"], written)
+        value = in_words(along.quantity, row["value"])
         panels += [_section(row, f"{value}: {row['class']}", first=k == 0), _spectrum(row)]
     panels += [_separation(answer)] if answer["separation"] else []
     panels += [_averages(answer)] if answer["methods"] else []
-    panels += [_whirl(answer, written)] if (answer["whirl"] or {}).get("rows") else []
-    figure = study_sheet(study, panels, below=f"{study['name']}: {answer['verdict'][0]}", written=written)
+    panels += [_whirl(answer)] if (answer["whirl"] or {}).get("rows") else []
+    figure = study_sheet(study, panels, below=f"{study['name']}: {answer['verdict'][0]}")
     return save(figure, out_path)
 
 
@@ -121,10 +120,10 @@ def _averages(answer) -> Panel:
     return Panel(title, along, words, series, levels, down=True, first=not answer["separation"])
 
 
-def _whirl(answer, written) -> Panel:
+def _whirl(answer) -> Panel:
     series = []
     for k, row in enumerate(row for row in answer["whirl"]["rows"] if "amplitudes" in row):
-        words, colour = f"{in_words('speed', row['speed'], written, 5)}: {row['fate']}", CYCLED[k % len(CYCLED)]
+        words, colour = f"{in_words('speed', row['speed'], 5)}: {row['fate']}", CYCLED[k % len(CYCLED)]
         turns = np.arange(len(row["amplitudes"]))
         series.append(Series("line", turns, row["amplitudes"], label=words, style=f"{colour} thin"))
     axis = Axis("misalignment", "relative tilt", scale="log")

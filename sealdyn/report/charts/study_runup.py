@@ -4,7 +4,7 @@ import numpy as np
 
 from ...answers import Axis, Level, Panel, Series
 from ...archive import read_study
-from ...quantities import everyday, in_words, quantity
+from ...quantities import everyday, in_words, quantity, reading_in
 from ..panels import study_sheet
 from ..text import written_units
 from .page import save
@@ -32,10 +32,11 @@ def draw(path, out):
     title = f"What does {study['name'].replace('_', ' ')} do when {what} ramps up and down?"
     speed = written_units(study)["rad/s"]
     written = {"rad/s": speed, "speed_ramp": quantity("speed_ramp").unit if speed == "rad/s" else "rpm/s"}
-    panels, more = (_speed_ramps if of_speed else _load_ramps)(answer, written)
-    # The sentences of the verdict that a reader needs first.
-    story = " ".join(filter(None, [*answer["verdict"][:3], more]))
-    return save(study_sheet(study, panels, title, story, written=written), out)
+    with reading_in(written):
+        panels, more = (_speed_ramps if of_speed else _load_ramps)(answer)
+        # The sentences of the verdict that a reader needs first.
+        story = " ".join(filter(None, [*answer["verdict"][:3], more]))
+        return save(study_sheet(study, panels, title, story), out)
 
 
 def _runs(answer):
@@ -46,21 +47,21 @@ def _runs(answer):
 # --- shaft speed ------------------------------------------------------------------------------------------
 
 
-def _speed_ramps(answer, written):
+def _speed_ramps(answer):
     fall, said = answer["waterfall"], _same(answer)
     ways = [way for way in ("up", "down") if fall and len(fall[way]["speed"]) > 1]
-    panels = [*_order(answer, written), *_waterfall(ways, answer)]
-    below = [_growth(answer, written)] if _grown(answer) else []
-    below += [] if said else [_curve(answer, written)]
+    panels = [*_order(answer), *_waterfall(ways, answer)]
+    below = [_growth(answer)] if _grown(answer) else []
+    below += [] if said else [_curve(answer)]
     if ways and max(np.max(fall[way]["amplitude"]) for way in ways) > 0:
         row = next(row for row in answer["rows"] if row["rate"] == fall["rate"])
-        said += f" Waterfall at {_rate(fall['rate'], written)}: Hann windows of {fall['window']} turns, "
-        said += f"{row['resolution']:.2g} orders and {in_words('speed', row['speed_in_window'], written, 3)} wide."
+        said += f" Waterfall at {_rate(fall['rate'])}: Hann windows of {fall['window']} turns, "
+        said += f"{row['resolution']:.2g} orders and {in_words('speed', row['speed_in_window'], 3)} wide."
     return [*panels, *below], said.strip()
 
 
-def _rate(value: float, written) -> str:
-    return in_words("speed_ramp", value, written)
+def _rate(value: float) -> str:
+    return in_words("speed_ramp", value)
 
 
 def _grown(answer) -> list:
@@ -80,7 +81,7 @@ def _same(answer) -> str:
     return f"At every rate the largest relative tilt is {most} and the thinnest film {least}, within {same}."
 
 
-def _order(answer, written) -> list[Panel]:
+def _order(answer) -> list[Panel]:
     """Amplitude and phase of the order followed, up full, down dashed, linear theory grey."""
     linear = answer["linear"]
     seen = [max(row[w]["amplitude"]) for _, row in _runs(answer) for w in ("up", "down") if row[w]["speed"]]
@@ -94,7 +95,7 @@ def _order(answer, written) -> list[Panel]:
         for way, style in (("up", ""), ("down", " dashed")):
             if not row[way]["speed"]:
                 continue
-            at, label = np.array(row[way]["speed"]), _rate(row["rate"], written) if way == "up" else ""
+            at, label = np.array(row[way]["speed"]), _rate(row["rate"]) if way == "up" else ""
             tops.append(Series("line", at, row[way]["amplitude"], label=label, style=f"{colour} thin{style}"))
             if driven:
                 # Of a phase's many turns the one beside linear theory.
@@ -156,13 +157,13 @@ def _strong(fall, ways, largest) -> tuple[float, float]:
     return min(-1.0, *orders[seen]), max(2.0, *orders[seen])
 
 
-def _growth(answer, written) -> Panel:
+def _growth(answer) -> Panel:
     """Logarithm of the free whirl since the threshold against what is foretold."""
     series, reach = [], 0.0
     for colour, row in _grown(answer):
         curve = row["growth"]["curve"]
         # Time times the rate: the speed gained, the same for every rate.
-        gained, label = np.array(curve["time"]) * row["rate"], _rate(row["rate"], written)
+        gained, label = np.array(curve["time"]) * row["rate"], _rate(row["rate"])
         series.append(Series("line", gained, curve["measured"], label=label, style=colour))
         series.append(Series("line", gained, curve["foretold"], label="foretold", style="black thin dashed front"))
         reach = max(reach, *curve["foretold"], *curve["measured"])
@@ -176,7 +177,7 @@ def _growth(answer, written) -> Panel:
     return Panel("Free whirl since the threshold", along, growth, series, levels, first=True)
 
 
-def _curve(answer, written) -> Panel:
+def _curve(answer) -> Panel:
     """Largest misalignment and thinnest film over the ramp rate."""
     curve, title = answer["curve"], "How fast must one pass?"
     rate, film, tilt = (np.array(curve[name], dtype=float) for name in ("rate", "h_min", "relative_misalignment"))
@@ -205,12 +206,12 @@ def _curve(answer, written) -> Panel:
 # --- anything else ----------------------------------------------------------------------------------------
 
 
-def _load_ramps(answer, written):
+def _load_ramps(answer):
     # An aligned seal has no tilt to show.
     moves = any(row.get("relative_misalignment") for _, row in _runs(answer)) or not _runs(answer)
     loads = {name: load for name, load in LOADS.items() if moves or name != "relative_misalignment"}
     panels = [_over_rate(answer, name, *load) for name, load in loads.items()]
-    return panels + [_in_time(answer, written, *load, first=k == 0) for k, load in enumerate(loads.values())], ""
+    return panels + [_in_time(answer, *load, first=k == 0) for k, load in enumerate(loads.values())], ""
 
 
 def _rate_axis(answer) -> Axis:
@@ -241,7 +242,7 @@ def _over_rate(answer, name, series, title, held, what) -> Panel:
     return Panel(title, _rate_axis(answer), Axis(held, " ", **ends), marks, levels)
 
 
-def _in_time(answer, written, series, title, held, _, first: bool) -> Panel:
+def _in_time(answer, series, title, held, _, first: bool) -> Panel:
     """The way there, from where it begins; time logarithmic, since the rates differ by tens."""
     begun, lines, last = 0.03 * answer["decay"], [], 0.03 * answer["decay"]
     load, rate = RATES.get(answer["unit"], (answer["unit"], f"{answer['unit']}/s"))
@@ -250,11 +251,11 @@ def _in_time(answer, written, series, title, held, _, first: bool) -> Panel:
         time, values = np.array(row["time"]) - begin, np.array(row[series])
         # Just before the way back, which a step begins with a jump.
         kept = (time >= begun) & (time < (back - begin) * (1 - 1e-12))
-        name = "a step" if row["rate"] is None else in_words(rate, row["rate"], written, 3)
+        name = "a step" if row["rate"] is None else in_words(rate, row["rate"], 3)
         lines.append(Series("line", time[kept], values[kept], label=name, style=f"{colour} thin"))
         last = max(last, back - begin)
     if last == begun:
         return Panel(f"{title} on the way", note="no run ended", first=first)
     along = Axis("s", "time since the change began", scale="log", low=begun, high=last)
-    title = f"{title} on the way to {in_words(load, answer['end'], written)}"
+    title = f"{title} on the way to {in_words(load, answer['end'])}"
     return Panel(title, along, Axis(held, " "), lines, first=first)

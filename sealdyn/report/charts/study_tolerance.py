@@ -6,7 +6,6 @@ from ...answers import Axis, Level, Panel, Series
 from ...archive import read_study
 from ...quantities import printed, shown_in
 from ..panels import study_sheet
-from ..text import written_units
 from .page import EVEN, number, power, save
 from .palette import CYCLED
 
@@ -20,7 +19,7 @@ BAND, LINES = (("5", "95", "faint"), ("25", "75", "")), {"1": "1, 99 %", "50": "
 def draw(path, out):
     """Histograms of at most four outputs; shares of the keys; the first output over its foremost key; convergence."""
     study = read_study(path)
-    answer = {**study["answer"], "written": written_units(study)}
+    answer = study["answer"]
     outputs = answer["outputs"][:MOST]
     panels = [_histogram(answer, name) for name in outputs]
     panels += [_shares(answer), _matrix(answer, outputs), _cloud(answer)]
@@ -37,9 +36,9 @@ def _has_indices(answer) -> bool:
     return any(np.isfinite(np.array(values, dtype=float)).any() for values in totals)
 
 
-def _shown(unit: str, size: float, written) -> tuple[str, float]:
+def _shown(unit: str, size: float) -> tuple[str, float]:
     """What a quantity of this SI unit and size is shown in, and the factor."""
-    unit, factor = shown_in(unit, [size], written)
+    unit, factor = shown_in(unit, [size])
     if size * factor >= LARGE:
         thousands = int(np.log10(size * factor) / 3)
         return f"{power(3 * thousands)} {printed(unit)}".strip(), factor / 1e3**thousands
@@ -50,7 +49,7 @@ def _values(answer, name) -> tuple[np.ndarray, str, float]:
     """Values (n,) of an output as shown, their unit and the factor."""
     values = np.array(answer["samples"]["outputs"][name], dtype=float)
     size = np.abs(values[np.isfinite(values)]).max(initial=0.0)
-    unit, factor = _shown(answer["output_units"][name], size, answer["written"])
+    unit, factor = _shown(answer["output_units"][name], size)
     return factor * values, unit, factor
 
 
@@ -131,7 +130,7 @@ def _cloud(answer) -> Panel:
     if not known.any():
         return Panel(title, note="no value in any run")
     x, series = np.array(answer["samples"]["keys"][key]), []
-    across, factor = _shown(answer["scatter"][key]["unit"], np.abs(x).max(), answer["written"])
+    across, factor = _shown(answer["scatter"][key]["unit"], np.abs(x).max())
     for kept, label, style in ((~_touched(answer), "apart", "first"), (_touched(answer), "touched", "contact")):
         if (kept & known).any():
             series.append(Series("marks", factor * x[kept], values[kept], label=label, style=f"{style} point"))

@@ -21,8 +21,7 @@ from ... import closed_form as cf
 from ...analysis.arrangements import SEALS, Arrangement, seals_of, tilting
 from ...answers import Answer, Axis, Level, Panel, Series, Table
 from ...dynamics.linearisation import moves_with_speed
-from ...quantities import in_words
-from ...report.text import speed_unit
+from ...quantities import in_words, reading_in
 from ...scene.contact import touch_height
 from ...scene.film import aligned_gaps, coned, coning_change
 from ...scene.gas import viscosity_of
@@ -131,11 +130,10 @@ def run(scenario, settings, tools) -> Answer:
     numbers["time_domain"] = points_in_time(scenario, settings, speeds, own_speed, tools)
     numbers["groups"] = groups(seals, own_speed)
     numbers["table"] = table(seals, own_speed, by_formula, numbers["time_domain"]) if own_speed else []
-    text = {"scenario": scenario.text, "overrides": scenario.overrides}
-    written = {"rad/s": "rpm" if settings.unit == "rpm" else speed_unit(text)[0]}
-    tables, far = _tables(seals, numbers, written)
-    notes = _notes(seals, numbers, written) + far
-    return Answer(numbers, _found(numbers, written), tables, _panels(numbers, written), notes, written)
+    with reading_in({"rad/s": "rpm"} if settings.unit == "rpm" else {}):
+        tables, far = _tables(seals, numbers)
+        notes = _notes(seals, numbers) + far
+        return Answer(numbers, _found(numbers), tables, _panels(numbers), notes)
 
 
 # --- which is best ------------------------------------------------------------------------------------
@@ -309,11 +307,11 @@ def groups(seals: dict[str, Arrangement], speed: float) -> dict:
 # --- what is shown ------------------------------------------------------------------------------------
 
 
-def _found(numbers, written) -> str:
+def _found(numbers) -> str:
     """Which arrangement transmits least where, and how much at the scenario's speed."""
     stretches = numbers["best"]["total"]
     names = [stretch["seal"].upper() if stretch["seal"] else "none" for stretch in stretches]
-    ends = [*(f"to {in_words('speed', s['to'], written)}" for s in stretches[:-1]), "beyond"]
+    ends = [*(f"to {in_words('speed', s['to'])}" for s in stretches[:-1]), "beyond"]
     where = [f"{name} {end}" for name, end in zip(names, ends, strict=True)][1:]
     first = ends[0] if where else "at every speed"
     found = ", ".join([f"In total {names[0]} lets the least misalignment through {first}", *where])
@@ -321,10 +319,10 @@ def _found(numbers, written) -> str:
         return f"{found}."
     (row,) = (row for row in numbers["table"] if row["quantity"] == NAMES["total"])
     values = ", ".join(f"{name.upper()} {row[name]:.4g}" for name in SEALS)
-    return f"{found}; at {in_words('speed', numbers['own_speed'], written)} {values} per unit tilts."
+    return f"{found}; at {in_words('speed', numbers['own_speed'])} {values} per unit tilts."
 
 
-def _notes(seals, numbers, written) -> list[str]:
+def _notes(seals, numbers) -> list[str]:
     """What is compared, where there is no steady state, and what failed."""
     said = ["FMSR is this scene with the same ring and support on the other side too."]
     if numbers["arrangement"] == "FMSR":
@@ -345,7 +343,7 @@ def _notes(seals, numbers, written) -> list[str]:
     return said
 
 
-def _tables(seals, numbers, written) -> tuple[list[Table], list[str]]:
+def _tables(seals, numbers) -> tuple[list[Table], list[str]]:
     """The arrangements at the scenario's speed, in the form of Green's Table 1; which is best where; film and methods;
     and a note of each critical misalignment that is no small tilt."""
     speed, far, rows = numbers["own_speed"], [], []
@@ -367,7 +365,7 @@ def _tables(seals, numbers, written) -> tuple[list[Table], list[str]]:
         ("1", "of, beside another of 1"),
         ("speed", "critical speed"),
     ]
-    found = [Table(f"at {in_words('speed', speed, written)}", columns, rows)]
+    found = [Table(f"at {in_words('speed', speed)}", columns, rows)]
     compared = [("all", q, numbers["best"][q]) for q in QUANTITIES]
     compared += [(" and ".join(map(str.upper, pair["seals"])), "total", pair["best"]) for pair in numbers["pairs"]]
     rows = [[who if k == 0 else "", quantity if k == 0 else "", (s["seal"] or "none").upper(), s["from"], s["to"]]
@@ -385,7 +383,7 @@ def _tables(seals, numbers, written) -> tuple[list[Table], list[str]]:
     return found, far
 
 
-def _panels(numbers, written) -> list[Panel]:
+def _panels(numbers) -> list[Panel]:
     """Transmissibilities above phases; beside the total, which arrangement transmits least."""
     speed = numbers["speed"]
     axis = Axis("speed", low=min(speed[0], speed[-1]), high=max(speed[0], speed[-1]))
@@ -414,7 +412,7 @@ def _panels(numbers, written) -> list[Panel]:
             series.append(Series("line", ends, [k, k], style=f"{STYLE[seal][0]} thick"))
         ends = [stretch["from"] for stretch in stretches[1:]]
         series.append(Series("marks", ends, [k] * len(ends), style="black plus front",
-                             names=[in_words("speed", end, written) for end in ends]))  # fmt: skip
+                             names=[in_words("speed", end) for end in ends]))  # fmt: skip
     least = Axis(words=QUANTITIES, low=-0.5, high=2.5)
     return [*panels, Panel("The one that transmits least", axis, least, series, below=True, down=True)]
 
