@@ -189,7 +189,8 @@ def nearest(kind: type, path: str, key: str) -> str:
         return f"'{key}' belongs to {' or '.join(elsewhere[:3])}"
     if close:
         return f"nearest '{close[0]}'"
-    names = {k: table for table, keys in every.items() if table for k in keys}
+    # Of two tables that have a key, the outer one.
+    names = {k: table for table in sorted(filter(None, every), key=lambda t: -t.count(".")) for k in every[table]}
     if meant := [word for word in MEANT.get(key.lower(), ()) if word in names]:
         return f"nearest '{meant[0]}' in [{names[meant[0]]}]"
     close = difflib.get_close_matches(key, names, 1, 0.6)
