@@ -262,13 +262,14 @@ class VaryingQuantity:
         }
 
 
-def _entries(quantity: Quantity, column: list, name: str) -> tuple[float, ...]:
+def _entries(quantity: Quantity, column: list, name: str = "") -> tuple[float, ...]:
     values = []
     for k, entry in enumerate(column):
         try:
             values.append(quantity.read(entry))
         except QuantityError as error:
-            raise QuantityError(f"{name}[{k}] = {error.found}", error.expected) from None
+            found = f"{name}[{k}] = {error.found}" if name else f"{error.found} as entry {k + 1}"
+            raise QuantityError(found, error.expected) from None
     return tuple(values)
 
 
@@ -305,7 +306,7 @@ class ListedQuantity:
             raise QuantityError(quoted(value), self.expected())
         if len(value) > MOST_LISTED:
             raise QuantityError(f"a list of {len(value)}", f"at most {MOST_LISTED}")
-        return _entries(self.quantity, value, "entry ")
+        return _entries(self.quantity, value)
 
     def expected(self) -> str:
         """What the key expects, in words, for a message."""

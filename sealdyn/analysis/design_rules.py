@@ -200,14 +200,14 @@ def _leakage(seal: Seal, limit) -> Finding:
     film, own = seal.scene.film, seal.application.leakage_limit
     if initially(film.outer_pressure) == initially(film.inner_pressure):
         return missing_keys("film.outer_pressure", "film.inner_pressure")
+    if math.isnan(seal.leakage):
+        return other_seals("the film knows no leakage")
     goal, most = limit
     leakage, most = seal.leakage, most if own is None else own
     goal = min(goal, most)
     whose = "the guide's" if own is None else "this seal's"
-    sentence = (
-        f"aligned faces leak {leakage / CC_PER_H:.4g} cc/h at the start, {whose} limit is {most / CC_PER_H:.4g} cc/h, "
-        f"the goal {goal / CC_PER_H:.4g} cc/h"
-    )
+    sentence = f"aligned faces leak {leakage / CC_PER_H:.4g} cc/h at the start, {whose} limit is "
+    sentence += f"{most / CC_PER_H:.4g} cc/h, the goal {goal / CC_PER_H:.4g} cc/h"
     if leakage > most:
         return limit_finding(sentence, leakage, most=most)
     return limit_finding(sentence, leakage, most=goal, beyond=Verdict.NOTE)

@@ -13,7 +13,8 @@ def lines(name: str, answer, verbose: bool = False) -> list[str]:
     """The summary of a run (report.summary.run_answer): how it ended, labelled lines, warnings, files; `verbose` with
     its details."""
     summary = answer.numbers
-    rows = [(line.label, line_words(line)) for line in answer.lines if verbose or not line.detail]
+    told = ((line.label, line_words(line)) for line in answer.lines if verbose or not line.detail)
+    rows = [(label, words) for label, words in told if words]
     rows[-1:-1] = [("WARNING", warning) for warning in answer.notes]
     return _table(name, summary["status"], answer.found, rows)
 
@@ -26,6 +27,9 @@ def line_words(line) -> str:
     """The parts of a line of a summary: words and numbers with their units."""
     told = ""
     for words, value, *quantity in line.parts:
+        # A number that there is not takes its words away.
+        if value is None and quantity[0]:
+            continue
         if value is not None:
             value = value if isinstance(value, str) else in_words(quantity[0], value, *quantity[1:])
         if part := " ".join(filter(None, (words, value))):

@@ -12,7 +12,7 @@ without numbers; in linear elasticity the first goes with the square of the spee
 import math
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Annotated, Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -25,9 +25,8 @@ from ..units import (
     ConingPerSpeedSquared,
     Density,
     Length,
+    Listed,
     Pressure,
-    Quantity,
-    QuantityError,
     Radius,
     SignedTiltDamping,
     SignedTiltStiffness,
@@ -35,7 +34,6 @@ from ..units import (
     Temperature,
     Varying,
     Viscosity,
-    quoted,
 )
 from .gas import Gas, GasDam, GasName, GasReynolds
 
@@ -213,34 +211,6 @@ MOST_NODES = 65
 LENGTH = Length.__metadata__[0]
 
 
-class Lengths(Quantity):
-    """A list of lengths (m), as a profile has."""
-
-    def expected(self) -> str:
-        """What the key expects, in words, for a message."""
-        return 'a list of lengths, ["32 mm", "36 mm", ...]'
-
-    def read(self, value: Any) -> tuple[float, ...]:
-        """Floats in m.  Raises `QuantityError`."""
-        if not isinstance(value, (list, tuple)):
-            raise QuantityError(quoted(value), self.expected())
-        found = []
-        for n, entry in enumerate(value):
-            try:
-                found.append(LENGTH.read(entry))
-            except QuantityError as error:
-                raise QuantityError(f"{error.found} as entry {n + 1}", error.expected) from None
-        return tuple(found)
-
-    def __get_pydantic_json_schema__(self, schema, handler) -> dict:
-        entry = LENGTH.__get_pydantic_json_schema__(None, None)
-        about = {"description": self.expected(), "quantity": self.name, "unit": self.unit}
-        return about | {"type": "array", "minItems": 2, "maxItems": MOST_NODES, "items": entry}
-
-
-Column = Annotated[tuple[float, ...], Lengths("list of lengths", "m", "")]
-
-
 @dataclass(frozen=True)
 class Profile:
     """The `[film.profile]` table: the gap between the faces is wider by `depth` (m) at `radius` (m), linear between,
@@ -248,9 +218,9 @@ class Profile:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    radius: Column
+    radius: Listed[Length]
     """From the inner to the outer radius of the face, increasing."""
-    depth: Column
+    depth: Listed[Length]
     """By which the film is thicker there, on top of clearance and coning; linear between."""
 
 

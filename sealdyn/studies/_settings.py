@@ -76,7 +76,8 @@ def time_of(name: str) -> str:
 def words_of(holds: dict) -> str:
     """What a value of a JSON schema is, in words: "time, s", "integer", "list of number or string"."""
     if "quantity" in holds:
-        return f"{holds['quantity']}, {holds['unit']}"
+        several = "list of " if holds.get("type") == "array" else ""
+        return f"{several}{holds['quantity']}, {holds['unit']}"
     if "enum" in holds:
         return ", ".join(json.dumps(word) for word in holds["enum"])
     if "anyOf" in holds:

@@ -63,8 +63,8 @@ def test_every_study_has_its_question_in_the_readme():
 @pytest.mark.parametrize("name", study_names())
 def test_times_in_the_readme_are_those_beside_the_studies(name):
     words, seconds = study_info(name.replace("-", "_")).timed
-    (row,) = re.findall(rf"^\|.* \| `{name}`, (\w+).*\| (\d+) \|$", README, re.MULTILINE)
-    assert row == (words.split()[0], str(seconds))
+    rows = re.findall(r"^\|.* \| `([\w-]+)`, (\w+).*\| (\d+) \|$", README, re.MULTILINE)
+    assert (name, words.split()[0], str(seconds)) in rows
 
 
 def test_every_rule_is_in_the_table_of_the_readme():
