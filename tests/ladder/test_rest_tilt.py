@@ -37,7 +37,10 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
+CORE = ("one pad", "cavities among waves")
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.core] * (name in CORE)) for name in SCENES])
 def test_rings_rest_where_force_and_moments_are_nothing(name):
     """Before, the tilts of these scenes were no unknowns: exactly 0."""
     made, duration = SCENES[name]
