@@ -2,8 +2,8 @@
 the scene's data.
 
 Faces that stand still, shaft or not; loads of the film by collocation, Chebyshev's points over the radius and even
-angles (gas: collocated_gas.py; liquid without cavities: here), and the root of forces and moments on the rings that
-float.  Frames and signs as in own_words.py.
+angles (gas: collocated_gas.py; liquid without cavities: here), of a liquid with cavities on cells; and the root of
+forces and moments on the rings that float.  Frames and signs as in own_words.py.
 """
 
 import math
@@ -11,6 +11,8 @@ import math
 import numpy as np
 from collocated_gas import chebyshev, collocated, fourier
 from scipy.optimize import root
+from scipy.sparse import coo_matrix, diags
+from scipy.sparse.linalg import spsolve
 from threadpoolctl import threadpool_limits
 
 
@@ -63,9 +65,59 @@ def liquid(film, height, spin, radii, angles):
     return np.array([np.sum(cell), np.sum(cell * rr * np.sin(tt)), -np.sum(cell * rr * np.cos(tt))])
 
 
+# Cells over radius and angle of a film with cavities, and how often full and torn ones may change places.
+CELLS, MOST = (10, 96), 60
+
+
+def torn(film, height, spin):
+    """As `liquid`, of a film that tears at its cavitation pressure and keeps its liquid: each cell is full, with a
+    pressure above that, or has it and is filled in part; which, by Newton's method on the two together."""
+    (n, m), base = CELLS, film.cavitation_pressure
+    step, turn = math.log(film.outer_radius / film.inner_radius) / n, 2.0 * math.pi / m
+    r = film.inner_radius * np.exp((np.arange(n) + 0.5) * step)[:, None]
+    rim = film.inner_radius * np.exp(np.arange(n + 1) * step)[:, None]
+    theta = turn * np.arange(m)
+    area = 0.5 * (rim[1:] ** 2 - rim[:-1] ** 2) * np.ones(m)
+    over = height(rim, theta) ** 3 / (12.0 * film.viscosity) * turn / step
+    over[[0, -1]] *= 2.0
+    ahead = height(r, theta + 0.5 * turn)
+    along, carried = ahead**3 / (12.0 * film.viscosity) * step / turn, 0.5 * spin * area * ahead
+    place, back = np.arange(n * m).reshape(n, m), np.roll(np.arange(n * m).reshape(n, m), 1, axis=1)
+    before = np.roll(along, 1, axis=1)
+
+    def matrix(places, values):
+        rows, columns = np.broadcast_arrays(place, places)
+        return coo_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(n * m, n * m)).tocsc()
+
+    # What flows into each cell, by pressures and by fill.
+    pressed = matrix(place, -over[:-1] - over[1:] - along - before) + matrix(back, before)
+    pressed += matrix(np.roll(place, -1, axis=1), along)
+    inward, outward = over.copy(), over.copy()
+    inward[0] = outward[-1] = 0.0
+    pressed += matrix(np.roll(place, 1, axis=0), inward[:-1]) + matrix(np.roll(place, -1, axis=0), outward[1:])
+    filled = matrix(back, np.roll(carried, 1, axis=1)) - matrix(place, carried)
+    edges = np.zeros((n, m))
+    edges[0], edges[-1] = over[0] * (film.inner_pressure - base), over[-1] * (film.outer_pressure - base)
+    whole, full = np.ones(n * m), np.ones(n * m, dtype=bool)
+    for _ in range(MOST):
+        # The unknown of a full cell is its pressure, of a torn one what it lacks.
+        both = pressed @ diags(full.astype(float)) + filled @ diags((~full).astype(float))
+        found = spsolve(both.tocsc(), -(edges.ravel() + filled @ whole))
+        now = found > 0.0
+        if np.array_equal(now, full):
+            break
+        full = now
+    else:
+        raise AssertionError("full and torn cells change places")
+    cell = area * np.where(full, found, 0.0).reshape(n, m)
+    return np.array([cell.sum(), np.sum(cell * r * np.sin(theta)), -np.sum(cell * r * np.cos(theta))])
+
+
 def loads(scene, gap, radii=8, angles=32):
     """Force (N) and moments (N m) on the stator at a gap (m, rad, rad)."""
     height, spin = thickness(scene, gap), scene.shaft.speed + scene.stator.speed
+    if scene.film.cavitation_pressure is not None:
+        return torn(scene.film, height, spin)
     if scene.film.gas is None:
         return liquid(scene.film, height, spin, radii, angles)
     return collocated(scene.film, height, lambda r, theta: 0.0 * r, spin, radii=radii, angles=angles)[:3]

@@ -25,6 +25,7 @@ class Concern(StrEnum):
 
     ACCURACY = "accuracy"
     ALIASING = "aliasing"
+    ALIGNED = "aligned faces"
     NO_EQUILIBRIUM = "no equilibrium gap"
     CHOKING = "choking"
     BLOWN_OPEN = "blown open"

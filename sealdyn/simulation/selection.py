@@ -92,6 +92,9 @@ def _prepared(scenario):
     if best > settings.accuracy:
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
         run.cautions.append(Caution(Concern.ACCURACY, sentence))
+    if run.model.unknowns.faces_tilt:
+        sentence = "stability and stiffness are of aligned faces, from which waves or pads turn the rings"
+        run.cautions.append(Caution(Concern.ALIGNED, sentence))
     run.watch_last_periods()
     fastest = run.fastest_forcing()
     if fastest * interval > math.pi:

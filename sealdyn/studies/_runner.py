@@ -180,13 +180,16 @@ def _refuse_seal(name: str, info: Info, scene):
     if _is_radial(scene) or info.wavy:
         return
     if waves_of(scene):
-        beside = info.of_waves
-        key = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
-        raise SceneError(
-            key, "wavy faces", f"none: this study ({name}) knows faces that are the same all around{beside}"
-        )
+        expected = f"none: this study ({name}) knows faces that are the same all around{info.of_waves}"
+        raise SceneError(_key_of_pattern(scene), "wavy faces", expected)
     if scene.film.pads:
         raise SceneError("film.pads", "pads", f"none: this study ({name}) knows faces that are the same all around")
+
+
+def _key_of_pattern(scene) -> str:
+    """Key of what a scene has around its faces."""
+    waves = "rotor.waviness" if scene.rotor.waviness else "stator.waviness"
+    return waves if waves_of(scene) else "film.pads"
 
 
 def _refuse(name: str, scene, refused):
@@ -200,7 +203,7 @@ def _refuse(name: str, scene, refused):
                          way.format("contact", "contact"))  # fmt: skip
     if "moment" in refused and (askew := _moment(scene)):
         found = f"aligned faces that do not stay so ({askew})"
-        raise SceneError("film.pads" if scene.film.pads else "stator.waviness", found, f"faces that do, for {study}")
+        raise SceneError(_key_of_pattern(scene), found, f"faces that do, for {study}")
 
 
 def _moment(scene) -> str:

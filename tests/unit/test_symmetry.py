@@ -8,6 +8,7 @@ from patterned_faces import THREE, TWO, UM, gas, liquid, pads, scenario, seal
 
 from sealdyn.dynamics.interface import Interface
 from sealdyn.dynamics.model import Model
+from sealdyn.dynamics.run_state import Concern
 from sealdyn.faces.geometry import GAP_STATE_SIZE, GX, GX_RATE, INNER_PRESSURE, OUTER_PRESSURE, VISCOSITY
 from sealdyn.films.reynolds.cavitation import ALIKE, STATUS
 from sealdyn.scene.contact import Waviness
@@ -16,7 +17,9 @@ from sealdyn.scene.rings import Rotor
 from sealdyn.scene.scene import Initial, RingStart, SceneError
 from sealdyn.scene.symmetry import alike_sectors
 from sealdyn.scene.variants import tilting
+from sealdyn.simulation.selection import prepare_run
 from sealdyn.simulation.simulate import simulate_in_memory
+from sealdyn.studies._runner import _moment, _refuse, study_info
 
 FOUR, SIX = Waviness(4, UM), Waviness(6, UM)
 COARSE = dict(cells=(4, 24))
@@ -74,7 +77,9 @@ ONE_PAD = seal(gas(pads(1, 1.5), **COARSE))
 @pytest.mark.parametrize("made", [of(TWO, THREE), ONE_PAD], ids=["liquid", "gas"])
 def test_linear_numbers_about_faces_that_do_not_stay_are_not_given(made):
     """They were: no misalignment, and any forcing far from contact."""
-    summary = simulate_in_memory(scenario(made, turns=None, duration=2e-4, accuracy=1e-2))
+    asked = scenario(made, turns=None, duration=2e-4, accuracy=1e-2)
+    assert Concern.ALIGNED in {caution.concern for caution in prepare_run(asked)[0].cautions}
+    summary = simulate_in_memory(asked)
     assert summary["status"] == "ok" and summary["relative_misalignment"]["max"] > 1e-7
     assert set(summary["closed_form"]) == {"road"} and summary["contact_margin"] is None
 
@@ -101,3 +106,12 @@ def test_one_sector_has_no_tilted_film(slot):
         interface.steady(interface.f, s)
     whole = Interface(tilting(of(THREE)), 1e-6)
     whole.steady(whole.f, s)
+
+
+def test_studies_of_aligned_faces_say_that_they_do_not_stay_or_refuse():
+    """Which aligned balance there is may be asked; where shaken faces touch may not."""
+    assert _moment(ONE_PAD) and not _moment(seal(gas(pads(2, 0.9))))
+    _refuse("equilibrium", ONE_PAD, study_info("equilibrium").refuses)
+    assert study_info("equilibrium").aligned
+    with pytest.raises(SceneError, match="pads"):
+        _refuse("vibration", ONE_PAD, study_info("vibration").refuses)
