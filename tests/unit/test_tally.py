@@ -59,6 +59,10 @@ def test_numbers_are_those_of_dense_series(name):
             mean = simpson(data[name_of_series].values, x=time) / (time[-1] - time[0])
             scale = np.abs(data[name_of_series].values).max()
             assert output(result.summary, key) == pytest.approx(mean, abs=3 * accuracy * scale), key
+    if contact := result.summary["contact"]:
+        # The impulse is an unknown of the solver's own; measured 1e-6 of the largest force.
+        mean, most = contact["force"]["mean"], contact["force"]["max"]
+        assert mean == pytest.approx(contact["impulse"] / time[-1], abs=accuracy * most)
     largest = {"friction.max_power": "friction_power", "contact.force.max": "contact_force",
                "contact.max_pressure": "contact_pressure"}  # fmt: skip
     for key, name_of_series in largest.items():
