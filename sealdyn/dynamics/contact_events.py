@@ -5,7 +5,7 @@ missed however long the step; what is closer to touching than the gap's own erro
 be decided.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -211,16 +211,33 @@ class ContactEvents:
     def tell(self, log, end: tuple | None = None):
         """Hand the contacts that have ended to `log` as events, and add them to the summary; at the `end` (time (s),
         unknowns (size,)) of a run also one that goes on, without a lift-off."""
-        rows, self.waiting = self.waiting, []
-        if end and self.open[OPEN]:
-            row = self.open[:ROW].copy()
-            row[KIND], row[LIFTED] = 1.0, np.nan
-            row[IMPULSE] = end[1][self.model.unknowns.impulse] - row[IMPULSE]
-            self.summary.longest = max(self.summary.longest, float(end[0] - row[TOUCHED]))
-            rows.append(row)
+        rows = self._rows(end)
+        self.summary, self.waiting = self._with(rows, end), []
+        if end:
+            self.open[OPEN] = 0.0
         if rows:
-            self.summary.add(rows)
             log([contact_event(row, self.model.face[TOUCH]) for row in rows])
+
+    def so_far(self, end: tuple) -> ContactSummary:
+        """The summary with all contacts up to the `end` (as of `tell`) of a run, of which one may go on."""
+        return self._with(self._rows(end), end)
+
+    def _rows(self, end) -> list:
+        """Contacts that have ended and have not been told, and at the `end` of a run the one that goes on."""
+        if not (end and self.open[OPEN]):
+            return self.waiting
+        row = self.open[:ROW].copy()
+        row[KIND], row[LIFTED] = 1.0, np.nan
+        row[IMPULSE] = end[1][self.model.unknowns.impulse] - row[IMPULSE]
+        return [*self.waiting, row]
+
+    def _with(self, rows, end) -> ContactSummary:
+        """The summary with these contacts."""
+        found = replace(self.summary)
+        found.add(rows)
+        if end and self.open[OPEN]:
+            found.longest = max(found.longest, float(end[0] - self.open[TOUCHED]))
+        return found
 
     def state(self) -> dict:
         """What a continued run needs: {"touching": (STATE,), "contacts": counts}."""

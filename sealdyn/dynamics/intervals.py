@@ -50,12 +50,38 @@ class Interval:
         """Start of the interval (s)."""
         return float(self.start)
 
+    @property
+    def key(self) -> tuple[Fraction, ...]:
+        """What its conditions at the start may be kept under."""
+        return (self.start,)
+
+
+@dataclass(frozen=True)
+class Instant(Interval):
+    """One instant inside an interval, or at its end: an interval without a length that begins there, on which all goes
+    on as it does `within` that one.  **Valid** for values and slopes; the angles are those of the other."""
+
+    within: Interval
+
+    @classmethod
+    def of(cls, interval: Interval, tau: float) -> "Instant":
+        """The instant `tau` (s) after the interval's start."""
+        return cls(interval.start + Fraction(tau), Fraction(0), *interval.angles, interval)
+
+    @property
+    def key(self) -> tuple[Fraction, ...]:
+        """The same; where an interval ends the next one may begin with a step."""
+        return self.start, self.within.start
+
 
 def constant_and_slope(quantity, interval: Interval) -> tuple[float, float]:
     """Value at the start and slope (per s) over one interval of a number or a `PiecewiseLinear` (which has no kink
     inside the interval), in its own unit."""
     if not isinstance(quantity, PiecewiseLinear):
         return float(quantity), 0.0
+    if isinstance(interval, Instant):
+        value, slope = constant_and_slope(quantity, interval.within)
+        return value + slope * float(interval.start - interval.within.start), slope
     t0, t1 = interval.time, interval.time + interval.length
     # Ask just inside, so that a step at either end counts on the right side.
     inside = t0 + 0.5 * (t1 - t0)

@@ -12,7 +12,7 @@ from . import equations, linearisation, modes
 from .equilibrium import axial_shift
 from .imposed_motion import fluid_conditions
 from .interface import FAST, Interface
-from .intervals import Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
+from .intervals import Instant, Interval, Intervals, constant_and_slope, first_interval, split_at_breaks, time_of_angle
 from .segments import Segment
 from .stick_slip import CAPTURE, FADE, ONSET_SPEED
 from .swept_motion import check_begins, check_covers, sweep_breaks
@@ -94,6 +94,11 @@ class Model:
         speeds, times = (self.scene.shaft.speed, self.scene.stator.speed), sweep_breaks(self.scene)
         return split_at_breaks(duration, *speeds, self._imposed(), times)
 
+    def instant(self, interval: Interval, tau: float) -> Interval:
+        """What stands for the conditions `tau` (s) after an interval's start: itself where nothing changes in it."""
+        moves = any(constant_and_slope(quantity, interval)[1] for quantity in self._imposed() if quantity is not None)
+        return Instant.of(interval, tau) if moves else interval
+
     def time_of(self, turns: float) -> float:
         """Time (s) in which the shaft turns so often.  Raises SceneError if it never does."""
         try:
@@ -146,16 +151,16 @@ class Model:
         return "" if verdict == "stable" else f"the linear steady response is {verdict}"
 
     def _axial_shift(self, interval: Interval) -> tuple[float, bool]:
-        if interval.start not in self._shifts:
-            self._shifts[interval.start] = axial_shift(self, interval)
-        return self._shifts[interval.start]
+        if interval.key not in self._shifts:
+            self._shifts[interval.key] = axial_shift(self, interval)
+        return self._shifts[interval.key]
 
     def linear_scene(self, interval: Interval | None = None, speed: float | None = None, shift: float | None = None):
         """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
         interval = interval or self.start
         if speed is not None:
             return linearisation.linear_scene(self, interval, speed, shift)
-        key = interval.start, self.axial_shift(interval) if shift is None else shift
+        key = interval.key, self.axial_shift(interval) if shift is None else shift
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]
@@ -163,7 +168,7 @@ class Model:
     def still_film(self, interval: Interval, shift: float):
         """Slopes (condensation.py) of a film that is linear in the rates, at an interval's start without mean spin, the
         gap `shift` (m) wider; not to be changed."""
-        key = interval.start, shift
+        key = interval.key, shift
         if key not in self._still_films:
             found = self.interface.slopes(interval, mean_spin=0.0, shift=shift, pace=FAST)
             self._still_films[key] = found

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..numerics.piecewise_linear import crossing
+from ..scene.scene import SceneError
 from .characteristic import roots, slope
 
 # --- Neutral speeds ------------------------------------------------------------------------------------
@@ -204,11 +205,18 @@ HALVINGS = 8
 
 
 def one_by_one(at_speed, direction: float = 1.0):
-    """The function `values` of any scene, from an eigenproblem at each speed: `at_speed(w)` gives its LinearScene;
-    `direction` -1 of a shaft that turns the other way, at speeds -w."""
+    """The function `values` of any scene, from an eigenproblem at each speed: `at_speed(w)` gives its LinearScene, or
+    raises SceneError where there is none, which is a row without a mode; `direction` -1 of a shaft that turns the other
+    way, at speeds -w."""
+
+    def tilts(w):
+        try:
+            return [mode for mode in at_speed(direction * w).modes() if mode.kind == "tilt"]
+        except SceneError:
+            return []
 
     def values(speeds):
-        rows = [[mode for mode in at_speed(direction * w).modes() if mode.kind == "tilt"] for w in speeds]
+        rows = [tilts(w) for w in speeds]
         found = np.full((len(rows), max(map(len, rows), default=0)), np.nan, dtype=complex)
         errors = np.full(found.shape, np.nan)
         against = "backward" if direction > 0.0 else "forward"

@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 
 from ..numerics.hermite import sample
-from ..numerics.quadrature import LOBATTO_ERROR, points
+from ..numerics.quadrature import LOBATTO_ERROR, LOBATTO_ORDER, points
 from .signals import TALLIED, signals
 
 # Harmonics of the fastest motion that are resolved, and the longest panel (rad of it).
@@ -27,7 +27,7 @@ AT_ONCE = 512
 
 def longest_panel(segment) -> float:
     """Longest panel (s) of the quadrature in a segment."""
-    asked = (segment.model.accuracy / (LOBATTO_ERROR * TIMES**6)) ** (1 / 6)
+    asked = (segment.model.accuracy / LOBATTO_ERROR) ** (1 / LOBATTO_ORDER) / TIMES
     return min(asked, LONGEST) / max(2 * math.pi / segment.shortest_period, segment.pace)
 
 

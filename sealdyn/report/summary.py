@@ -226,6 +226,9 @@ def _seal_lines(seals) -> Iterator[Line]:
 def _stability_lines(stability) -> Iterator[Line]:
     """Verdict, whirl ratio and critical speed; resonances and the rest as details."""
     verdict, critical = stability["verdict"], stability["critical_speed"]
+    if verdict is None:
+        yield Line("stability", [("not found", None, "")])
+        return
     fastest = stability["fastest"] or math.inf
     parts = [(f"{verdict} at", stability["speed"], "speed")]
     if stability["whirl_ratio"] is not None:

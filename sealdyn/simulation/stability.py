@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..dynamics import modes, stability_thresholds
+from ..dynamics.intervals import constant_and_slope
 from ..dynamics.linearisation import moves_with_speed, whirl_over_speed
 from ..dynamics.stability_thresholds import neutral_speeds
 from ..scene.contact import waves_of
@@ -20,24 +21,35 @@ AROUND, POINTS, POINTS_KNOWN = 1e3, 160, 32
 STEPS, HALVINGS = 40, 20
 
 
-def stability(model, interval, linear, speeds: bool) -> dict:
+def found_alone(failed: list[str], name: str, find):
+    """What `find()` finds of an extra of a run that has been integrated: None where it cannot be found, and then
+    `failed` has a sentence why."""
+    try:
+        return find()
+    except (SceneError, ArithmeticError, np.linalg.LinAlgError) as error:
+        failed.append(f"{name}: not found: {error}")
+        return None
+
+
+def stability(model, interval, linear, speeds: bool, failed: list[str] | None = None) -> dict:
     """Verdict, whirl ratio of the least damped tilt mode, growth rate and its uncertainty (1/s), speeds of the shaft
     and of the stator (rad/s), `fastest` that any shaft turns such a face (rad/s), and all modes of the scene `linear`,
     linearised at the interval's start; if `speeds` also `critical_speed`, `thresholds` and `resonance_speeds`, None
-    where it takes too long: a film that stores between wavy faces, or over pads."""
+    where it takes too long: a film that stores between wavy faces, or over pads; or where the search has no end, of
+    which `failed` then tells."""
     found = linear.modes()
     speed = linear.rings[ROTOR].spin
-    searched = {}
+    searched, failed = {}, [] if failed is None else failed
     if speeds and model.interface.stores and (waves_of(model.scene) or model.scene.film.pads):
         # Seconds at every speed: each way that the gap may move meets the film in its own way.
         searched = {"speeds_held": None, "critical_speed": None, "thresholds": None, "resonance_speeds": None}
     elif speeds:
-        every = thresholds(model, interval)
+        every = found_alone(failed, "critical speeds", lambda: thresholds(model, interval))
         searched = {
-            "speeds_held": speeds_held(model, interval),
-            "critical_speed": min(every, default=None),
+            "speeds_held": found_alone(failed, "speeds with a film", lambda: speeds_held(model, interval)),
+            "critical_speed": min(every or [], default=None),
             "thresholds": every,
-            "resonance_speeds": resonance_speeds(model, interval),
+            "resonance_speeds": found_alone(failed, "resonance speeds", lambda: resonance_speeds(model, interval)),
         }
     return {
         "verdict": modes.verdict(found),
@@ -53,6 +65,17 @@ def stability(model, interval, linear, speeds: bool) -> dict:
             for m in found
         ],
     }
+
+
+def no_stability(model, interval) -> dict:
+    """The same where it could not be found."""
+    unknown = ("verdict", "whirl_ratio", "speeds_held", "critical_speed", "thresholds", "resonance_speeds",
+               "growth_rate", "growth_rate_uncertainty")  # fmt: skip
+    scene = model.scene
+    speed, stator_speed = (constant_and_slope(ring.speed, interval)[0] for ring in (scene.shaft, scene.stator))
+    return dict.fromkeys(unknown) | {
+        "speed": speed, "stator_speed": stator_speed, "fastest": FASTEST / scene.film.outer_radius, "modes": [],
+    }  # fmt: skip
 
 
 def whirl_ratio(found, speed: float) -> float | None:
@@ -121,14 +144,15 @@ def held_speeds(model, interval, low: float, high: float) -> tuple[float, float]
             return False
 
     def last(end):
-        if held(end):
-            return end
+        # Also on the way to an end that has a film again there may be none.
         inside, outside = own, end
         for speed in np.geomspace(own, end, STEPS)[1:]:
             if not held(speed):
                 outside = speed
                 break
             inside = speed
+        else:
+            return end
         for _ in range(HALVINGS):
             middle = float(np.sqrt(inside * outside))
             inside, outside = (middle, outside) if held(middle) else (inside, middle)

@@ -18,11 +18,10 @@ from ..scene.contact import waves_of
 from ..scene.gas import NORMAL_PRESSURE, NORMAL_TEMPERATURE, density_of, gas_of
 from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
-from ..scene.scene import SceneError
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
 from .plausibility import cautions
-from .stability import stability
+from .stability import found_alone, no_stability, stability
 
 # What ends the growth of the forcing, unless tilts are small no more.
 TOUCHED = "touch"
@@ -51,12 +50,21 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         from ..radial_seals.observers import summary_of
 
         return summary_of(scenario, run, plan, outcome)
-    model, segment = run.model, run.segment(outcome.segment)
-    linear, period = model.linear_scene(segment.interval), run.period(outcome.segment)
+    model, segment, failed = run.model, run.segment(outcome.segment), []
+    # Of the conditions at the end; where these have no film what hangs on it is unknown, and the run is a run.
+    at = model.instant(segment.interval, outcome.tau)
+    linear, period = found_alone(failed, "linear film", lambda: model.linear_scene(at)), run.period(outcome.segment)
     whole = cache(lambda: run.extrema.extremes()[0])
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
-    tilt = cache(lambda: _linear_steady(segment, linear, period))
-    margin = cache(lambda: _contact_margin(segment, linear, tilt()))
+    tilt = cache(lambda: _linear_steady(segment, at, linear, period))
+
+    def extra(name, find, otherwise=None):
+        found = None if linear is None else found_alone(failed, name, find)
+        return otherwise if found is None else found
+
+    margin = cache(
+        lambda: extra("contact margin", lambda: _contact_margin(segment, at, linear, tilt()), (math.nan, None))
+    )
     return {
         "status": outcome.status,
         "message": outcome.message,
@@ -82,16 +90,21 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "max_power": tally.most("friction_power"),
             "temperature_rise": _temperature_rise(model, tally),
         },
-        "contact": _contact(run, tally),
+        "contact": _contact(run, outcome, tally),
         "secondary_seal": _secondary_seal(run),
-        "film": _film(segment, linear, tally),
-        "closing": _closing(segment),
+        "film": _film(model, at, linear, tally, failed),
+        "closing": _closing(model, at),
         "contact_margin": lambda: margin()[0],
         "contact_margin_limit": lambda: margin()[1],
-        "closed_form": lambda: _closed_form(segment, linear, tilt()),
-        "stability": lambda: stability(model, segment.interval, linear, speeds),
+        "closed_form": lambda: extra(
+            "closed form", lambda: _closed_form(segment, at, linear, tilt()), {"road": "none: not found"}
+        ),
+        "stability": lambda: extra(
+            "stability", lambda: stability(model, at, linear, speeds, failed), no_stability(model, at)
+        ),
         "energy_residual": outcome.energy_residual,
-        "warnings": lambda: [caution.sentence for caution in _cautions(scenario, run, outcome, tally)],
+        # Last of what may fail: what has failed is told.
+        "warnings": lambda: [caution.sentence for caution in _cautions(scenario, run, outcome, tally)] + failed,
         "counts": {
             "rhs": outcome.counts.rhs,
             "steps": outcome.counts.steps,
@@ -183,12 +196,13 @@ def _blown_open(model, tally) -> list[Caution]:
     return [Caution(Concern.BLOWN_OPEN, sentence)]
 
 
-def _contact(run, tally):
-    """What the faces did where they touched; None without a [contact] table."""
+def _contact(run, outcome, tally):
+    """What the faces did where they touched, also if they do at the end; None without a [contact] table."""
     model = run.model
     if model.contact is None:
         return None
-    found, level = run.contacts.summary, model.face[TOUCH]
+    found = run.contacts.so_far((run.end_time(outcome.segment, outcome.tau), outcome.y))
+    level = model.face[TOUCH]
 
     def share():
         closing = tally.mean("closing_force")
@@ -269,11 +283,11 @@ def _temperature_rise(model, tally):
     return tally.mean("friction_power") / (density_of(film) * heat * flow) if flow > 0 else math.nan
 
 
-def _film(segment, linear, tally):
-    model, k, d = segment.model, linear.film_k, linear.film_d
-    aligned = cache(lambda: _aligned(segment))
+def _film(model, at, linear, tally, failed):
+    k, d = (np.full((3, 3), np.nan),) * 2 if linear is None else (linear.film_k, linear.film_d)
+    aligned = cache(lambda: found_alone(failed, "aligned film", lambda: _aligned(model, at)) or (math.nan, math.nan))
     return {
-        "clearance": model.clearance + model.axial_shift(segment.interval),
+        "clearance": model.clearance + model.axial_shift(at),
         "leakage": lambda: aligned()[0],
         "friction_power": lambda: aligned()[1],
         "axial_stiffness": k[0, 0],
@@ -281,7 +295,7 @@ def _film(segment, linear, tally):
         "tilt_stiffness": k[1, 1],
         "tilt_damping": d[1, 1],
         "cross_stiffness": k[1, 2],
-        "exit_mach": lambda: _exit_mach(segment),
+        "exit_mach": lambda: found_alone(failed, "exit Mach number", lambda: _exit_mach(model, at)),
         "max_cavitated_fraction": lambda: tally.most("cavitated_fraction"),
         "equilibria": [
             {"clearance": e.clearance, "stiffness": e.stiffness, "stable": e.stable} for e in model.interface.equilibria
@@ -289,36 +303,31 @@ def _film(segment, linear, tally):
     }
 
 
-def _at_rest(segment):
-    """Gap state of the aligned faces where they rest under the conditions at the end of the run."""
-    model = segment.model
-    shift = model.axial_shift(segment.interval)
-    return rest_state(model.scene, model.clearance, segment.interval, shift=shift)[0]
+def _at_rest(model, at):
+    """Gap state of the aligned faces where they rest under the conditions `at` the end of the run."""
+    return rest_state(model.scene, model.clearance, at, shift=model.axial_shift(at))[0]
 
 
-def _aligned(segment):
-    """Leakage (m^3/s, from high to low pressure; as volume of a gas at normal conditions) and friction (W) of these;
-    NaN where there is no flow."""
-    model, s = segment.model, _at_rest(segment)
-    try:
-        flow_at_rest(model.interface, s, model.observed)
-    except SceneError:
-        return math.nan, math.nan
+def _aligned(model, at):
+    """Leakage (m^3/s, from high to low pressure; as volume of a gas at normal conditions) and friction (W) of these.
+    Raises SceneError where there is no flow."""
+    s = _at_rest(model, at)
+    flow_at_rest(model.interface, s, model.observed)
     from_high_to_low = -1.0 if s[OUTER_PRESSURE] >= s[INNER_PRESSURE] else 1.0
     torque = s[TORQUE] + (0.0 if model.contact is None else s[CONTACT_TORQUE])
     return from_high_to_low * s[FLOW_INNER], torque * s[SPIN_DIFFERENCE]
 
 
-def _exit_mach(segment):
+def _exit_mach(model, at):
     """Mach number at which a gas leaves these; None of a film that does not know."""
-    film, f = segment.model.observed
-    return film.exit_mach(f, _at_rest(segment))[1] if film.exit_mach is not None else None
+    film, f = model.observed
+    return film.exit_mach(f, _at_rest(model, at))[1] if film.exit_mach is not None else None
 
 
-def _closing(segment):
-    law, film = segment.model.closing, segment.model.scene.film
-    force, _ = law.over(segment.interval, film)
-    hydraulic = force - _first(law.spring, segment)
+def _closing(model, at):
+    law, film = model.closing, model.scene.film
+    force, _ = law.over(at, film)
+    hydraulic = force - _first(law.spring, at)
     return {
         "force": force,
         "balance_ratio": law.balance_ratio,
@@ -328,33 +337,39 @@ def _closing(segment):
     }
 
 
-def _first(quantity, segment):
-    return constant_and_slope(quantity, segment.interval)[0]
+def _first(quantity, at):
+    return constant_and_slope(quantity, at)[0]
 
 
-def _linear_steady(segment, linear, period):
+def _linear_steady(segment, at, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
     if segment.model.unknowns.faces_tilt or not segment.harmonic:
         return None
-    if period is None and len(rows):
-        frequencies = [w for w in rows[:, 7] if w]
-        if frequencies and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
-            return None
-    return (*steady_extremes(linear, segment.steady_motion()[1], period), period)
+    # Frequencies, of which one may begin at rest, and what changes.
+    if period is None and len(rows) and np.any(rows[:, 7:9]) and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
+        return None
+    return (*steady_extremes(linear, _answers(segment, at, linear), period), period)
 
 
-def _contact_margin(segment, linear, tilt):
+def _answers(segment, at, linear):
+    """Harmonics of the forcing with the linear response to each."""
+    if at is segment.interval:
+        return segment.steady_motion()[1]
+    return [(harmonic, linear.response(harmonic)) for harmonic in segment.harmonics()]
+
+
+def _contact_margin(segment, at, linear, tilt):
     """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
     to the height of the asperities where there are any (0 where they touch without forcing), "small tilts" are over
-    before (SMALL_TILT).  Unknown of wavy faces, of aligned ones that press with a
-    moment, and of a sweep, which is over in the last segment."""
+    before (SMALL_TILT).  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
+    in the last segment."""
     model = segment.model
     if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan, None
     face = model.face
-    inner = model.clearance + model.axial_shift(segment.interval)
-    outer = inner + (face[3] + model.coning_change(segment.interval)) * (face[1] - face[0])
+    inner = model.clearance + model.axial_shift(at)
+    outer = inner + (face[3] + model.coning_change(at)) * (face[1] - face[0])
     height = max(face[TOUCH], 0.0)
     if min(inner, outer) <= height:
         return 0.0, TOUCHED
@@ -363,13 +378,13 @@ def _contact_margin(segment, linear, tilt):
     most, _, closing, _ = tilt
     reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
     margin = min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
-    tilted = modes.tilt_bound(segment.steady_motion()[1])
+    tilted = modes.tilt_bound(_answers(segment, at, linear))
     if tilted > 0.0 and margin > SMALL_TILT / tilted:
         return SMALL_TILT / tilted, "small tilts"
     return margin, TOUCHED if math.isfinite(margin) else None
 
 
-def _closed_form(segment, linear, tilt):
+def _closed_form(segment, at, linear, tilt):
     """Steady state of the linearised film: harmonic balance for any scene; for one flexible ring also the published
     formulas fed with the film's own coefficients."""
     if segment.model.unknowns.faces_tilt:
@@ -390,7 +405,7 @@ def _closed_form(segment, linear, tilt):
     ring = scene.stator if arrangement[0] else scene.rotor
     stiffness, damping = ring.support.tilt()
     numbers = dict(
-        speed=_first(scene.shaft.speed, segment),
+        speed=_first(scene.shaft.speed, at),
         transverse_inertia=ring.transverse_inertia,
         polar_inertia=ring.polar_inertia,
         support_stiffness=stiffness,
@@ -403,14 +418,14 @@ def _closed_form(segment, linear, tilt):
         found["static_transmissibility"] = closed_form.fmr_static(**numbers)
         found["dynamic_transmissibility"] = closed_form.fmr_dynamic(**numbers)
         static, dynamic = (
-            _first(scene.stator.misalignment, segment),
-            _first(scene.rotor.misalignment, segment),
+            _first(scene.stator.misalignment, at),
+            _first(scene.rotor.misalignment, at),
         )
     else:
         found["arrangement"] = "FMS"
         found["static_transmissibility"] = closed_form.fms_static(**numbers)
         found["dynamic_transmissibility"] = closed_form.fms_dynamic(**numbers)
-        static, dynamic = _first(scene.stator.misalignment, segment), _first(scene.rotor.runout, segment)
+        static, dynamic = _first(scene.stator.misalignment, at), _first(scene.rotor.runout, at)
     most, least = closed_form.superposed(
         found["static_transmissibility"] * abs(static), found["dynamic_transmissibility"] * abs(dynamic)
     )
