@@ -35,10 +35,16 @@ def test_a_start_and_a_stop_cost_what_the_same_turns_do(name):
 
 
 def test_a_seal_that_stands_still_gets_to_the_end():
-    """Nothing turns: the slowest decay is the pace."""
-    _, steady = cycle("dry, O-ring", TURNS)
-    still = with_values(steady, {"shaft.speed": 0.0, "run.duration": 0.02})
-    found = simulate_in_memory(still)
+    """Nothing ever turns: the slowest decay is the pace."""
+    _, steady = cycle("liquid, tight O-ring", TURNS)
+    found = simulate_in_memory(with_values(steady, {"shaft.speed": 0.0, "run.duration": 2.0, "run.samples": 100}))
+    assert found["status"] == "ok" and found["counts"]["steps"] < 3000
+
+
+def test_a_ring_that_sticks_after_a_stop_needs_no_steps_for_the_time_it_stands():
+    _, steady = cycle("liquid, tight O-ring", TURNS)
+    stopped = PiecewiseLinear((0.0, 0.02, 60.0), (steady.scene.shaft.speed, 0.0, 0.0))
+    found = simulate_in_memory(with_values(steady, {"shaft.speed": stopped, "run.duration": 60.0, "run.samples": 100}))
     assert found["status"] == "ok" and found["counts"]["steps"] < 3000
 
 
