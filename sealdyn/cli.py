@@ -177,8 +177,7 @@ def run(
             raise not_written(error, out, left["words"]()) from None
     summary = {**result.summary, "figure": None}
     interrupted = result.status == Status.INTERRUPTED
-    complete = f"the run is complete: {result.archive}"
-    leaves(lambda: kept_of_run(result.archive, words) if interrupted else complete)
+    leaves(lambda: kept_of_run(result.archive, words) if interrupted else f"the run is complete: {result.archive}")
     if plot and not interrupted and not interruption.asked:
         summary["figure"] = drawn("charts.overview", result.archive)
     if as_json:
@@ -243,10 +242,12 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
     if scenario.study:
         _refuse_settings(scenario)
     say_compiling()
-    try:
-        found = checked(scenario)
-    except (SceneError, ArchiveError) as error:
-        raise Stop(Status.INVALID, f"{file}: {error}") from None
+    with Progress() as bar:
+        try:
+            found = checked(scenario)
+        except (SceneError, ArchiveError) as error:
+            raise Stop(Status.INVALID, f"{file}: {error}") from None
+        bar(1.0, 1.0, "ready")
     if as_json:
         print(json.dumps(found))
     else:
@@ -451,9 +452,8 @@ def plot(
             name = None
         elif kind not in (None, "overview"):
             _of_a_face_seal(file)
-        place = f"charts.{name}" if name else "panels"
         try:
-            importlib.import_module(f"sealdyn.report.{place}").draw(file, out)
+            importlib.import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
         except OSError as error:
             raise not_written(error, out, "the archive is whole") from None
     print(out)

@@ -8,6 +8,7 @@ import gc
 import json
 import os
 import sys
+from datetime import timedelta
 from pathlib import Path
 from threading import Lock, Timer
 from time import monotonic
@@ -124,12 +125,12 @@ class Progress:
     in a second needs none."""
 
     def __init__(self):
-        self.bar = self.task = None
+        self.bar = self.task = self.listener = None
         self.now = {"completed": 0.0, "total": 1.0, "words": "making ready"}
         # A run that is done once more, sharper or to measure its error, begins again.
         self.runs = 1
-        # Clock (s) and motion (s): two seconds ago or one, and one second ago or less.
-        self.marks = []
+        # Clock (s) and motion (s): two seconds ago or one, and one second ago or less; and when it moved last.
+        self.marks, self.moved = [], monotonic()
         self.lock, self.timer = Lock(), Timer(PATIENCE, self._show)
         self.timer.daemon = True
 
@@ -142,6 +143,8 @@ class Progress:
         with self.lock:
             if self.bar:
                 self.bar.stop()
+            if self.listener:
+                sys.modules["numba.core.event"].unregister("numba:compile", self.listener)
 
     def __call__(self, done: float, end: float, words: str | None = None):
         """`done` of `end`; without `words` both are times (s)."""
@@ -152,6 +155,7 @@ class Progress:
             left = " s: summing up" if done >= end else f" of {end:.4g} s{self._pace(done)}"
             moved = f"t = {done:.4g}{left}"
             words = moved if self.runs == 1 else f"run {self.runs}: {moved}"
+        self.moved = monotonic() if done != self.now["completed"] else self.moved
         self.now = {"completed": done, "total": end, "words": words}
         if self.bar:
             if again:
@@ -177,25 +181,65 @@ class Progress:
         since, was = self.marks[0]
         return f", {(done - was) / (now - since):.2g} s each second" if now > since and done > was else ""
 
+    def remaining(self, task) -> str:
+        """The time that is left, in words: none that has been promised before and is over."""
+        left = task.time_remaining
+        if left is None or monotonic() - self.moved > left + PATIENCE:
+            return "remaining: not known" if not task.finished else ""
+        return f"remaining: {timedelta(seconds=int(left))}"
+
+    def _watch_compiling(self):
+        """Say so while numba compiles a kernel that is not kept on disk yet; one may need another first."""
+        events = sys.modules.get("numba.core.event")
+        if events is None:
+            return
+        watch, begun = self, []
+
+        class Compiling(events.Listener):
+            def on_start(self, event):
+                begun.append(event)
+                watch.bar.update(watch.task, words=watch.now["words"] + ": compiling kernels")
+
+            def on_end(self, event):
+                # What had begun before this looked is not known.
+                del begun[-1:]
+                if not begun:
+                    watch.bar.update(watch.task, words=watch.now["words"])
+
+        self.listener = Compiling()
+        events.register("numba:compile", self.listener)
+
     def _show(self):
-        from rich import progress as rich
         from rich.console import Console
+        from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
+        from rich.text import Text
+
+        watch = self
+
+        class Remaining(ProgressColumn):
+            """The time that is left, as far as it is known."""
+
+            max_refresh = 0.5
+
+            def render(self, task):
+                return Text(watch.remaining(task), style="progress.remaining")
 
         with self.lock:
             if self.timer.finished.is_set():
                 return
-            bar = rich.Progress(
-                rich.TextColumn("{task.fields[words]}"),
-                rich.BarColumn(),
-                rich.TextColumn("{task.percentage:>3.0f}%"),
-                rich.TimeElapsedColumn(),
-                rich.TimeRemainingColumn(),
+            bar = Progress(
+                TextColumn("{task.fields[words]}"),
+                BarColumn(),
+                TextColumn("{task.percentage:>3.0f}%"),
+                TimeElapsedColumn(),
+                Remaining(),
                 console=Console(stderr=True),
                 transient=False,
             )
             self.task = self._line(bar)
             bar.start()
             self.bar = bar
+            self._watch_compiling()
 
 
 def drawn(chart: str, archive: Path) -> str | None:

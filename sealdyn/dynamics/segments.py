@@ -248,7 +248,11 @@ class Segment:
     def longest_step(self) -> float:
         """Longest step (s) a solver may take: short where a stuck ring gives it nothing to do; not past an imposed
         motion unseen, however faint; no longer than its scan can see waves pass; else any."""
-        longest = self.shortest_period / PER_PERIOD if any(held is True for held in self.stuck.values()) else math.inf
+        longest = math.inf
+        if any(held is True for held in self.stuck.values()):
+            # Where nothing turns or shakes, what a stuck ring holds changes as evenly as time goes.
+            still = not self.imposed_pace and not any(any(constant_and_slope(w, self.interval)) for w in self._speeds())
+            longest = max(self.shortest_period, self.length if still else 0.0) / PER_PERIOD
         if self.imposed_pace:
             longest = min(longest, LONGEST / self.imposed_pace)
         return min(longest, longest_scan(self.pace)) if self.model.face[WAVES] else longest

@@ -1,7 +1,9 @@
 """The progress bar: what it says of a run that is done more than once, and of the wait after the last step."""
 
 from pathlib import Path
+from time import sleep
 
+import numba.core.event
 import pytest
 
 from sealdyn.scenario.reader import read_scenario
@@ -16,7 +18,7 @@ def shown():
     bar = Progress()
     bar._show()
     yield bar
-    bar.bar.stop()
+    bar.__exit__()
 
 
 @pytest.mark.core
@@ -29,6 +31,31 @@ def test_a_run_done_again_begins_again(shown):
     # A line of the bar that once was full says "0:00:00 remaining" for ever.
     assert not line.finished and line.time_remaining is None
     assert line.start_time == begun
+
+
+def test_a_bar_that_does_not_know_says_so(shown):
+    """Two points in a second, the third takes minutes: no seconds are promised once these are over."""
+    for done in (0.25, 0.5):
+        shown(done, 1.0, "vibration")
+        sleep(0.02)
+    (line,) = shown.bar.tasks
+    assert any(c.isdigit() for c in shown.remaining(line))
+    shown.moved -= 100.0
+    assert not any(c.isdigit() for c in shown.remaining(line))
+    # What does not move counts as waiting.
+    shown(0.5, 1.0, "vibration")
+    assert not any(c.isdigit() for c in shown.remaining(line))
+
+
+def test_a_wait_for_kernels_is_told(shown):
+    """Also where a bar says what is being done: not the first kernel of a machine, the first of a film."""
+    seen = []
+    with numba.core.event.trigger_event("numba:compile"):
+        with numba.core.event.trigger_event("numba:compile"):
+            pass
+        seen.append(shown.bar.tasks[0].fields["words"])
+    seen.append(shown.bar.tasks[0].fields["words"])
+    assert seen[0] != seen[1] == shown.now["words"] and seen[0].startswith(seen[1])
 
 
 def test_a_study_says_its_name_and_no_points_that_there_are_none(tmp_path):
