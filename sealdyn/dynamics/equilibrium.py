@@ -104,7 +104,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, *surfaces)
     stable = [root for root in roots if root.stable]
     if not stable:
-        raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots))
+        raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots, bool(scene.contact)))
     said = f"{len(roots)} equilibrium clearance(s) found, {len(stable)} stable"
     if len(stable) > 1:
         said += "; the run starts at the widest stable one"
@@ -210,13 +210,15 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     return 0.0, False
 
 
-def _no_equilibrium(film, opening_force, law, inner, outer, roots):
+def _no_equilibrium(film, opening_force, law, inner, outer, roots, asperities):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(extent(film)[0], 1e-6)
     tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
     rounding = 1e-9 * abs(wide)
     if tight - wide > rounding:
         expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"
+        if closing > tight and not asperities:
+            expected += "; beyond that a seal rides on its asperities, which a table [contact] counts"
     elif inner == outer:
         expected = "a difference of the pressures, of which this film would carry more as it closes"
     else:

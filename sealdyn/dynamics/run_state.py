@@ -9,6 +9,7 @@ import numpy as np
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
 from ..faces.waviness import highest_orders
+from ..scene.contact import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
 from .contact_events import ContactEvents
@@ -151,11 +152,12 @@ class RunState:
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
             begun = self.start and self.start.taken == "steady"
-            other = "" if begun or self.model.no_steady_response() else ', or run.start = "steady"'
+            none = begun or self.model.no_steady_response() or self.start_film(self.steady_start()) <= floor
+            other = "" if none else ', or run.start = "steady"'
             raise FilmClosed(
                 "film.clearance",
-                f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
-                f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance{other}",
+                f"a film closed at the start ({film_in_words(low)})",
+                f"a film above {limit_in_words(floor)}: less tilt or waviness, more clearance{other}",
             )
 
     def check_loads(self):

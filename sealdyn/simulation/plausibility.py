@@ -90,7 +90,8 @@ def _units(scenario, model):
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
-        sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
+        why = "a length without a unit is in metres, and" if "film.clearance" in scenario.bare else "is that possible?"
+        sentence = f"{apart}: {why} no film seals at this distance"
         yield Caution(Concern.UNITS, sentence)
 
 
