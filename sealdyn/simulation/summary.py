@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import closed_form
 from ..dynamics import modes
+from ..dynamics.equilibrium import resolved_matrices
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.interface import flow_at_rest, rest_state
 from ..dynamics.intervals import constant_and_slope
@@ -273,7 +274,9 @@ def _temperature_rise(model, tally):
 
 
 def _film(segment, linear, tally):
-    model, k, d = segment.model, linear.film_k, linear.film_d
+    model = segment.model
+    closing, radius = model.closing.over(segment.interval, model.scene.film)[0], model.scene.film.outer_radius
+    k, d = resolved_matrices(linear.film_k, linear.film_d, closing, model.clearance, radius)
     aligned = cache(lambda: _aligned(segment))
     return {
         "clearance": model.clearance + model.axial_shift(segment.interval),
