@@ -107,6 +107,12 @@ QUANTITIES = {
 }
 
 
+def resolved(value: float, uncertainty: float) -> float:
+    """A number, or 0 where it is not above its own uncertainty: what is left of rounding tells nothing, nor its
+    sign."""
+    return 0.0 if abs(value) <= uncertainty else value
+
+
 def quantity(name: str) -> Quantity:
     """The quantity of a name, or one that an SI unit names ("N/m")."""
     return QUANTITIES.get(name) or Quantity(name or "1")

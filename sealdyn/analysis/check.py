@@ -16,8 +16,8 @@ def checked(scenario: Scenario) -> dict:
     """The answer of `sealdyn check --json`, SI.  Raises SceneError and ArchiveError of a run that cannot be made
     ready."""
     found = {"status": Status.OK, "message": "the scene is possible", "scene": scenario.resolved()}
-    size = size_of(scenario)
     run, plan = prepare_run(scenario)
+    size = size_of(scenario, plan.count)
     if isinstance(scenario.scene, RadialScene):
         followers = run.model.followers
         return found | {

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics.equilibrium import axial_excess, crossing
+from ..dynamics.equilibrium import ROUNDING, axial_excess, crossing, resolved_matrices
 from ..dynamics.imposed_motion import set_conditions
 from ..dynamics.model import Model
 from ..faces.film_thickness import h_min
@@ -20,6 +20,7 @@ from ..faces.geometry import (
     MEAN_SPIN,
     SPIN_DIFFERENCE,
 )
+from ..quantities import resolved
 
 # Rows and columns of the matrices.
 ORDER = ("axial", "tilt_x", "tilt_y")
@@ -49,7 +50,8 @@ def matrices(
     length = STEP * min(model.clearance, max(thinnest, model.face[FLOOR]))
     tilt = length / model.face[1]
     pace = max(abs(s[MEAN_SPIN]), 1.0)
-    return model.interface.about(s, (length, tilt, length * pace, tilt * pace), omega)
+    found = model.interface.about(s, (length, tilt, length * pace, tilt * pace), omega)
+    return resolved_matrices(*found, model.closing_force(), thinnest, model.face[1])
 
 
 def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndarray:
@@ -67,7 +69,10 @@ def gap_state(model: Model, state: State, speed: float | None = None) -> np.ndar
 def opened(model: Model, tilt: complex, whirl: float) -> float:
     """Axial opening (m) at which film, closing force and supports balance with the faces tilted."""
     s = gap_state(model, State(0.0, tilt, whirl))
-    thinnest, excess = h_min(model.face, s)[0], axial_excess(model, s, model.closing_force())
+    closing = model.closing_force()
+    thinnest, excess = h_min(model.face, s)[0], axial_excess(model, s, closing)
+    if resolved(excess(0.0), ROUNDING * closing) == 0.0:
+        return 0.0
     # From faces that all but touch, or rough ones whose asperities are all but flat, upwards.
     closed = model.face[COLLAPSE] + 0.01 * model.face[FLOOR]
     low, reach = closed - thinnest, model.clearance

@@ -14,6 +14,7 @@ from ..faces.geometry import (
     SPIN_DIFFERENCE,
 )
 from ..numerics.piecewise_linear import PiecewiseLinear, initially
+from ..quantities import resolved
 from ..scene.contact import contact_thresholds, waves_of
 from ..scene.film import aligned_gaps, coned
 from ..scene.scene import Scene, SceneError
@@ -22,6 +23,7 @@ from .intervals import Interval, constant_and_slope, spins
 
 POINTS = 600
 STEP = 1e-3  # of a difference, in clearances
+ROUNDING = 64 * np.finfo(float).eps  # of forces, of which many terms are the sum
 WIDEST = 1e3  # the search runs from the reference clearance over and under this factor
 
 
@@ -104,7 +106,7 @@ def settle(scene: Scene, opening_force) -> tuple[float, ClosingForce, list[Equil
     roots = equilibria(film, opening_force, law.at(inner, outer, initially(spring)), inner, outer, *surfaces)
     stable = [root for root in roots if root.stable]
     if not stable:
-        raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots))
+        raise SceneError(*_no_equilibrium(film, opening_force, law, inner, outer, roots, bool(scene.contact)))
     said = f"{len(roots)} equilibrium clearance(s) found, {len(stable)} stable"
     if len(stable) > 1:
         said += "; the run starts at the widest stable one"
@@ -148,7 +150,17 @@ def film_stiffness(opening_force, clearance, inner, outer, step) -> float:
     """Axial film stiffness -dF/dC (N/m) at a `clearance` (m), pressures (Pa): fourth-order central difference of this
     step (m)."""
     f = [opening_force(clearance + k * step, inner, outer) for k in (-2, -1, 1, 2)]
-    return float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
+    found = float(-(f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * step))
+    return resolved(found, ROUNDING * max(map(abs, f)) / step)
+
+
+def resolved_matrices(stiffness, damping, force: float, clearance: float, radius: float):
+    """Stiffness and damping matrices (3, 3) of a film on (dz, g_x, g_y) without what is left of rounding: of its
+    `force` (N) and of moments with an arm `radius` (m), differences in a `clearance` (m); of damping beside its
+    diagonal."""
+    arms, own = np.array([1.0, radius, radius]), np.sqrt(np.abs(np.diagonal(damping)))
+    bounds = ROUNDING * abs(force) / (STEP * clearance) * np.outer(arms, arms), ROUNDING / STEP * np.outer(own, own)
+    return tuple(np.where(np.abs(m) <= least, 0.0, m) for m, least in zip((stiffness, damping), bounds, strict=True))
 
 
 def crossing(excess, low: float, high: float) -> float:
@@ -210,13 +222,15 @@ def axial_shift(model, interval: Interval, speed: float | None = None) -> tuple[
     return 0.0, False
 
 
-def _no_equilibrium(film, opening_force, law, inner, outer, roots):
+def _no_equilibrium(film, opening_force, law, inner, outer, roots, asperities):
     closing = law.at(inner, outer, initially(law.spring))
     reference = max(extent(film)[0], 1e-6)
     tight, wide = (opening_force(c, inner, outer) for c in (reference / 100, reference * 100))
     rounding = 1e-9 * abs(wide)
     if tight - wide > rounding:
         expected = f"between {wide:.4g} N, which this film carries wide open, and {tight:.4g} N, nearly closed"
+        if closing > tight and not asperities:
+            expected += "; beyond that a seal rides on its asperities, which a table [contact] counts"
     elif inner == outer:
         expected = "a difference of the pressures, of which this film would carry more as it closes"
     else:

@@ -14,6 +14,7 @@ from ..faces.geometry import COLLAPSE, GX, GY, INNER_RADIUS, OUTER_RADIUS, TOUCH
 from ..faces.waviness import highest_orders
 from ..numerics.hermite import NODES, fit, value
 from ..numerics.kernel import inner_kernel, outer_kernel
+from ..scene.contact import film_in_words, limit_in_words
 from ..solvers.contract import Cause, Stop
 from .equations import LEG_AT, kinematics
 from .imposed_motion import coning_at
@@ -417,14 +418,13 @@ class ExtremaTracker:
     def _collapse_message(self, tau: float) -> str:
         """When, where, and what to try."""
         record, face = self.records[0], self.model.face
-        limit = "floor" if self.model.contact is None else "all flat at"
         other = "" if self.steady or self.model.no_steady_response() else ', run.start = "steady"'
         at = "at the {} radius".format("inner" if record[H_RADIUS] == face[INNER_RADIUS] else "outer")
         if record[H_RADIUS] not in face[[INNER_RADIUS, OUTER_RADIUS]]:
             at = "at the radius"
         return (
-            f"{self._cause()} at t = {self.segment.time + tau:.6g} s: thickness {record[H] * 1e6:.3g} um "
-            f"({limit} {face[COLLAPSE] * 1e6:.3g} um) {at} {record[H_RADIUS] * 1e3:.4g} mm, "
+            f"{self._cause()} at t = {self.segment.time + tau:.6g} s: {film_in_words(record[H])} "
+            f"({limit_in_words(face[COLLAPSE])}) {at} {record[H_RADIUS] * 1e3:.4g} mm, "
             f"theta = {math.degrees(record[H_THETA]):.1f} deg.  Try less misalignment or runout, more coning or "
             f"clearance, a stiffer or more damped support{other}."
         )

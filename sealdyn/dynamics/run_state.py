@@ -8,6 +8,8 @@ import numpy as np
 
 from ..faces.film_thickness import h_min
 from ..faces.geometry import COLLAPSE
+from ..faces.waviness import highest_orders
+from ..scene.contact import film_in_words, limit_in_words
 from ..scene.scene import SceneError
 from ..scene.sweep import end
 from .contact_events import ContactEvents
@@ -117,16 +119,17 @@ class RunState:
             self.extrema.windows[1:] = [[end - period, end], [end - 2 * period, end - period]]
 
     def fastest_forcing(self) -> float:
-        """Highest angular frequency (rad/s) imposed at any interval's start or end; where anything is imposed the shaft
-        speed counts, where nothing is it is 0."""
-        scene, fastest = self.model.scene, 0.0
+        """Highest angular frequency (rad/s) imposed at any interval's start or end, waves as they pass the other face
+        among it; where anything is imposed the shaft speed counts, where nothing is it is 0."""
+        scene, fastest, waves = self.model.scene, 0.0, max(highest_orders(self.model.face))
         for interval in self.intervals.few:
             rows = harmonics_of_segment(scene.shaft, scene.housing, scene.rotor, scene.stator, interval)
             for row in rows:
                 fastest = max(fastest, abs(row[7]), abs(row[7] + 2 * row[8] * interval.length))
-            if len(rows):
-                speed, slope = constant_and_slope(scene.shaft.speed, interval)
-                fastest = max(fastest, abs(speed), abs(speed + slope * interval.length))
+            spins = (constant_and_slope(ring.speed, interval) for ring in (scene.shaft, scene.stator))
+            shaft, stator = (np.array([spin, spin + slope * interval.length]) for spin, slope in spins)
+            passing = [waves * abs(shaft - stator), abs(shaft) * bool(len(rows))]
+            fastest = max(fastest, float(np.max(passing)))
             fastest = max(fastest, fastest_sweep(sweeps_of_segment(scene, interval), interval.length))
         return max([fastest, *(sampled.rate for sampled in motions(scene).values())])
 
@@ -150,11 +153,12 @@ class RunState:
         low, floor = self.start_film(), self.model.face[COLLAPSE]
         if low <= floor:
             begun = self.start and self.start.taken == "steady"
-            other = "" if begun or self.model.no_steady_response() else ', or run.start = "steady"'
+            none = begun or self.model.no_steady_response() or self.start_film(self.steady_start()) <= floor
+            other = "" if none else ', or run.start = "steady"'
             raise FilmClosed(
                 "film.clearance",
-                f"a film closed at the start (thinnest {low * 1e6:.4g} um)",
-                f"more than the floor, {floor * 1e6:.3g} um: less tilt or waviness, more clearance{other}",
+                f"a film closed at the start ({film_in_words(low)})",
+                f"a film above {limit_in_words(floor)}: less tilt or waviness, more clearance{other}",
             )
 
     def check_loads(self):

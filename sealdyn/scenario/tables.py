@@ -45,10 +45,10 @@ BESIDE_THE_RUN = ("study", "application", "schema")
 class Run:
     """The `[run]` table: how long, how often sampled, how exact, by which method, from which start.
 
-    `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` (default 64; of a shaft at rest: 1000 in
-    all) or `samples` in all.  `start` "auto": on the linear steady response where that is stable and leaves the film
-    open; at rest with `[initial]`, and, unless the faces would overlap there, with contact, a secondary seal, a film
-    with unknowns of its own, or tables.
+    `turns` of the shaft (default 60) or `duration` (s); `samples_per_turn` or `samples` in all (default 64 a turn, of a
+    shaft at rest 1000 in all, and 8 a period of the fastest motion that is imposed).  `start` "auto": on the linear
+    steady response where that is stable and leaves the film open; at rest with `[initial]`, and, unless the faces would
+    overlap there, with contact, a secondary seal, a film with unknowns of its own, or tables.
     """
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
@@ -58,7 +58,8 @@ class Run:
     duration: Time | None = None
     """In place of `turns`."""
     samples_per_turn: Annotated[int, Field(gt=0)] | None = None
-    """Of the archive (64 without `samples`; 1000 in all if the shaft stands)."""
+    """Of the archive; without it or `samples` 64 (1000 in all if the shaft stands), or 8 a period of what is imposed
+    fastest: tones, a sweep's end, waves as they pass."""
     samples: Annotated[int, Field(gt=0)] | None = None
     """In all, in place of `samples_per_turn`."""
     accuracy: Annotated[float, Field(gt=1e-13, le=1e-1)] = 1e-6
@@ -319,8 +320,6 @@ def _run_and_study(raw: dict, name: str) -> Iterator[ScenarioError]:
             yield ScenarioError(name, f"run.{one}", f"{one} and {other}", "one of the two")
     if "duration" not in run:
         run.setdefault("turns", 60)
-    if "samples" not in run:
-        run.setdefault("samples_per_turn", 64)
 
 
 def _turns(speed) -> bool:

@@ -5,7 +5,7 @@ import math
 
 from ..numerics.piecewise_linear import PiecewiseLinear, initially, points
 from ..units import Temperature, Viscosity
-from .contact import contact_errors, contact_thresholds, waves_of, waviness_errors
+from .contact import contact_errors, contact_thresholds, film_in_words, limit_in_words, waves_of, waviness_errors
 from .excitation import motion_errors, random_errors
 from .film import aligned_gaps, coned, follows_speed, pads_errors, profile_errors, reynolds_errors
 from .gas import GASES, gas_of
@@ -298,11 +298,10 @@ def _open_at_start(scene) -> None:
         where = {film.inner_radius: "the inner radius", film.outer_radius: "the outer radius"}
         raise SceneError(
             blame,
-            f"a film closed at the start ({thinnest:g} m at {where.get(radius, f'r = {radius:g} m')}, "
+            f"a film closed at the start ({film_in_words(thinnest)} at {where.get(radius, f'r = {radius:g} m')}, "
             f"relative misalignment {tilt:g} rad)",
-            f"more than floor x clearance = {lowest:g} m" if scene.contact is None
-            else f"more than {lowest:g} m, where all asperities are flat",
-        )  # fmt: skip
+            f"a film above {limit_in_words(lowest)}",
+        )
 
 
 def _start(ring) -> tuple[float, complex]:

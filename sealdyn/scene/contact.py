@@ -146,6 +146,19 @@ def contact_thresholds(contact: Contact) -> tuple[float, float, float]:
     return 0.6 * c, c if contact.law == "christensen" else REACH * contact.roughness, -c
 
 
+def film_in_words(thickness: float) -> str:
+    """A film thickness (m); below none the faces, as their mean planes lie, overlap."""
+    return f"thinnest {thickness * 1e6:.4g} um" if thickness >= 0.0 else f"faces overlap by {-thickness * 1e6:.4g} um"
+
+
+def limit_in_words(lowest: float) -> str:
+    """The film (m) at which a run ends: a floor above 0, or where rough faces overlap until their asperities are
+    flat."""
+    if lowest >= 0.0:
+        return f"the floor, {lowest * 1e6:.3g} um"
+    return f"all asperities flat, which overlap by {-lowest * 1e6:.3g} um then"
+
+
 def touch_height(scene) -> float:
     """Film thickness h (m) at which the first asperities of a scene's faces meet; 0 for smooth faces."""
     return contact_thresholds(scene.contact)[1] if scene.contact else 0.0

@@ -90,7 +90,8 @@ def _units(scenario, model):
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
     if model.clearance > WIDE:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
-        sentence = f"{apart}: a length without a unit is in metres, and no film seals at this distance"
+        why = "a length without a unit is in metres, and" if "film.clearance" in scenario.bare else "is that possible?"
+        sentence = f"{apart}: {why} no film seals at this distance"
         yield Caution(Concern.UNITS, sentence)
 
 
@@ -329,6 +330,8 @@ def _value_at(scene, key: str) -> float | None:
     return None if scene is None else initially(scene)
 
 
+# Samples of a turn, unless told or the forcing is fast.
+PER_TURN = 64
 # Bytes of a row of an archive; seconds of a turn that nothing undercuts (the reference seal at a loose accuracy).
 ROW, TURN = 300, 2e-4
 # Above these a run asks first: bytes of the archive, seconds.
@@ -366,8 +369,8 @@ class Size:
         )
 
 
-def size_of(scenario: Scenario) -> Size:
-    """What a run of a scenario takes; instant, whatever its numbers."""
+def size_of(scenario: Scenario, rows: int | None = None) -> Size:
+    """What a run of a scenario takes, of so many `rows` where they are known; instant, whatever its numbers."""
     shaft = largest_value(scenario.scene.shaft.speed)
     # A radial seal has no ring that turns beside the shaft.
     stator = largest_value(scenario.scene.stator.speed) if not isinstance(scenario.scene, RadialScene) else 0.0
@@ -375,16 +378,17 @@ def size_of(scenario: Scenario) -> Size:
     turns = settings.turns
     if turns is None:
         turns = settings.duration * max(shaft, stator) / (2 * math.pi)
-    rows = settings.samples
+    rows = rows or settings.samples
     if rows is None:
-        rows = 1000 if shaft == 0.0 else turns * settings.samples_per_turn
+        rows = 1000 if shaft == 0.0 else turns * (settings.samples_per_turn or PER_TURN)
     # Integers of any length.
     return Size(float(turns), float(min(rows, 10**300)))
 
 
-def refuse_large(scenario: Scenario, allowed: bool = False) -> None:
-    """Raises SceneError for a run beyond any machine, and for a large one that is not `allowed`."""
-    size, settings = size_of(scenario), scenario.run
+def refuse_large(scenario: Scenario, allowed: bool = False, rows: int | None = None) -> None:
+    """Raises SceneError for a run beyond any machine, and for a large one that is not `allowed`; `rows` as of
+    `size_of`."""
+    size, settings = size_of(scenario, rows), scenario.run
     if size.possible and (allowed or (size.bytes <= LARGE and size.seconds <= LONG)):
         return
     if size.rows > size.turns and (not size.possible or size.bytes > LARGE):

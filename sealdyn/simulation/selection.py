@@ -20,11 +20,13 @@ from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..solvers.contract import attainable
 from .film_error import model_error
-from .plausibility import refuse_large, unit_warnings
+from .plausibility import PER_TURN, refuse_large, unit_warnings
 
 # Ratio of the fastest decay to the fastest motion of interest above which an explicit-like method crawls; the same of a
 # radial seal's followers.
 STIFF, STIFF_FOLLOWER = 60.0, 50.0
+# Samples of a period of the fastest forcing, unless told.
+PER_PERIOD_OF_FORCING = 8
 STABLE = "on the linear steady response, which is stable"
 
 
@@ -63,7 +65,9 @@ def prepare_run(scenario: Scenario, allow_large: bool = True) -> tuple[RunState,
     radial = isinstance(scenario.scene, RadialScene)
     try:
         refuse_large(scenario, allow_large)
-        return _prepared_radial(scenario) if radial else _prepared(scenario)
+        run, plan = _prepared_radial(scenario) if radial else _prepared(scenario)
+        refuse_large(scenario, allow_large, plan.count)
+        return run, plan
     except SceneError as error:
         if radial or not (meant := unit_warnings(scenario)):
             raise
@@ -81,7 +85,8 @@ def _prepared(scenario):
         set_start(run, scenario.scene, chosen[0])
 
     run, film_error = select_film(scenario.scene, settings, begin)
-    interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings)
+    fastest = run.fastest_forcing()
+    interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings, fastest)
     run.check_loads()
     method, why = settings.solver, "asked for"
     if method != "auto":
@@ -96,7 +101,6 @@ def _prepared(scenario):
         sentence = "stability and stiffness are of aligned faces, from which waves or pads turn the rings"
         run.cautions.append(Caution(Concern.ALIGNED, sentence))
     run.watch_last_periods()
-    fastest = run.fastest_forcing()
     if fastest * interval > math.pi:
         frequency = fastest / (2 * math.pi)
         sentence = (
@@ -134,18 +138,22 @@ def _prepared_radial(scenario):
     return run, Plan("", method, None, run.start, why, interval, count, last=True)
 
 
-def sampling(duration: float, fastest: float, settings: Run) -> tuple[float, int]:
+def sampling(duration: float, fastest: float, settings: Run, forcing: float = 0.0) -> tuple[float, int]:
     """Sample interval (s) and number of intervals of a run of `duration` (s), its shaft turning at `fastest` (rad/s) at
-    most; `settings` as the `[run]` table."""
+    most, its forcing at `forcing` (rad/s); `settings` as the `[run]` table."""
     if settings.samples is not None:
         return duration / settings.samples, settings.samples
     if fastest == 0.0:
-        return duration / 1000, 1000
-    count = max(1, round(duration * fastest / (2 * math.pi) * settings.samples_per_turn))
-    exact = duration * fastest / (2 * math.pi) * settings.samples_per_turn
+        count = max(1000, math.ceil(PER_PERIOD_OF_FORCING * duration * forcing / (2 * math.pi)))
+        return duration / count, count
+    per_turn = settings.samples_per_turn
+    if per_turn is None:
+        per_turn = max(PER_TURN, math.ceil(PER_PERIOD_OF_FORCING * forcing / fastest * (1.0 - 1e-12)))
+    exact = duration * fastest / (2 * math.pi) * per_turn
+    count = max(1, round(exact))
     if abs(exact - count) < 1e-6 * count:
         return duration / count, count
-    interval = 2 * math.pi / fastest / settings.samples_per_turn
+    interval = 2 * math.pi / fastest / per_turn
     return interval, int(duration / interval)
 
 

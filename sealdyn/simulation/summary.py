@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import closed_form
 from ..dynamics import modes
+from ..dynamics.equilibrium import resolved_matrices
 from ..dynamics.extrema import H_LEG, H_RADIUS, H_TAU, H_THETA, LEAST, MOST, H
 from ..dynamics.interface import flow_at_rest, rest_state
 from ..dynamics.intervals import constant_and_slope
@@ -284,7 +285,10 @@ def _temperature_rise(model, tally):
 
 
 def _film(model, at, linear, tally, failed):
-    k, d = (np.full((3, 3), np.nan),) * 2 if linear is None else (linear.film_k, linear.film_d)
+    closing, radius = model.closing.over(at, model.scene.film)[0], model.scene.film.outer_radius
+    unknown = np.full((3, 3), np.nan)
+    k, d = (unknown, unknown) if linear is None else (linear.film_k, linear.film_d)
+    k, d = resolved_matrices(k, d, closing, model.clearance, radius)
     aligned = cache(lambda: found_alone(failed, "aligned film", lambda: _aligned(model, at)) or (math.nan, math.nan))
     return {
         "clearance": model.clearance + model.axial_shift(at),

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..answers import Answer, Axis, Level, Panel, Series, Table
 from ..dynamics.equilibrium import (
+    ROUNDING,
     ClosingForce,
     crossing,
     equilibria,
@@ -19,7 +20,7 @@ from ..dynamics.equilibrium import (
 from ..dynamics.interface import Interface, flow_at_rest, opening_parts, rest_state
 from ..faces.geometry import CAVITATED, CONTACT_PRESSURE, CONTACT_TORQUE, FLOW_INNER, SPIN_DIFFERENCE, TORQUE, WEAR
 from ..numerics.piecewise_linear import initially
-from ..quantities import in_words
+from ..quantities import in_words, resolved
 from ..scene.contact import waves_of
 from ..scene.film import coned
 from ..scene.gas import density_of
@@ -146,9 +147,9 @@ def root_row(scene, root, found: Found, friction=0.0) -> dict:
     """A root with what carries the closing force there, and the clearances (m) at which `friction` (N) holds a ring."""
     film, rough = (float(force) for force in found.opening(root.clearance, *found.pressures))
     ambient = min(found.pressures) * found.law.area
-    carried = film + rough - ambient
+    carried, by_film = film + rough - ambient, resolved(film - ambient, ROUNDING * (abs(film) + abs(ambient)))
     row = {**vars(root), "stable": bool(root.stable), "film_force": film, "contact_force": rough,
-           "load_support": (film - ambient) / carried if carried else None}  # fmt: skip
+           "load_support": by_film / carried if carried else None}  # fmt: skip
     row |= _flows(scene, root.clearance, carried)
     if friction:
         row["held"] = _held(root, lambda c: sum(found.opening(c, *found.pressures)) - film - rough, friction)

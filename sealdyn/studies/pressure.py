@@ -24,7 +24,7 @@ from ..faces.geometry import (
     REFUSED,
 )
 from ..numerics.piecewise_linear import crossing
-from ..quantities import in_words, number, shown_in
+from ..quantities import in_words, number, resolved, shown_in
 from ..scenario.errors import ScenarioError, nearest_of
 from ..scenario.overrides import value_of
 from ..scene.gas import density_of
@@ -128,7 +128,7 @@ def _at(scenario, place) -> tuple[dict, str]:
         "tilt": float(tilt),
         "h_min": {"value": float(thinnest), "theta": float(angle % (2 * math.pi)), "radius": float(radius)},
         "force": float(s[FORCE]),
-        "gauge_force": gauge if abs(gauge) > EXACT * abs(s[FORCE]) else 0.0,
+        "gauge_force": resolved(gauge, EXACT * abs(s[FORCE])),
         "contact_force": _contact_force(interface, s),
         "moment": [float(s[MOMENT_X]) + 0.0, float(s[MOMENT_Y]) + 0.0],
         "centre_of_pressure": None,

@@ -9,7 +9,9 @@ from oracles import opening_force
 from scenes import CLEARANCE, R_I, R_O, SUPPORT, film, fmr, fms, fmsr, run, started
 
 from sealdyn.analysis.continuation import frozen_at_end
+from sealdyn.analysis.film_matrices import State, matrices, opened
 from sealdyn.dynamics.equilibrium import axial_excess, equilibria, settle, support_stiffness
+from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import FLOOR
 from sealdyn.numerics.piecewise_linear import PiecewiseLinear
 from sealdyn.scenario.reader import read_scenario
@@ -159,6 +161,8 @@ def test_too_much_or_too_little_closing_has_no_equilibrium(balance):
     least, most = (float(word) for word in raised.value.expected.split() if word.replace(".", "").isdigit())
     assert least == pytest.approx(min(opening(25e-6 / 100), opening(25e-6 * 100)), rel=1e-3)
     assert most == pytest.approx(max(opening(25e-6 / 100), opening(25e-6 * 100)), rel=1e-3)
+    # What the film cannot carry, asperities do.
+    assert ("[contact]" in raised.value.expected) == (balance > 1.0)
 
 
 def test_a_diverging_film_has_only_an_unstable_one():
@@ -234,6 +238,16 @@ def test_the_excess_of_opening_force_is_zero_where_the_loads_move_the_gap():
     assert abs(axial_excess(model, s, model.closing_force())(0.0)) < 1e-9 * model.closing_force()
     heavier = axial_excess(model, s, 1.02 * model.closing_force())
     assert heavier(0.0) < 0 < heavier(-0.5 * CLEARANCE)
+
+
+@pytest.mark.parametrize("name", ["radial", "profiled"])
+def test_what_is_left_of_rounding_is_no_stiffness(name):
+    """Parallel faces carry the same at every clearance; a coning of a thousandth of it is not rounding."""
+    for coning, stiff in ((0.0, False), (1e-6 * CLEARANCE / (R_O - R_I), True)):
+        model = Model(scene(coning=coning, model=name, clearance=CLEARANCE))
+        found = [model.interface.equilibria[0].stiffness, matrices(model, State())[0][0, 0]]
+        assert [value != 0.0 for value in found] == [stiff] * 2
+    assert opened(model, 0.0, 0.0) == 0.0
 
 
 def test_a_force_that_is_no_number_balances_nothing():

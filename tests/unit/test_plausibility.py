@@ -110,6 +110,10 @@ def test_a_film_below_its_vapour_pressure():
     assert numbers(tilted[Concern.FLASHING][0])[0] < 90
 
 
+# A fluid that fills a metre calmly.
+THICK = ["film.coning=0", "film.outer_pressure=0.001 Pa", "film.viscosity=1e6 Pa*s"]
+
+
 def test_numbers_without_units():
     (sentence,) = cautions("shaft.speed=100")[Concern.UNITS]
     assert numbers(sentence)[:2] == [100, pytest.approx(954.93)]
@@ -118,8 +122,11 @@ def test_numbers_without_units():
     ]
     # A sweep gives SI numbers: nobody wrote these.
     assert cautions(change={"shaft.speed": 50.0}) == {}
-    far = cautions("film.clearance=1", "film.coning=0", "film.outer_pressure=0.001 Pa", "film.viscosity=1e6 Pa*s")
-    assert any("metres" in sentence for sentence in far[Concern.UNITS])
+    far = cautions("film.clearance=1", *THICK)
+    written = cautions("film.clearance=1000 mm", *THICK)
+    # Nobody forgot a unit that was written.
+    told = [[("metres" in sentence, numbers(sentence)[0]) for sentence in c[Concern.UNITS]] for c in (far, written)]
+    assert (True, 1000) in told[0] and told[1] == [(False, 1000)]
 
 
 @pytest.mark.parametrize(

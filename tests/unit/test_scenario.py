@@ -53,7 +53,7 @@ def test_reference_in_si():
 def test_defaults_of_the_run():
     text = FMR.split("[run]")[0]
     run = parse(text).run
-    assert (run.turns, run.duration, run.samples_per_turn, run.samples) == (60, None, 64, None)
+    assert (run.turns, run.duration, run.samples_per_turn, run.samples) == (60, None, None, None)
     run = parse(text + '[run]\nduration = "1 s"\nsamples = 10').run
     assert (run.turns, run.duration, run.samples_per_turn, run.samples) == (None, 1.0, None, 10)
 

@@ -84,8 +84,10 @@ def test_faces_that_would_overlap_at_rest_start_on_the_response(overrides):
 @pytest.mark.parametrize("overrides", [["initial.stator.z='1 nm'"], ["shaft.speed='2e6 rpm'"]])
 def test_where_there_is_no_response_overlapping_faces_are_refused(overrides):
     """The start was given; the seal is unstable."""
-    with pytest.raises(ValueError, match="closed at the start"):
+    with pytest.raises(ValueError, match="closed at the start") as told:
         prepare_run(parse_scenario(PUMP, "pump", [*CONTACT, *overrides]))
+    # No number of it is a negative thickness, and no start is advised that is none.
+    assert not re.search(r"-\d", str(told.value)) and "run.start" not in str(told.value)
 
 
 def test_a_response_that_closes_the_film_is_no_start():

@@ -292,6 +292,25 @@ def test_coarse_samples_are_told():
         assert any(caution.concern is Concern.ALIASING for caution in ready.cautions) == warned
 
 
+@pytest.mark.parametrize(
+    "moved, frequency",
+    [
+        ('[[housing.axial]]\nfrequency = "5.4 kHz"\ndisplacement = "0.1 um"', 5400.0),
+        (SHORT, 2000.0),
+        # Passing at the shaft's speed.
+        ('[[rotor.waviness]]\norder = 20\namplitude = "0.1 um"', 20 * 1000.0 / (2 * math.pi)),
+        ("", None),
+    ],
+)
+def test_samples_follow_what_is_known_to_be_fastest(moved, frequency):
+    text = re.sub("samples_per_turn.*", "", f"{FMR}\n{moved}\n")
+    film = "film.coefficients={axial_stiffness=1e7, tilt_stiffness=1e4, axial_damping=300, tilt_damping=0.2}"
+    ready, plan = prepare_run(parse_scenario(text, "seal", ["run.turns=12", "film.model=linear", film]))
+    assert not any(caution.concern is Concern.ALIASING for caution in ready.cautions)
+    # As long as there is nothing, those of a turn.
+    assert plan.count >= 8 * frequency * ready.duration * (1 - 1e-9) if frequency else plan.count == 12 * 64
+
+
 def test_runs_together_are_those_by_themselves():
     scenario = scenario_of(SHORT)
     points = [{"set": {"housing.axial_sweep.0.acceleration": a}, "outputs": ["h_min.value"]} for a in (5.0, 20.0)]
