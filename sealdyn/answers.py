@@ -50,9 +50,9 @@ class Series:
     `names` at x, y.
     `style`: words in any order: a role that has a colour of its own (film, tilt, leakage, contact, theory, stator,
     rotor, good, bad, warn, black, grey, pale; first, second ... seventh of a cycle; a number from 0 to 1, early to
-    late), dashes (dashed, dotted, dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick),
-    open, thin, thick, faint, small, large, front (above all else), wide (bars that touch).  `error`: bars of error on
-    y.  `names`: a word at each mark or bar.  `right`: belongs to the axis on the right."""
+    late), dashes (dashed, dotted, dashdot), a mark (circle, square, diamond, triangle, down, cross, plus, star, tick,
+    point), open, thin, thick, faint, small, large, front (above all else), wide (bars that touch).  `error`: bars of
+    error on y.  `names`: a word at each mark or bar.  `right`: belongs to the axis on the right."""
 
     kind: str
     x: Sequence = ()

@@ -287,7 +287,7 @@ def _line(ax, panel, one: Series, x, y, style) -> None:
 
 def _marks(ax, panel, one, x, y, style) -> None:
     # One on the edge of a map is whole.
-    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None and style["zorder"] < 5}
+    style |= {"ls": "none", "marker": style["marker"] or "o", "clip_on": panel.colour is None}
     if style["marker"] in "x+_":
         style["mew"] = 1.8
     _line(ax, panel, one, x, y, style)

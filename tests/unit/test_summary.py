@@ -10,6 +10,7 @@ import sealdyn
 from sealdyn.answers import Line
 from sealdyn.archive import column, read_info
 from sealdyn.dynamics.signals import signals
+from sealdyn.quantities import in_words
 from sealdyn.report.charts import overview
 from sealdyn.report.summary import run_answer
 from sealdyn.report.text import line_words, lines
@@ -229,8 +230,8 @@ def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
         assert (mach == pytest.approx(1.0, rel=1e-6)) if chokes else 0.0 < mach < 0.95
         assert mach in numbers_of(summary, "leakage").values()
         # The figure has the leakage of a gas as the text has it.
-        litres = 1e3 * 60 * summary["leakage"]["mean"]
-        assert dict(overview._numbers(summary, {}))["mean leakage"].startswith(f"{litres:.4g} l/min (0 °C")
+        told = in_words("leakage", summary["leakage"]["mean"])
+        assert dict(overview._numbers(summary, {}))["mean leakage"].startswith(f"{told} (")
     assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["film"]["exit_mach"] is None
 
 
@@ -263,7 +264,7 @@ def test_a_critical_speed_of_no_seal_is_none():
 
     def words(**changes):
         told = {**summary, "stability": {**found, **changes}}
-        return numbers_of(told, "stability"), dict(overview._numbers(told, ("rpm", 9.549)))
+        return numbers_of(told, "stability"), dict(overview._numbers(told, {"rad/s": "rpm"}))
 
     here, sheet = words(resonance_speeds=[100.0, 1e6])
     assert here["critical speed"] == found["critical_speed"] and "critical speed" in sheet

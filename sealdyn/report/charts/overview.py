@@ -110,7 +110,10 @@ def _panel(ax, run: Run, title: str, axis: Axis, series, levels=(), first: int =
     more = 1e-6 * (end - start) if end > start else 1.0
     title += f", {orbit.window(run, first)}" if first else ""
     draw_panel(ax, Panel(title, Axis(low=start - more, high=end + more), axis, series, levels),
-               width=1.3 * ax.get_position().width * ax.figure.get_figwidth())  # fmt: skip
+               width=1.9 * ax.get_position().width * ax.figure.get_figwidth())  # fmt: skip
+    # A mark on the edge is whole.
+    for line in ax.lines:
+        line.set_clip_on(line.get_marker() in ("None", ""))
 
 
 def film_panel(ax, run: Run, first: int) -> None:

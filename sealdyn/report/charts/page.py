@@ -26,8 +26,6 @@ LOOK = {
 DPI = 150
 # Files of lines in place of pixels, and what their date is called.
 LINES = {".svg": "Date", ".pdf": "CreationDate"}
-# Of the value: a series that changes by less differs by rounding only.
-ROUNDING = 1e-6
 # Of the value: a panel whose values change by less shows a flat line, not ticks that differ in the sixth digit.
 EVEN = 1e-4
 # Lines of a heading that a sheet has room for, and the most it has: it grows by what is beyond.

@@ -84,7 +84,7 @@ def _exponents(along, answer, rows) -> Panel:
     aside, series = _aside(answer), []
     for row in rows:
         mark = "circle" if row["direction"] == "up" else "square open"
-        label = row["class"] if row["class"] in CLASSES or row["class"] == "no contact" else "period n"
+        label = row["class"] if row["class"] in CLASSES else "period n"
         series.append(Series("marks", [row["value"] + aside[row["direction"]]], [row["exponent"]], label=label,
                              style=f"{_style(row)} {mark} small", error=[row["uncertainty"]]))  # fmt: skip
     zero = Level(0.0, style="black")

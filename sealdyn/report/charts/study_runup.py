@@ -197,7 +197,7 @@ def _curve(answer) -> Panel:
     words = {"label": "thinnest film (right)", "style": "warn square small thin"}
     series.append(Series("line", rate, film, right=True, **words))
     touch = (answer["touch_rate"] or {}).get("value")
-    levels = [Level(touch, "touches up to", upright=True, style="contact", number=True)] if touch else []
+    levels = [Level(touch, "touches up to", upright=True, style="contact", number=True, legend=True)] if touch else []
     tilts = Axis("misalignment", "largest relative tilt", scale="log" if tilt.min() > 0 else "linear")
     right = Axis("h_min", low=min(0.0, 1.1 * film.min()), high=1.1 * max(film.max(), 0.0) or None)
     return Panel(title, Axis("speed_ramp", scale="log"), tilts, series, levels, right, first=not _grown(answer))
