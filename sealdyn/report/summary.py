@@ -60,6 +60,9 @@ def _face_lines(summary) -> Iterator[Line]:
         "model", [(f"{model['film']} film, unknowns {', '.join(model['unknowns'])}, {model['solver']}", None, "")]
     )
     yield from _computation(model, counts, summary["wall_time"])
+    speed = summary.get("speed")
+    if speed and speed["start"] != speed["end"]:
+        yield Line("speed", [("from", speed["start"], "speed"), ("to", speed["end"], "speed")])
     yield from _film_lines(summary)
     if summary["contact_margin"] is not None:
         yield _margin(summary, contact)
@@ -144,7 +147,7 @@ def _film_lines(summary) -> Iterator[Line]:
         friction = ", without the O-ring's friction" if summary["secondary_seal"] else ""
         yield Line("", [(f"closed form: {form['road']}{friction}", None, "")], detail=True)
     if tilt["mean"] is not None:
-        yield Line("", [("mean of the run", tilt["mean"], "misalignment")], detail=True)
+        yield Line("", [("mean of the run", *_resolved(tilt["mean"], near, 4))], detail=True)
 
 
 def _resolved(value, near: float, digits: int):

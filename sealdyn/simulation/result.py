@@ -83,7 +83,7 @@ UNITS = {
     "contact.lowest": "m", "contact.depth": "m", "contact.longest": "s", "contact.impulse": "N s",
     "contact.force": "N", "contact.torque": "N m", "contact.max_pressure": "Pa", "contact.wear_rate": "m/s",
     "contact.first_lift": "s", "contact.energy_lost": "J", "stability.critical_speed": "rad/s",
-    "stability.fastest": "rad/s",
+    "stability.fastest": "rad/s", "speed": "rad/s",
     "stability.growth_rate": "1/s", "stability.growth_rate_uncertainty": "1/s", "stability.speed": "rad/s",
     "stability.stator_speed": "rad/s", "closed_form.relative_max": "rad", "closed_form.relative_min": "rad",
     "closed_form.axial_closing": "m", "closed_form.formula_max": "rad", "closed_form.formula_min": "rad",

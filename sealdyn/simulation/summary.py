@@ -70,6 +70,7 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
         "status": outcome.status,
         "message": outcome.message,
         "model": lambda: model_chosen(scenario, run, plan),
+        "speed": _speed(run, segment, outcome.tau),
         "h_min": lambda: {
             "value": whole()[H],
             "time": run.end_time(int(whole()[H_LEG]), whole()[H_TAU]),
@@ -124,6 +125,13 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "state": _state(run, outcome),
         },
     }
+
+
+def _speed(run, segment, tau: float) -> dict:
+    """Shaft speed (rad/s) as the run began and as it ended."""
+    shaft = run.model.scene.shaft
+    last, slope = constant_and_slope(shaft.speed, segment.interval)
+    return {"start": constant_and_slope(shaft.speed, run.intervals[0])[0], "end": last + slope * tau}
 
 
 def _state(run, outcome) -> dict:

@@ -170,6 +170,14 @@ def test_the_margin_ends_where_asperities_meet():
     assert margins[1.0] == pytest.approx(smooth * (10 - 3.0) / 10, rel=1e-6)
 
 
+def test_a_run_whose_speed_changes_tells_from_where_to_where():
+    short = ["run.duration=0.02", "run.start='rest'", "run.accuracy=1e-3"]
+    for ramp, end in ((["shaft.speed={time=[0, 1], value=[1000, 2000]}"], 1020.0), ([], 1000.0)):
+        found = simulate_in_memory(read_scenario(SEAL, [*short, *ramp]), speeds=True)
+        assert found["speed"] == pytest.approx({"start": 1000.0, "end": end})
+        assert ("speed" in parts_of(found)) == bool(ramp)
+
+
 def test_a_margin_ends_where_tilts_are_small_no_more():
     """A stator that follows the runout: what is left between the faces would let the forcing grow without end."""
     pump = re.search(r"```toml\n(.*?)```", (SCENARIOS.parent / "README.md").read_text(), re.DOTALL)[1]
