@@ -130,7 +130,9 @@ def draw_panel(ax, panel: Panel, width: float = 8.0) -> None:
     if not panel.series:
         absent(ax, panel.title, panel.note or "nothing to draw")
         return
-    x, y = (_Scaled(axis, _values(panel, which)) for which, axis in (("x", panel.x), ("y", panel.y)))
+    # Axes in one scale have one unit, that of the larger.
+    ends = {which: _values(panel, "xy" if panel.equal else which) for which in "xy"}
+    x, y = (_Scaled(axis, ends[which]) for which, axis in (("x", panel.x), ("y", panel.y)))
     # matplotlib's own angles.
     x.factor = 1.0 if panel.polar else x.factor
     other = beside = None
@@ -228,7 +230,9 @@ def _signed(value: float) -> str:
 
 
 def _values(panel: Panel, which: str) -> list[float]:
-    """Ends (SI) of what is drawn along an axis: what decides its unit."""
+    """Ends (SI) of what is drawn along an axis, or along "xy": what decides its unit."""
+    if which == "xy":
+        return _values(panel, "x") + _values(panel, "y")
     found = [[panel.x.low, panel.x.high] if which == "x" else []]
     for one in panel.series:
         if which == "x":

@@ -95,7 +95,7 @@ def _exponents(along, answer, rows) -> Panel:
 
 def _separation(answer) -> Panel:
     apart, size = np.maximum(answer["separation"]["apart"], 1e-12), answer["separation"]["spread"]
-    levels = [Level(size, "size of the attractor")] if size > 1e-3 else []
+    levels = [Level(size, "size of the attractor", legend=True)] if size > 1e-3 else []
     lost = answer["separation"]["lost"]
     if lost is not None:
         levels.append(Level(lost, upright=True, to=len(apart), style="contact"))
