@@ -11,9 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import carray
 
-from ..numerics.hermite import sample, sample_doubtful
+from ..numerics.hermite import lobatto, sample, sample_doubtful
 from ..numerics.kernel import call_rates, inner_kernel, integers, outer_kernel
-from ..numerics.quadrature import lobatto
 from ..solvers.contract import OVERLAP
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES

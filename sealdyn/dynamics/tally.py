@@ -1,6 +1,6 @@
 """Means and largest values of a run's series: integrals over the solver's steps, and peaks located between them.
 
-Whatever is sampled for an archive, these are of the motion itself.  Lobatto's rule (numerics/quadrature.py) on panels
+Whatever is sampled for an archive, these are of the motion itself.  Lobatto's rule (numerics/hermite.py) on panels
 of a few steps, at most so long that an oscillation of TIMES the fastest motion of interest keeps the accuracy; a peak
 is sought where a parabola through three points rises above the largest value so far, and looked at there.
 """
@@ -10,8 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from ..numerics.hermite import sample
-from ..numerics.quadrature import LOBATTO_ERROR, LOBATTO_ORDER, points
+from ..numerics.hermite import LOBATTO_ERROR, LOBATTO_ORDER, points, sample
 from .signals import TALLIED, signals
 
 # Harmonics of the fastest motion that are resolved, and the longest panel (rad of it).

@@ -11,10 +11,11 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from ..archive import open_archive
-from ..report.plot import Plot
 
 if TYPE_CHECKING:
     import xarray
+
+    from ..report.plot import Plot
 import math
 from enum import StrEnum
 
@@ -51,6 +52,8 @@ class Result:
     @property
     def plot(self) -> Plot:
         """Its figures: `overview()`, `orbit()`, `film()`, `spectrum()`, `poincare()`."""
+        from ..report.plot import Plot
+
         return Plot(self._at_hand)
 
     def _at_hand(self) -> AbstractContextManager[Path]:

@@ -257,10 +257,18 @@ def _fastest_decay(run) -> float:
     model, s = run.model, run.segment(0).gap_state(0.0, run.y0)
     varying = (model.scene.shaft.speed, viscosity_of(model.scene.film))
     places = {(max(s[DZ], model.f[FLOOR] - model.clearance),): run.intervals[0]}
-    for interval in (*run.intervals.few, run.intervals.end):
+    end = run.intervals.end
+    for interval in (*run.intervals.few, end):
         places[model.axial_shift(interval), *(constant_and_slope(q, interval)[0] for q in varying)] = interval
-    scenes = (model.linear_scene(interval, shift=at[0]) for at, interval in places.items())
-    return max(float(np.max(-linear.eigen()[0].real)) for linear in scenes)
+    decays = []
+    for at, interval in places.items():
+        try:
+            decays.append(float(np.max(-model.linear_scene(interval, shift=at[0]).eigen()[0].real)))
+        except SceneError:
+            # A film that there is no more where the run would end: how far it comes is found out by running.
+            if interval is not end:
+                raise
+    return max(decays)
 
 
 def choose_start(run: RunState, asked: str) -> Start:

@@ -224,13 +224,16 @@ def drawn_texts(monkeypatch, order, samples):
         def housing(self, kind):
             return []
 
+        def shown(self, name, size):
+            return "urad", 1e6
+
     from sealdyn.report.charts.page import look, sheet
 
     with look():
         ax = sheet(8, 4).add_axes((0.1, 0.1, 0.8, 0.8))
         turns = Made.turns
         tilt = 1e-4 * (np.exp(2j * np.pi * turns) + 0.1 * np.exp(2j * np.pi * order * turns))
-        spectrum.show(ax, Made(), lambda first: tilt, "tilt", ("urad", 1e6), "k", None)
+        spectrum.show(ax, Made(), lambda first: tilt, "tilt", "tilt_x", "k", None)
         return [text.get_text() for text in ax.texts]
 
 

@@ -49,7 +49,8 @@ def test_panels_survive_an_archive_to_the_bit():
 
 
 def test_every_kind_is_drawn_in_the_units_of_the_table():
-    figure = sheet_of(EVERY, "title", "below", "found", written={"rad/s": "rad/s"})
+    with quantities.reading_in({"rad/s": "rad/s"}):
+        figure = sheet_of(EVERY, "title", "below", "found")
     figure.canvas.draw()
     axes = {ax.get_title("left"): ax for ax in figure.axes if ax.get_title("left")}
     assert set(axes) == {panel.title for panel in EVERY if not panel.polar}
@@ -91,7 +92,8 @@ def test_factors_of_the_table_are_those_of_the_parser():
     ],
 )  # fmt: skip
 def test_the_unit_in_which_a_quantity_is_read(name, values, written, unit):
-    assert quantities.shown_in(name, values, written)[0] == unit
+    with quantities.reading_in(written):
+        assert quantities.shown_in(name, values)[0] == unit
 
 
 def test_tables_of_an_answer_are_json_and_lines():

@@ -58,7 +58,6 @@ def test_resolved_and_read_back():
     assert again.scene.film == scenario.scene.film and again.scene.film.profile is not None
     assert json.loads(json.dumps(scenario.resolved()))["film"]["profile"]["depth"] == [3e-6, 1e-6, 0.0, -2e-6]
     schema = json_schema()["$defs"]
-    assert schema["Profile"]["properties"]["radius"]["maxItems"] == 65
     assert schema["Profile"]["required"] == ["radius", "depth"] and not schema["Profile"]["additionalProperties"]
     assert "profiled" in schema["Film"]["properties"]["model"]["enum"]
     assert scenario.unused() == []
@@ -74,7 +73,7 @@ def test_resolved_and_read_back():
         (R + '["32 mm", "37 mm", "36 mm", "40 mm"]', "radius: found 0.036 m after 0.037 m; expected radii that incr"),
         (R + '["33 mm", "34 mm", "36 mm", "40 mm"]', "found 0.033 m first; expected inner_radius = 0.032 m first"),
         (R + '["32 mm", "34 mm", "36 mm", "39 mm"]', "found 0.039 m last; expected outer_radius = 0.04 m last"),
-        (R + '"32 mm"', '[film.profile] radius: found "32 mm"; expected a list of lengths, ["32 mm", "36 mm", ...]'),
+        (R + '"32 mm"', '[film.profile] radius: found "32 mm"; expected a list, each a length in m'),
         (R + '["32 mm", "34 kg", 0.036, 0.04]', 'radius: found "34 kg" (a unit of mass) as entry 2; expected a length'),
         (D + "[0, 1e-6, nan, 0]", "found nan"),
         (D + "[0, true, 0, 0]", "[film.profile.depth] 1: found true"),
@@ -96,7 +95,7 @@ def test_refused_in_one_line(override, says):
 def test_half_a_profile():
     for key in ("radius", "depth"):
         text = "\n".join(line for line in SCENARIO.splitlines() if not line.startswith(f"{key} = ["))
-        with pytest.raises(ScenarioError, match=rf"\[film.profile\] {key}: found nothing; expected a list of lengths"):
+        with pytest.raises(ScenarioError, match=rf"{key}: found nothing; expected a list, each a length"):
             parse_scenario(text, "worn.toml")
 
 

@@ -201,9 +201,7 @@ def test_asperities_that_touch_without_forcing_leave_no_margin():
     assert contact["share_of_load"] == pytest.approx(contact["force"]["mean"] / above, rel=1e-9)
     assert contact["share_of_load"] > contact["share_of_closing"]
     assert contact["share_of_load"] in numbers_of(summary, "touch").values()
-    assert {"film and asperities"} == {"film and asperities", "film stiffness"} & set(
-        dict(overview._numbers(summary, {}))
-    )
+    assert {"film and asperities"} == {"film and asperities", "film stiffness"} & set(dict(overview._numbers(summary)))
 
 
 def test_faces_without_a_wear_coefficient_have_no_rate_of_wear():
@@ -239,7 +237,7 @@ def test_a_gas_dam_says_whether_it_chokes_and_how_fast_the_gas_leaves():
         assert mach in numbers_of(summary, "leakage").values()
         # The figure has the leakage of a gas as the text has it.
         told = in_words("leakage", summary["leakage"]["mean"])
-        assert dict(overview._numbers(summary, {}))["mean leakage"].startswith(f"{told} (")
+        assert dict(overview._numbers(summary))["mean leakage"].startswith(f"{told} (")
     assert simulate_in_memory(read_scenario(SEAL, ["run.turns=1"]))["film"]["exit_mach"] is None
 
 
@@ -272,7 +270,7 @@ def test_a_critical_speed_of_no_seal_is_none():
 
     def words(**changes):
         told = {**summary, "stability": {**found, **changes}}
-        return numbers_of(told, "stability"), dict(overview._numbers(told, {"rad/s": "rpm"}))
+        return numbers_of(told, "stability"), dict(overview._numbers(told))
 
     here, sheet = words(resonance_speeds=[100.0, 1e6])
     assert here["critical speed"] == found["critical_speed"] and "critical speed" in sheet

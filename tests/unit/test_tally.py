@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 import sealdyn
-from sealdyn.numerics.quadrature import points
+from sealdyn.numerics.hermite import points
 from sealdyn.scenario.reader import read_scenario
 from sealdyn.simulation.result import leaves, output
 
