@@ -28,7 +28,7 @@ FIRST = (
     ("closing.force", "force", "closing force"),
     ("stability.whirl_ratio", "1", "whirl ratio"),
     ("stability.critical_speed", "speed", "critical speed"),
-    ("contact_margin", "1", "margin to contact"),
+    ("contact_margin", "1", "margin"),
     ("contact.touches", "1", "contacts"),
     ("contact.share_of_closing", "share", "contact, of closing"),
     ("contact.force.mean", "force", "contact force"),

@@ -35,8 +35,10 @@ def run_answer(summary: dict) -> Answer:
 
 def tilt_resolved(summary: dict) -> float:
     """Relative misalignment (rad) below which a run's accuracy tells nothing; 0 of a run without a thinnest film."""
-    clearance, radius = summary["film"]["clearance"], summary["h_min"]["radius"]
-    return summary["accuracy"] * clearance / radius if clearance and radius else 0.0
+    clearance, radius = (
+        (summary.get(part) or {}).get(key) for part, key in (("film", "clearance"), ("h_min", "radius"))
+    )
+    return summary.get("accuracy", 0.0) * clearance / radius if clearance and radius else 0.0
 
 
 def if_resolved(name: str, value: float | None, near: float, digits: int = 4) -> str:

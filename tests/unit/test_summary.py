@@ -278,3 +278,10 @@ def test_a_critical_speed_of_no_seal_is_none():
     here, sheet = words(critical_speed=7e5, thresholds=[7e5, 8e5])
     assert here["no critical speed up to"] == found["fastest"] and not {7e5, 8e5} & set(here.values())
     assert "critical speed" not in sheet
+
+
+def test_the_sheet_tells_no_misalignment_below_the_accuracy():
+    """Text and figure of one run: 98 nrad of a seal of which 500 are resolved."""
+    summary = {"accuracy": 2e-3, "film": {"clearance": 1e-5}, "h_min": {"radius": 0.04},
+               "relative_misalignment": {"max": 9.78e-8, "min": 0.0, "mean": 2e-6}}  # fmt: skip
+    assert dict(overview._numbers(summary))["tilt max / min / mean"] == "<0.5 / 0 / 2 µrad"

@@ -7,7 +7,7 @@ from ...answers import Axis, Level, Panel, Series
 from ...quantities import in_words, printed, reading_in, shown_in
 from ...status import Status
 from ..panels import draw_panel
-from ..summary import is_radial
+from ..summary import is_radial, tilt_resolved
 from ..text import written_units
 from . import followers, housing_sweep, orbit, spectrum
 from .page import absent, header, look, number, save, sheet
@@ -35,7 +35,7 @@ NUMBERS = (
     ("film stiffness", *((f"film.{kind}_stiffness", f"{kind}_stiffness", 4, "") for kind in ("axial", "tilt"))),
     ("closing force", ("closing.force", "force", 4, ""), ("closing.balance_ratio", "1", 3, " balance ratio")),
     ("critical speed", ("stability.critical_speed", "speed", 4, "")),
-    ("margin to contact", ("contact_margin", "1", 3, " × this forcing")),
+    ("margin", ("contact_margin", "1", 3, " × this forcing")),
     ("touches", ("contact.touches", "1", 4, ""), ("contact.depth", "depth", 3, " deep")),
     ("wear rate", ("contact.wear_rate", "wear_rate", 3, "")),
     ("energy residual", ("energy_residual", "1", 2, "")),
@@ -246,7 +246,8 @@ def _numbers(summary: dict):
             name = "film and asperities"
         if "/" in name:
             unit, factor = shown_in(parts[0][1], known)
-            told = " / ".join("–" if v is None else number(factor * v, f".{parts[0][2]}g") for v in values) + f" {unit}"
+            near = tilt_resolved(summary) if parts[0][1] == "misalignment" else 0.0
+            told = " / ".join(_one_of(v, near, factor, parts[0][2]) for v in values) + f" {unit}"
         else:
             told = ", ".join(
                 in_words(held, v, digits) + words
@@ -254,6 +255,12 @@ def _numbers(summary: dict):
                 if v is not None
             )
         yield name, printed(told).replace("-", "−") + (NORMAL if name == "mean leakage" and _of_gas(summary) else "")
+
+
+def _one_of(value: float | None, near: float, factor: float, digits: int) -> str:
+    """A number; one below what the accuracy resolves, `near`, as that."""
+    below = value is not None and 0.0 < abs(value) < near
+    return "–" if value is None else "<" * below + number(factor * (near if below else value), f".{digits}g")
 
 
 def _value(summary: dict, key: str) -> float | None:
