@@ -1,9 +1,8 @@
 """HDF5 files that a stranger can read: run.py and run_writer.py for trajectories, study.py for the answers of studies,
 as xarray datasets in dataset.py; files.py for what all files have."""
 
-from .fields import FIELD_TIME, Fields, Series
 from .files import READING_ERRORS, ArchiveError, is_full, link_target, only_writer, partial_path
-from .run import column, field, last_state, read_info
+from .run import FIELD_TIME, Fields, Series, column, field, last_state, read_info
 from .run_writer import ArchiveWriter
 from .study import (
     answer_as_dataset,

@@ -22,17 +22,6 @@ import h5py
 import numpy as np
 
 from ..status import Status
-from .fields import (
-    FIELD_TIME,
-    MOST_IN_PLACE,
-    Fields,
-    Series,
-    attach_scale,
-    create_fields,
-    describe,
-    names_over,
-    reserve,
-)
 from .files import (
     DATASET,
     FILE,
@@ -44,7 +33,24 @@ from .files import (
     partial_path,
     seal,
 )
-from .run import FORMAT, STATUSES, events_of, opened_run, read_info, read_log, to_json
+from .run import (
+    FIELD_TIME,
+    FORMAT,
+    MOST_IN_PLACE,
+    STATUSES,
+    Fields,
+    Series,
+    attach_scale,
+    create_fields,
+    describe,
+    events_of,
+    names_over,
+    opened_run,
+    read_info,
+    read_log,
+    reserve,
+    to_json,
+)
 
 SMALLEST_ROOM, LARGEST_FIRST_ROOM, BLOCK = 4096, 1 << 20, 1 << 16
 SLOT, LOG = 1 << 14, 1 << 14

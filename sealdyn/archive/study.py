@@ -12,7 +12,6 @@ import h5py
 import numpy as np
 
 from ..quantities import QUANTITIES
-from .fields import utf8_text
 from .files import (
     DATASET,
     FILE,
@@ -26,7 +25,7 @@ from .files import (
     must_be_sound,
     seal,
 )
-from .run import open_run
+from .run import open_run, utf8_text
 from .tables import Variable, answer_variables, grid_variables, long_columns, tables, variables
 
 FORMAT = "sealdyn study 2"

@@ -51,7 +51,7 @@ from ..dynamics.native import thinnest_value
 from ..dynamics.tally import Tally
 from ..solvers.contract import MOST_ORDERS, Cause, Counts, tolerance_for
 from ..solvers.integrate import STIFF, Outcome
-from ..solvers.sundials import looped
+from ..solvers.methods import looped
 from .summary import parts
 from .verification_run import ProgressSink
 

@@ -11,8 +11,7 @@ import warnings
 import numpy as np
 
 from .contract import FEW, SolverFailure, failure_message
-from .methods import METHODS, scipy_steps
-from .sundials import cvode
+from .methods import METHODS, cvode, scipy_steps
 
 # Spectral radius of generalised-alpha at infinite frequency: how much it damps what the step does not resolve.
 RHO = 0.8

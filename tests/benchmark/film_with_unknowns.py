@@ -22,7 +22,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.numerics.interruption import one_thread
 from sealdyn.solvers import sundials_python
 from sealdyn.solvers.contract import Counts, tolerance_for
-from sealdyn.solvers.sundials import why_slow
+from sealdyn.solvers.methods import why_slow
 
 TURNS, CELLS, ANGLES, ACCURACY = 4, 25, 16, 1e-6
 KNOWN = sundials_python._film_options

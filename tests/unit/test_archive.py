@@ -44,7 +44,7 @@ def assert_rows(path, stop):
 @pytest.mark.parametrize("in_place", [1 << 28, 100])
 def test_whatever_room_was_kept_a_finished_file_has_its_rows_alone(tmp_path, monkeypatch, expected, in_place):
     """Shortened where it stands or written anew: no row of room is left, nor anything of a run that goes on."""
-    for module in ("run_writer", "fields"):
+    for module in ("run_writer", "run"):
         monkeypatch.setattr(f"sealdyn.archive.{module}.MOST_IN_PLACE", in_place)
     run = writer(tmp_path / "run.h5", expected_rows=expected)
     run.append(rows(0, 300))

@@ -19,7 +19,7 @@ from sealdyn.simulation.summary import parts
 from sealdyn.simulation.verification_run import ProgressSink
 from sealdyn.solvers.contract import Status, tolerance_for
 from sealdyn.solvers.integrate import solve
-from sealdyn.solvers.sundials import why_slow
+from sealdyn.solvers.methods import why_slow
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 pytestmark = pytest.mark.skipif(bool(why_slow()), reason="no compiled loop here")

@@ -15,7 +15,7 @@ from sealdyn.scenario.reader import read_scenario
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
 from sealdyn.simulation.simulate import simulate_in_memory
-from sealdyn.solvers import sundials, sundials_libraries, sundials_python
+from sealdyn.solvers import methods, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Counts, SolverFailure
 from sealdyn.solvers.methods import METHODS
 
@@ -119,10 +119,10 @@ def test_another_version_is_refused_and_scikit_sundae_serves(monkeypatch):
     monkeypatch.setattr(sundials_libraries, "MAJOR", 6)
     sundials_libraries.libraries.cache_clear()
     try:
-        assert "SUNDIALS 7" in sundials.why_slow() and "where 6 is known" in sundials.why_slow()
+        assert "SUNDIALS 7" in methods.why_slow() and "where 6 is known" in methods.why_slow()
         ready, counts = prepared(fmr(), TURN, 1e-6), Counts()
         list(METHODS["adams"](ready.segment(0), 0.0, ready.y0.copy(), "adams", 1e-6, counts))
-        assert counts.back_end == sundials.SCIKIT_SUNDAE
+        assert counts.back_end == methods.SCIKIT_SUNDAE
     finally:
         sundials_libraries.libraries.cache_clear()
 
@@ -132,7 +132,7 @@ def test_what_compiled_code_would_miss_is_found_first(monkeypatch):
     monkeypatch.setattr(sundials_libraries, "COMPILED", ("CVode", "CVodeOfAnotherName"))
     sundials_libraries.libraries.cache_clear()
     try:
-        assert sundials.why_slow().endswith("SUNDIALS offers no CVodeOfAnotherName")
+        assert methods.why_slow().endswith("SUNDIALS offers no CVodeOfAnotherName")
     finally:
         sundials_libraries.libraries.cache_clear()
 
@@ -154,7 +154,7 @@ print(summary["counts"]["back_end"], "|", "sksundae.cvode" in sys.modules, "|", 
 @pytest.mark.parametrize("choice", ["", "python"])
 def test_a_run_says_when_it_is_slow(choice):
     """By the environment; the compiled loop never imports scikit-sundae's Python."""
-    done = subprocess.run([sys.executable, "-c", RUN], env=os.environ | {sundials.CHOICE: choice}, cwd=ROOT,
+    done = subprocess.run([sys.executable, "-c", RUN], env=os.environ | {methods.CHOICE: choice}, cwd=ROOT,
                           capture_output=True, text=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
     back_end, imported, reasons = done.stdout.split(" | ")

@@ -17,7 +17,7 @@ from sealdyn.dynamics.model import Model
 from sealdyn.faces.geometry import ROTOR_ANGLE
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.rings import Stator
-from sealdyn.solvers import sundials, sundials_direct, sundials_libraries, sundials_python
+from sealdyn.solvers import methods, sundials_direct, sundials_libraries, sundials_python
 from sealdyn.solvers.contract import Cause, Counts, SolverFailure
 from sealdyn.solvers.integrate import solve
 from sealdyn.solvers.methods import METHODS
@@ -114,7 +114,7 @@ def test_the_sparse_solver_keeps_to_one_thread():
 
 def ended(ready, monkeypatch, choice, **more):
     """Outcome and sink of a run on one back end."""
-    monkeypatch.setenv(sundials.CHOICE, choice)
+    monkeypatch.setenv(methods.CHOICE, choice)
     sink = Sink(2 * TURN, TURN / 64)
     outcome = solve(ready, "ida", 1e-6, sink, **more)
     assert bool(outcome.counts.slow) == bool(choice)
@@ -183,9 +183,9 @@ def test_without_superlu_only_films_with_unknowns_go_through_scikit_sundae(monke
     sundials_libraries.libraries.cache_clear()
     try:
         _, counts = end(on_film(fms(), 0.1 * TURN), METHODS["ida"], 1e-6)
-        assert counts.back_end == sundials.SCIKIT_SUNDAE
-        assert counts.slow == sundials.why_slow(sparse=True) and "no library sunlinsolofanothername" in counts.slow
-        assert not sundials.why_slow()
+        assert counts.back_end == methods.SCIKIT_SUNDAE
+        assert counts.slow == methods.why_slow(sparse=True) and "no library sunlinsolofanothername" in counts.slow
+        assert not methods.why_slow()
         counts = Counts()
         ready = prepared(fms(), 0.1 * TURN, 1e-6)
         list(METHODS["ida"](ready.segment(0), 0.0, ready.y0.copy(), "ida", 1e-6, counts))

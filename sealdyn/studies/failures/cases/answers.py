@@ -24,7 +24,7 @@ from ....scene.scene import Closing, Initial, RingStart, Scene, SceneError
 from ....simulation.film_error import steady_tilt
 from ....solvers.contract import Recorder, Status
 from ....solvers.integrate import solve
-from ._common import cruise_dam, integrated, row, run_from
+from . import cruise_dam, integrated, row, run_from
 from .integration import lightened
 
 # --- inconsistent start ---

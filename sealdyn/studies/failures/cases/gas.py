@@ -15,7 +15,7 @@ from ....films.gas_reynolds.cells import GRADING
 from ....quantities import in_words
 from ....scene.film import Film
 from ....scene.gas import GasReynolds, gas_of
-from ._common import row
+from . import row
 
 # --- choked gas ---
 # Choked gas flow: marched with the flow, a gas dam's equation is singular where it chokes and repels where it widens.

@@ -31,7 +31,7 @@ from ....films.radial.cavitated_line import cavitated_line
 from ....quantities import in_words
 from ....scene.contact import waves_of
 from ....scene.gas import viscosity_of
-from ._common import cruise_dam, integrated, row, run_from
+from . import cruise_dam, integrated, row, run_from
 
 # --- degenerate geometry ---
 # Degenerate geometry: nearly flat faces in logarithmic formulas, zero tilt in Euler coordinates.

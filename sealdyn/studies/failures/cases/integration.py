@@ -20,7 +20,7 @@ from ....simulation.stability import critical_speed
 from ....solvers.contract import Counts, SolverFailure, Status
 from ....solvers.fixed_step import REFERENCE_METHODS
 from ....solvers.methods import METHODS
-from ._common import ZERO_FILM, integrated, row, run_from
+from . import ZERO_FILM, integrated, row, run_from
 
 # --- neutral stability ---
 # Neutral stability: at the critical speed a whirl neither grows nor decays; what a method makes of it is its own.

@@ -24,7 +24,7 @@ from ....scene.film import Film
 from ....scene.rings import ROTOR, Rotor, Stator, Support
 from ....scene.scene import Scene
 from ....simulation.selection import prepare_run
-from ._common import row
+from . import row
 
 # Turns after which the digits of an angle are worth a thought.
 MANY = 1e5

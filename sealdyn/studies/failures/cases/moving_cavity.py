@@ -18,7 +18,7 @@ from ....faces.geometry import DZ, FLOW_INNER, FORCE, INNER_PRESSURE, MEAN_SPIN,
 from ....faces.roughness import mean_film_cubed
 from ....films.reynolds.mesh import AREA, SECTORS, films, table
 from ....solvers.trbdf2 import D, W
-from ._common import row
+from . import row
 
 CELLS, TURNS, STEPS, SWING = (6, 36), 3, 64, 1e-4
 SPEED = lebeck_1979.SPEED

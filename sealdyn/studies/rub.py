@@ -10,23 +10,23 @@ from functools import partial
 
 import numpy as np
 
-from ...analysis.continuation import FilmCollapsed, frozen_at_end, neighbours, sweep_branch
-from ...analysis.poincare_map import SAMPLES, PeriodMap, share_below
-from ...analysis.whirl import free_model
-from ...analysis.whirl.time_domain import whirl_fate
-from ...answers import Answer, Table
-from ...numerics import time_series
-from ...numerics.piecewise_linear import initially
-from ...numerics.time_series import horizon, tangent_product
-from ...quantities import in_words
-from ...scenario.errors import ScenarioError
-from ...scenario.settings import si_unit, values_in_si
-from ...scene.contact import contact_thresholds
-from ...scene.variants import part, with_values
-from ...simulation.stability import critical_speed
-from ...status import Status
-from ...units import Speed
-from .. import Info
+from ..analysis.continuation import FilmCollapsed, frozen_at_end, neighbours, sweep_branch
+from ..analysis.poincare_map import SAMPLES, PeriodMap, share_below
+from ..analysis.whirl import free_model
+from ..analysis.whirl.time_domain import whirl_fate
+from ..answers import Answer, Table
+from ..numerics import time_series
+from ..numerics.piecewise_linear import initially
+from ..numerics.time_series import horizon, tangent_product
+from ..quantities import in_words
+from ..scenario.errors import ScenarioError
+from ..scenario.settings import si_unit, values_in_si
+from ..scene.contact import contact_thresholds
+from ..scene.variants import part, with_values
+from ..simulation.stability import critical_speed
+from ..status import Status
+from ..units import Speed
+from . import Info
 
 # Speeds, relative to the critical one, at which a whirl is let go.
 ABOVE = (1.02, 1.1, 1.3)
