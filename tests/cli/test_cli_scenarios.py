@@ -79,6 +79,13 @@ def test_run_leaves_archive_and_figure_and_nothing_else(run):
     assert sorted(path.name for path in (folder / "outputs").iterdir()) == [f"{stem}.h5", f"{stem}.png"]
 
 
+def is_mean(value, series, slack=0.0) -> bool:
+    """Whether a mean over a run is that of its samples, as far as these tell: by how much it differs between all of
+    them and every other one."""
+    fine, coarse = (np.trapezoid(s, s.time) / (s.time[-1] - s.time[0]) for s in (series, series[::2]))
+    return abs(value - float(fine)) <= 3 * abs(float(fine - coarse)) + 1e-3 * abs(float(fine)) + slack
+
+
 def test_numbers_of_the_summary_are_those_of_the_archive(run):
     folder, answer = run
     found = answer.found
@@ -96,12 +103,11 @@ def test_numbers_of_the_summary_are_those_of_the_archive(run):
         assert low["radius"] in (film["inner_radius"], film["outer_radius"]) and -math.pi <= low["theta"] <= math.pi
         assert tilt["max"] >= float(data.relative_misalignment.max()) - slack * TILT_SCALE
         assert tilt["min"] <= float(data.relative_misalignment.min()) + slack * TILT_SCALE
-        assert tilt["mean"] == pytest.approx(float(data.relative_misalignment.mean()), rel=1e-12, abs=1e-30)
+        assert is_mean(tilt["mean"], data.relative_misalignment, 5 * found["accuracy"] * TILT_SCALE)
         # Where it leaves the film, which a film that stores tells from where it enters.
         outwards = initial(film["inner_pressure"]) > initial(film["outer_pressure"])
         leaving = data.leakage_outer if outwards else data.leakage_inner
-        assert found["leakage"]["mean"] == pytest.approx(float(leaving.mean()), rel=1e-12)
-        assert found["friction"]["power"] == pytest.approx(float(data.friction_power.mean()), rel=1e-12)
+        assert is_mean(found["leakage"]["mean"], leaving) and is_mean(found["friction"]["power"], data.friction_power)
         np.testing.assert_array_less(0, np.diff(data.time))
         assert all(np.isfinite(series).all() for series in data.values())
 

@@ -27,7 +27,7 @@ def computed(row):
         heat_ratio=SEAL.heat_ratio,
         sutherland=SEAL.sutherland,
         friction="laminar",
-        width="radial" if row.tilt else "constant",
+        width="zuk" if row.tilt else "constant",
     )
     out = np.zeros(gas.DAM_SIZE)
     films = row.mean_film - row.tilt * LENGTH / 2, row.mean_film + row.tilt * LENGTH / 2
