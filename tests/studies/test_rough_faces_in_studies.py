@@ -176,7 +176,7 @@ def test_transmissibility_in_time_is_that_of_linear_algebra(pump):
 def test_beyond_the_threshold_asperities_bound_the_whirl(pump):
     """The family of whirls of the film alone would be another seal's."""
     model = Model(unforced(pump.scene, 309.0))
-    found = critical_speed.beyond(model, pump.scene, 309.0, critical_speed.Settings(), None, {})
+    found = critical_speed.beyond(model, pump.scene, 309.0, critical_speed.Settings(), None)
     assert found["tipping"] == [] and "branch" not in found
 
 

@@ -77,8 +77,7 @@ def _numbers(ax, run):
     if "follower" not in run.summary:
         return
     lines, on = [], False
-    answer = run_answer(run.summary)
-    for name, words in ((line.label, line_words(line)) for line in answer.lines):
+    for name, words in ((line.label, line_words(line)) for line in run_answer(run.summary).lines):
         on = name in NUMBERS if name else on
         if on:
             lines += [(name if k == 0 else "", part) for k, part in enumerate(wrap(printed(words), LETTERS))]

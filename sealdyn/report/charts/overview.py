@@ -117,9 +117,8 @@ def _panel(ax, run: Run, title: str, axis: Axis, series, levels=(), first: int =
 
 
 def film_panel(ax, run: Run, first: int) -> None:
-    """h_min with the design clearance, contact, and where the run ended if it did not end well."""
-    title = "Smallest film thickness"
-    if _lacking(ax, run, title, "h_min"):
+    """h_min with the design clearance, contact, where the run ended if it did not end well, and a speed that varies."""
+    if _lacking(ax, run, title := "Smallest film thickness", "h_min"):
         return
     per, (x, h, unit) = run.shown("h_min", first)[1], run.drawn("h_min", first)
     low, top, touch = np.nanmin(h), np.nanmax(h), per * run.touch_at
@@ -141,7 +140,20 @@ def film_panel(ax, run: Run, first: int) -> None:
         series += _touch(run, x, h)
     if run.status in (Status.COLLAPSED, Status.FAILED, Status.INTERRUPTED):
         series.append(Series("marks", x[-1:], h[-1:], label=run.status, style=f"{run.status} cross large front"))
+    series += [] if first else _speed(run, 0.97 * ends[1])
     _panel(ax, run, title, Axis(unit, "h_min", low=ends[0], high=ends[1]), series, levels, first)
+
+
+def _speed(run: Run, top: float) -> list[Series]:
+    """A shaft speed that varies, from 0 to the `top`: its ends are in its name, an axis has no room here."""
+    x, speed = run.envelope("shaft_speed") if run.has("shaft_speed") else ((), np.zeros(1))
+    low, high = speed.min(), speed.max()
+    if not high - low > 1e-9 * max(high, -low):
+        return []
+    with reading_in(written_units(run.info)):
+        words = f"shaft speed, {in_words('speed', low)} to {in_words('speed', high)}"
+    low, high = min(low, 0.0), max(high, 0.0)
+    return [Series("line", x, top * (speed - low) / (high - low), label=words, style="grey dotted")]
 
 
 def _touch(run: Run, x, h) -> list[Series]:
@@ -157,13 +169,10 @@ def _touch(run: Run, x, h) -> list[Series]:
 
 def tilt_panel(ax, run: Run, first: int) -> None:
     """Relative misalignment between the closed form's extremes."""
-    title = "Relative misalignment"
-    if _lacking(ax, run, title, "relative_misalignment"):
+    if _lacking(ax, run, title := "Relative misalignment", "relative_misalignment"):
         return
     per, (x, tilt, unit) = run.shown("relative_misalignment", first)[1], run.drawn("relative_misalignment", first)
     top = np.nanmax(tilt)
-    if not top > 0:
-        return absent(ax, title, "faces aligned")
     theory = run.summary.get("closed_form") or {}
     found = [per * theory[k] for k in ("relative_max", "relative_min") if isinstance(theory.get(k), int | float)]
     found = found if found and 0 < max(found) < 3 * top else []
@@ -246,7 +255,7 @@ def _numbers(summary: dict):
             name = "film and asperities"
         if "/" in name:
             unit, factor = shown_in(parts[0][1], known)
-            near = tilt_resolved(summary) if parts[0][1] == "misalignment" else 0.0
+            near = tilt_resolved(summary) if parts[0][0].startswith("relative_misalignment") else 0.0
             told = " / ".join(_one_of(v, near, factor, parts[0][2]) for v in values) + f" {unit}"
         else:
             told = ", ".join(

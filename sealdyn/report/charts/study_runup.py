@@ -55,13 +55,9 @@ def _speed_ramps(answer):
     below += [] if said else [_curve(answer)]
     if ways and max(np.max(fall[way]["amplitude"]) for way in ways) > 0:
         row = next(row for row in answer["rows"] if row["rate"] == fall["rate"])
-        said += f" Waterfall at {_rate(fall['rate'])}: Hann windows of {fall['window']} turns, "
+        said += f" Waterfall at {in_words('speed_ramp', fall['rate'])}: Hann windows of {fall['window']} turns, "
         said += f"{row['resolution']:.2g} orders and {in_words('speed', row['speed_in_window'], 3)} wide."
     return [*panels, *below], said.strip()
-
-
-def _rate(value: float) -> str:
-    return in_words("speed_ramp", value)
 
 
 def _grown(answer) -> list:
@@ -95,7 +91,7 @@ def _order(answer) -> list[Panel]:
         for way, style in (("up", ""), ("down", " dashed")):
             if not row[way]["speed"]:
                 continue
-            at, label = np.array(row[way]["speed"]), _rate(row["rate"]) if way == "up" else ""
+            at, label = np.array(row[way]["speed"]), in_words("speed_ramp", row["rate"]) if way == "up" else ""
             tops.append(Series("line", at, row[way]["amplitude"], label=label, style=f"{colour} thin{style}"))
             if driven:
                 # Of a phase's many turns the one beside linear theory.
@@ -163,7 +159,7 @@ def _growth(answer) -> Panel:
     for colour, row in _grown(answer):
         curve = row["growth"]["curve"]
         # Time times the rate: the speed gained, the same for every rate.
-        gained, label = np.array(curve["time"]) * row["rate"], _rate(row["rate"])
+        gained, label = np.array(curve["time"]) * row["rate"], in_words("speed_ramp", row["rate"])
         series.append(Series("line", gained, curve["measured"], label=label, style=colour))
         series.append(Series("line", gained, curve["foretold"], label="foretold", style="black thin dashed front"))
         reach = max(reach, *curve["foretold"], *curve["measured"])
