@@ -12,12 +12,14 @@ NEAR = 0.1  # lines: an order this near is that of the line
 CLEAN = 0.02  # of a peak: by which the lines beside one that is clear of others are off
 
 
-def at_the_edge(orders, amplitude, resolution: float) -> float:
-    """Share of the power of all that moves (constant part left out) in the top tenth of the sampled band: a response
-    that has not died out there goes on beyond, and shows folded at orders that are not its own."""
-    power = np.where(np.abs(orders) > resolution, amplitude**2, 0.0)
+def at_the_edge(orders, amplitude, near: float, still: float = 0.0) -> float:
+    """Share of the power in the top tenth of the sampled band, of all orders farther than 2 `near` from zero: a
+    response that has not died out there is folded.  `orders`, `amplitude` (n,); 0 if all that moves stays below `still`
+    (unit of the amplitude)."""
+    power = np.where(np.abs(orders) > 2 * near, amplitude**2, 0.0)
     total = power.sum()
-    return float(power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum() / total) if total > 0 else 0.0
+    edge = power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum()
+    return float(edge / total) if total > still**2 else 0.0
 
 
 def order_spectrum(turns, signal):

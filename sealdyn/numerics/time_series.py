@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as student
 
-from .order_spectrum import HANN
+from .order_spectrum import HANN, at_the_edge
 
 # Returns closer than this (in units of the scale) are the same point; longest period looked for.
 SAME, LONGEST = 2e-3, 16
@@ -302,16 +302,6 @@ def waterfall(signal, per_turn: int, turns: int, firsts, low: float, high: float
         share = max(share, at_the_edge(orders, lines, resolution(turns), still))
         rows.append(lines[kept])
     return np.array(rows).reshape(len(firsts), int(kept.sum())), orders[kept], share
-
-
-def at_the_edge(orders, amplitude, near: float, still: float = 0.0) -> float:
-    """Share of the power in the top tenth of the sampled band, of all orders farther than 2 `near` from zero: a
-    response that has not died out there is folded.  `orders`, `amplitude` (n,); 0 if all that moves stays below `still`
-    (unit of the amplitude)."""
-    power = np.where(np.abs(orders) > 2 * near, amplitude**2, 0.0)
-    total = power.sum()
-    edge = power[np.abs(orders) > 0.9 * np.abs(orders).max()].sum()
-    return float(edge / total) if total > still**2 else 0.0
 
 
 # A peak is read from a parabola through what stands above this share of its height.

@@ -191,7 +191,7 @@ def edge_share(order, per_turn, turns=40):
 
     at = np.arange(turns * per_turn) / per_turn
     orders, amplitude, resolution, _ = order_spectrum(at, np.cos(2 * np.pi * at) + 0.1 * np.cos(2 * np.pi * order * at))
-    return at_the_edge(orders, amplitude, resolution)
+    return at_the_edge(orders, amplitude, 0.5 * resolution)
 
 
 def test_a_response_at_the_edge_of_the_band_is_said_to_be_folded():

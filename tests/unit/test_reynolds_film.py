@@ -34,7 +34,7 @@ from sealdyn.faces.geometry import (
 from sealdyn.faces.waviness import lay_waves
 from sealdyn.films import film_named
 from sealdyn.films.reynolds import film as reynolds
-from sealdyn.films.reynolds import roughness as means
+from sealdyn.films.reynolds import mesh as means
 from sealdyn.scene.contact import Contact, Waviness
 from sealdyn.scene.film import Film, Reynolds
 

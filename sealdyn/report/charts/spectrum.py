@@ -105,7 +105,7 @@ def show(ax, run: Run, read, title: str, name: str, colour: str, turns: float | 
     seen = np.maximum(amplitude, largest * FLOOR / 2)
     ax.fill_between(orders, largest * FLOOR / 2, seen, color=colour, alpha=0.25, lw=0)
     ax.semilogy(orders, seen, color=colour, lw=0.9)
-    share = at_the_edge(orders, amplitude, resolution)
+    share = at_the_edge(orders, amplitude, 0.5 * resolution)
     # Room for the names of peaks, and above them for a warning.
     top = 2000 if share > FOLDED else 20
     ax.set(xlim=(-reach if two_sided else 0, reach), ylim=(largest * FLOOR, largest * top))
