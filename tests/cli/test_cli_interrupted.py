@@ -165,7 +165,7 @@ def test_an_interrupted_study_goes_on(tmp_path):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize(
-    "words", [["check", REFERENCE], ["study", "contact-onset", REFERENCE, "--workers", 1]], ids=str
+    "words", [["check", REFERENCE], ["study", "contact-onset", REFERENCE, "--workers", 1]], ids=["check", "study"]
 )
 def test_what_has_finished_nothing_says_so(tmp_path, words, number):
     process = started(*words, "--json", cwd=tmp_path)

@@ -137,3 +137,9 @@ def test_every_file_of_physics_has_a_core_case():
     rooms = ("closed_form", "convergence", "failure", "ladder")
     files = [path for room in rooms for path in sorted((CONFTEST.parent / room).glob("test_*.py"))]
     assert [path.name for path in files if "pytest.mark.core" not in path.read_text()] == [] != files
+
+
+def test_no_case_is_named_by_a_path_of_this_machine():
+    """Its time would be nobody else's."""
+    files = json.loads(CONFTEST.with_name("durations.json").read_text())["files"]
+    assert not [name for cases in files.values() for name in cases if "Path(" in name]
