@@ -57,20 +57,24 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
     linear, period = found_alone(failed, "linear film", lambda: model.linear_scene(at)), run.period(outcome.segment)
     whole = cache(lambda: run.extrema.extremes()[0])
     steady = cache(lambda: _steady(run, outcome, period, run.start.taken != "rest"))
-    tilt = cache(lambda: _linear_steady(segment, at, linear, period))
+    answers = cache(lambda: _answers(segment, at, linear))
+    tilt = cache(lambda: _linear_steady(segment, answers, linear, period))
 
     def extra(name, find, otherwise=None):
         found = None if linear is None else found_alone(failed, name, find)
         return otherwise if found is None else found
 
     margin = cache(
-        lambda: extra("contact margin", lambda: _contact_margin(segment, at, linear, tilt()), (math.nan, None))
+        lambda: extra("contact margin", lambda: _contact_margin(model, at, linear, tilt(), answers), (math.nan, None))
     )
     return {
         "status": outcome.status,
         "message": outcome.message,
         "model": lambda: model_chosen(scenario, run, plan),
-        "speed": _speed(run, segment, outcome.tau),
+        "speed": {
+            "start": _first(model.scene.shaft.speed, run.intervals[0]),
+            "end": _first(model.scene.shaft.speed, at),
+        },
         "h_min": lambda: {
             "value": whole()[H],
             "time": run.end_time(int(whole()[H_LEG]), whole()[H_TAU]),
@@ -125,13 +129,6 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
             "state": _state(run, outcome),
         },
     }
-
-
-def _speed(run, segment, tau: float) -> dict:
-    """Shaft speed (rad/s) as the run began and as it ended."""
-    shaft = run.model.scene.shaft
-    last, slope = constant_and_slope(shaft.speed, segment.interval)
-    return {"start": constant_and_slope(shaft.speed, run.intervals[0])[0], "end": last + slope * tau}
 
 
 def _state(run, outcome) -> dict:
@@ -353,7 +350,7 @@ def _first(quantity, at):
     return constant_and_slope(quantity, at)[0]
 
 
-def _linear_steady(segment, at, linear, period):
+def _linear_steady(segment, answers, linear, period):
     """Extremes of the linear steady state: (max, min, largest axial closing, period) or None if it does not exist."""
     rows = segment.rows
     if segment.model.unknowns.faces_tilt or not segment.harmonic:
@@ -361,7 +358,7 @@ def _linear_steady(segment, at, linear, period):
     # Frequencies, of which one may begin at rest, and what changes.
     if period is None and len(rows) and np.any(rows[:, 7:9]) and (np.any(rows[:, 3]) or np.any(rows[:, 8])):
         return None
-    return (*steady_extremes(linear, _answers(segment, at, linear), period), period)
+    return (*steady_extremes(linear, answers(), period), period)
 
 
 def _answers(segment, at, linear):
@@ -371,12 +368,11 @@ def _answers(segment, at, linear):
     return [(harmonic, linear.response(harmonic)) for harmonic in segment.harmonics()]
 
 
-def _contact_margin(segment, at, linear, tilt):
+def _contact_margin(model, at, linear, tilt, answers):
     """Factor by which the forcing may grow in linear theory, and what ends it: at "touch" the gap closes at an edge,
     to the height of the asperities where there are any (0 where they touch without forcing), "small tilts" are over
     before (SMALL_TILT).  Unknown of wavy faces, of aligned ones that press with a moment, and of a sweep, which is over
     in the last segment."""
-    model = segment.model
     if waves_of(model.scene) or model.scene.housing.sweeps:
         return math.nan, None
     face = model.face
@@ -390,7 +386,7 @@ def _contact_margin(segment, at, linear, tilt):
     most, _, closing, _ = tilt
     reaches = [(inner - height, face[0] * most + closing), (outer - height, face[1] * most + closing)]
     margin = min((gap / reach for gap, reach in reaches if reach > 0), default=math.inf)
-    tilted = modes.tilt_bound(_answers(segment, at, linear))
+    tilted = modes.tilt_bound(answers())
     if tilted > 0.0 and margin > SMALL_TILT / tilted:
         return SMALL_TILT / tilted, "small tilts"
     return margin, TOUCHED if math.isfinite(margin) else None
