@@ -7,7 +7,7 @@ import numpy as np
 
 from ..archive import ArchiveError, column, is_study, read_info
 from ..quantities import in_words, number, reading_in, shown_in
-from .summary import BELOW, is_radial, tilt_resolved
+from .summary import BELOW, is_below, is_radial, tilt_resolved
 from .text import speed_unit
 
 # Of the larger value: what differs by less differs by rounding.
@@ -93,7 +93,7 @@ def comparison_lines(found: dict, told=lambda key, value: _word(value)) -> list[
         with reading_in({"rad/s": found.get("speeds", "rad/s")}):
             unit, factor = shown_in(quantity, row["values"])
         words = [
-            BELOW + number(near, factor, 3) if value is not None and 0.0 < abs(value) < near else number(value, factor)
+            BELOW + number(near, factor, 3) if is_below(value, near) else number(value, factor)
             for value, near in zip(row["values"], _nears(row), strict=True)
         ]
         alike = words[0] == words[1] and not words[0].startswith(BELOW)

@@ -43,8 +43,12 @@ def tilt_resolved(summary: dict) -> float:
 
 def if_resolved(name: str, value: float | None, near: float, digits: int = 4) -> str:
     """A number (SI) of a quantity in words; one below what the accuracy resolves, `near` (SI), as that."""
-    below = value is not None and 0.0 < abs(value) < near
-    return BELOW + in_words(name, near, 3) if below else in_words(name, value, digits)
+    return BELOW + in_words(name, near, 3) if is_below(value, near) else in_words(name, value, digits)
+
+
+def is_below(value: float | None, near: float) -> bool:
+    """Whether a number that is not zero is one that the accuracy does not resolve."""
+    return value is not None and 0.0 < abs(value) < near
 
 
 def _another(end: float | None, mean: float | None) -> bool:
@@ -154,7 +158,7 @@ def _film_lines(summary) -> Iterator[Line]:
 
 def _resolved(value, near: float, digits: int):
     """Value and quantity, or words in place of one that the accuracy does not resolve."""
-    if value is not None and 0.0 < abs(value) < near:
+    if is_below(value, near):
         return if_resolved("misalignment", value, near), None
     return value, "misalignment", digits
 

@@ -7,7 +7,7 @@ from ...answers import Axis, Level, Panel, Series
 from ...quantities import in_words, printed, reading_in, shown_in
 from ...status import Status
 from ..panels import draw_panel
-from ..summary import is_radial, tilt_resolved
+from ..summary import is_below, is_radial, tilt_resolved
 from ..text import written_units
 from . import followers, housing_sweep, orbit, spectrum
 from .page import absent, header, look, number, save, sheet
@@ -268,7 +268,7 @@ def _numbers(summary: dict):
 
 def _one_of(value: float | None, near: float, factor: float, digits: int) -> str:
     """A number; one below what the accuracy resolves, `near`, as that."""
-    below = value is not None and 0.0 < abs(value) < near
+    below = is_below(value, near)
     return "–" if value is None else "<" * below + number(factor * (near if below else value), f".{digits}g")
 
 
