@@ -179,8 +179,8 @@ def _margin(summary, contact) -> Line:
     if margin == 0.0:
         return Line("margin", [("the asperities touch without any forcing", None, "")])
     if summary.get("contact_margin_limit") == "small tilts":
-        parts = [("not limited by touch within small tilts, which are over at", margin, "1"), ("times", None, "")]
-        return Line("margin", [*parts, ("this forcing (linear theory)", None, "")])
+        over = ("not limited by touch within small tilts, which are over at", margin, "1")
+        return Line("margin", [over, ("times this forcing (linear theory)", None, "")])
     words = "times this forcing touches (linear theory)"
     also = "the faces touched in this run" if contact and contact["touches"] and margin >= 1.0 else ""
     return Line("margin", [("", margin, "1"), (words, None, ""), (also, None, "")])

@@ -10,6 +10,9 @@ import pytest
 import sealdyn
 from sealdyn import studies
 from sealdyn.analysis.design_rules import RULES
+from sealdyn.quantities import reading_in
+from sealdyn.report.summary import run_answer
+from sealdyn.report.text import lines, written_units
 from sealdyn.scenario.reader import parse_scenario
 from sealdyn.studies import study_names
 from sealdyn.studies._runner import study_info
@@ -29,6 +32,11 @@ def test_seal_of_the_readme_gives_the_printed_answer(tmp_path):
         r"critical speed up to (\d+) rpm": found["stability"]["fastest"] * 30 / math.pi,
     }.items():
         assert value == pytest.approx(float(re.search(printed, README)[1]), rel=1e-3), printed
+    # Words as they stand there, whatever the last digits; the files are others.
+    with reading_in(written_units({"scenario": scenario.text, "overrides": ()})):
+        told = lines("pump", run_answer({**found, "archive": "x.h5"}))
+    shown = re.search(r"```text\n(.*?)\n```", README, re.DOTALL)[1].splitlines()
+    assert [re.sub(r"[\d.]+", "#", line) for line in told[:-1]] == [re.sub(r"[\d.]+", "#", line) for line in shown[:-1]]
     # A run that may have the linear film has leakage and friction of the radial one, and so has the seal at its end.
     assert found["model"]["film"] == "linear"
     assert found["film"]["leakage"] == pytest.approx(found["leakage"]["mean"], rel=1e-3)
