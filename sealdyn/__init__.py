@@ -9,8 +9,6 @@ result.plot.overview()                               # matplotlib Figure
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from .kernel_cache import clear_stale_kernels
-
 if TYPE_CHECKING:
     from .archive import ArchiveError, open_archive
     from .scenario.errors import ScenarioError
@@ -57,8 +55,6 @@ _PLACES = {
     "studies._answer": ("Answer", "study"),
     "studies._runner": ("run_study",),
 }
-
-clear_stale_kernels()
 
 
 if not TYPE_CHECKING:

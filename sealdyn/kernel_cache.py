@@ -1,133 +1,126 @@
-"""Compiled kernels on disk: where numba keeps those of this package, and away with them when they fit no more.
+"""Compiled kernels on disk: one folder for each state of the sources that kernels are made of.
 
 numba keeps a kernel until the file it stands in changes; it does not see that a constant or a kernel of another file
-has changed, and would go on with the old one.  Kernels of other versions of Python or numba and of other processors
-need no care: numba keeps them apart.  Nor does it matter whether a kernel was compiled in this process or loaded: no
-kernel uses fast-math, so both have the same bits (tests/unit/test_equal_bits.py).
+has changed, and would go on with the old one.  So the folder's name is a digest of all these files, and kernels of
+other sources stand in folders of their own.  Kernels of other versions of Python and of other processors need no care:
+numba keeps them apart.  Nor does it matter whether a kernel was compiled in this process or loaded: no kernel uses
+fast-math, so both have the same bits (tests/unit/test_equal_bits.py).
 """
 
 import contextlib
 import hashlib
 import os
-import re
+import shutil
+import tempfile
 import warnings
+from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
-STAMP = "kernels.stamp"
-# What a kernel has above its first line.
-KERNEL = re.compile(rb"^@(njit|cfunc|(outer|value|inner|lazy)_kernel|c_function)\b", re.MULTILINE)
-# Relative imports at the left margin: dots, module, names.
-IMPORT = re.compile(rb"^from (\.+)([\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+# Rooms and files in which kernels stand, and all that these import.
+SOURCES = (
+    "analysis/truncated_heights.py", "closed_form", "dynamics", "faces", "films", "numerics", "quantities.py",
+    "radial_seals", "scene", "solvers", "status.py", "unit_names.py", "units.py",
+)  # fmt: skip
+PREFIX, NEWEST = "sealdyn-kernels-", 3
 
 
-def _sources() -> dict[Path, bytes]:
-    """All source files of the package.  Path -> content."""
-    files = (Path(folder, name) for folder, _, names in os.walk(PACKAGE) for name in names if name.endswith(".py"))
-    return {path: path.read_bytes() for path in files}
+def kernel_sources() -> list[Path]:
+    """Files that kernels are made of, in a fixed order."""
+    places = (PACKAGE / source for source in SOURCES)
+    return sorted(file for place in places for file in ([place] if place.is_file() else place.rglob("*.py")))
 
 
-def kernel_sources(texts: dict[Path, bytes] | None = None) -> dict[Path, bytes]:
-    """Files that hold kernels, and all that they import, however far: the constants they take in.  Path -> content;
-    `texts` those of all source files, if read already."""
-    texts = texts or _sources()
-    found, ahead = set(), [path for path, text in texts.items() if KERNEL.search(text)]
-    while ahead:
-        path = ahead.pop()
-        if path in found:
-            continue
-        found.add(path)
-        for dots, module, names in IMPORT.findall(texts[path]):
-            target = path.parents[len(dots) - 1].joinpath(*filter(None, module.decode().split(".")))
-            if (file := target.with_suffix(".py")) not in texts:
-                modules = ("__init__", *re.findall(r"\w+", names.decode()))
-                ahead += [file for file in (target / f"{module}.py" for module in modules) if file in texts]
-            else:
-                ahead.append(file)
-    return {path: texts[path] for path in sorted(found)}
+@cache
+def kernel_folder() -> Path:
+    """The folder of kernels of today's sources; it can be written.
+
+    It stands below NUMBA_CACHE_DIR, or beside the sources, or in the user's folder of caches: the first that can be
+    written.  Kernels kept where nothing can be written are read from there; new ones are then kept in a temporary
+    folder, which goes when this process ends, with a warning if none were kept.
+    """
+    digest = hashlib.sha256()
+    for file in kernel_sources():
+        digest.update(str(file.relative_to(PACKAGE)).encode() + file.read_bytes())
+    folders = [place / (PREFIX + digest.hexdigest()[:16]) for place in _places()]
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            _make(folder)
+            return folder
+    return _temporary_folder(folders)
 
 
-def _writable(folder: Path) -> bool:
-    """Whether files can be made in the folder, which is made if it can be."""
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-    return folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)
-
-
-def _shared_folder() -> Path | None:
-    """The folder where numba keeps kernels away from their sources; None: it keeps them beside their sources."""
+def _places() -> list[Path]:
+    """Folders that may hold folders of kernels, the best first."""
     if elsewhere := os.environ.get("NUMBA_CACHE_DIR"):
-        return Path(elsewhere)
-    if _writable(PACKAGE / "__pycache__"):
-        return None
-    from numba.misc.appdirs import AppDirs
-
-    return Path(AppDirs(appname="numba", appauthor=False).user_cache_dir)
+        return [Path(elsewhere)]
+    user = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or os.path.expanduser("~/.cache")
+    return [PACKAGE / "__pycache__", Path(user)]
 
 
-def kernel_folders() -> list[Path]:
-    """Folders of this package's kept kernels; they need not exist."""
-    shared = _shared_folder()
-    return [_kept_in(folder, shared) for folder in sorted({path.parent for path in PACKAGE.rglob("*.py")})]
+def _make(folder: Path):
+    """Make the folder, mark it as used today, and leave the newest of its kind."""
+    is_new = not folder.is_dir()
+    folder.mkdir(parents=True, exist_ok=True)
+    tempfile.TemporaryFile(dir=folder).close()
+    os.utime(folder)
+    if is_new:
+        kept = sorted(folder.parent.glob(PREFIX + "*"), key=lambda other: other.stat().st_mtime, reverse=True)
+        for other in kept[NEWEST:]:
+            shutil.rmtree(other, ignore_errors=True)
 
 
-def _kept_in(folder: Path, shared: Path | None) -> Path:
-    """Where the kernels of a source folder are kept."""
-    if shared is None:
-        return folder / "__pycache__"
-    # numba's own names: a source folder's name and the SHA-1 of its path.
-    return shared / f"{folder.name}_{hashlib.sha1(os.path.abspath(folder).encode()).hexdigest()}"
+def _temporary_folder(folders: list[Path]) -> Path:
+    """A temporary folder with links to the kernels of the first of the folders that has any."""
+    global _temporary
+    _temporary = tempfile.TemporaryDirectory(prefix="sealdyn_kernels_", ignore_cleanup_errors=True)
+    folder = Path(_temporary.name) / folders[0].name
+    folder.mkdir()
+    kept = next(filter(None, ([*other.glob("*.nb[ic]")] for other in folders)), [])
+    for file in kept:
+        os.symlink(file.absolute(), folder / file.name)
+    # Processes that are started from here keep theirs in the same place.
+    os.environ["NUMBA_CACHE_DIR"] = _temporary.name
+    if not kept:
+        warnings.warn(
+            "no folder for compiled kernels can be written: every run compiles them again; "
+            "let NUMBA_CACHE_DIR name one that can",
+            stacklevel=3,
+        )
+    return folder
 
 
 def kept_kernels() -> list[Path]:
-    """Files of this package's kept kernels."""
-    return [kept for folder in kernel_folders() for kept in folder.glob("*.nb[ic]")]
+    """Files of kept kernels of today's sources."""
+    return [*kernel_folder().glob("*.nb[ic]")]
 
 
-def clear_stale_kernels() -> bool:
-    """Delete the kept kernels if any source of kernels differs from when they were made; returns whether it deleted
-    any.
-    Where no kernel can be kept at all, this process and its children keep them in a temporary folder, with a warning
-    (numba would raise)."""
-    texts, stamp, before = _sources(), _kept_in(PACKAGE, _shared_folder()) / STAMP, ["", ""]
-    whole = _digest(texts)
-    with contextlib.suppress(OSError):
-        before = [*stamp.read_text().split(), "", ""][:2]
-    if before[0] == whole:
-        # Nothing has changed at all, so that nobody needs to ask what kernels import.
-        return False
-    of_kernels = _digest(kernel_sources(texts))
-    if not _writable(stamp.parent):
-        if before[1] != of_kernels:
-            _keep_for_this_process()
-        return False
-    kept = kept_kernels() if before[1] != of_kernels else []
-    for file in kept:
-        file.unlink(missing_ok=True)
-    stamp.write_text(f"{whole} {of_kernels}")
-    return bool(kept)
+class KernelLocator:
+    """Where numba keeps a kernel of `SOURCES`; other functions are left to numba."""
 
+    def __init__(self, function, file: str):
+        self._py_file = file
+        place = ".".join(Path(file).relative_to(PACKAGE).parts[:-1])
+        self._name = f"{place}-{function.__code__.co_firstlineno}"
 
-def _digest(texts: dict[Path, bytes]) -> str:
-    """Digest of files, names and contents."""
-    digest = hashlib.sha256()
-    for path in sorted(texts):
-        digest.update(str(path.relative_to(PACKAGE)).encode() + texts[path])
-    return digest.hexdigest()
+    @classmethod
+    def from_function(cls, py_func, py_file: str):
+        """A locator of a function of this package's kernels, or None."""
+        path = Path(py_file)
+        ours = any(path.is_relative_to(PACKAGE / source) for source in SOURCES)
+        return cls(py_func, py_file) if ours else None
 
+    def ensure_cache_path(self):
+        """The folder stands."""
 
-def _keep_for_this_process():
-    """Let numba keep kernels in a temporary folder, which goes when this process ends."""
-    global _temporary
-    import tempfile
+    def get_cache_path(self) -> str:
+        """The folder of kept kernels."""
+        return str(kernel_folder())
 
-    from numba.core import config
+    def get_source_stamp(self) -> str:
+        """What the sources were: the folder's name."""
+        return kernel_folder().name
 
-    _temporary = tempfile.TemporaryDirectory(prefix="sealdyn_kernels_", ignore_cleanup_errors=True)
-    # numba looks at the environment once; the processes started from here look again.
-    os.environ["NUMBA_CACHE_DIR"] = config.CACHE_DIR = _temporary.name
-    warnings.warn(
-        "no folder for compiled kernels can be written: every run compiles them again; "
-        "let NUMBA_CACHE_DIR name one that can",
-        stacklevel=3,
-    )
+    def get_disambiguator(self) -> str:
+        """What tells kernels of one name and file name apart: room and line."""
+        return self._name

@@ -26,6 +26,7 @@ from ..numerics.kernel import (
     inner_kernel,
     integers,
     lazy_kernel,
+    outer_kernel,
 )
 from .equations import kinematics, rates, residual
 
@@ -200,3 +201,18 @@ def at_each(kernel, f, gaps):
     """A film's kernel on every gap state of `gaps` (m, GAP_STATE_SIZE)."""
     for i in range(len(gaps)):
         kernel(f, gaps[i])
+
+
+@outer_kernel()
+def propagate(matrix, start, pushes):
+    """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
+    count, n = pushes.shape
+    states = np.empty((count + 1, n))
+    states[0] = start
+    for k in range(count):
+        for i in range(n):
+            total = pushes[k, i]
+            for j in range(n):
+                total += matrix[i, j] * states[k, j]
+            states[k + 1, i] = total
+    return states

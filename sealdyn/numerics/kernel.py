@@ -16,8 +16,13 @@ from pathlib import Path
 
 from llvmlite import ir
 from numba import cfunc, float64, int32, int64, njit, types
-from numba.core.caching import IndexDataCacheFile
+from numba.core.caching import CompileResultCacheImpl, IndexDataCacheFile
 from numba.extending import intrinsic, register_jitable
+
+from ..kernel_cache import KernelLocator
+
+# numba asks its locators in turn.
+CompileResultCacheImpl._locator_classes.insert(0, KernelLocator)
 
 # --- checksums ----------------------------------------------------------------------------------------
 
@@ -35,6 +40,8 @@ def check_kernel_sums() -> None:
 
     @contextmanager
     def open_for_write(self, path):
+        # Another process may have left only newer kernels.
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
         with opened(self, path) as file:
             yield (whole := io.BytesIO())
             file.write(whole.getvalue() + MARK + _sum(whole.getvalue()))

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..dynamics.model import Model
-from ..dynamics.native import Value, at_each, load_value, states_along, thinnest_value
+from ..dynamics.native import Value, at_each, load_value, propagate, states_along, thinnest_value
 from ..dynamics.run_state import RunState
 from ..faces.contact import lay_surfaces
 from ..faces.film_thickness import h_min
@@ -31,7 +31,6 @@ from ..faces.geometry import (
     MOMENT_Y,
 )
 from ..films import film_named, limits
-from ..numerics.kernel import outer_kernel
 from ..numerics.piecewise_linear import initially
 from ..scene.contact import waves_of
 from ..scene.film import Reynolds
@@ -108,32 +107,17 @@ def _transient_error(run, linear, comparison, answers, matrix, step, count, wors
     error, before = np.zeros(2 * n), np.zeros(n)
     for first in range(0, count + 1, AT_ONCE):
         times = step * np.arange(first, min(first + AT_ONCE, count + 1))
-        unforced = _propagate(whole, free, np.zeros((len(times), 2 * n)))
+        unforced = propagate(whole, free, np.zeros((len(times), 2 * n)))
         free = unforced[-1]
         defects = comparison.defects(times, _steady_states(answers, times, n) + unforced[:-1])
         # Nothing pushes before the first step.
         earlier = np.vstack([before if first else -defects[0], defects[:-1]])
-        errors = _propagate(whole, error, (earlier + defects) @ pushed.T)[1:]
+        errors = propagate(whole, error, (earlier + defects) @ pushed.T)[1:]
         error, before = errors[-1], defects[-1]
         worst = np.maximum(worst, comparison.errors(errors))
         if worst.max() > enough:
             break
     return worst
-
-
-@outer_kernel()
-def _propagate(matrix, start, pushes):
-    """States (m + 1, n) of x' = matrix x + push from `start` on, one push (m, n) a step."""
-    count, n = pushes.shape
-    states = np.empty((count + 1, n))
-    states[0] = start
-    for k in range(count):
-        for i in range(n):
-            total = pushes[k, i]
-            for j in range(n):
-                total += matrix[i, j] * states[k, j]
-            states[k + 1, i] = total
-    return states
 
 
 def _steady_states(answers, times, n) -> np.ndarray:

@@ -9,9 +9,9 @@ PACKAGE = Path(__file__).parents[2] / "sealdyn"
 
 # Rooms, lowest first: a room may import only rooms of the lines above its own.
 ORDER = (
-    ("status", "quantities"),
+    ("kernel_cache", "status", "quantities"),
     ("answers",),
-    ("numerics", "closed_form", "archive", "kernel_cache", "unit_names"),
+    ("numerics", "closed_form", "archive", "unit_names"),
     ("units", "solvers", "report"),
     ("scene",),
     ("faces",),

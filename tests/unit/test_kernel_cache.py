@@ -2,10 +2,11 @@
 takes in a constant and calls a kernel of other files, in folders of their own."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
+from contextlib import contextmanager
 
 import pytest
 from numba import njit
@@ -13,23 +14,21 @@ from numba import njit
 import sealdyn.kernel_cache
 
 FILES = {
-    "__init__.py": "from .kernel_cache import clear_stale_kernels\n\ncleared = clear_stale_kernels()\n",
-    "faces/__init__.py": "",
     "faces/slots.py": "WIDTH = 2.0\n",
-    "faces/thickness.py": "from numba import njit\n\n\n@njit(cache=True)\ndef thick(x):\n    return 10.0 * x\n",
-    "films/deep/__init__.py": "",
-    "films/deep/wide.py": "from numba import njit\n\nfrom ...faces import (\n    slots,\n)\n"
-    "from ...faces.thickness import thick\n\nWIDTH = slots.WIDTH\n\n\n"
-    "@njit(cache=True)\ndef wide(x):\n    return WIDTH * thick(x)\n",
+    "faces/thickness.py": "from ..numerics.kernel import outer_kernel\n\n\n@outer_kernel\ndef thick(x):\n"
+    "    return 10.0 * x\n",
+    "films/deep/wide.py": "from ...faces import (\n    slots,\n)\nfrom ...faces.thickness import thick\n"
+    "from ...numerics.kernel import outer_kernel\n\nWIDTH = slots.WIDTH\n\n\n"
+    "@outer_kernel\ndef wide(x):\n    return WIDTH * thick(x)\n",
     "report.py": "",
 }
 CALL = """
-import plain
 from plain.films.deep.wide import wide
 from plain.kernel_cache import kept_kernels
-print(wide(1.0), sum(wide.stats.cache_misses.values()), len(kept_kernels()), plain.cleared)
+print(wide(1.0), sum(wide.stats.cache_misses.values()), len(kept_kernels()))
 """
-WARM = (20.0, 0, 4, False)
+COLD, WARM = (20.0, 1, 4), (20.0, 0, 4)
+PACKAGE = sealdyn.kernel_cache.PACKAGE
 
 
 PLACES = ["where NUMBA_CACHE_DIR says"]
@@ -38,22 +37,21 @@ PLACES += [pytest.param(p, marks=pytest.mark.slow) for p in ("beside the sources
 
 @pytest.fixture(params=PLACES)
 def package(request, tmp_path):
-    """A function that calls the kernel in a new process: result, kernels compiled, files kept, whether cleared."""
+    """A function that calls the kernel in a new process: result, kernels compiled, files kept; and what it says."""
     root, user = tmp_path / "plain", tmp_path / "user"
     for name, text in FILES.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
-    shutil.copy(Path(sealdyn.kernel_cache.__file__), root / "kernel_cache.py")
+    (root / "numerics").mkdir()
+    for name in ("kernel_cache.py", "numerics/kernel.py"):
+        shutil.copy(PACKAGE / name, root / name)
     environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
     environment |= {"XDG_CACHE_HOME": str(user), "PYTHONDONTWRITEBYTECODE": "1"}
     if request.param.startswith("where"):
         environment["NUMBA_CACHE_DIR"] = str(tmp_path / "elsewhere")
     elif not request.param.startswith("beside"):
-        if sys.platform != "linux":
-            pytest.skip("the user's folder is named otherwise")
         # A file in the folder's place: not even root can write into it.
-        for folder in [root, *(path for path in root.rglob("*") if path.is_dir())]:
-            (folder / "__pycache__").touch()
+        (root / "__pycache__").touch()
         if request.param == "nowhere":
             user.touch()
 
@@ -62,8 +60,8 @@ def package(request, tmp_path):
             [sys.executable, "-c", CALL], cwd=tmp_path, env=environment, capture_output=True, text=True
         )
         assert done.returncode == 0, done.stderr
-        result, misses, kept, cleared = done.stdout.split()
-        return (float(result), int(misses), int(kept), cleared == "True"), done.stderr
+        result, misses, kept = done.stdout.split()
+        return (float(result), int(misses), int(kept)), done.stderr
 
     call.root, call.keeps = root, request.param != "nowhere"
     return call
@@ -75,50 +73,90 @@ def changed(package, name, old, new):
 
 
 def test_stale_kernels_are_made_anew(package):
-    cold = (20.0, 1, 4, False)
     found, words = package()
-    assert found == cold and ("NUMBA_CACHE_DIR" in words) == (not package.keeps)
-    assert package()[0] == (WARM if package.keeps else cold)
+    assert found == COLD and ("NUMBA_CACHE_DIR" in words) == (not package.keeps)
+    assert package()[0] == (WARM if package.keeps else COLD)
     # A constant of another folder, imported as a module; a kernel of another file.
     changed(package, "faces/slots.py", "2.0", "3.0")
-    assert package()[0] == (30.0, 1, 4, package.keeps)
+    assert package()[0] == (30.0, 1, 4)
     changed(package, "faces/thickness.py", "10.0", "100.0")
-    assert package()[0] == (300.0, 1, 4, package.keeps)
+    assert package()[0] == (300.0, 1, 4)
+    # Those of the first sources are still there.
+    changed(package, "faces/slots.py", "3.0", "2.0")
+    changed(package, "faces/thickness.py", "100.0", "10.0")
+    assert package()[0] == (WARM if package.keeps else COLD)
 
 
 def test_a_change_elsewhere_keeps_them(package):
     package()
     changed(package, "report.py", "", "print\n")
-    assert package()[0][1] == (0 if package.keeps else 1)
+    assert package()[0] == (WARM if package.keeps else COLD)
 
 
 @pytest.mark.parametrize("package", ["where NUMBA_CACHE_DIR says"], indirect=True)
-def test_kernels_of_others_stay(package, tmp_path):
-    """The folder may be shared: another package's kernels, and those of a copy elsewhere, are left alone."""
-    package()
-    other = tmp_path / "elsewhere" / "plain_of_another_place" / "wide.wide-9.py311.1.nbc"
-    other.parent.mkdir()
+def test_the_newest_three_stay_and_all_of_others(package, tmp_path):
+    """The folder may be shared: other packages' kernels are left alone."""
+    other = tmp_path / "elsewhere" / "films_of_another_package" / "wide.wide-9.py311.1.nbc"
+    other.parent.mkdir(parents=True)
     other.write_bytes(b"kernel")
-    changed(package, "faces/slots.py", "2.0", "3.0")
-    assert package()[0] == (30.0, 1, 4, True) and other.exists()
+    for width in (2, 3, 4, 5):
+        (package.root / "faces/slots.py").write_text(f"WIDTH = {width}.0\n")
+        assert package()[0] == (10.0 * width, 1, 4)
+    assert len(list(other.parents[1].glob(sealdyn.kernel_cache.PREFIX + "*"))) == 3 and other.exists()
+    # The first is gone, the second is not.
+    changed(package, "faces/slots.py", "5.0", "3.0")
+    assert package()[0] == (30.0, 0, 4)
+    changed(package, "faces/slots.py", "3.0", "2.0")
+    assert package()[0] == COLD
+
+
+@pytest.mark.parametrize("package", ["where NUMBA_CACHE_DIR says"], indirect=True)
+@pytest.mark.parametrize("missing", [False, True])
+def test_kept_kernels_that_are_read_only(package, tmp_path, missing):
+    """They are read; those that are not among them are made, and nothing is said."""
+    package()
+    (folder,) = (tmp_path / "elsewhere").iterdir()
+    if missing:
+        for file in folder.glob("wide*"):
+            file.unlink()
+    before = sorted(folder.iterdir())
+    with unwritable(folder):
+        assert package() == ((20.0, int(missing), 4), "")
+    assert sorted(folder.iterdir()) == before
+
+
+@contextmanager
+def unwritable(folder):
+    """A folder into which nobody writes, root neither: skipped where the system has no such thing."""
+    if os.geteuid():
+        folder.chmod(0o555)
+    elif not shutil.which("chattr") or subprocess.run(["chattr", "+i", folder], capture_output=True).returncode:
+        pytest.skip("root writes everywhere here")
+    try:
+        yield
+    finally:
+        folder.chmod(0o755) if os.geteuid() else subprocess.run(["chattr", "-i", folder], check=True)
+
+
+IMPORTS = re.compile(r"^from (\.+)([\w.]*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+KERNEL = re.compile(r"^@(njit|cfunc|(outer|value|inner|lazy)_kernel|c_function)\b", re.MULTILINE)
 
 
 @pytest.mark.core
-def test_sources_of_this_package_reach_their_constants():
-    """Files of kernels, and a file without a kernel whose numbers a kernel takes in."""
-    found = {path.name for path in sealdyn.kernel_cache.kernel_sources()}
-    assert {"film.py", "geometry.py", "contact.py", "roughness.py"} <= found
-    assert not {"cli.py", "summary.py"} & found
-
-
-DECORATORS = ["njit", "cfunc", "outer_kernel", "value_kernel", "inner_kernel", "lazy_kernel", "c_function"]
-
-
-@pytest.mark.parametrize("decorator", DECORATORS)
-def test_all_that_is_compiled_is_a_kernel(tmp_path, decorator):
-    text = f"from .b import WIDTH\n\n\n@{decorator}()\ndef a(x):\n    return WIDTH\n".encode()
-    texts = {tmp_path / "a.py": text, tmp_path / "b.py": b"WIDTH = 1.0\n", tmp_path / "c.py": b"OTHER = 1.0\n"}
-    assert [path.name for path in sealdyn.kernel_cache.kernel_sources(texts)] == ["a.py", "b.py"]
+def test_sources_of_kernels_hold_all_that_kernels_are_made_of():
+    """Files of kernels and all that they import, however far."""
+    texts = {path: path.read_text() for path in PACKAGE.rglob("*.py")}
+    found, ahead = set(), [path for path, text in texts.items() if KERNEL.search(text)]
+    assert len(ahead) > 30
+    while ahead:
+        path = ahead.pop()
+        found.add(path)
+        for dots, module, names in IMPORTS.findall(texts[path]):
+            target = path.parents[len(dots) - 1].joinpath(*filter(None, module.split(".")))
+            modules = [target.with_suffix(".py")]
+            modules += [target / f"{name}.py" for name in ("__init__", *re.findall(r"\w+", names))]
+            ahead += [file for file in modules if file in texts and file not in found]
+    assert found - {PACKAGE / "kernel_cache.py"} <= set(sealdyn.kernel_cache.kernel_sources())
 
 
 def test_only_what_has_an_address_is_a_function_value():
