@@ -50,10 +50,16 @@ JSON schema (`sealdyn schema`), which editors read too.
 """
 
 
+SHIPPED = """## Shipped scenarios
+
+What is asked of each; what to expect and from which source stands at the head of its file.
+"""
+
+
 def page() -> str:
     """The whole page, markdown."""
-    parts = [HEAD, "## Shipped scenarios\n", *map(shipped, sorted(SCENARIOS.glob("*.toml")))]
-    parts += [*map(shipped, sorted(SCENARIOS.glob("radial/*.toml"))), "## Keys\n", *keys(json_schema())]
+    parts = [HEAD, SHIPPED, *map(shipped, sorted(SCENARIOS.glob("*.toml")))]
+    parts += [*map(shipped, sorted(SCENARIOS.glob("radial/*.toml"))), "\n## Keys\n", *keys(json_schema())]
     parts += [
         "## Keys of radial seals\n",
         "A table `[lip]` or `[circumferential]` makes a scenario one of a radial seal.\n",
@@ -73,12 +79,12 @@ def keys(schema: dict) -> list[str]:
 
 
 def shipped(path: Path) -> str:
-    """Question, expected answer and source of a scenario, from its head."""
+    """A scenario's question, from its head."""
     text = re.sub(r"\s+", " ", read_scenario(path).question)
-    question, *rest = re.split(r"\s*\b(Expected|Found|Source): ", text)
-    lines = [f"**[{path.stem}]({path.relative_to(SCENARIOS)})**  {question}"]
-    lines += [f"*{word}:* {said}" for word, said in zip(rest[::2], rest[1::2], strict=True)]
-    return "  \n".join(lines) + "\n"
+    question = re.split(r"\s*\b(?:Expected|Found|Source): ", text)[0]
+    # The first question, or the first sentence.
+    first = re.match(r".*?\?(?= |$)|.*?\.(?= [A-Z]|$)", question)
+    return f"- [{path.stem}]({path.relative_to(SCENARIOS)}): {first.group() if first else question}"
 
 
 def tables(schema: dict, table: dict, path: str = "") -> dict[str, list[str]]:
