@@ -259,7 +259,7 @@ def _row_or_error(function, *given):
 
 
 def _single_run(scenario, point) -> dict:
-    return _row(in_memory(with_values(scenario, point["set"]), asks_speeds(point["outputs"])), point)
+    return _row(in_memory(with_values(scenario, point["set"]), asks_speeds(point["outputs"]), lowest=False), point)
 
 
 def _row(parts, point) -> dict:
@@ -288,7 +288,7 @@ class LoopedRun:
 
     def __init__(self, scenario, outputs):
         self.scenario, self.outputs, self.outcome = scenario, outputs, None
-        self.run, self.plan = prepare_run(scenario)
+        self.run, self.plan = prepare_run(scenario, lowest=False)
         run, unknowns = self.run, self.run.model.unknowns
         self.method = self.plan.method
         self.tolerance = tolerance_for(self.method, run.model.accuracy, run.memory)

@@ -58,14 +58,15 @@ class Plan:
     work: float = math.inf
 
 
-def prepare_run(scenario: Scenario, allow_large: bool = True) -> tuple[RunState, Plan]:
+def prepare_run(scenario: Scenario, allow_large: bool = True, lowest: bool = True) -> tuple[RunState, Plan]:
     """A scenario made ready: its run (RunState with its start and windows, or RadialRun) and the Plan for it;
-    `allow_large` also one of a day or of gigabytes.
+    `allow_large` also one of a day or of gigabytes; the `lowest` film that keeps the accuracy, or film and method
+    that cost least among many runs.
     Raises SceneError, which names the numbers that may want a unit, or ArchiveError."""
     radial = isinstance(scenario.scene, RadialScene)
     try:
         refuse_large(scenario, allow_large)
-        run, plan = _prepared_radial(scenario) if radial else _prepared(scenario)
+        run, plan = _prepared_radial(scenario) if radial else _prepared(scenario, lowest)
         refuse_large(scenario, allow_large, plan.count)
         return run, plan
     except SceneError as error:
@@ -74,7 +75,7 @@ def prepare_run(scenario: Scenario, allow_large: bool = True) -> tuple[RunState,
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 
 
-def _prepared(scenario):
+def _prepared(scenario, lowest):
     settings = scenario.run
     chosen = []
 
@@ -84,7 +85,7 @@ def _prepared(scenario):
             chosen.append(choose_start(run, settings.start))
         set_start(run, scenario.scene, chosen[0])
 
-    run, film_error = select_film(scenario.scene, settings, begin)
+    run, film_error = select_film(scenario.scene, settings, begin, lowest or settings.solver == "expm")
     fastest = run.fastest_forcing()
     interval, count = sampling(run.duration, largest_value(scenario.scene.shaft.speed), settings, fastest)
     run.check_loads()
@@ -92,7 +93,7 @@ def _prepared(scenario):
     if method != "auto":
         check_method(run.model, method)
     else:
-        method, why = choose_method(run)
+        method, why = choose_method(run, exact=lowest)
     best = attainable(method, run.memory)
     if best > settings.accuracy:
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
@@ -157,13 +158,16 @@ def sampling(duration: float, fastest: float, settings: Run, forcing: float = 0.
     return interval, int(duration / interval)
 
 
-def select_film(scene: Scene, settings: Run, start: Callable[[RunState], None]) -> tuple[RunState, float | None]:
+def select_film(
+    scene: Scene, settings: Run, start: Callable[[RunState], None], lowest: bool = True
+) -> tuple[RunState, float | None]:
     """A run of the scene with the lowest film model that keeps the accuracy, and the estimated error of a linear film
     that was chosen for it (None: not estimated).  `settings` as the `[run]` table: `accuracy`, and `duration` (s) or
     `turns`; `start(run)` sets the run's unknowns.
 
     Only "auto" is chosen for: the linear film, with the radial film's coefficients, where its estimated error is below
-    half the accuracy, else the radial film; of faces with a profile the profiled film.  Raises SceneError.
+    half the accuracy, else the radial film; of faces with a profile the profiled film.  Unless the `lowest` is asked
+    for, a linear film is not tried: in a compiled loop it is no cheaper.  Raises SceneError.
     """
     film, accuracy = scene.film, settings.accuracy
 
@@ -183,7 +187,7 @@ def select_film(scene: Scene, settings: Run, start: Callable[[RunState], None]) 
     if name != "radial":
         highest.reasons.append(f"film auto: the {name} film; the faces have a profile, others know cones only")
         return highest, None
-    why = _why_not_linear(scene, highest)
+    why = _why_not_linear(scene, highest) if lowest else "many runs share its compiled loop"
     if why is None:
         simpler = replace(scene, film=replace(film, model="linear", coefficients="radial"))
         linear = started(simpler, highest.model.observed)
@@ -220,8 +224,9 @@ def _why_not_linear(scene, radial: RunState) -> str | None:
     return None
 
 
-def choose_method(run: RunState) -> tuple[str, str]:
-    """The method for a run (RunState), by its name in METHODS, and a sentence why."""
+def choose_method(run: RunState, exact: bool = True) -> tuple[str, str]:
+    """The method for a run (RunState), by its name in METHODS, and a sentence why; the `exact` motion of a linear film,
+    where it has one, or what a compiled loop of many runs integrates."""
     model = run.model
     if model.interface.film.settle is not None:
         return "trbdf2", "cells that tear and fill: TR-BDF2, the film settled at each stage"
@@ -229,7 +234,7 @@ def choose_method(run: RunState) -> tuple[str, str]:
         return "ida", "a massless ring has no rates: IDA, on the residual form"
     if model.unknowns.has_residual_form:
         return "ida", "the film has unknowns of its own: IDA, on the residual form"
-    if model.unknowns.linear and model.unknowns.constant:
+    if exact and model.unknowns.linear and model.unknowns.constant:
         return "expm", "linear film, constant conditions: the exact motion, by matrix exponential"
     ratio = _fastest_decay(run) * model.shortest_period / (2 * math.pi)
     if ratio > STIFF:

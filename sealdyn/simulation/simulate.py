@@ -137,9 +137,9 @@ def simulate_in_memory(scenario, speeds: bool = False) -> dict:
     return {**summary, "wall_time": clock.perf_counter() - begun}
 
 
-def in_memory(scenario, speeds: bool = False) -> dict:
+def in_memory(scenario, speeds: bool = False, lowest: bool = True) -> dict:
     """The same, as its `parts` (summary.py)."""
-    run, plan = prepare_run(scenario)
+    run, plan = prepare_run(scenario, lowest=lowest)
     sink, tally = ProgressSink(run), None if isinstance(scenario.scene, RadialScene) else Tally(run.model)
     trial, errors = first_steps(run, plan)
     outcome = solve(run, plan.method, run.model.accuracy, sink, errors=errors, tally=tally, **_solve_options(trial))

@@ -99,9 +99,9 @@ def by_itself(monkeypatch):
     """What went by itself: overrides of the scenarios."""
     seen, whole = [], batch.in_memory
 
-    def noted(scenario, speeds):
+    def noted(scenario, *asked, **more):
         seen.append(scenario.overrides[-1])
-        return whole(scenario, speeds)
+        return whole(scenario, *asked, **more)
 
     monkeypatch.setattr(batch, "in_memory", noted)
     return seen
@@ -179,12 +179,30 @@ def test_what_there_is_not_is_named(by_itself):
     [
         ("massless_ring", "rotor.runout", ["20 urad", "30 urad"]),
         ("hang_up", "shaft.speed", ["2900 rpm", "3000 rpm"]),
-        ("fms_reference", "film.model", ["linear", "linear"]),
+        ("fms_reference", "run.solver", ["expm", "expm"]),
     ],
 )
 def test_what_the_loop_cannot_goes_by_itself(by_itself, file, key, values):
-    found = rows(file, key, values, ["h_min.value"], "run.turns=2")
+    linear = ["film.model=linear"] if "expm" in values else []
+    found = rows(file, key, values, ["h_min.value"], "run.turns=2", *linear)
     assert len(by_itself) == 2 and all(row["h_min.value"] > 0 for row in found)
+
+
+SMALL = "run.accuracy=1e-4", "rotor.runout=1e-8", "stator.misalignment=0", "run.turns=6"
+
+
+@pytest.mark.core
+@pytest.mark.parametrize("film", ["auto", "linear"])
+@pytest.mark.parametrize("file", ["fms_reference", "fmsr_both_flexible"])
+def test_no_film_goes_by_itself_that_costs_less_in_the_loop(by_itself, file, film):
+    """Single runs of these choose the linear film and its exact motion."""
+    overrides = *SMALL, f"film.model={film}", "rotor.misalignment=0" if "both" in file else "run.turns=7"
+    single = simulate_in_memory(read_scenario(SCENARIOS / f"{file}.toml", [*overrides, "film.viscosity=1e-3"]))
+    assert single["model"]["film"] == "linear" and single["model"]["solver"] == "expm"
+    (row,) = rows(file, "film.viscosity", [1e-3], ["h_min.value", "relative_misalignment.max"], *overrides)
+    assert by_itself == []
+    assert abs(row["h_min.value"] - single["h_min"]["value"]) < 1e-4 * 1e-5
+    assert abs(row["relative_misalignment.max"] - single["relative_misalignment"]["max"]) < 1e-4 * 1e-5 / 0.04
 
 
 def test_a_failing_run_costs_one_row(by_itself):
