@@ -156,11 +156,12 @@ class Model:
         return self._shifts[interval.key]
 
     def linear_scene(self, interval: Interval | None = None, speed: float | None = None, shift: float | None = None):
-        """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
+        """The linearised scene at an interval's start, or at another shaft speed (rad/s), or with aligned faces at
+        another `shift` (m) of the gap (linearisation.py)."""
         interval = interval or self.start
         if speed is not None:
             return linearisation.linear_scene(self, interval, speed, shift)
-        key = interval.key, self.axial_shift(interval) if shift is None else shift
+        key = interval.key, None if shift == self.axial_shift(interval) else shift
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]
