@@ -158,7 +158,7 @@ class Interface:
     @cached_property
     def _fine(self) -> np.ndarray:
         """The film's block for linearising it: of the finest quadrature."""
-        if self.name == "linear":
+        if self.film.constant:
             return self.f
         f = self.film.parameters(self._table_used, self.clearance, FINE)
         lay_surfaces(f, self.scene)

@@ -48,7 +48,7 @@ class Model:
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed(), sweep_breaks(scene))
-        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
+        self.unknowns = Unknowns(scene, self.closing, self.interface.film.constant, self.interface.unknowns)
         if made is not None:
             was, left = (1e6 * seal.stator.waviness[0].amplitude for seal in (made, scene))
             self.unknowns.reasons.append(f"elastic ring: {left:.4g} um of its {was:.4g} um of waves are left at rest")
