@@ -158,7 +158,7 @@ class Interface:
     @cached_property
     def _fine(self) -> np.ndarray:
         """The film's block for linearising it: of the finest quadrature."""
-        if self.name == "linear":
+        if self.film.constant:
             return self.f
         f = self.film.parameters(self._table_used, self.clearance, FINE)
         lay_surfaces(f, self.scene)
@@ -192,7 +192,10 @@ class Interface:
         """Stiffness and damping of film and asperities about the aligned rest state and how well they are known,
         arguments as `rest_state`; of a film with unknowns at the frequency `omega` (rad/s), of its `linear_film` if
         given."""
-        s, steps = rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace)
+        return self.slopes_about(*rest_state(self.scene, self.clearance, interval, mean_spin, shift, pace), omega, film)
+
+    def slopes_about(self, s, steps, omega=0.0, film=None) -> Slopes:
+        """The same about any gap state at rest, `steps` as in condensation.moved_gaps."""
         found = self._film_slopes(s, steps, omega, film)
         if self.contact is None:
             return found

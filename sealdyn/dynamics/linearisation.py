@@ -1,7 +1,11 @@
-"""A scene linearised about its aligned equilibrium: matrices, steady state, exact motion of a linear scene."""
+"""A scene linearised about its equilibrium: matrices, steady state, exact motion of a linear scene.
+
+That equilibrium is the aligned one, but where the faces press with a moment: there the rings rest tilted."""
 
 import numpy as np
 
+from ..faces.film_thickness import h_min
+from ..faces.geometry import COLLAPSE, DZ, FORCE, GX, GY
 from ..scene.contact import waves_of
 from ..scene.film import follows_speed
 from ..scene.rings import ROTOR, STATOR
@@ -14,9 +18,14 @@ from .modes import MOTIONS, QUARTER_TURN, FilmDoubt, Harmonic, LinearScene, Ring
 from .stability_thresholds import Whirl, all_at_once, one_by_one
 from .swept_motion import sweeps_of
 
+GAP = [DZ, GX, GY]
+# Corrections of a tilted rest, and the last of them, in clearances, after which it is known.
+MOST_CORRECTIONS, RESTS = 30, 1e-8
+
 
 def linear_scene(model, interval, speed: float | None = None, shift: float | None = None) -> LinearScene:
-    """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap.
+    """The linearised scene at an interval's start, or at another shaft speed (rad/s), or with aligned faces at another
+    `shift` (m) of the gap.
 
     **Source** a film meets the mean spin wm only beside the rate of the tilt, g' - i wm g (Green 1989, eq. 2): at
     another speed it needs no other linearisation.
@@ -26,6 +35,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
     """
     w_r = constant_and_slope(model.scene.shaft.speed, interval)[0] if speed is None else speed
     w_s = constant_and_slope(model.scene.stator.speed, interval)[0]
+    resting = shift is None and model.unknowns.faces_tilt
     if shift is None:
         if speed is not None and moves_with_speed(model.scene.film):
             shift, balanced = axial_shift(model, interval, speed)
@@ -34,21 +44,7 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
                 raise SceneError("shaft.speed", found, "a speed at which inertia and coning leave such a film")
         else:
             shift = model.axial_shift(interval)
-    interface, spin, film = model.interface, 0.5 * (w_r + w_s), None
-    if linear_in_speed(model, interval):
-        slopes, goes_with = model.still_film(interval, shift), spin
-        stiffness = slopes.stiffness - spin * slopes.damping @ QUARTER_TURN
-    else:
-        if interface.stores:
-            film = interface.linear_film(*rest_state(model.scene, interface.clearance, interval, spin, shift))
-        slopes, goes_with = interface.slopes(interval, spin, shift, film=film), 0.0
-        stiffness = slopes.stiffness
-    error_k, error_d = slopes.stiffness_error, slopes.damping_error
-    tilt = max(error_k[1, 1], error_k[2, 2]), max(error_d[1, 1], error_d[2, 2])
-    if not goes_with:
-        # The wedge is as wrong as it is, whatever the damping.
-        tilt = tilt[0] + max(error_k[1, 2], error_k[2, 1]), tilt[1]
-    doubt = FilmDoubt((error_k[0, 0], error_d[0, 0]), tilt, goes_with)
+    interface, spin, film, rest = model.interface, 0.5 * (w_r + w_s), None, None
     rings = []
     for k, ring in enumerate((model.scene.stator, model.scene.rotor)):
         support = ring.support
@@ -67,7 +63,65 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
                 spin=w_s if k == STATOR else w_r,
             )
         )
-    return LinearScene(rings, stiffness, slopes.damping, film, doubt)
+    if linear_in_speed(model, interval):
+        slopes, goes_with = model.still_film(interval, shift), spin
+        stiffness = slopes.stiffness - spin * slopes.damping @ QUARTER_TURN
+    else:
+        found = tilted_rest(model, interval, rings, spin, shift) if resting else None
+        if found is not None:
+            slopes, film, rest = found
+        else:
+            s, steps = rest_state(model.scene, interface.clearance, interval, spin, shift)
+            film = interface.linear_film(s, steps) if interface.stores else None
+            slopes = interface.slopes_about(s, steps, film=film)
+        goes_with, stiffness = 0.0, slopes.stiffness
+    error_k, error_d = slopes.stiffness_error, slopes.damping_error
+    tilt = max(error_k[1, 1], error_k[2, 2]), max(error_d[1, 1], error_d[2, 2])
+    if not goes_with:
+        # The wedge is as wrong as it is, whatever the damping.
+        tilt = tilt[0] + max(error_k[1, 2], error_k[2, 1]), tilt[1]
+    doubt = FilmDoubt((error_k[0, 0], error_d[0, 0]), tilt, goes_with)
+    return LinearScene(rings, stiffness, slopes.damping, film, doubt, rest)
+
+
+def tilted_rest(model, interval, rings, spin: float, shift: float):
+    """Where rings whose faces press with a moment rest, from `shift` (m) of the aligned gap on, at an interval's start
+    and a mean `spin` (rad/s): Slopes and LinearFilm (None of a film that does not store) about it, and displacements
+    (n,) of the floating rings; None where it is not found.
+
+    Newton's method on forces and moments of film, asperities, supports and closing force.
+    **Valid** patterns that stand still (films/__init__.py takes no others), so that the rest does; no forcing.
+    """
+    interface, face = model.interface, model.face
+    s, steps = rest_state(model.scene, interface.clearance, interval, spin, shift)
+    closing, thin = np.array([model.closing.over(interval, model.scene.film)[0], 0.0, 0.0]), h_min(face, s)[0]
+    supports = LinearScene(rings, np.zeros((3, 3)), np.zeros((3, 3)))
+    # Displacements in clearances, of the axial gap and of the outer edge.
+    units = np.tile([model.clearance, *2 * [model.clearance / model.scene.film.outer_radius]], len(supports.floating))
+    q = np.linalg.pinv(supports.gap) @ [shift, 0.0, 0.0]
+    try:
+        for _ in range(MOST_CORRECTIONS):
+            s[GAP] = supports.gap @ q
+            near = min(1.0, h_min(face, s)[0] / thin) if not model.scene.contact else 1.0
+            reach = tuple(near * step for step in steps)
+            film = interface.linear_film(s, reach) if interface.stores else None
+            slopes = interface.slopes_about(s, reach, film=film)
+            interface.wrench(interface.whole[0], s)
+            left = supports.stiffness @ q - supports.gap.T @ (s[FORCE : FORCE + 3] - closing)
+            step = np.linalg.solve(LinearScene(rings, *slopes[:2]).stiffness, left)
+            if np.max(np.abs(step / units)) < RESTS:
+                return slopes, film, q
+            # Not through the other face.
+            for _ in range(MOST_CORRECTIONS):
+                s[GAP] = supports.gap @ (q - step)
+                if h_min(face, s)[0] > face[COLLAPSE]:
+                    break
+                step = 0.5 * step
+            q = q - step
+    except (SceneError, np.linalg.LinAlgError):
+        # No film there.
+        pass
+    return None
 
 
 def linear_in_speed(model, interval=None) -> bool:

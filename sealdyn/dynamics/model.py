@@ -48,7 +48,7 @@ class Model:
         self.clearance, self.closing = self.interface.clearance, self.interface.closing
         self.observed = observed or self.interface.observed
         self.start = first_interval(self._imposed(), sweep_breaks(scene))
-        self.unknowns = Unknowns(scene, self.closing, self.interface.name == "linear", self.interface.unknowns)
+        self.unknowns = Unknowns(scene, self.closing, self.interface.film.constant, self.interface.unknowns)
         if made is not None:
             was, left = (1e6 * seal.stator.waviness[0].amplitude for seal in (made, scene))
             self.unknowns.reasons.append(f"elastic ring: {left:.4g} um of its {was:.4g} um of waves are left at rest")
@@ -156,11 +156,12 @@ class Model:
         return self._shifts[interval.key]
 
     def linear_scene(self, interval: Interval | None = None, speed: float | None = None, shift: float | None = None):
-        """The linearised scene at an interval's start, or at another shaft speed (rad/s) or `shift` (m) of the gap."""
+        """The linearised scene at an interval's start, or at another shaft speed (rad/s), or with aligned faces at
+        another `shift` (m) of the gap (linearisation.py)."""
         interval = interval or self.start
         if speed is not None:
             return linearisation.linear_scene(self, interval, speed, shift)
-        key = interval.key, self.axial_shift(interval) if shift is None else shift
+        key = interval.key, None if shift == self.axial_shift(interval) else shift
         if key not in self._linear_scenes:
             self._linear_scenes[key] = linearisation.linear_scene(self, interval, shift=key[1])
         return self._linear_scenes[key]

@@ -91,10 +91,12 @@ class LinearScene:
 
     `film_k`, `film_d` (3, 3) of the film's slow motion, of which the matrices are made; `film` a LinearFilm
     (condensation.py) if they hang on the frequency, which responses and eigenvalues then reckon with; `gap` (3, n):
-    (dz, g_x, g_y) of the displacements; `doubt` how well the film's matrices are known.
+    (dz, g_x, g_y) of the displacements; `doubt` how well the film's matrices are known; `rest` displacements (n,) of a
+    tilted rest about which they are, None where they are about aligned faces.
     """
 
-    def __init__(self, rings: list[RingNumbers], film_stiffness, film_damping, film=None, doubt=None):
+    def __init__(self, rings: list[RingNumbers], film_stiffness, film_damping, film=None, doubt=None, rest=None):
+        self.rest = rest
         self.rings, self.film_k, self.film_d, self.film = rings, film_stiffness, film_damping, film
         self.doubt = doubt or FilmDoubt()
         self.floating = [k for k, ring in enumerate(rings) if ring.floats]

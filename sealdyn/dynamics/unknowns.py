@@ -70,7 +70,7 @@ class Unknowns:
         self._place((scene.stator, scene.rotor))
         if self.faces_tilt:
             orders = " and ".join(map(str, face_orders(scene)))
-            self.reasons.append(f"faces of order {orders} press with a moment when aligned: linear numbers lack it")
+            self.reasons.append(f"faces of order {orders} press with a moment when aligned: rings rest tilted")
         if waves_of(scene) and not pressed:
             self.reasons.append("wavy faces: the gap and leakage have the waves, the film's forces are as given")
         if self.massless:

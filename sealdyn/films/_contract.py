@@ -125,6 +125,8 @@ class Film:
     `rough`            the Film that is this film between rough faces, which may meet.
     `matrices(f, s)`   stiffness (N/m) and damping (N s/m), each (3, 3), on (dz, g_x, g_y) at a gap state; without it
                        they are differences of the force.
+    `constant`         whether its stiffness and damping are given numbers, whatever the gap: no law of a film, so that
+                       no other film is asked what it leaves out, and motion on it is linear.
     `opening_slots`    slots of `f` that hold the opening force per inner and per outer pressure (m^2), of a film whose
                        coefficients may be another film's (`film.coefficients = "radial"`).
     `pads`             whether it takes the pads of a table.
@@ -197,6 +199,7 @@ class Film:
     floored: str | None = None
     rough: Film | None = None
     matrices: Callable | None = None
+    constant: bool = False
     opening_slots: tuple[int, int] | None = None
     pads: bool = False
     standing_waves: bool = False

@@ -183,6 +183,7 @@ def flow(f, s):
 
 FILM = Film(
     name="linear",
+    constant=True,
     fidelity=1,
     fluids=("liquid", "gas"),
     accepts=accepts,

@@ -23,7 +23,7 @@ from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
 from .selection import Plan
-from .verification_run import LEAST_SHARPER, OTHER, Comparison, ErrorScales
+from .verification_run import COMPILED, LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -241,7 +241,7 @@ def _so_many(error: float | None, wanted: float) -> str:
 def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None, float | None, str]:
     """Errors of a film against the next higher model and of its cells, and a sentence."""
     interface = run.model.interface
-    if by_model is None and interface.name == "linear":
+    if by_model is None and interface.film.constant:
         by_model = model_error(run)
     known = [cell_error(run), None if cells is None else float(np.nanmax(cells, initial=0.0))]
     by_cells = max((error for error in known if error is not None), default=None)
@@ -254,7 +254,7 @@ def _by_film(run: RunState, by_model: float | None, cells) -> tuple[float | None
         return by_cells, by_cells, f"cells {by_cells:.1e}, by half of them"
     if by_model is not None:
         return by_model, None, f"model {by_model:.1e} against the radial film"
-    if interface.name == "linear":
+    if interface.film.constant:
         return None, None, "the linear film's own error not estimated here"
     return None, None, f"the {interface.name} film has no higher model"
 
@@ -313,7 +313,8 @@ def certificate(
     measured = cells = None
     if seen:
         try:
-            how = {"method": plan.method, "tolerance": outcome.tolerance}
+            work = budget(plan.method, outcome.counts)
+            how = {"method": plan.method, "tolerance": outcome.tolerance, "work": work}
             apart, cells = seen.error_over_time(progress, stop, **how), seen.error_of_cells(progress, stop, **how)
         except Enough:
             return _interruption(asked, outcome)
@@ -321,11 +322,14 @@ def certificate(
             why = f"no certificate: {seen.failure}"
             failed = replace(outcome, status=Status.INACCURATE, cause=Cause.DONE, message=why)
             return no_certificate(asked, seen.failure) | {"met": False}, failed
-        measured = None if apart is None else (seen.times, apart)
+        # Of a run that is seen in part what is wrong is known, not that nothing is.
+        unknown = apart is None or (seen.dear and horizon(seen.times, apart, asked) is None)
+        measured = None if unknown else (seen.times, apart)
     found = certify(run, plan.method, outcome.tolerance, errors, plan.film_error, measured, cells)
     beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
     unseen = "; the run was done before it was continued, begun anew it is measured"
     found = replace(found, said=found.said + unseen) if seen and seen.columns is None else found
+    found = replace(found, said=f"{found.said}; the sharper run is {seen.dear}") if seen and seen.dear else found
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
 
@@ -337,9 +341,7 @@ HELPED = 0.5
 # An error of the size of the motion itself that sharper tolerances do not touch: chaos, and no method helps.
 WHOLE = 0.1
 # Steps of a run beyond which it is not done again, and beyond which not by a method that is not compiled.
-LONG, SLOW, COMPILED = 1_000_000, 1_000, ("adams", "bdf", "ida")
-# Evaluations that a retry may take, over those of the first run; how many compiled ones one in Python costs.
-BUDGET, INTERPRETED = 10.0, 30.0
+LONG, SLOW = 1_000_000, 1_000
 # Methods that crawl where decay is fast: none is tried where BDF was chosen for that.
 EXPLICIT = ("adams", "dop853")
 
@@ -352,12 +354,7 @@ def next_plan(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -
     if again is None or again.last or plan.work < math.inf:
         return again
     # Only the first run has no bound: what it took is known now.
-    return replace(again, work=BUDGET * outcome.counts.rhs * price(plan.method))
-
-
-def price(method: str) -> float:
-    """Compiled evaluations that one of a method costs."""
-    return 1.0 if method in COMPILED else INTERPRETED
+    return replace(again, work=budget(plan.method, outcome.counts))
 
 
 def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> Plan | None:

@@ -72,7 +72,7 @@ def scene_cautions(scenario: Scenario, model: Model) -> list[Caution]:
 def _is_liquid(model) -> bool:
     """Whether the film is a liquid, and not coefficients of one's own."""
     film = model.scene.film
-    return film.gas is None and not (isinstance(film.coefficients, Coefficients) and model.interface.name == "linear")
+    return film.gas is None and not (isinstance(film.coefficients, Coefficients) and model.interface.film.constant)
 
 
 def _pressure_floor(run):

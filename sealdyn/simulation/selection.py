@@ -98,8 +98,8 @@ def _prepared(scenario, lowest):
     if best > settings.accuracy:
         sentence = f"accuracy: errors add up over {run.memory:.3g} periods; {method} keeps {best:.1e} at best"
         run.cautions.append(Caution(Concern.ACCURACY, sentence))
-    if run.model.unknowns.faces_tilt:
-        sentence = "stability and stiffness are of aligned faces, from which waves or pads turn the rings"
+    if run.model.unknowns.faces_tilt and run.model.linear_scene().rest is None:
+        sentence = "stability and stiffness are of aligned faces: no rest is found for what waves or pads press"
         run.cautions.append(Caution(Concern.ALIGNED, sentence))
     run.watch_last_periods()
     if fastest * interval > math.pi:

@@ -22,12 +22,12 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
-from .certificate import TrialRun, certificate, first_steps, judgement, next_plan, price
+from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
 from .sinks import ArchiveSink, RadialSink, archived_series
 from .summary import parts
-from .verification_run import Comparison, ProgressSink, RadialComparison
+from .verification_run import Comparison, ProgressSink, RadialComparison, price
 
 
 def simulate(

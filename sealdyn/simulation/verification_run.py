@@ -16,7 +16,7 @@ from ..faces.geometry import FLOW_INNER, FORCE, INNER_PRESSURE, MOMENT_X, MOMENT
 from ..numerics.piecewise_linear import initially
 from ..scene.gas import density_of, gas_of
 from ..scene.scene import SceneError
-from ..solvers.contract import TIGHTEST, Enough, Status, attainable, tolerance_for
+from ..solvers.contract import TIGHTEST, Cause, Counts, Enough, Status, attainable, tolerance_for
 from ..solvers.integrate import solve
 
 # Instants at which two runs are compared: per fastest period, at least (many of a film whose loads jump: a hundredth of
@@ -39,15 +39,19 @@ SHARPER_FILM = 0.1
 CELLS = 0.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853", "trbdf2": "trbdf2"}
+# Evaluations that another run may take, over those of the one before; methods that are compiled, and how many of their
+# evaluations one in Python costs.
+BUDGET, COMPILED, INTERPRETED = 10.0, ("adams", "bdf", "ida"), 30.0
 
 
 class Comparison:
     """An observer that keeps what is looked at of a run at instants `times` (m,) (s): columns of ErrorScales, NaN where
-    the run has not been; `failure`: how a second run ended that tells nothing, empty if none did."""
+    the run has not been; `failure`: how a second run ended that tells nothing, `dear`: that it gave up for its work,
+    empty if none did."""
 
     def __init__(self, run: RunState):
         self.scales, self.run, self.times = ErrorScales(run), run, instants(run)
-        self.columns, self.failure = None, ""
+        self.columns, self.failure, self.dear = None, "", ""
 
     def begin(self, segment, tau, y):
         """Nothing to do: instants are of the whole run."""
@@ -64,17 +68,21 @@ class Comparison:
                 self.columns = np.full((len(self.times), found.shape[1]), np.nan)
             self.columns[first:last] = found
 
-    def error_over_time(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+    def error_over_time(
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+    ) -> np.ndarray | None:
         """How far (m,) this run, done by `method` with `tolerance`, is from a sharper one at each instant, the largest
         over all quantities, relative to its scale; NaN where the two cannot be compared, infinite where the other has
         ended.  None if nothing can be compared; `progress(t, end)` and `stop()` as in `simulate`; Enough once `stop`
-        asks for it."""
+        asks for it.  `work`: compiled evaluations after which the other gives up, NaN from there on."""
         model = self.run.model
         # A film below its floor has a bend, of which its integrals feel more than of anything else.
         again = self.run.anew(model.with_sharper_film(SHARPER_FILM) if model.scene.contact else None)
-        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
+        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop, work)
 
-    def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+    def error_of_cells(
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+    ) -> np.ndarray | None:
         """The same of the film's cells, from the run with half of them; None of a film that has none to halve, or that
         half of them cannot describe."""
         model = self.run.model
@@ -88,20 +96,23 @@ class Comparison:
             return None
         again, rings = RunState(coarse, self.run.duration), model.unknowns.n_mechanical
         again.y0[:rings] = self.run.y0[:rings]
-        apart = self._apart(again, method, tolerance, progress, stop)
+        apart = self._apart(again, method, tolerance, progress, stop, work)
         return None if apart is None else CELLS * apart
 
-    def _apart(self, again, method, tolerance, progress, stop) -> np.ndarray | None:
+    def _apart(self, again, method, tolerance, progress, stop, work) -> np.ndarray | None:
         """How far (m,) this run is from another one, done by `method` with `tolerance`, at each instant."""
         other = type(self)(again)
         other.times = self.times
         outcome = solve(
-            again, method, again.model.accuracy, ProgressSink(again, progress, stop), tolerance=tolerance, seen=other
-        )
+            again, method, again.model.accuracy, ProgressSink(again, progress, stop), tolerance=tolerance, seen=other,
+            work=work / price(method),
+        )  # fmt: skip
         if outcome.status == Status.INTERRUPTED:
             raise Enough
         if self.columns is None or other.columns is None:
             return None
+        if outcome.cause == Cause.TOO_DEAR:
+            self.dear = outcome.message
         both = ~(np.isnan(self.columns) | np.isnan(other.columns)).any(axis=1)
         found = np.full(len(self.times), np.nan)
         if both.any():
@@ -115,7 +126,7 @@ class Comparison:
 
     def _ended(self, outcome, again, found: np.ndarray) -> np.ndarray:
         """What was `found`, after a second run that ended with `outcome`."""
-        if outcome.status != Status.OK:
+        if outcome.status != Status.OK and outcome.cause != Cause.TOO_DEAR:
             # One run ends well, the other does not: from there on nothing is right.
             found[self.times > again.end_time(outcome.segment, outcome.tau)] = np.inf
         return found
@@ -136,16 +147,21 @@ class RadialComparison(Comparison):
         from ..radial_seals.observers import RadialErrorScales
 
         self.run, self.scales, self.failure = run, RadialErrorScales(run.model), ""
+        self.dear = ""
         self.times = np.sort(np.mod(GOLDEN * np.arange(1, RADIAL_INSTANTS + 1), 1.0)) * run.duration
         self.columns = None
 
-    def error_over_time(self, progress=None, stop=None, *, method: str, tolerance: float) -> np.ndarray | None:
+    def error_over_time(
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+    ) -> np.ndarray | None:
         """How far (m,) this run is from one with sharper steps and sharper events: how long a step may be and what
         counts as contact follow from the accuracy."""
         again = self.run.sharper(SHARPER)
-        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop)
+        return self._apart(again, *sharper(method, tolerance, self.run), progress, stop, work)
 
-    def error_of_cells(self, progress=None, stop=None, *, method: str, tolerance: float) -> None:
+    def error_of_cells(
+        self, progress=None, stop=None, *, method: str, tolerance: float, work: float = math.inf
+    ) -> None:
         """None: there is no film."""
 
     def _largest(self, errors):
@@ -154,7 +170,7 @@ class RadialComparison(Comparison):
         return np.minimum(largest, np.quantile(largest, JUMP_QUANTILE))
 
     def _ended(self, outcome, again, found):
-        if outcome.status != Status.OK:
+        if outcome.status != Status.OK and outcome.cause != Cause.TOO_DEAR:
             self.failure = f"a sharper run {outcome.status} ({outcome.message})"
         return found
 
@@ -195,6 +211,16 @@ class ProgressSink:
             self.progress(segment.time + tau, self.run.duration)
         if self.stop and self.stop():
             raise Enough
+
+
+def price(method: str) -> float:
+    """Compiled evaluations that one of a method costs."""
+    return 1.0 if method in COMPILED else INTERPRETED
+
+
+def budget(method: str, counts: Counts) -> float:
+    """Compiled evaluations that a run may take beside one by a method that took these `counts`."""
+    return BUDGET * counts.rhs * price(method)
 
 
 def sharper(method: str, tolerance: float, run) -> tuple[str, float]:

@@ -54,6 +54,7 @@ class Cause(StrEnum):
     FILM_COLLAPSED = "film collapsed"
     ASPERITIES_CRUSHED = "asperities crushed flat"
     METHOD_GAVE_UP = "the method gave up"
+    TOO_DEAR = "too dear"
     INTERRUPTED = "interrupted by the user"
 
 
@@ -100,6 +101,14 @@ class Enough(Exception):
 
 class SolverFailure(RuntimeError):
     """A solver gave up: the sentence says why and what to try."""
+
+    cause = Cause.METHOD_GAVE_UP
+
+
+class TooDear(SolverFailure):
+    """A run took more evaluations than it may."""
+
+    cause = Cause.TOO_DEAR
 
 
 @dataclass

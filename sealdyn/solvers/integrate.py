@@ -24,6 +24,7 @@ from .contract import (
     SolverFailure,
     Status,
     Stop,
+    TooDear,
     tolerance_for,
 )
 from .energy_audit import EnergyAudit
@@ -39,7 +40,7 @@ _STEPS = (
     "no advance: {count} steps brought {span:.1e} s of motion, up to t = {time:.6g} s; try another run.solver (bdf or "
     "ida where the scene is stiff), a looser run.accuracy, or look whether the film is closing there"
 )
-_DEAR = "too dear: {count} evaluations brought this retry to t = {time:.6g} s, many times the work of the first run"
+_DEAR = "too dear: {count} evaluations brought this run to t = {time:.6g} s, many times the work of the run before"
 _CHANGES = (
     "no advance: {count} changes between sticking and slipping within {span:.1e} s of motion, up to t = {time:.6g} s; "
     'dry friction cannot say what happens there: law = "regularised" and a width of the secondary seal can'
@@ -50,7 +51,7 @@ class Advance:
     """Watches how far a run of `length` (s) and shortest period `period` (s) gets.
 
     At the pace at which it gives up, the run would take 2e9 steps or 1e9 changes (stick-slip chatter): hours of
-    compiled steps, days of others.  `work`: evaluations that a retry may take in all.  Counts decide, not the clock:
+    compiled steps, days of others.  `work`: evaluations that it may take in all.  Counts decide, not the clock:
     another machine finds the same."""
 
     def __init__(self, length: float, period: float, work: float = math.inf):
@@ -62,7 +63,7 @@ class Advance:
         """So many `steps` were made, with so many evaluations (`work`), up to `time` (s).  Raises SolverFailure for a
         run that does not get on, or costs too much."""
         if work > self.work:
-            raise SolverFailure(_DEAR.format(count=work, time=time))
+            raise TooDear(_DEAR.format(count=work, time=time))
         self.since_step = self._look(self.since_step, time, steps, STEPS, SHARE_STEPS * self.ahead, _STEPS)
 
     def change(self, time: float) -> None:
@@ -163,7 +164,7 @@ def solve(
     except SolverFailure as failure:
         reason = segment.failure()
         message = f"{reason}; {failure}" if reason else str(failure)
-        status, cause = Status.FAILED, Cause.METHOD_GAVE_UP
+        status, cause = Status.FAILED, failure.cause
     except Enough:
         status, cause, message = Status.INTERRUPTED, Cause.INTERRUPTED, str(Cause.INTERRUPTED)
     index, tau, y = run.last if status in (Status.FAILED, Status.INTERRUPTED) else (segment.index, tau, y)

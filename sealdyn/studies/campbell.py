@@ -21,7 +21,6 @@ INFO = Info(
     asks="At which frequencies does the seal whirl?",
     refuses=("secondary-seal",),
     wavy=True,
-    aligned=True,
     units={
         **dict.fromkeys(("speed", "frequency", "signed_frequency"), "rad/s"), "growth_rate": "1/s",
         **dict.fromkeys(("log_decrement", "lines", "line", "mode", "whirl_ratio"), "1"),
@@ -89,7 +88,9 @@ def run(scenario, settings, tools) -> Answer:
         "stator_crossings": stator_crossings(modes, speeds, scene.stator.speed),
     }
     with reading_in({"rad/s": settings.unit}):
-        return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers))
+        lost = model.unknowns.faces_tilt and begin.rest is None
+        notes = ["The modes are of aligned faces: no tilt was found in which the rings rest."] if lost else []
+        return Answer(numbers, _found(numbers), [_table(numbers)], _panels(numbers), notes)
 
 
 # --- following modes -----------------------------------------------------------------------------------

@@ -31,11 +31,11 @@ from sealdyn.scenario.tables import Run
 from sealdyn.scene.contact import Contact
 from sealdyn.scene.excitation import AngularVibration, Housing
 from sealdyn.scene.rings import Stator
-from sealdyn.simulation import certificate
+from sealdyn.simulation import certificate, verification_run
 from sealdyn.simulation import film_error as film_comparison
 from sealdyn.simulation.certificate import LOOSER, certify, choose_tolerance, error_estimator, solver_error
 from sealdyn.simulation.film_error import model_error, model_errors
-from sealdyn.simulation.selection import select_film
+from sealdyn.simulation.selection import Plan, Start, select_film
 from sealdyn.simulation.simulate import simulate, simulate_in_memory
 from sealdyn.simulation.verification_run import Comparison, ProgressSink
 from sealdyn.solvers.contract import Counts, Recorder, tolerance_for
@@ -125,6 +125,25 @@ def test_solver_error_is_neither_hidden_nor_made_up(method, accuracy):
     true = float(seen.scales.errors(seen.columns, sharp.columns).max())
     estimate = solver_error(method, tolerance, apart)
     assert true / 3 < estimate + 1e-10 and estimate < accuracy
+
+
+@pytest.mark.parametrize("method", ["adams", "bdf"])
+def test_a_measuring_run_has_a_budget(method, monkeypatch):
+    """Before, it might take any work, hours after a run of seconds.  What it did not see is not said to be right."""
+    monkeypatch.setattr(verification_run, "BUDGET", 0.5)
+    ready = prepared(fms(), 60 * TURN, 1e-5)
+    seen = Comparison(ready)
+    outcome = solve(ready, method, 1e-5, ProgressSink(ready), seen=seen)
+    work = verification_run.budget(method, outcome.counts)
+    apart = seen.error_over_time(method=method, tolerance=outcome.tolerance, work=work)
+    assert seen.dear and np.isfinite(apart[0]) and np.isnan(apart[-1]) and not np.isinf(apart).any()
+    plan = Plan("radial", method, None, Start("rest"), "")
+    found, ended = certificate.certificate(ready, plan, outcome, None, seen)
+    assert ended.status == "ok" and found["solver"] is None and found["horizon"] is None
+    monkeypatch.setattr(verification_run, "BUDGET", 10.0)
+    seen.dear = ""
+    found, _ = certificate.certificate(ready, plan, outcome, None, seen)
+    assert found["solver"] < 1e-5
 
 
 @pytest.mark.slow
