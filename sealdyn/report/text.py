@@ -85,6 +85,7 @@ def resolved_lines(found: dict) -> list[str]:
     if "closed_form" in found:
         out.append(f"# {model['followers']} followers; solver {model['solver']}")
         out += [f"# {line}" for line in (*model["reasons"], *found["closed_form"])]
+        out += [f"# WARNING {warning}" for warning in found["warnings"]]
         return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")
     out += [f"# {reason}" for reason in model["reasons"]]

@@ -23,10 +23,12 @@ NOTHING = 1e-25
 A_FILE = "a CSV file with a line of names, time and axial, tilt_x or tilt_y with units in brackets, or HDF5 (.h5)"
 
 
-def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError]) -> dict:
+def with_columns(
+    raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError], bare: list[str]
+) -> dict:
     """The tables `raw` of the scenario `name` with the columns of the files that their motions name, beside the files'
     names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
-    of that name.  What is wrong with a file goes to `wrong`."""
+    of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
     for table in ("shaft", "housing"):
         motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
         if not isinstance(motion, dict) or not isinstance(motion.get("file"), str) or "time" in motion:
@@ -34,7 +36,9 @@ def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: l
         file, key = motion["file"], f"{table}.motion.file"
         kept = (held.get(table) or {}).get("motion") or {}
         try:
-            given = kept if kept.get("file") == file else read_motion((folder or Path()) / file)
+            columns = {} if kept.get("file") == file else _columns((folder or Path()) / file)
+            given = {column: values for column, (values, _) in columns.items()} or kept
+            bare += [f"{table}.motion.{column}" for column, (_, unit) in columns.items() if not unit]
         except QuantityError as error:
             wrong.append(ScenarioError(name, key, error.found, error.expected))
             # Another thing that is wrong is not this one's fault.
@@ -47,6 +51,11 @@ def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: l
 def read_motion(path: Path) -> dict[str, list[float]]:
     """Columns of a file, SI: `time` (s) and what there is of `axial` (m), `tilt_x` and `tilt_y` (rad).  Raises
     QuantityError."""
+    return {name: values for name, (values, _) in _columns(path).items()}
+
+
+def _columns(path: Path) -> dict[str, tuple[list[float], str]]:
+    """Columns of a file, SI, and the unit in which it has them."""
     try:
         size = path.stat().st_size if path.is_file() else None
     except (OSError, ValueError):
@@ -59,7 +68,7 @@ def read_motion(path: Path) -> dict[str, list[float]]:
     if "time" not in columns or len(columns) < 2:
         there = ", ".join(columns) or "none of them"
         raise QuantityError(f"{quoted(path.name)} with the columns {there}", A_FILE)
-    return {name: _in_si(path.name, name, *columns[name]) for name in columns}
+    return {name: (_in_si(path.name, name, *columns[name]), columns[name][1]) for name in columns}
 
 
 def _in_si(file: str, name: str, values: list[float], unit: str) -> list[float]:

@@ -34,7 +34,7 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .tables import Run, entries_of, given_keys, read_tables, table_of
+from .tables import Run, given_keys, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -182,10 +182,11 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
         override_key(raw, override, name)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
-    found = read_tables(raw, name, folder=path and path.parent, held=held)
+    unsaid: list[str] = []
+    found = read_tables(raw, name, folder=path and path.parent, held=held, bare=unsaid)
     name = name.removesuffix(".toml")
     return Scenario(
-        **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
+        **found, bare=bare.union(unsaid), gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
         question=_question(text),
     )  # fmt: skip
 
@@ -221,18 +222,18 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
-    """Dotted keys of numbers without a unit."""
-    for key, value in tables.items():
-        if of and _is_bare(value):
-            yield f"{of}{key}"
-        if isinstance(value, dict):
-            yield from _bare_keys(value, f"{of}{key}.")
-
-
-def _is_bare(value: Any) -> bool:
-    """Whether a value other than 0, or any of a table's, is written without a unit."""
-    return any(isinstance(entry, int | float) and entry != 0 for entry in entries_of(value))
+def _bare_keys(held: Any, key: str = "") -> Iterator[str]:
+    """Dotted keys of what holds numbers other than 0 without a unit; of a quantity over time its own key for its
+    values, and with ".time" for its times."""
+    if isinstance(held, dict):
+        for step, below in held.items():
+            if step != "study" or key:
+                yield from _bare_keys(below, key if step == "value" else f"{key}.{step}".lstrip("."))
+    elif isinstance(held, list) and any(isinstance(entry, dict) for entry in held):
+        for step, below in enumerate(held):
+            yield from _bare_keys(below, f"{key}.{step}")
+    elif any(isinstance(entry, int | float) and entry for entry in (held if isinstance(held, list) else [held])):
+        yield key
 
 
 def _question(text: str) -> str:
@@ -284,8 +285,9 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
         given |= {*given_keys({key: as_written(value)})}
-    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent)
-    return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
+    bare = [key for key in scenario.bare if not isinstance(values.get(key), str)]
+    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
+    return dataclasses.replace(scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more])
 
 
 def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:

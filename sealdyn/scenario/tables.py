@@ -104,11 +104,16 @@ class RadialFile(RadialScene):
 
 
 def read_tables(
-    raw: dict, name: str, given: frozenset[str] | None = None, folder: Path | None = None, held: dict | None = None
+    raw: dict,
+    name: str,
+    given: frozenset[str] | None = None,
+    folder: Path | None = None,
+    held: dict | None = None,
+    bare: list[str] | None = None,
 ) -> dict[str, Any]:
     """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
-    told, without those on which no run hangs; `folder` and `held` as of motion_files.py.
+    told, without those on which no run hangs; `folder`, `held` and `bare` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
     kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
@@ -116,7 +121,7 @@ def read_tables(
     raw, halved = with_radii(raw, kind, name, wrong)
     given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, name, folder, held or {}, wrong)
+    raw = with_columns(raw, name, folder, held or {}, wrong, [] if bare is None else bare)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
