@@ -4,7 +4,6 @@ A bare number is SI.  A string needs a unit.  Angles are counted: a revolution i
 revolutions per time, so a speed in Hz and a frequency in rad/s both come out right.
 """
 
-import difflib
 import math
 import re
 from dataclasses import dataclass, is_dataclass
@@ -13,7 +12,7 @@ from functools import cache
 from typing import Annotated, Any, NamedTuple, get_args
 
 from .numerics.piecewise_linear import PiecewiseLinear
-from .unit_names import dimension_and_factor, unknown_unit
+from .unit_names import dimension_and_factor, spelled_like, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
 # Of a table.
@@ -240,7 +239,7 @@ class VaryingQuantity:
         form = "a table { time = [...], value = [...] }"
         for key in value:
             if key not in ("time", "value"):
-                near = difflib.get_close_matches(key, ["time", "value"], 1)
+                near = spelled_like(key, ["time", "value"])
                 raise QuantityError(f"key {quoted(key)}", form + (f"; nearest key {near[0]!r}" if near else ""))
         for key in ("time", "value"):
             if not isinstance(value.get(key), list):

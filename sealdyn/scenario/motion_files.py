@@ -34,7 +34,9 @@ def with_columns(
         if not isinstance(motion, dict) or not isinstance(motion.get("file"), str) or "time" in motion:
             continue
         file, key = motion["file"], f"{table}.motion.file"
-        kept = (held.get(table) or {}).get("motion") or {}
+        above = held.get(table)
+        kept = above.get("motion") if isinstance(above, dict) else None
+        kept = kept if isinstance(kept, dict) else {}
         try:
             columns = {} if kept.get("file") == file else _columns((folder or Path()) / file)
             given = {column: values for column, (values, _) in columns.items()} or kept

@@ -2,7 +2,6 @@
 end here, in one line each."""
 
 import dataclasses
-import difflib
 import os
 import stat
 import tomllib
@@ -19,7 +18,9 @@ from ..scene.checks import unused
 from ..scene.radial import RadialScene
 from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import Scene
+from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
+from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
 )
@@ -140,7 +141,7 @@ def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Sce
         _must_be_readable(path)
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
-        near = difflib.get_close_matches(path.name, _neighbours(path), 3, 0.5)
+        near = spelled_like(path.name, _neighbours(path), 3, 0.5)
         hint = f"; nearest {', '.join(near)}" if near else ""
         raise ScenarioError(str(path), "", "no such file", "a scenario file (TOML)" + hint) from None
     except IsADirectoryError:
@@ -180,6 +181,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
+    refuse_unbounded(raw, name)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
     unsaid: list[str] = []
@@ -193,6 +195,7 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
     """The TOML text of a scenario's tables, with the question as the comment at its head.  Raises ScenarioError."""
+    refuse_unbounded(tables, name)
     try:
         written = toml_text(without_arrays(tables))
     except (TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -209,6 +212,7 @@ def _neighbours(path: Path) -> list[str]:
 
 
 def _toml(text: str, name: str) -> dict:
+    refuse_unreadable(text, name)
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -262,6 +266,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
     Raises ScenarioError.
     """
+    refuse_unbounded(values, scenario.name)
     values = {key: without_arrays(value) for key, value in values.items()}
     more = [_written(key, value, scenario.name) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
@@ -296,6 +301,7 @@ def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, An
     if isinstance(overrides, Mapping):
         if isinstance(source, Scenario):
             return with_values(source, overrides) if overrides else source
+        refuse_unbounded(overrides, str(source))
         overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
     if not isinstance(source, Scenario):

@@ -1,7 +1,6 @@
 """The tables of a scenario file: what each may hold, and the scene that they make."""
 
 import dataclasses
-import difflib
 import math
 import re
 from collections.abc import Iterator
@@ -20,6 +19,7 @@ from ..scene.excitation import Motion
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
+from ..unit_names import spelled_like
 from ..units import Length, QuantityError, Time, quoted
 from .errors import (
     CIRCUMFERENTIAL_RULES,
@@ -203,7 +203,7 @@ def film_choices() -> list[str]:
 def _check_film_name(name: str) -> None:
     if name not in film_choices():
         near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
-        near = near or difflib.get_close_matches(name, film_choices(), 1)
+        near = near or spelled_like(name, film_choices())
         expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
         hint = "; nearest " + " and ".join(f"'{choice}'" for choice in near) if near else ""
         raise SceneError("film.model", f'"{name[:40]}"', expected + hint)
@@ -214,17 +214,13 @@ def _reader(kind: type) -> TypeAdapter:
     return TypeAdapter(kind)
 
 
-def _odd_numbers(
-    tree: Any, name: str, key: str = "", depth: int = 0, kind: type = ScenarioFile
-) -> Iterator[ScenarioError]:
+def _odd_numbers(tree: Any, name: str, key: str = "", kind: type = ScenarioFile) -> Iterator[ScenarioError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
-    if depth > 20:
-        raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
     below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path not in ("study", "application.acknowledge"):
-            yield from _odd_numbers(value, name, path, depth + 1, kind)
+            yield from _odd_numbers(value, name, path, kind)
     if isinstance(tree, float) and not math.isfinite(tree):
         yield ScenarioError(name, key, str(tree), "a finite number")
     if isinstance(tree, bool) and key:
