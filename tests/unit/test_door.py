@@ -88,6 +88,7 @@ def test_a_spelling_is_looked_for_of_anything():
 
 
 def test_what_scenarios_have_goes_through():
+    # Written and read again in the time of their count, not of its square.
     samples = {"time": list(np.arange(500) * 1e-5), "axial": list(np.sin(np.arange(500.0)) * 1e-6)}
     scenario = parse_scenario(SEAL, "seal.toml", ["run.duration=0.004"]).with_({"housing.motion": samples})
     assert Scenario.from_dict(scenario.to_dict()).scene == scenario.scene
