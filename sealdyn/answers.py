@@ -188,7 +188,18 @@ def toml_line(value: Any) -> str:
 
 def toml_text(tables: dict[str, Any]) -> str:
     """Tables as the text of a TOML file.  Raises TypeError or ValueError for what TOML cannot hold."""
-    return tomlkit.dumps(tables)
+    return tomlkit.dumps(_with_arrays(tables))
+
+
+def _with_arrays(tables: Any) -> Any:
+    """Tables whose lists of numbers are TOML already."""
+    if isinstance(tables, dict):
+        return {key: _with_arrays(held) for key, held in tables.items()}
+    return _item(tables) if _are_numbers(tables) else tables
+
+
+def _are_numbers(value: Any) -> bool:
+    return isinstance(value, list | tuple) and len(value) > 0 and all(type(entry) in (int, float) for entry in value)
 
 
 def _item(value: Any):
@@ -199,6 +210,9 @@ def _item(value: Any):
                 table.append(key, _item(held))
         return table
     if isinstance(value, list | tuple):
+        if _are_numbers(value):
+            # To append them one by one takes the square of their count.
+            return tomlkit.array(f"[{', '.join(map(repr, value))}]")
         array = tomlkit.array()
         array.extend(map(_item, value))
         return array

@@ -29,6 +29,7 @@ from .terminal import (
     libraries_on_stderr,
     not_written,
     reads,
+    say,
     say_compiling,
 )  # fmt: skip
 
@@ -184,7 +185,7 @@ def run(
         print(json.dumps(summary))
     else:
         with reading_in(written_units({"scenario": scenario.text, "overrides": scenario.overrides})):
-            print(*lines(scenario.name, run_answer(summary), verbose), sep="\n")
+            say(*lines(scenario.name, run_answer(summary), verbose))
     left["answered"] = True
     raise typer.Exit(EXIT[result.status])
 
@@ -205,7 +206,7 @@ def _large(file, scenario, yes: bool) -> bool:
             raise refused from None
         return True
     if size.bytes > WORTH_SAYING:
-        print(f"{size}", file=sys.stderr, flush=True)
+        say(size, error=True)
     return yes
 
 
@@ -252,9 +253,9 @@ def check(file: ScenarioFile, set: Overrides = None, as_json: AsJson = False):
         print(json.dumps(found))
     else:
         for line in resolved_lines(found):
-            print(line)
+            say(line)
         if (size := size_of(scenario)).bytes > WORTH_SAYING:
-            print(f"  size          {size}")
+            say(f"  size          {size}")
 
 
 def _refuse_settings(scenario):
@@ -305,7 +306,7 @@ def new(
         raise Stop(Status.INVALID, f"{out}: is there already; expected --out with another name") from None
     except OSError as error:
         raise not_written(error, out, "nothing is kept") from None
-    print(f"{out}: try  sealdyn check {out}  and  sealdyn run {out}")
+    say(f"{out}: try  sealdyn check {out}  and  sealdyn run {out}")
 
 
 @app.command()
@@ -327,10 +328,10 @@ def list_scenarios(as_json: AsJson = False):
         rows = [{"name": n, "question": q, "file": str(paths[n])} for n, q in found.items()]
         print(json.dumps({"status": Status.OK, "message": f"{len(rows)} scenarios", "scenarios": rows}))
         return
-    print(f"scenarios in {folder}:")
+    say(f"scenarios in {folder}:")
     width = max(map(len, found), default=0)
     for name, question in found.items():
-        print(f"  {name:{width}}  {question}")
+        say(f"  {name:{width}}  {question}")
 
 
 @app.command()
@@ -357,13 +358,13 @@ def show(
             _write_mat(mat, {name: column(file, name) for name in ("time", *info["series"])}, "series of the run")
         elif csv:
             for row in csv_rows(info, lambda name, rows: column(file, name, rows)):
-                print(row)
+                say(row, cells=True)
         elif as_json:
             names = ("status", "message", "rows", "summary", "scenario", "version", "libraries", "events")
             print(json.dumps({name: info.get(name) for name in names}))
         else:
             for line in archive_lines(file, info):
-                print(line)
+                say(line)
 
 
 def _show_study(file, csv, mat, as_json, table):
@@ -380,13 +381,13 @@ def _show_study(file, csv, mat, as_json, table):
         _write_mat(mat, plain, f"columns of the table {name}, units as --csv has them")
     elif csv or table is not None:
         for line in csv_lines(_table_of(file, study, table)[1]):
-            print(line)
+            say(line, cells=True)
     elif as_json:
         print(json.dumps(answer))
     else:
-        print(f"{study['name']}, study {study['study']}:")
+        say(f"{study['name']}, study {study['study']}:")
         for line in [*study_lines(answer), *tables_line(answer_tables(study))]:
-            print(line)
+            say(line)
 
 
 def _table_of(file, study, name) -> tuple[str, dict]:
@@ -413,7 +414,7 @@ def _write_mat(path, columns, words):
         savemat(path, columns, oned_as="column")
     except OSError as error:
         raise Stop(Status.INVALID, f"{path}: cannot be written ({error.strerror})") from None
-    print(f"{path}: {len(columns)} {words}, {len(next(iter(columns.values())))} rows")
+    say(f"{path}: {len(columns)} {words}, {len(next(iter(columns.values())))} rows")
 
 
 @app.command()
@@ -456,7 +457,7 @@ def plot(
             importlib.import_module("sealdyn.report." + (f"charts.{name}" if name else "panels")).draw(file, out)
         except OSError as error:
             raise not_written(error, out, "the archive is whole") from None
-    print(out)
+    say(out)
 
 
 @app.command()
@@ -484,7 +485,7 @@ def animate(
             raise Stop(Status.INVALID, f"animate: found {error}") from None
         except OSError as error:
             raise not_written(error, out, "the archive is whole") from None
-    print(out)
+    say(out)
 
 
 @app.command()
@@ -507,7 +508,7 @@ def report(
             review(files, out, title, _rules_of, sources_of_film, progress=bar)
         except OSError as error:
             raise not_written(error, out, "the archives are whole") from None
-    print(out)
+    say(out)
 
 
 @app.command()
@@ -527,7 +528,7 @@ def compare(
         print(json.dumps(found))
     else:
         for line in comparison_lines(found, _in_words(one)):
-            print(line)
+            say(line)
 
 
 def _in_words(file):
@@ -549,7 +550,7 @@ def _rules_of(file, info) -> list[dict]:
         return rules_of(_read(file, None))
     except (SceneError, ArchiveError) as error:
         # It began from an archive, say, that is gone.
-        print(f"warning: {file}: the page has no design rules ({error})", file=sys.stderr)
+        say(f"warning: {file}: the page has no design rules ({error})", error=True)
         return []
 
 
@@ -657,10 +658,10 @@ def study(
     if as_json:
         print(json.dumps(answer))
     else:
-        print(f"{scenario.name}, study {name}:")
+        say(f"{scenario.name}, study {name}:")
         for line in study_lines(answer):
-            print(line)
-        print("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
+            say(line)
+        say("  files: " + ", ".join(answer[k] for k in ("archive", "figure") if answer.get(k)))
     raise typer.Exit(EXIT[answer["status"]])
 
 

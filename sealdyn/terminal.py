@@ -33,6 +33,20 @@ LONGEST = 1000
 GARBAGE = 100_000
 
 
+def printable(words: str, kept: str = "") -> str:
+    """Words without what a terminal would obey or cannot show, but for the characters `kept`: codes that move its
+    cursor or colour it, line breaks, directions of script, halves of characters; each is told as Python writes it."""
+    return "".join(c if c.isprintable() or c in kept else repr(c)[1:-1] for c in words)
+
+
+def say(*lines, cells: bool = False, error: bool = False):
+    """Print lines, in which there may be words of a file, whatever they hold; `cells`: rows of CSV, of which quoted
+    cells may go over several lines; `error`: on standard error."""
+    for line in lines:
+        words = printable(str(line), "\n\t" if cells else "")
+        print(words, file=sys.stderr if error else sys.stdout, flush=error)
+
+
 # SIGINT, SIGTERM and SIGHUP, and what they find: "words", a function that says what is kept, and whether the verb has
 # already "answered".
 interruption = Interruption()
@@ -252,7 +266,7 @@ def drawn(chart: str, archive: Path) -> str | None:
     except Exception as error:
         what = " ".join(str(error).split())[:200]
         line = f"warning: {figure} was not drawn ({type(error).__name__}: {what}); the archive is whole"
-        print(line, file=sys.stderr, flush=True)
+        say(line, error=True)
         return None
     return str(figure)
 
@@ -341,7 +355,7 @@ def _tell_interrupted(as_json: bool):
     # Python ends itself with the signal, not with our code, if a text was being executed; the next one undoes that.
     exec("")
     line = f"interrupted: {left['words']()}"
-    print(line, file=sys.stderr)
+    say(line, error=True)
     if as_json and not left["answered"]:
         print(json.dumps({"status": Status.INTERRUPTED, "message": line}))
 
@@ -350,7 +364,7 @@ def _break_off(as_json: bool, out: int):
     """Last words of a process that is ended at once, past Python's own streams."""
     line = f"interrupted: {left['words']()}"
     # A progress bar hides the cursor.
-    os.write(2, f"{chr(27) + '[?25h' if os.isatty(2) else ''}{line}\n".encode())
+    os.write(2, f"{chr(27) + '[?25h' if os.isatty(2) else ''}{printable(line)}\n".encode())
     if as_json and not left["answered"]:
         os.write(out, f"{json.dumps({'status': Status.INTERRUPTED, 'message': line})}\n".encode())
 
@@ -360,7 +374,7 @@ def _refuse(status: str, message: str, as_json: bool, errors=()):
 
     lines = [cut(" ".join(str(said).split()), LONGEST) for said in errors or [message]]
     if not as_json:
-        print("\n".join(lines), file=sys.stderr)
+        say(*lines, error=True)
         return
     told = {"status": status, "message": lines[0]}
     if errors:

@@ -6,8 +6,10 @@ Hz and rad/s), so the definitions are our own few.
 
 import difflib
 import re
+from collections.abc import Iterable
 from decimal import Decimal
 from functools import cache, lru_cache
+from typing import Any
 
 # Exact decimals, so that "10 um" is the float 1e-5 and not its neighbour.
 PREFIXES = """
@@ -150,6 +152,12 @@ def _by_pint(text: str) -> tuple[frozenset, Decimal]:
     return frozenset(root.dimensionality.items()), Decimal(root.magnitude)
 
 
+def spelled_like(word: Any, known: Iterable[str], most: int = 1, cutoff: float = 0.6) -> list[str]:
+    """At most so many `known` words that are spelled like anything a user wrote, nearest first; none for what is no
+    word, or longer than words are."""
+    return difflib.get_close_matches(word, known, most, cutoff) if isinstance(word, str) and len(word) < 100 else []
+
+
 def unknown_unit(text: str) -> str:
     """Which word of `text` is no unit, with the nearest that is."""
     if UNCLEAR.search(text):
@@ -157,7 +165,7 @@ def unknown_unit(text: str) -> str:
     for word in re.findall(r"[^\W\d]+", text):
         if not _is_unit(word):
             same = [name for name in _names() if name.lower() == word.lower()]
-            near = same or difflib.get_close_matches(word, _names(), 1, 0.5)
+            near = same or spelled_like(word, _names(), 1, 0.5)
             return f"unknown unit '{word}'" + (f", nearest '{near[0]}'" if near else "")
     return f"'{text}' is no unit"
 

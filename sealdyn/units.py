@@ -4,16 +4,15 @@ A bare number is SI.  A string needs a unit.  Angles are counted: a revolution i
 revolutions per time, so a speed in Hz and a frequency in rad/s both come out right.
 """
 
-import difflib
 import math
 import re
 from dataclasses import dataclass, is_dataclass
 from decimal import Decimal, DecimalException
 from functools import cache
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 from .numerics.piecewise_linear import PiecewiseLinear
-from .unit_names import dimension_and_factor, unknown_unit
+from .unit_names import dimension_and_factor, spelled_like, unknown_unit
 
 NUMBER = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,4})?)\s*(.*)", re.DOTALL)
 # Of a table.
@@ -36,10 +35,23 @@ class QuantityError(ValueError):
         return f"found {self.found}; expected {self.expected}"
 
 
+class Usual(NamedTuple):
+    """Sizes of a number of seals from `least` to `most` (SI), beside 0: one without a unit that is of no such size may
+    have been meant in the unit `meant`."""
+
+    least: float
+    most: float
+    meant: str
+
+    def takes(self, value: float) -> bool:
+        """Whether a value is usual."""
+        return value == 0.0 or self.least <= abs(value) <= self.most
+
+
 @dataclass(frozen=True)
 class Quantity:
     """What a key holds: its name, SI unit, an example for messages, other units it takes at the same factor (`also`),
-    and its `least` value (SI), itself excluded if `open`."""
+    its `least` value (SI), itself excluded if `open`, and what is `usual`."""
 
     name: str
     unit: str
@@ -47,6 +59,12 @@ class Quantity:
     also: tuple[str, ...] = ()
     least: float = -math.inf
     open: bool = False
+    usual: Usual | None = None
+
+    def as_meant(self, value: float) -> str:
+        """A value (SI) with the unit in which a number without one may have been meant."""
+        zero, one = (self._from_string(f"{n} {self.usual.meant}") for n in (0, 1))
+        return f"{(value - zero) / (one - zero):.6g} {self.usual.meant}"
 
     def read(self, value: Any) -> float:
         """SI value (float) of a number in SI or of a string with a unit.  Raises `QuantityError`: no number, another
@@ -160,6 +178,10 @@ class RadiusQuantity(Quantity):
     """A radius: its key, "outer_radius", has a twin, "outer_diameter", as drawings have it."""
 
 
+class SampleTime(Quantity):
+    """Times of samples: usual is what lies between them."""
+
+
 UNICODE_UNITS = {
     ord("µ"): "u",
     ord("μ"): "u",
@@ -217,7 +239,7 @@ class VaryingQuantity:
         form = "a table { time = [...], value = [...] }"
         for key in value:
             if key not in ("time", "value"):
-                near = difflib.get_close_matches(key, ["time", "value"], 1)
+                near = spelled_like(key, ["time", "value"])
                 raise QuantityError(f"key {quoted(key)}", form + (f"; nearest key {near[0]!r}" if near else ""))
         for key in ("time", "value"):
             if not isinstance(value.get(key), list):
@@ -339,48 +361,79 @@ class OneOrListed:
         return Annotated[float | tuple[float, ...], ListedQuantity(kind.__metadata__[0], alone=True)]
 
 
-SECONDS = Quantity("time", "s", '"0.5 s"')
-Time = Annotated[float, SECONDS]
-Length = Annotated[float, Quantity("length", "m", '"10 um"')]
-Radius = Annotated[float, RadiusQuantity("length", "m", '"32 mm"')]
-Angle = Annotated[float, Quantity("angle", "rad", '"25 urad", "0.5 mrad", "1 deg"', ("m/m",))]
-ConingPerSpeedSquared = Annotated[
-    float, Quantity("coning per speed squared", "s^2/rad", '"2e-9 s^2/rad", "2e-5 urad/rpm^2"', ("s^2",))
-]
-ConingPerKelvin = Annotated[float, Quantity("coning per temperature", "rad/K", '"5 urad/K"')]
-Speed = Annotated[float, Quantity("speed of rotation", "rad/s", '"1000 rad/s", "9550 rpm", "150 Hz"')]
-Frequency = Annotated[float, Quantity("frequency", "Hz", '"50 Hz", "3000 rpm", "314 rad/s"', (), 0, True)]
-Velocity = Annotated[float, Quantity("velocity", "m/s", '"1 mm/s"')]
-Acceleration = Annotated[float, Quantity("acceleration", "m/s^2", '"20 m/s^2", "2 g"')]
-AngularAcceleration = Annotated[float, Quantity("angular acceleration", "rad/s^2", '"30 rad/s^2"')]
-AccelerationDensity = Annotated[
-    float, Quantity("acceleration density", "(m/s^2)^2/Hz", '"0.1 g^2/Hz", "10 (m/s^2)^2/Hz"', (), 0, True)
-]
-AngularAccelerationDensity = Annotated[
-    float, Quantity("angular acceleration density", "(rad/s^2)^2/Hz", '"1e4 (rad/s^2)^2/Hz"', (), 0, True)
-]
-Mass = Annotated[float, Quantity("mass", "kg", '"1 kg"', (), 0)]
-Inertia = Annotated[float, Quantity("inertia", "kg*m^2", '"8e-4 kg*m^2"', (), 0)]
-Stiffness = Annotated[float, Quantity("stiffness", "N/m", '"5e5 N/m"', (), 0)]
-LineForce = Annotated[float, Quantity("force per length", "N/m", '"200 N/m"', (), 0)]
-Damping = Annotated[float, Quantity("damping", "N*s/m", '"300 N*s/m"', (), 0)]
-BendingStiffness = Annotated[float, Quantity("bending stiffness", "N*m^2", '"77 N*m^2"', (), 0)]
-TiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",), 0)]
-TiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",), 0)]
-AxialFilmStiffness = Annotated[float, Quantity("film stiffness", "N/m", '"5e7 N/m"')]
-AxialFilmDamping = Annotated[float, Quantity("film damping", "N*s/m", '"3e4 N*s/m"')]
-SignedTiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",))]
-SignedTiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",))]
-Pressure = Annotated[float, AbsolutePressure("absolute pressure", "Pa", '"5 bar"', (), 0)]
-Stress = Annotated[float, Quantity("stress", "Pa", '"300 MPa"', (), 0, True)]
-WearCoefficient = Annotated[float, Quantity("wear coefficient", "1/Pa", '"1e-15 1/Pa"', (), 0)]
-AsperityDensity = Annotated[float, Quantity("number per area", "1/m^2", '"1e10 1/m^2"', (), 0, True)]
-Viscosity = Annotated[float, Quantity("viscosity", "Pa*s", '"0.5 mPa*s"', (), 0, True)]
-Temperature = Annotated[float, TemperatureScale("temperature", "K", '"300 K", "20 degC", "800 degF"', (), 0, True)]
-Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0, True)]
-SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True)]
-Force = Annotated[float, Quantity("force", "N", '"50 N"')]
-VolumeFlow = Annotated[float, Quantity("volume flow", "m^3/s", '"5 cc/h", "1 l/min"', (), 0, True)]
+# Sizes are those of seals from a millimetre to a metre, of any fluid, with room; of what people write in one of two
+# units of a like size, none is usual.
+ANGLES, DEGREES = '"25 urad", "0.5 mrad", "1 deg"', '"300 K", "20 degC", "800 degF"'
+ROTATION = '"1000 rad/s", "9550 rpm", "150 Hz"'
+# fmt: off
+Time = Annotated[float, Quantity("time", "s", '"0.5 s"', usual=Usual(1e-6, 1e4, "ms"))]
+SECONDS = Time.__metadata__[0]
+# Of samples of a vibration there are more than a hundred a second.
+Sample = Annotated[float, SampleTime("time", "s", '"0.5 s"', usual=Usual(1e-9, 1e-2, "ms"))]
+# Of films and what is on a face it is a Height, of lapped faces Roughness, of vibration Displacement.
+Length = Annotated[float, Quantity("length", "m", '"10 um"', usual=Usual(1e-9, 1.0, "mm"))]
+Height = Annotated[float, Quantity("length", "m", '"10 um"', usual=Usual(1e-9, 1e-3, "um"))]
+Roughness = Annotated[float, Quantity("length", "m", '"10 um"', usual=Usual(1e-10, 1e-5, "um"))]
+Displacement = Annotated[float, Quantity("length", "m", '"10 um"', usual=Usual(1e-12, 0.05, "um"))]
+Radius = Annotated[float, RadiusQuantity("length", "m", '"32 mm"', usual=Usual(1e-4, 1.0, "mm"))]
+Angle = Annotated[float, Quantity("angle", "rad", ANGLES, ("m/m",), usual=Usual(0.0, 6.3, "deg"))]
+# Up to which the equations hold, which are linear in it.
+Tilt = Annotated[float, Quantity("angle", "rad", ANGLES, ("m/m",), usual=Usual(0.0, 0.02, "mrad"))]
+ConingPerSpeedSquared = Annotated[float, Quantity(
+    "coning per speed squared", "s^2/rad", '"2e-9 s^2/rad", "2e-5 urad/rpm^2"', ("s^2",),
+    usual=Usual(0.0, 1e-6, "urad/rpm^2"))]
+ConingPerKelvin = Annotated[float, Quantity("coning per temperature", "rad/K", '"5 urad/K"',
+    usual=Usual(0.0, 1e-3, "urad/K"))]
+Speed = Annotated[float, Quantity("speed of rotation", "rad/s", ROTATION, usual=Usual(math.inf, math.inf, "rpm"))]
+TiltRate = Annotated[float, Quantity("speed of rotation", "rad/s", ROTATION, usual=Usual(0.0, 100.0, "deg/s"))]
+Frequency = Annotated[float, Quantity("frequency", "Hz", '"50 Hz", "3000 rpm", "314 rad/s"', (), 0, True,
+    usual=Usual(1e-3, 1e6, "kHz"))]
+Velocity = Annotated[float, Quantity("velocity", "m/s", '"1 mm/s"', usual=Usual(0.0, 10.0, "mm/s"))]
+Acceleration = Annotated[float, Quantity("acceleration", "m/s^2", '"20 m/s^2", "2 g"', usual=Usual(1e-6, 1e4, "g"))]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration", "rad/s^2", '"30 rad/s^2"',
+    usual=Usual(1e-6, 1e6, "deg/s^2"))]
+AccelerationDensity = Annotated[float, Quantity(
+    "acceleration density", "(m/s^2)^2/Hz", '"0.1 g^2/Hz", "10 (m/s^2)^2/Hz"', (), 0, True,
+    usual=Usual(1e-9, 1e5, "g^2/Hz"))]
+AngularAccelerationDensity = Annotated[float, Quantity(
+    "angular acceleration density", "(rad/s^2)^2/Hz", '"1e4 (rad/s^2)^2/Hz"', (), 0, True,
+    usual=Usual(1e-9, 1e9, "(deg/s^2)^2/Hz"))]
+Mass = Annotated[float, Quantity("mass", "kg", '"1 kg"', (), 0, usual=Usual(1e-9, 100.0, "g"))]
+Inertia = Annotated[float, Quantity("inertia", "kg*m^2", '"8e-4 kg*m^2"', (), 0, usual=Usual(1e-12, 10.0, "kg*mm^2"))]
+Stiffness = Annotated[float, Quantity("stiffness", "N/m", '"5e5 N/m"', (), 0, usual=Usual(100.0, 1e12, "N/mm"))]
+LineForce = Annotated[float, Quantity("force per length", "N/m", '"200 N/m"', (), 0, usual=Usual(1e-2, 1e6, "N/mm"))]
+Damping = Annotated[float, Quantity("damping", "N*s/m", '"300 N*s/m"', (), 0, usual=Usual(1e-3, 1e9, "N*s/mm"))]
+BendingStiffness = Annotated[float, Quantity("bending stiffness", "N*m^2", '"77 N*m^2"', (), 0,
+    usual=Usual(1e-4, 1e7, "N*mm^2"))]
+TiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",), 0,
+    usual=Usual(1e-4, 1e9, "N*mm/rad"))]
+TiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",), 0,
+    usual=Usual(1e-9, 1e6, "N*mm*s/rad"))]
+AxialFilmStiffness = Annotated[float, Quantity("film stiffness", "N/m", '"5e7 N/m"', usual=Usual(1e3, 1e13, "N/um"))]
+AxialFilmDamping = Annotated[float, Quantity("film damping", "N*s/m", '"3e4 N*s/m"', usual=Usual(1e-3, 1e10, "N*s/mm"))]
+SignedTiltStiffness = Annotated[float, Quantity("tilt stiffness", "N*m/rad", '"400 N*m/rad"', ("N*m",),
+    usual=Usual(1e-3, 1e9, "N*mm/rad"))]
+SignedTiltDamping = Annotated[float, Quantity("tilt damping", "N*m*s/rad", '"0.24 N*m*s/rad"', ("N*m*s",),
+    usual=Usual(1e-9, 1e6, "N*mm*s/rad"))]
+Pressure = Annotated[float, AbsolutePressure("absolute pressure", "Pa", '"5 bar"', (), 0, usual=Usual(1e3, 1e9, "bar"))]
+Stress = Annotated[float, Quantity("stress", "Pa", '"300 MPa"', (), 0, True, usual=Usual(1e4, 1e13, "MPa"))]
+WearCoefficient = Annotated[float, Quantity("wear coefficient", "1/Pa", '"1e-15 1/Pa"', (), 0,
+    usual=Usual(0.0, 1e-11, "mm^3/(N*m)"))]
+AsperityDensity = Annotated[float, Quantity("number per area", "1/m^2", '"1e10 1/m^2"', (), 0, True,
+    usual=Usual(1e6, 1e15, "1/mm^2"))]
+Viscosity = Annotated[float, Quantity("viscosity", "Pa*s", '"0.5 mPa*s"', (), 0, True, usual=Usual(1e-6, 0.1, "mPa*s"))]
+Temperature = Annotated[float, TemperatureScale("temperature", "K", DEGREES, (), 0, True,
+    usual=Usual(273.0, 330.0, "degC"))]
+Density = Annotated[float, Quantity("density", "kg/m^3", '"1000 kg/m^3"', (), 0, True,
+    usual=Usual(100.0, 1e5, "g/cm^3"))]
+SpecificHeat = Annotated[float, Quantity("specific heat", "J/(kg*K)", '"4180 J/(kg*K)"', (), 0, True,
+    usual=Usual(100.0, 1e5, "kJ/(kg*K)"))]
+Force = Annotated[float, Quantity("force", "N", '"50 N"', usual=Usual(1e-4, 1e6, "kN"))]
+VolumeFlow = Annotated[float, Quantity("volume flow", "m^3/s", '"5 cc/h", "1 l/min"', (), 0, True,
+    usual=Usual(1e-18, 1e-2, "cc/h"))]
+# fmt: on
+# Pure numbers that some write in percent.
+Share = Annotated[float, Usual(0.0, 3.0, "%")]
 
 
 @cache

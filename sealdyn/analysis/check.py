@@ -4,7 +4,7 @@ from ..radial_seals.followers import closed_form_sentences
 from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..simulation.film_error import reynolds_comparison
-from ..simulation.plausibility import scene_cautions, size_of
+from ..simulation.plausibility import scene_cautions, size_of, unit_warnings
 from ..simulation.result import plain
 from ..simulation.selection import prepare_run
 from ..simulation.summary import model_chosen
@@ -23,6 +23,7 @@ def checked(scenario: Scenario) -> dict:
         return found | {
             "model": {"followers": followers.count, "solver": plan.method, "reasons": [f"solver: {plan.why}"]},
             "closed_form": closed_form_sentences(followers, scenario.scene.shaft),
+            "warnings": unit_warnings(scenario),
             "design_rules": radial_rules.findings(scenario),
             "equilibria": [],
         }

@@ -31,7 +31,7 @@ from ..faces.geometry import (
 from ..films import film_named, film_of
 from ..numerics.piecewise_linear import initially
 from ..scene.contact import contact_thresholds, waves_of
-from ..scene.film import Coefficients, aligned_gaps, coned
+from ..scene.film import Coefficients, aligned_gaps, cells_of, coned
 from ..scene.scene import SceneError
 from .condensation import NOISE, FilmDerivatives, LinearFilm, Slopes, film_slopes, linearise
 from .equilibrium import settle
@@ -371,6 +371,9 @@ def linearised_film(wrench, f, scene, clearance, interval=None, mean_spin=None, 
 
 # Grids that are tried, coarsest first, each with twice the cells of the one before.
 MOST_DOUBLINGS = 4
+# Most cells of a sector that are looked for; and what so many take to make ready, as measured: seconds, with the square
+# of their count, and bytes.
+MOST_SOUGHT, MEASURED, SECONDS, BYTES = 7000, 9216, 160.0, 1.2e9
 # Share of a change that counts as the error of the finer grid.
 CHANGED = 0.5
 # Coefficient of friction that is rounding: a standing shaft has none, and its logarithm would never settle.
@@ -394,7 +397,7 @@ class Asked:
 
 def with_cells(scene, film):
     """The `Film` table of a scene with enough cells for what `film` is asked for; cells that are given stay.
-    Raises SceneError where the seal has no balance."""
+    Raises SceneError where the seal has no balance, and for more cells than are looked for."""
     table = film.prepared(scene)
     return table if film.cells_are_given(scene.film) else _searched(Asked(scene, film))
 
@@ -405,11 +408,23 @@ def _searched(asked):
     wanted, before = film.grid_accuracy(film.prepared(scene)), None
     for doubling in range(MOST_DOUBLINGS):
         table = film.doubled(film.prepared(scene), doubling)
+        _refuse_many(table, wanted)
         loads = _balance(replace(scene, film=table))
         if before is not None and CHANGED * float(np.max(np.abs(loads - before))) <= wanted:
             break
         before = loads
     return table
+
+
+def _refuse_many(table, wanted):
+    """Raises SceneError for cells that are not asked for by their number and would take minutes, before any is laid."""
+    cells, angles, sectors = cells_of(table)
+    times = cells * angles / MEASURED
+    if cells * angles > MOST_SOUGHT:
+        cost = f"some {SECONDS * times**2:.0f} s and {BYTES * times / 1e9:.1f} GB to make ready"
+        found = f"{wanted:g}, for which the next cells are {cells} x {angles * sectors}: {cost}"
+        expected = "a looser accuracy of the cells, or cells_r and cells_theta, which are taken as they are"
+        raise SceneError("film.reynolds.grid_accuracy", found, expected)
 
 
 def _balance(scene) -> np.ndarray:

@@ -85,6 +85,7 @@ def resolved_lines(found: dict) -> list[str]:
     if "closed_form" in found:
         out.append(f"# {model['followers']} followers; solver {model['solver']}")
         out += [f"# {line}" for line in (*model["reasons"], *found["closed_form"])]
+        out += [f"# WARNING {warning}" for warning in found["warnings"]]
         return out + [f"# {line}" for line in _rule_lines(found["design_rules"])]
     out.append(f"# {model['film']} film; unknowns {', '.join(model['unknowns'])}; solver {model['solver']}")
     out += [f"# {reason}" for reason in model["reasons"]]
@@ -114,7 +115,7 @@ def _rule_lines(rows) -> list[str]:
         words += f"; reason: {row['reason']}" if row["reason"] else ""
         words += f"; try {row['command']}" if row["command"] and row["verdict"] != order[-1] else ""
         line = f"  {row['verdict']:<15}{row['rule']}: {words}"
-        out.append("".join(c if c.isprintable() else " " for c in line))
+        out.append(line)
     return out
 
 
@@ -171,10 +172,14 @@ def _event(event) -> str:
     return f"{when}, to the end" if math.isnan(lasts) else f"{when}, for {number(lasts)} s"
 
 
+# How what a spreadsheet takes for a formula begins.
+COMPUTED = ("=", "+", "-", "@", "\t", "\r")
+
+
 def csv_rows(info: dict, column, block: int = 4096):
     """Header and rows of all series, read block by block."""
     names = ["time", *[n for n in info["series"] if n != "time"]]
-    yield ",".join(f"{n} [{info['series'][n].units}]" for n in names)
+    yield ",".join(_quoted(f"{n} [{info['series'][n].units}]") for n in names)
     for start in range(0, info["rows"], block):
         part = [column(name, slice(start, min(start + block, info["rows"]))) for name in names]
         for row in zip(*part, strict=True):
@@ -198,7 +203,17 @@ def _csv_cell(value) -> str:
 
 
 def _quoted(words: str) -> str:
+    """Words as a cell; those that a spreadsheet would compute, and that are no number, are told to be text."""
+    if words.startswith(COMPUTED) and not _is_number(words):
+        words = f"'{words}"
     return '"' + words.replace('"', '""') + '"' if any(c in words for c in ',"\n\r') else words
+
+
+def _is_number(words: str) -> bool:
+    try:
+        return math.isfinite(float(words))
+    except ValueError:
+        return False
 
 
 def tables_line(tables: dict) -> list[str]:

@@ -2,7 +2,6 @@
 of the design rules that a scenario may acknowledge."""
 
 import dataclasses
-import difflib
 import math
 import re
 import types
@@ -13,6 +12,7 @@ from functools import cache
 from typing import Any
 
 from ..scene.scene import SceneError
+from ..unit_names import spelled_like
 from ..units import (
     Density,
     Length,
@@ -169,7 +169,7 @@ def without_indices(path: str) -> str:
 
 def nearest_of(word: Any, known: Iterable[str], cutoff: float = 0.6) -> str:
     """The end of a line that refuses a word: "; nearest 'clearance'" of those that are known, or nothing."""
-    near = difflib.get_close_matches(word, known, 1, cutoff) if isinstance(word, str) else []
+    near = spelled_like(word, known, 1, cutoff)
     return f"; nearest '{near[0]}'" if near else ""
 
 
@@ -184,7 +184,7 @@ def nearest(kind: type, path: str, key: str) -> str:
         return f"the table is [[{top[0]}]]" if is_list(every[above][last]) else f"the table is [{top[0]}]"
     if meant := [word for word in MEANT.get(key.lower(), ()) if word in here]:
         return f"nearest '{meant[0]}'"
-    close = difflib.get_close_matches(key, here, 1, 0.6)
+    close = spelled_like(key, here)
     if elsewhere and not (close and close[0].startswith(key)):
         return f"'{key}' belongs to {' or '.join(elsewhere[:3])}"
     if close:
@@ -193,7 +193,7 @@ def nearest(kind: type, path: str, key: str) -> str:
     names = {k: table for table in sorted(filter(None, every), key=lambda t: -t.count(".")) for k in every[table]}
     if meant := [word for word in MEANT.get(key.lower(), ()) if word in names]:
         return f"nearest '{meant[0]}' in [{names[meant[0]]}]"
-    close = difflib.get_close_matches(key, names, 1, 0.6)
+    close = spelled_like(key, names)
     if close:
         return f"nearest '{close[0]}' in [{names[close[0]]}]"
     return f"the keys here are {', '.join(here)}"

@@ -1,6 +1,7 @@
 """Files that give the motion of a carrier: their columns take their place in a scenario's tables."""
 
 import csv
+import io
 import math
 import re
 from pathlib import Path
@@ -13,24 +14,33 @@ NAMES = ("time", *MOTION_COLUMNS)
 QUANTITIES = dict(zip(NAMES, (SECONDS, Length.__metadata__[0], *[Angle.__metadata__[0]] * 2), strict=True))
 # "axial", "axial (um)" and "axial [um]".
 TITLE = re.compile(r"\s*(\w+)\s*(?:[(\[]\s*(.*?)\s*[)\]])?\s*")
+BEGINNING = re.compile(r"\s*(\w+)")
+NUMBER = re.compile(r"\s*[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf)\s*", re.IGNORECASE)
+WITH_COMMA = re.compile(r"\s*[+-]?[0-9]*,[0-9]+(?:[eE][+-]?[0-9]+)?\s*")
 MOST_BYTES = 1 << 26
 # Below this a number is nothing: what is left of a zero.
 NOTHING = 1e-25
 A_FILE = "a CSV file with a line of names, time and axial, tilt_x or tilt_y with units in brackets, or HDF5 (.h5)"
 
 
-def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError]) -> dict:
+def with_columns(
+    raw: dict, name: str, folder: Path | None, held: dict, wrong: list[ScenarioError], bare: list[str]
+) -> dict:
     """The tables `raw` of the scenario `name` with the columns of the files that their motions name, beside the files'
     names.  Files are looked for from `folder`; `held`: an archive's resolved tables, whose columns stand for the file
-    of that name.  What is wrong with a file goes to `wrong`."""
+    of that name.  What is wrong with a file goes to `wrong`, keys of columns without a unit to `bare`."""
     for table in ("shaft", "housing"):
         motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
         if not isinstance(motion, dict) or not isinstance(motion.get("file"), str) or "time" in motion:
             continue
         file, key = motion["file"], f"{table}.motion.file"
-        kept = (held.get(table) or {}).get("motion") or {}
+        above = held.get(table)
+        kept = above.get("motion") if isinstance(above, dict) else None
+        kept = kept if isinstance(kept, dict) else {}
         try:
-            given = kept if kept.get("file") == file else read_motion((folder or Path()) / file)
+            columns = {} if kept.get("file") == file else _columns((folder or Path()) / file)
+            given = {column: values for column, (values, _) in columns.items()} or kept
+            bare += [f"{table}.motion.{column}" for column, (_, unit) in columns.items() if not unit]
         except QuantityError as error:
             wrong.append(ScenarioError(name, key, error.found, error.expected))
             # Another thing that is wrong is not this one's fault.
@@ -43,6 +53,11 @@ def with_columns(raw: dict, name: str, folder: Path | None, held: dict, wrong: l
 def read_motion(path: Path) -> dict[str, list[float]]:
     """Columns of a file, SI: `time` (s) and what there is of `axial` (m), `tilt_x` and `tilt_y` (rad).  Raises
     QuantityError."""
+    return {name: values for name, (values, _) in _columns(path).items()}
+
+
+def _columns(path: Path) -> dict[str, tuple[list[float], str]]:
+    """Columns of a file, SI, and the unit in which it has them."""
     try:
         size = path.stat().st_size if path.is_file() else None
     except (OSError, ValueError):
@@ -55,7 +70,7 @@ def read_motion(path: Path) -> dict[str, list[float]]:
     if "time" not in columns or len(columns) < 2:
         there = ", ".join(columns) or "none of them"
         raise QuantityError(f"{quoted(path.name)} with the columns {there}", A_FILE)
-    return {name: _in_si(path.name, name, *columns[name]) for name in columns}
+    return {name: (_in_si(path.name, name, *columns[name]), columns[name][1]) for name in columns}
 
 
 def _in_si(file: str, name: str, values: list[float], unit: str) -> list[float]:
@@ -72,7 +87,7 @@ def _in_si(file: str, name: str, values: list[float], unit: str) -> list[float]:
 def _hdf5(path: Path) -> dict[str, tuple[list[float], str]]:
     # Loaded only where such a file is read.
     from ..archive import ArchiveError
-    from ..archive.files import read_columns
+    from ..archive.columns import read_columns
 
     try:
         return read_columns(path, NAMES, MOST_LISTED)
@@ -85,31 +100,57 @@ def _csv(path: Path) -> dict[str, tuple[list[float], str]]:
         text = path.read_text("utf-8-sig")
     except (OSError, UnicodeDecodeError):
         raise QuantityError(f"{quoted(path.name)}, no readable text", A_FILE) from None
-    lines = [(n, line) for n, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    if not lines:
+    rows = _rows(path.name, text)
+    if not rows:
         raise QuantityError(f"{quoted(path.name)}, an empty file", A_FILE)
-    separator = next((mark for mark in (";", "\t") if mark in lines[0][1]), ",")
-    try:
-        rows = list(csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True))
-    except csv.Error as error:
-        raise QuantityError(f"{quoted(path.name)}, no CSV ({error})", A_FILE) from None
     if len(rows) - 1 > MOST_LISTED:
         raise QuantityError(f"{quoted(path.name)}, {len(rows) - 1} samples", f"at most {MOST_LISTED}")
-    titles = [TITLE.fullmatch(title) for title in rows[0]]
+    (_, titles), *rows = rows
+    for line, row in rows:
+        # What a decimal comma makes of a number, where commas separate.
+        if len(row) > len(titles) and any(cell.strip() for cell in row[len(titles) :]):
+            found = f"{quoted(path.name)}, line {line}: {len(row)} cells below {len(titles)} names"
+            raise QuantityError(found, "one cell below each name, and a decimal point")
     found = {}
     for place, title in enumerate(titles):
-        if title is None or title[1] not in NAMES:
+        read, begins = TITLE.fullmatch(title), BEGINNING.match(title)
+        name = begins[1].lower() if begins else ""
+        if name not in NAMES:
             continue
-        if title[1] in found:
-            raise QuantityError(f"{quoted(path.name)}, column {title[1]} twice", "each column once")
-        values = [_number(path.name, title[1], n, row, place) for (n, _), row in zip(lines[1:], rows[1:], strict=True)]
-        found[title[1]] = values, title[2] or ""
+        if read is None:
+            raise QuantityError(f"{quoted(path.name)}, a column {quoted(title)}", f'"{name}" or "{name} (unit)"')
+        if name in found:
+            raise QuantityError(f"{quoted(path.name)}, column {name} twice", "each column once")
+        found[name] = [_number(path.name, name, line, row, place) for line, row in rows], read[2] or ""
     return found
 
 
-def _number(file: str, name: str, line: int, row: list[str], place: int) -> float:
+def _rows(file: str, text: str) -> list[tuple[int, list[str]]]:
+    """Rows of a CSV file with the line on which each ends; a quoted cell may go over several."""
+    numbers = []
+
+    def lines():
+        for n, line in enumerate(io.StringIO(text, newline=""), 1):
+            if line.strip() and not line.startswith("#"):
+                numbers.append(n)
+                yield line
+
+    first = next(lines(), "")
+    numbers.clear()
+    separator = next((mark for mark in (";", "\t") if mark in first), ",")
+    reader = csv.reader(lines(), delimiter=separator, skipinitialspace=True)
     try:
-        return float(row[place])
-    except (IndexError, ValueError):
-        held = quoted(row[place]) if place < len(row) else "nothing"
-        raise QuantityError(f"{quoted(file)}, line {line}, column {name}: {held}", QUANTITIES[name].name) from None
+        return [(numbers[reader.line_num - 1], row) for row in reader]
+    except csv.Error as error:
+        raise QuantityError(f"{quoted(file)}, no CSV ({error})", A_FILE) from None
+
+
+def _number(file: str, name: str, line: int, row: list[str], place: int) -> float:
+    cell = row[place] if place < len(row) else ""
+    if NUMBER.fullmatch(cell):
+        return float(cell)
+    held = quoted(cell) if place < len(row) else "nothing"
+    expected = f"a {QUANTITIES[name].name} as a number"
+    if WITH_COMMA.fullmatch(cell):
+        held, expected = f"{held}, a decimal comma", f"{expected} with a decimal point"
+    raise QuantityError(f"{quoted(file)}, line {line}, column {name}: {held}", expected)

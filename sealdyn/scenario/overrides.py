@@ -13,6 +13,7 @@ from .. import __version__
 from ..answers import toml_line
 from ..scene.variants import ALTERNATIVES
 from ..units import Length, QuantityError, quoted
+from .door import refuse_unbounded, refuse_unreadable
 from .errors import ScenarioError, diameters, table_in, tables, without_indices
 
 # Raised when a key is renamed, goes, or means something else; new keys alone do not raise it.
@@ -28,10 +29,12 @@ def refuse_newer(raw: dict, name: str) -> None:
         raise ScenarioError(name, "schema", quoted(found), expected)
 
 
+# Characters of a line on which a quantity is looked for.
+LONGEST_LINE = 300
 PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
 HEADER = re.compile(r"\s*\[+\s*([\w.\s-]+?)\s*\]+\s*(?:#.*)?")
 KEY = re.compile(r"([\w.-]+)\s*=\s*(?![\s=])")
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+NUMBER = r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?"
 QUANTITY = re.compile(rf"(?<![\w.])({NUMBER}\s*[^\W\d][^,\]}}#\"'=]*)")
 
 
@@ -43,6 +46,8 @@ def unquoted_quantity(text: str, error: str) -> tuple[str, str, str] | None:
     row, column = int(place[1]), int(place[2]) - 1
     lines = text.splitlines()[:row]
     line = lines[-1] if len(lines) == row else ""
+    if len(line) > LONGEST_LINE:
+        return None
     for quantity in QUANTITY.finditer(line):
         # The parser stops within it: at the unit, or at the number's first character.
         if quantity.start() <= column <= quantity.end():
@@ -54,8 +59,9 @@ def unquoted_quantity(text: str, error: str) -> tuple[str, str, str] | None:
 
 def _key(lines: list[str], column: int) -> str:
     """Dotted key of what stands at a column of the last of the lines."""
-    table = next((match[1] for line in reversed(lines[:-1]) if (match := HEADER.fullmatch(line))), "")
-    for line in (lines[-1][:column], *reversed(lines[:-1])):
+    before = [line for line in reversed(lines[:-1]) if len(line) <= LONGEST_LINE]
+    table = next((match[1] for line in before if (match := HEADER.fullmatch(line))), "")
+    for line in (lines[-1][:column], *before):
         if keys := [match for match in KEY.finditer(line)]:
             # Of an inline table, its own key first.
             inline = keys[:1] if "{" in line[: keys[-1].start()] else []
@@ -119,7 +125,9 @@ def override_key(raw: dict, override: str, name: str) -> None:
 
 def key_and_words(override: str, name: str) -> tuple[str, str]:
     """Key and value, as it is written, of "key=value".  Raises ScenarioError, of the scenario `name`."""
+    refuse_unreadable(override, name)
     key, equals, written = (part.strip() for part in override.partition("="))
+    refuse_unbounded(key.split("."), name)
     if not key or not equals:
         name = f"{name} (--set {quoted(override)})"
         raise ScenarioError(name, "", "no key=value", 'for example rotor.runout="0.2 mrad"')

@@ -2,7 +2,6 @@
 end here, in one line each."""
 
 import dataclasses
-import difflib
 import os
 import stat
 import tomllib
@@ -19,7 +18,9 @@ from ..scene.checks import unused
 from ..scene.radial import RadialScene
 from ..scene.rings import INERTIAL, RING_NAMES
 from ..scene.scene import Scene
+from ..unit_names import spelled_like
 from ..units import is_gauge, quoted
+from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
 )
@@ -34,7 +35,7 @@ from .overrides import (
     value_of,
     without_arrays,
 )
-from .tables import Run, entries_of, given_keys, read_tables, table_of
+from .tables import Run, given_keys, read_tables, table_of
 
 __all__ = [
     "Run",
@@ -140,7 +141,7 @@ def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Sce
         _must_be_readable(path)
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
-        near = difflib.get_close_matches(path.name, _neighbours(path), 3, 0.5)
+        near = spelled_like(path.name, _neighbours(path), 3, 0.5)
         hint = f"; nearest {', '.join(near)}" if near else ""
         raise ScenarioError(str(path), "", "no such file", "a scenario file (TOML)" + hint) from None
     except IsADirectoryError:
@@ -180,18 +181,21 @@ def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None,
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
+    refuse_unbounded(raw, name)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
-    found = read_tables(raw, name, folder=path and path.parent, held=held)
+    unsaid: list[str] = []
+    found = read_tables(raw, name, folder=path and path.parent, held=held, bare=unsaid)
     name = name.removesuffix(".toml")
     return Scenario(
-        **found, bare=bare, gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
+        **found, bare=bare.union(unsaid), gauge=gauge, text=text, name=name, path=path, overrides=list(overrides),
         question=_question(text),
     )  # fmt: skip
 
 
 def text_of(tables: dict[str, Any], name: str, question: str = "") -> str:
     """The TOML text of a scenario's tables, with the question as the comment at its head.  Raises ScenarioError."""
+    refuse_unbounded(tables, name)
     try:
         written = toml_text(without_arrays(tables))
     except (TypeError, ValueError, AttributeError, RecursionError) as error:
@@ -208,6 +212,7 @@ def _neighbours(path: Path) -> list[str]:
 
 
 def _toml(text: str, name: str) -> dict:
+    refuse_unreadable(text, name)
     try:
         raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -221,18 +226,18 @@ def _toml(text: str, name: str) -> dict:
     return raw
 
 
-def _bare_keys(tables: dict, of: str = "") -> Iterator[str]:
-    """Dotted keys of numbers without a unit."""
-    for key, value in tables.items():
-        if of and _is_bare(value):
-            yield f"{of}{key}"
-        if isinstance(value, dict):
-            yield from _bare_keys(value, f"{of}{key}.")
-
-
-def _is_bare(value: Any) -> bool:
-    """Whether a value other than 0, or any of a table's, is written without a unit."""
-    return any(isinstance(entry, int | float) and entry != 0 for entry in entries_of(value))
+def _bare_keys(held: Any, key: str = "") -> Iterator[str]:
+    """Dotted keys of what holds numbers other than 0 without a unit; of a quantity over time its own key for its
+    values, and with ".time" for its times."""
+    if isinstance(held, dict):
+        for step, below in held.items():
+            if step != "study" or key:
+                yield from _bare_keys(below, key if step == "value" else f"{key}.{step}".lstrip("."))
+    elif isinstance(held, list) and any(isinstance(entry, dict) for entry in held):
+        for step, below in enumerate(held):
+            yield from _bare_keys(below, f"{key}.{step}")
+    elif any(isinstance(entry, int | float) and entry for entry in (held if isinstance(held, list) else [held])):
+        yield key
 
 
 def _question(text: str) -> str:
@@ -261,6 +266,7 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
     `values`: SI numbers, strings as the user writes them ("0.2 mrad", "steady", TOML), `PiecewiseLinear`, tables.
     Raises ScenarioError.
     """
+    refuse_unbounded(values, scenario.name)
     values = {key: without_arrays(value) for key, value in values.items()}
     more = [_written(key, value, scenario.name) for key, value in values.items()]
     tables = {name: opened(table) for name, table in opened(scenario.scene).items()}
@@ -284,8 +290,9 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         gone = {key, *(f"{table}.{other}" for other in variants.ALTERNATIVES.get(last, ()))}
         given = {k for k in given if k not in gone and not k.startswith(f"{key}.")}
         given |= {*given_keys({key: as_written(value)})}
-    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent)
-    return dataclasses.replace(scenario, **found, overrides=[*scenario.overrides, *more])
+    bare = [key for key in scenario.bare if not isinstance(values.get(key), str)]
+    found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
+    return dataclasses.replace(scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more])
 
 
 def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:
@@ -294,6 +301,7 @@ def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, An
     if isinstance(overrides, Mapping):
         if isinstance(source, Scenario):
             return with_values(source, overrides) if overrides else source
+        refuse_unbounded(overrides, str(source))
         overrides = [_written(key, without_arrays(value), str(source)) for key, value in overrides.items()]
     overrides = [overrides] if isinstance(overrides, str) else list(overrides)
     if not isinstance(source, Scenario):

@@ -17,11 +17,12 @@ from ..scene.checks import check_scene
 from ..scene.scene import SceneError
 from ..unit_names import dimension_and_factor
 from ..units import quantity_of, quoted
+from .door import refuse_unbounded
 from .errors import ScenarioError, nearest_of
 from .reader import Scenario
 from .tables import refuse_extremes
 
-NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
+NUMBER = re.compile(r"\s*([+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
 # Points of a grid, and any count that a study is given.
 MOST = 1_000_000
 # Units of temperature whose zero is no zero.
@@ -33,6 +34,7 @@ def study_settings(scenario: Scenario, name: str, kind: type, flags: dict[str, A
     """Settings of study `name` (underscored): defaults, overridden by `[study.NAME]`, overridden by flags.
     A flag "a, b, c" of a setting that is a list is read as a list.  Raises ScenarioError for unknown keys or values,
     like any other table."""
+    refuse_unbounded(flags, scenario.name, f"study.{name}")
     known = [f.name for f in dataclasses.fields(kind)]
     tables = [table for study, table in scenario.study.items() if study.replace("-", "_") == name]
     raw = {key.replace("-", "_"): value for table in tables for key, value in table.items()}

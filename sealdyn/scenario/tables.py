@@ -1,7 +1,6 @@
 """The tables of a scenario file: what each may hold, and the scene that they make."""
 
 import dataclasses
-import difflib
 import math
 import re
 from collections.abc import Iterator
@@ -20,6 +19,7 @@ from ..scene.excitation import Motion
 from ..scene.radial import RADIAL, RadialScene, radial_errors
 from ..scene.rings import INERTIAL, RING_NAMES, with_inertia
 from ..scene.scene import Scene, SceneError
+from ..unit_names import spelled_like
 from ..units import Length, QuantityError, Time, quoted
 from .errors import (
     CIRCUMFERENTIAL_RULES,
@@ -104,11 +104,16 @@ class RadialFile(RadialScene):
 
 
 def read_tables(
-    raw: dict, name: str, given: frozenset[str] | None = None, folder: Path | None = None, held: dict | None = None
+    raw: dict,
+    name: str,
+    given: frozenset[str] | None = None,
+    folder: Path | None = None,
+    held: dict | None = None,
+    bare: list[str] | None = None,
 ) -> dict[str, Any]:
     """What a Scenario holds (`scene`, `run`, `application`, `study`, `given`, `reading`) of tables whose values are
     written as in a file, or were read before.  `given`: dotted keys that the user wrote, all of the tables' unless
-    told, without those on which no run hangs; `folder` and `held` as of motion_files.py.
+    told, without those on which no run hangs; `folder`, `held` and `bare` as of motion_files.py.
     Raises `ScenarioError`."""
     refuse_newer(raw, name)
     kind = RadialFile if any(table in raw for table in RADIAL) else ScenarioFile
@@ -116,7 +121,7 @@ def read_tables(
     raw, halved = with_radii(raw, kind, name, wrong)
     given = given_keys(raw, kind=kind) if given is None else (radius_key(kind, key) for key in given)
     given = frozenset(key for key in given if key.partition(".")[0] not in BESIDE_THE_RUN)
-    raw = with_columns(raw, name, folder, held or {}, wrong)
+    raw = with_columns(raw, name, folder, held or {}, wrong, [] if bare is None else bare)
     reading = _total_indicator_reading(raw)
     _tilt_of_tir(raw)
     wrong += [*_run_and_study(raw, name)]
@@ -198,7 +203,7 @@ def film_choices() -> list[str]:
 def _check_film_name(name: str) -> None:
     if name not in film_choices():
         near = [choice for choice in film_choices() if name and choice.startswith(f"{name}_")]
-        near = near or difflib.get_close_matches(name, film_choices(), 1)
+        near = near or spelled_like(name, film_choices())
         expected = "one of " + ", ".join(f'"{m}"' for m in film_choices())
         hint = "; nearest " + " and ".join(f"'{choice}'" for choice in near) if near else ""
         raise SceneError("film.model", f'"{name[:40]}"', expected + hint)
@@ -209,17 +214,13 @@ def _reader(kind: type) -> TypeAdapter:
     return TypeAdapter(kind)
 
 
-def _odd_numbers(
-    tree: Any, name: str, key: str = "", depth: int = 0, kind: type = ScenarioFile
-) -> Iterator[ScenarioError]:
+def _odd_numbers(tree: Any, name: str, key: str = "", kind: type = ScenarioFile) -> Iterator[ScenarioError]:
     """Not a number, infinite, and true or false for a number; a study may hold what it likes."""
-    if depth > 20:
-        raise ScenarioError(name, "", "tables too deep", "at most 3 levels")
     below = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
     for step, value in below:
         path = f"{key}.{step}" if key else str(step)
         if path not in ("study", "application.acknowledge"):
-            yield from _odd_numbers(value, name, path, depth + 1, kind)
+            yield from _odd_numbers(value, name, path, kind)
     if isinstance(tree, float) and not math.isfinite(tree):
         yield ScenarioError(name, key, str(tree), "a finite number")
     if isinstance(tree, bool) and key:

@@ -3,16 +3,21 @@
 **Source** the application data sheet of Hayden & Keller, NASA CR-120997 (1974), table 2.1.
 """
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
-from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, VolumeFlow, quoted
+from ..units import Frequency, Pressure, Quantity, QuantityError, Temperature, Usual, VolumeFlow, quoted
 
-Size = Annotated[float, Quantity("length", "m", '"40 mm"', (), 0, True)]
-Offset = Annotated[float, Quantity("length", "m", '"0.1 mm"', (), 0)]
-SpeedSize = Annotated[float, Quantity("speed of rotation", "rad/s", '"9550 rpm", "150 Hz"', (), 0)]
-Life = Annotated[float, Quantity("time", "s", '"1500 h"', (), 0, True)]
+Size = Annotated[float, Quantity("length", "m", '"40 mm"', (), 0, True, Usual(1e-3, 10.0, "mm"))]
+OFF = Usual(1e-9, 1e-2, "mm")
+Offset = Annotated[float, Quantity("length", "m", '"0.1 mm"', (), 0, usual=OFF)]
+SpeedSize = Annotated[
+    float,
+    Quantity("speed of rotation", "rad/s", '"9550 rpm", "150 Hz"', (), 0, usual=Usual(math.inf, math.inf, "rpm")),
+]
+Life = Annotated[float, Quantity("time", "s", '"1500 h"', (), 0, True, Usual(1e5, 1e10, "h"))]
 FREQUENCY = Frequency.__metadata__[0]
 # Ranges of the data sheet: "lowest_" and "highest_" of these, and their SI units.
 RANGES = {"speed": "rad/s", "temperature": "K", "pressure": "Pa"}
@@ -80,9 +85,9 @@ class Application:
     """Diameter of the shaft."""
     bore: Size | None = None
     """Bore of the seal: the face's width is judged by it."""
-    shaft_runout: Annotated[float, Reading("length", "m", '"0.1 mm TIR"', (), 0)] | None = None
+    shaft_runout: Annotated[float, Reading("length", "m", '"0.1 mm TIR"', (), 0, usual=OFF)] | None = None
     """Radial runout of the shaft, total indicator reading."""
-    face_runout: Annotated[float, Reading("length", "m", '"20 um TIR"', (), 0)] | None = None
+    face_runout: Annotated[float, Reading("length", "m", '"20 um TIR"', (), 0, usual=OFF)] | None = None
     """Axial runout of the turning face, total indicator reading at the outer radius of the face."""
     eccentricity: Offset | None = None
     """Static offset of the housing from the shaft's axis."""
@@ -108,7 +113,9 @@ class Application:
     """Highest sealed pressure in service, absolute."""
     secondary_seal_material: Literal["nitrile", "fluoroelastomer", "other"] | None = None
     """Of the O-ring or the like on which the ring slides."""
-    gear_mesh_frequency: Annotated[tuple[float, ...], Frequencies("frequency", "Hz", "")] | None = None
+    gear_mesh_frequency: (
+        Annotated[tuple[float, ...], Frequencies("frequency", "Hz", "", usual=FREQUENCY.usual)] | None
+    ) = None
     """Of gears on the shaft or near it: one, or a list."""
     leakage_limit: VolumeFlow | None = None
     """Largest leakage allowed."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ..numerics.piecewise_linear import points
-from ..units import Angle, AsperityDensity, Length, Stress, WearCoefficient
+from ..units import Angle, AsperityDensity, Height, Roughness, Share, Stress, WearCoefficient
 
 # Most waves of both faces together: kernels keep room for them.
 MOST_WAVES = 16
@@ -23,7 +23,7 @@ class Waviness:
 
     order: int
     """Waves to the circle, 2 to 100 (order 1 is a tilt)."""
-    amplitude: Length
+    amplitude: Height
     """Half the height from trough to crest."""
     phase: Angle = 0.0
     """Of the wave at the angle zero of its ring."""
@@ -77,14 +77,14 @@ class Contact:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    roughness: Length
+    roughness: Roughness
     """Composite rms roughness of both faces; they meet at 3 rms, Gaussian heights at 5 (finish of each face about 0.1
     um, NASA CR-120997)."""
     law: Literal["christensen", "greenwood-williamson"] = "christensen"
     """Christensen's bounded height distribution, or Greenwood and Williamson's Gaussian one."""
     compressive_strength: Stress | None = None
     """Of the softer face, for "christensen"."""
-    friction_coefficient: float | None = None
+    friction_coefficient: Share | None = None
     """Friction over contact load; 0.1 without it and without `shear_strength` (carbon graphite that runs dry: 0.1 to
     0.25, NASA CR-120997)."""
     shear_strength: Stress | None = None
@@ -95,7 +95,7 @@ class Contact:
     """The same, of the rotor's face."""
     asperity_density: AsperityDensity | None = None
     """Peaks per area, for "greenwood-williamson"."""
-    asperity_radius: Length | None = None
+    asperity_radius: Height | None = None
     """Radius of the peaks, for "greenwood-williamson"."""
     modulus: Stress | None = None
     """Composite elastic modulus, for "greenwood-williamson"."""

@@ -23,12 +23,13 @@ from ..units import (
     Angle,
     AngularAcceleration,
     AngularAccelerationDensity,
+    Displacement,
     Frequency,
-    Length,
     Listed,
     OneOrListed,
+    Sample,
     Speed,
-    Time,
+    Tilt,
     Varying,
 )
 from .sweep import AngularSweep, AxialSweep, Sweep, remark
@@ -50,13 +51,13 @@ class Motion:
 
     file: str | None = field(default=None, compare=False)
     """CSV or HDF5 with these columns, beside the scenario; columns that are given here are not read from it."""
-    time: Listed[Time] = ()
+    time: Listed[Sample] = ()
     """Of the samples, increasing, from 0 or before to the end of the run or beyond."""
-    axial: Listed[Length] | None = None
+    axial: Listed[Displacement] | None = None
     """Displacement along the shaft axis; none without it."""
-    tilt_x: Listed[Angle] | None = None
+    tilt_x: Listed[Tilt] | None = None
     """Tilt about the x axis; none without it."""
-    tilt_y: Listed[Angle] | None = None
+    tilt_y: Listed[Tilt] | None = None
     """Tilt about the y axis; none without it."""
 
     def columns(self) -> list[tuple[float, ...]]:
@@ -196,7 +197,7 @@ class Whirl:
 
     ratio: float
     """Whirl speed over shaft speed; negative against the shaft."""
-    angle: Angle
+    angle: Tilt
     """Tilt of the shaft."""
     phase: Angle = 0.0
     """Of the tilt, at the start."""
@@ -225,7 +226,7 @@ class AxialVibration:
 
     frequency: Frequency
     """Of this tone."""
-    displacement: Length | None = None
+    displacement: Displacement | None = None
     """Amplitude; or give `acceleration`."""
     acceleration: Acceleration | None = None
     """Amplitude, in place of `displacement`."""
@@ -242,7 +243,7 @@ class AngularVibration:
 
     frequency: Frequency
     """Of this tone."""
-    displacement: Angle | None = None
+    displacement: Tilt | None = None
     """Amplitude; or give `acceleration`."""
     acceleration: AngularAcceleration | None = None
     """Amplitude, in place of `displacement`."""

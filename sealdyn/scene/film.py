@@ -24,6 +24,7 @@ from ..units import (
     ConingPerKelvin,
     ConingPerSpeedSquared,
     Density,
+    Height,
     Length,
     Listed,
     Pressure,
@@ -32,6 +33,7 @@ from ..units import (
     SignedTiltStiffness,
     SpecificHeat,
     Temperature,
+    Tilt,
     Varying,
     Viscosity,
 )
@@ -89,7 +91,7 @@ class Pads:
 
     count: int
     """Pads to the circle."""
-    depth: Length
+    depth: Height
     """By which the film is thicker in the pads."""
     angle: Angle
     """Of one pad, between the middles of its flanks."""
@@ -220,7 +222,7 @@ class Profile:
 
     radius: Listed[Length]
     """From the inner to the outer radius of the face, increasing."""
-    depth: Listed[Length]
+    depth: Listed[Height]
     """By which the film is thicker there, on top of clearance and coning; linear between."""
 
 
@@ -268,9 +270,9 @@ class Film:
     """Radial flow on the ring, or the narrow-seal limit without curvature."""
     tilt_radius: Literal["local", "mean"] = "local"
     """Arm of the tilt in film thickness and contact moment: the local radius, or everywhere the mean radius."""
-    clearance: Length | None = None
+    clearance: Height | None = None
     """Film thickness of the aligned faces at the inner radius; without it [closing] decides."""
-    coning: Varying[Angle] = 0.0
+    coning: Varying[Tilt] = 0.0
     """Slope of the faces: the film is thicker outwards where positive."""
     coning_per_speed_squared: ConingPerSpeedSquared = 0.0
     """Centrifugal coning: what the shaft speed squared adds to it."""

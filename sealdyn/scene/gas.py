@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import Annotated, Literal
 
 from ..numerics.piecewise_linear import PiecewiseLinear
-from ..units import SpecificHeat, Temperature, Viscosity
+from ..units import DEGREES, SpecificHeat, TemperatureScale, Usual, Viscosity
 
+# Of the properties of a gas, whatever the seal is.
+GasTemperature = Annotated[float, TemperatureScale("temperature", "K", DEGREES, (), 0, True, Usual(1.0, 1e4, "degC"))]
 # Volumes of gas are stated at normal conditions (DIN 1343): K, Pa.
 NORMAL_TEMPERATURE, NORMAL_PRESSURE = 273.15, 101325.0
 
@@ -25,13 +27,13 @@ class Gas:
     """Ratio of the specific heats: 1.4 of two atoms, 5/3 of one."""
     reference_viscosity: Viscosity | None = None
     """Viscosity at `reference_temperature`, of Sutherland's law; or [film] viscosity."""
-    reference_temperature: Temperature = 273.15
+    reference_temperature: GasTemperature = 273.15
     """Where `reference_viscosity` holds."""
-    sutherland_temperature: Temperature = 110.4
+    sutherland_temperature: GasTemperature = 110.4
     """Sutherland's temperature S: viscosity grows as T^1.5/(T + S)."""
-    lowest: Temperature = 100.0
+    lowest: GasTemperature = 100.0
     """From where on Sutherland's law holds."""
-    highest: Temperature = 2000.0
+    highest: GasTemperature = 2000.0
     """Up to where it holds."""
 
     def sutherland(self) -> tuple[float, float]:

@@ -15,8 +15,8 @@ from ..units import (
     Quantity,
     Radius,
     Speed,
-    Stiffness,
     Stress,
+    Usual,
     Varying,
     Viscosity,
 )
@@ -24,13 +24,18 @@ from ..units import (
 # The tables that make a scenario one of a radial seal.
 RADIAL = ("lip", "circumferential")
 
-Amplitude = Annotated[float, Quantity("length", "m", '"0.1 mm"', (), 0)]
-LineStiffness = Annotated[float, Quantity("stiffness per length", "N/m^2", '"50 N/mm/m", "5e4 N/m^2"', (), 0)]
-Area = Annotated[float, Quantity("area", "m^2", '"6 mm^2"', (), 0)]
-Positive = Annotated[float, Quantity("length", "m", '"2 mm"', (), 0, True)]
-Number = Annotated[float, Quantity("number", "1", "0.3", (), 0)]
-Tension = Annotated[float, Quantity("force", "N", '"2 N"', (), 0)]
-PressureDifference = Annotated[float, Quantity("pressure", "Pa", '"0.1 bar"', (), 0)]
+Amplitude = Annotated[float, Quantity("length", "m", '"0.1 mm"', (), 0, usual=Usual(1e-9, 1e-2, "mm"))]
+LineStiffness = Annotated[
+    float,
+    Quantity("stiffness per length", "N/m^2", '"50 N/mm/m", "5e4 N/m^2"', (), 0, usual=Usual(1e3, 1e9, "N/mm/m")),
+]
+Area = Annotated[float, Quantity("area", "m^2", '"6 mm^2"', (), 0, usual=Usual(1e-9, 1e-2, "mm^2"))]
+Positive = Annotated[float, Quantity("length", "m", '"2 mm"', (), 0, True, Usual(1e-6, 0.1, "mm"))]
+Number = Annotated[float, Quantity("number", "1", "0.3", (), 0, usual=Usual(0.0, 3.0, "%"))]
+Tension = Annotated[float, Quantity("force", "N", '"2 N"', (), 0, usual=Usual(1e-3, 1e4, "kN"))]
+# A garter spring is soft.
+GarterRate = Annotated[float, Quantity("stiffness", "N/m", '"50 N/m"', (), 0, usual=Usual(1.0, 1e7, "N/mm"))]
+PressureDifference = Annotated[float, Quantity("pressure", "Pa", '"0.1 bar"', (), 0, usual=Usual(100.0, 1e8, "bar"))]
 
 
 @dataclass(frozen=True)
@@ -109,7 +114,7 @@ class Lip:
     """Radial, of the free lip on the shaft."""
     garter_tension: Tension = 0.0
     """Of the garter spring around the lip; it also stiffens ovality and higher waves."""
-    garter_rate: Stiffness = 0.0
+    garter_rate: GarterRate = 0.0
     """Of the garter spring along its length: it counts where the whole lip widens."""
     loss_factor: Number = 0.0
     """Of the elastomer at the shaft speed (the largest of a table): the damping is loss factor x stiffness / speed."""
@@ -139,9 +144,9 @@ class Circumferential:
     """Around the shaft."""
     garter_tension: Tension = 0.0
     """Of the spring around them."""
-    garter_rate: Stiffness = 0.0
+    garter_rate: GarterRate = 0.0
     """Of the garter spring along its length: it counts where all segments move out."""
-    axial_force: Annotated[float, Quantity("force", "N", '"20 N"', (), 0)] = 0.0
+    axial_force: Tension = 0.0
     """Of all axial springs together, on the flange."""
     flange_friction: Number = 0.0
     """Coefficient between segments and flange."""

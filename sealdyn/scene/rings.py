@@ -11,6 +11,7 @@ from ..units import (
     Damping,
     Density,
     Force,
+    Height,
     Inertia,
     Length,
     LineForce,
@@ -18,6 +19,7 @@ from ..units import (
     Radius,
     Speed,
     Stiffness,
+    Tilt,
     TiltDamping,
     TiltStiffness,
     Varying,
@@ -247,7 +249,7 @@ class AxialRunout:
 
     order: float
     """Waves per turn of the shaft."""
-    amplitude: Length
+    amplitude: Height
     """Half of the peak-to-peak axial motion of the whole face."""
     phase: Angle = 0.0
     """Of the wave, at the start."""
@@ -269,7 +271,7 @@ class Stator:
     """The ring from its drawing, in place of mass and inertias."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
-    misalignment: Varying[Angle] = 0.0
+    misalignment: Varying[Tilt] = 0.0
     """Tilt of the seat of a rigid stator, or of the unloaded face in its springs if it floats."""
     misalignment_direction: Angle = 0.0
     """Of the axis of that tilt, from the x axis; fixed in space, or in the carrier of a stator with a `speed`."""
@@ -302,11 +304,11 @@ class Rotor:
     """The ring from its drawing, in place of mass and inertias."""
     unphysical_inertia: bool = False
     """Allow a polar inertia beyond twice the transverse one, for comparison with published numbers."""
-    misalignment: Varying[Angle] = 0.0
+    misalignment: Varying[Tilt] = 0.0
     """Tilt of the unloaded face of a floating rotor in its springs; turns with the shaft."""
     misalignment_phase: Angle = 0.0
     """Of the axis of that tilt, at the start, from the x axis."""
-    runout: Varying[Angle] = 0.0
+    runout: Varying[Tilt] = 0.0
     """Tilt of the face of a rigid rotor, turning with the shaft; also "20 um TIR", read at the outer radius."""
     runout_phase: Angle = 0.0
     """Of the axis of that tilt, at the start, from the x axis."""

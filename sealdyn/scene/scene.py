@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from ..units import Angle, Force, Length, Speed, Varying, Velocity, cut
+from ..units import Force, Height, Share, Tilt, TiltRate, Varying, Velocity, cut
 from .contact import Contact
 from .excitation import Housing, Shaft
 from .film import Film
@@ -16,7 +16,7 @@ class Closing:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    balance_ratio: float | None = None
+    balance_ratio: Share | None = None
     """Closing area over face area, of the high-pressure side."""
     spring_force: Varying[Force] | None = None
     """Closing force of the springs at the operating length."""
@@ -29,17 +29,17 @@ class RingStart:
 
     __pydantic_config__ = {"extra": "forbid"}  # noqa: RUF012
 
-    z: Length | None = None
+    z: Height | None = None
     """Displacement along the shaft axis from equilibrium; positive closes a rotor's gap and opens a stator's."""
-    tilt_x: Angle | None = None
+    tilt_x: Tilt | None = None
     """Tilt about the x axis."""
-    tilt_y: Angle | None = None
+    tilt_y: Tilt | None = None
     """Tilt about the y axis."""
     z_rate: Velocity | None = None
     """Rate of `z`."""
-    tilt_x_rate: Speed | None = None
+    tilt_x_rate: TiltRate | None = None
     """Rate of `tilt_x`."""
-    tilt_y_rate: Speed | None = None
+    tilt_y_rate: TiltRate | None = None
     """Rate of `tilt_y`."""
 
 

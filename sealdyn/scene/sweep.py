@@ -14,7 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from ..units import Acceleration, Angle, AngularAcceleration, Frequency, Length, Listed, Time
+from ..units import Acceleration, Angle, AngularAcceleration, Displacement, Frequency, Listed, Tilt, Time
 
 # Ramps if none are given: so many periods of the frequency there, at most this share of the sweep.
 RAMP_PERIODS, RAMP_SHARE = 10.0, 0.1
@@ -53,7 +53,7 @@ class Sweep:
 class AxialSweep(Sweep):
     """Sine sweep of the housing along the shaft axis."""
 
-    displacement: Length | None = None
+    displacement: Displacement | None = None
     acceleration: Acceleration | None = None
 
 
@@ -61,7 +61,7 @@ class AxialSweep(Sweep):
 class AngularSweep(Sweep):
     """Sine sweep of the housing about a fixed axis at `direction` (rad) from the x axis."""
 
-    displacement: Angle | None = None
+    displacement: Tilt | None = None
     acceleration: AngularAcceleration | None = None
     direction: Angle = 0.0
     """Of the axis about which the housing rocks, from the x axis."""

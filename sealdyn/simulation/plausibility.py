@@ -3,8 +3,8 @@ unit that no seal has, and the size of a run, reckoned before it hurts."""
 
 import math
 from dataclasses import dataclass
-from itertools import product
-from typing import NamedTuple
+from itertools import pairwise, product
+from typing import get_args
 
 import numpy as np
 
@@ -15,13 +15,17 @@ from ..dynamics.run_state import Caution, Concern
 from ..dynamics.signals import fields, fields_of, samples
 from ..faces.roughness import mean_film_cubed
 from ..numerics.piecewise_linear import initially, points
+from ..scenario.errors import tables, without_indices
+from ..scenario.overrides import radius_key
 from ..scenario.reader import Scenario
+from ..scenario.tables import RadialFile, ScenarioFile
 from ..scene.contact import HALF_HEIGHT
 from ..scene.film import Coefficients
 from ..scene.gas import GasDam, density_of, gas_of, viscosity_of
 from ..scene.radial import RadialScene
-from ..scene.rings import SMALL_TILT
 from ..scene.scene import SceneError
+from ..scene.variants import part
+from ..units import SECONDS, Quantity, SampleTime, Usual, quantity_of
 from .film_error import TORN, reynolds_comparison
 
 # Reynolds number from which laminar flow is in doubt; rise (K) at which a liquid's viscosity is another.
@@ -86,13 +90,11 @@ def _pressure_floor(run):
 
 
 def _units(scenario, model):
-    """Bare numbers where a unit is usual, faces a millimetre apart."""
+    """Bare numbers that no seal has, faces a millimetre apart."""
     yield from (Caution(Concern.UNITS, said) for said in unit_warnings(scenario))
-    if model.clearance > WIDE:
+    if model.clearance > WIDE and "film.clearance" not in scenario.bare:
         apart = f"the faces are {model.clearance * 1e3:.4g} mm apart"
-        why = "a length without a unit is in metres, and" if "film.clearance" in scenario.bare else "is that possible?"
-        sentence = f"{apart}: {why} no film seals at this distance"
-        yield Caution(Concern.UNITS, sentence)
+        yield Caution(Concern.UNITS, f"{apart}: is that possible?  No film seals at this distance")
 
 
 def _wear(scenario, rate):
@@ -263,71 +265,50 @@ def _least_pressure(segment, tau, y) -> float:
     return float(np.min(fields(at, [0], x)["pressure"]))
 
 
-class Usual(NamedTuple):
-    """What a number without a unit is of seals, from `least` to `most` in its SI `unit`; else it may be one in the unit
-    `shown`, of which SI values less `zero` are `factor` times as many."""
-
-    least: float
-    most: float
-    unit: str
-    shown: str
-    factor: float
-    zero: float = 0.0
-
-
-WEARS = Usual(0.0, 1e-11, "1/Pa", "mm^3/(N m)", 1e9)
-SMALL_ANGLE = Usual(-SMALL_TILT, SMALL_TILT, "rad", "mrad", 1e3)
-ABSOLUTE = Usual(1e3, 1e9, "Pa", "bar", 1e-5)
-OF_A_FACE = Usual(0.0, 1.0, "m", "mm", 1e3)
-OF_A_RING = Usual(0.0, 100.0, "kg", "g", 1e3)
-STIFF = Usual(100.0, 1e12, "N/m", "N/mm", 1e-3)
-USUAL = {
-    "film.viscosity": Usual(1e-6, 0.1, "Pa s", "cP", 1e3),
-    "film.temperature": Usual(273.0, 330.0, "K", "degC", 1.0, 273.15),
-    "film.outer_pressure": ABSOLUTE, "film.inner_pressure": ABSOLUTE,
-    "film.outer_radius": OF_A_FACE, "film.inner_radius": OF_A_FACE,
-    "film.coning": SMALL_ANGLE, "rotor.runout": SMALL_ANGLE,
-    "rotor.misalignment": SMALL_ANGLE, "stator.misalignment": SMALL_ANGLE,
-    "closing.balance_ratio": Usual(0.0, 3.0, "", "%", 100.0),
-    "rotor.support.radius": OF_A_FACE, "stator.support.radius": OF_A_FACE,
-    "rotor.support.axial_stiffness": STIFF, "stator.support.axial_stiffness": STIFF,
-    "rotor.body.length": OF_A_FACE, "stator.body.length": OF_A_FACE,
-    "rotor.body.inner_radius": OF_A_FACE, "stator.body.inner_radius": OF_A_FACE,
-    "rotor.body.outer_radius": OF_A_FACE, "stator.body.outer_radius": OF_A_FACE,
-    "film.density": Usual(100.0, 1e5, "kg/m^3", "g/cm^3", 1e-3),
-    "film.specific_heat": Usual(100.0, 1e5, "J/(kg K)", "kJ/(kg K)", 1e-3),
-    "rotor.mass": OF_A_RING, "stator.mass": OF_A_RING,
-    "contact.roughness": Usual(0.0, 1e-5, "m", "um", 1e6),
-    "contact.compressive_strength": Usual(1e6, 1e12, "Pa", "MPa", 1e-6),
-    "contact.stator_wear_coefficient": WEARS, "contact.rotor_wear_coefficient": WEARS,
-}  # fmt: skip
-
-
 def unit_warnings(scenario: Scenario) -> list[str]:
-    """Sentences on the bare numbers of a Scenario where a unit is usual, or of another size than seals have."""
-    said, scene = [], scenario.scene
-    for ring, speed in (("shaft", scene.shaft.speed), ("stator", scene.stator.speed)):
-        if f"{ring}.speed" in scenario.bare:
-            fastest = max(points(speed), key=abs)
-            read = f"{fastest:g} rad/s, which is {fastest * 30.0 / math.pi:.6g} rpm"
-            said.append(f"{ring}.speed without a unit is read as {read}")
-    for key, usual in USUAL.items():
-        written = next((name for name in (key, key.replace("_radius", "_diameter")) if name in scenario.bare), None)
-        value = _value_at(scene, key) if written else None
-        if value is not None and not usual.least <= value <= usual.most:
-            value *= 1.0 if written == key else 2.0
-            shown = (value - usual.zero) * usual.factor
-            read = f"{f'{value:.6g} {usual.unit}'.strip()}, which is {shown:.6g} {usual.shown}"
-            said.append(f"{written} without a unit is read as {read}")
+    """Sentences on the bare numbers of a Scenario that are of another size than seals have, or of which no size tells
+    the unit: one rule for every key, by what is `usual` of its quantity."""
+    kind, said = RadialFile if isinstance(scenario.scene, RadialScene) else ScenarioFile, []
+    for key in sorted(scenario.bare):
+        own = radius_key(kind, key)
+        quantity, usual = _declared(kind, own)
+        odd = [value for value in _values_at(scenario, own, quantity) if usual and not usual.takes(value)]
+        if odd and usual:
+            # A diameter is twice the radius that it became.
+            value = (2.0 if own != key else 1.0) * max(odd, key=lambda value: abs(math.log(abs(value))))
+            pure = quantity is None or usual.meant == "%"
+            unit = "" if pure else f"{quantity.unit}{' between samples' * isinstance(quantity, SampleTime)}"
+            meant = f"{100.0 * value:.6g} %" if pure else quantity.as_meant(value)
+            said.append(
+                f"{key} without a unit is read as {f'{value:.6g} {unit}'.strip()}, which is {meant}: write its unit"
+            )
     return said
 
 
-def _value_at(scene, key: str) -> float | None:
-    """The value at a dotted key, of a table its first one; None where there is none."""
-    for name in key.split("."):
-        # A dotted key says which attribute; tables of one kind of seal only are absent in the other.
-        scene = getattr(scene, name, None)
-    return None if scene is None else initially(scene)
+def _declared(kind: type, key: str) -> tuple[Quantity | None, Usual | None]:
+    """The quantity at a dotted key of the dataclass `kind`, None of a pure number; and what is usual of it."""
+    table, _, last = without_indices(key).rpartition(".")
+    holds = tables(kind).get(table, {}).get(last)
+    if holds is None and last == "time":
+        # Of a quantity that is a function of time.
+        return SECONDS, SECONDS.usual
+    quantity = quantity_of(holds)
+    parts = [part for kind in (holds, *get_args(holds)) for part in getattr(kind, "__metadata__", ())]
+    return quantity, quantity.usual if quantity else next((part for part in parts if isinstance(part, Usual)), None)
+
+
+def _values_at(scenario: Scenario, key: str, quantity: Quantity | None) -> list[float]:
+    """Numbers (SI) at a dotted key of a scenario: of a table all values, of times of samples what is between them; none
+    where there are none (any more)."""
+    place = scenario if key.partition(".")[0] in ("run", "application") else scenario.scene
+    try:
+        held = part(place, key)
+    except (AttributeError, IndexError, ValueError):
+        return []
+    if isinstance(quantity, SampleTime):
+        return [after - before for before, after in pairwise(held)]
+    found = held if isinstance(held, tuple) else points(held)
+    return [value for value in found if isinstance(value, int | float)]
 
 
 # Samples of a turn, unless told or the forcing is fast.

@@ -70,7 +70,7 @@ def prepare_run(scenario: Scenario, allow_large: bool = True, lowest: bool = Tru
         refuse_large(scenario, allow_large, plan.count)
         return run, plan
     except SceneError as error:
-        if radial or not (meant := unit_warnings(scenario)):
+        if not (meant := unit_warnings(scenario)):
             raise
         raise SceneError(error.key, error.found, f"{error.expected}; {'; '.join(meant)}") from None
 

@@ -21,7 +21,7 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES, ROTOR, SMALL_TILT, STATOR
 from ..solvers.contract import Status
 from ..solvers.energy_audit import missing_energy
-from .plausibility import cautions
+from .plausibility import cautions, unit_warnings
 from .stability import found_alone, no_stability, stability
 
 # What ends the growth of the forcing, unless tilts are small no more.
@@ -50,7 +50,8 @@ def parts(scenario, run, plan, outcome, tally, speeds: bool = True) -> dict:
     if isinstance(scenario.scene, RadialScene):
         from ..radial_seals.observers import summary_of
 
-        return summary_of(scenario, run, plan, outcome)
+        found = summary_of(scenario, run, plan, outcome)
+        return {**found, "warnings": [*unit_warnings(scenario), *found["warnings"]]}
     model, segment, failed = run.model, run.segment(outcome.segment), []
     # Of the conditions at the end; where these have no film what hangs on it is unknown, and the run is a run.
     at = model.instant(segment.interval, outcome.tau)

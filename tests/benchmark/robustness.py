@@ -24,6 +24,7 @@ if __name__ == "__main__":
 from benchmark.attack.archives import archives
 from benchmark.attack.disks import disks
 from benchmark.attack.kills import kills, study_kills
+from benchmark.attack.motions import motions
 from benchmark.attack.outcome import Ledger
 from benchmark.attack.runs import runs
 from benchmark.attack.scenarios import scenarios
@@ -37,6 +38,7 @@ JOURNAL = Path(__file__).parents[2] / "outputs" / "gallery" / "robustness.jsonl"
 # Each with its cases: all, a quick sample; and how many make a batch.
 PARTS = {
     "scenarios": (scenarios, 100_000, 2000, 2500),
+    "motions": (motions, 2000, 100, 250),
     "runs": (runs, 2000, 20, 100),
     "archives": (archives, 1000, 12, 50),
     "settings": (settings, 2000, 20, 100),

@@ -259,6 +259,17 @@ def test_modes_of_a_film_with_cavities_are_those_of_all_its_cells():
     assert exact[0].real == pytest.approx(-210.0, rel=0.01)
 
 
+@pytest.mark.parametrize("accuracy", [1e-4, 1e-9])
+def test_cells_that_would_take_minutes_are_refused_with_what_they_cost(accuracy):
+    """Before they are laid, unless they are asked for by their number."""
+    scene = lebeck().scene
+    with pytest.raises(SceneError) as error:
+        with_cells(replace(scene, film=replace(scene.film, reynolds=Reynolds(grid_accuracy=accuracy))), REYNOLDS_FILM)
+    assert error.value.key == "film.reynolds.grid_accuracy" and "GB" in error.value.found
+    given = replace(scene.film, reynolds=Reynolds(cells_r=60, cells_theta=400, grid_accuracy=accuracy))
+    assert with_cells(replace(scene, film=given), REYNOLDS_FILM).reynolds.cells_r == 60
+
+
 def test_the_friction_of_a_standing_shaft_asks_for_no_cells():
     """It is rounding, whose logarithm never settles: the search went on to its finest cells, for minutes."""
     scene = lebeck().scene

@@ -30,9 +30,17 @@ class Ledger:
 
     def add(self, counts: dict, ways: dict) -> None:
         """What another counted."""
-        self.counts.update(counts)
+        for name, count in counts.items():
+            # Of times the longest.
+            self.counts[name] = max(self.counts[name], count) if name.endswith("(ms)") else self.counts[name] + count
         for how, example in ways.items():
             self.ways.setdefault(how, example)
+
+    def slowest(self, what: str, seconds: float, example="") -> None:
+        """Keep the longest processor time (s) of one, as a count of milliseconds."""
+        name, took = f"{what}: slowest (ms)", round(1e3 * seconds)
+        if took > self.counts[name]:
+            self.counts[name] = took
 
     def note(self, what: str, outcome: str, how: str = "", example="") -> None:
         """One attempt."""
@@ -132,8 +140,8 @@ def _be_the_command(words, out, error):
     os._exit(code)
 
 
-def judged(code: int, error: str, allowed=(0, 2, 3, 4, 5)) -> tuple[str, str]:
-    """Outcome and, of what came through, how, of a command that ended so."""
+def judged(code: int, error: str, allowed=(0, 2, 3, 4, 5), most=2) -> tuple[str, str]:
+    """Outcome and, of what came through, how, of a command that ended so, and may refuse in so many lines at `most`."""
     lines = error.strip().splitlines()
     if code == SLOW:
         return "escaped", "no end"
@@ -141,6 +149,6 @@ def judged(code: int, error: str, allowed=(0, 2, 3, 4, 5)) -> tuple[str, str]:
         return "escaped", f"signal {-code}"
     if "Traceback" in error or code not in allowed:
         return "escaped", f"exit {code}: {' '.join(lines[-1:])[:150]}"
-    if any(len(line) > LONGEST for line in lines) or (code == 2 and len(lines) > 2):
+    if any(len(line) > LONGEST for line in lines) or (code == 2 and len(lines) > most):
         return "a long line", f"{len(lines)} lines, {max(map(len, lines))} characters: {lines[0][:80]!r}"
     return ("refused" if code == 2 else "done"), ""

@@ -1,0 +1,181 @@
+"""Columns of numbers in HDF5 files that other programs wrote, as netCDF leaves them: packed, with samples that are
+missing, units as rows of one.  HDF5 may crash or never end on such a file, which is read in a process of its own:
+
+    python -m sealdyn.archive.columns FILE MOST NAME ...
+
+prints JSON: the columns, or what is wrong with them."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError
+
+# Bytes of a chunk: a packed one may be far larger than its file.
+MOST_CHUNK = 1 << 28
+# Attributes of bounds, and how a value (as stored) is outside them.
+BOUNDS = {"valid_min": np.less, "valid_max": np.greater}
+
+
+def read_columns(path: str | os.PathLike, names: tuple[str, ...], most: int) -> dict[str, tuple[list[float], str]]:
+    """{name: (values, unit)} of the datasets `names`, whatever their case, at the root of an HDF5 file.
+
+    values = stored * `scale_factor` + `add_offset`; `unit` is the attribute `units` or `unit`, whatever its case, ""
+    without.  Raises ArchiveError for another shape than one row of at most `most` numbers, for samples that are missing
+    (`_FillValue`, `missing_value`, outside of the valid range), and for attributes that say something else than that.
+    **Source** NetCDF Climate and Forecast (CF) Metadata Conventions 1.10, sections 2.5.1, 3.1 and 8.1, and the NetCDF
+    Users' Guide, attribute conventions (`_Unsigned`, `valid_range`)."""
+    # Of the folder where the program is run nothing is loaded.
+    words = [sys.executable, "-P", "-m", __name__, os.path.abspath(path), str(most), *names]
+    among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    file_name = Path(path).name
+    try:
+        done = subprocess.run(words, capture_output=True, timeout=PATIENCE, env=among, stdin=subprocess.DEVNULL)
+        found = json.loads(done.stdout) if done.returncode == 0 else None
+    except (subprocess.TimeoutExpired, ValueError):
+        done, found = None, None
+    if found is None:
+        how = "does not come to an end with it" if done is None or done.returncode == ENDLESS else "crashes on it"
+        raise ArchiveError(f"{file_name}: no readable HDF5 file (HDF5 {how})")
+    if "wrong" in found:
+        raise ArchiveError(f"{file_name}{found['wrong']}")
+    return {name: (values, unit) for name, (values, unit) in found["columns"].items()}
+
+
+def main() -> int:
+    """The other process."""
+    # Not everywhere.
+    try:
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_CPU, (WORK, WORK + 1))
+    except (ImportError, ValueError, OSError):
+        pass
+    path, most, *names = sys.argv[1:]
+    try:
+        with h5py.File(path, "r") as file:
+            found = {"columns": _columns(file, names, int(most))}
+    except ArchiveError as error:
+        found = {"wrong": str(error)}
+    except (*READING_ERRORS, MemoryError) as error:
+        found = {"wrong": f": no readable HDF5 file ({type(error).__name__})"}
+    print(json.dumps(found))
+    return 0
+
+
+def _columns(file, names: list[str], most: int) -> dict[str, tuple[list[float], str]]:
+    found = {}
+    for key in file:
+        name = key.strip().lower()
+        if name not in names:
+            continue
+        if name in found:
+            raise ArchiveError(f": {name} twice")
+        try:
+            if not isinstance(file.get(key, getlink=True), h5py.HardLink):
+                raise ArchiveError("a link to elsewhere")
+            found[name] = _column(file[key], most)
+        except ArchiveError as error:
+            raise ArchiveError(f", {name}: {error}") from None
+    return found
+
+
+def _column(held, most: int) -> tuple[list[float], str]:
+    if not isinstance(held, h5py.Dataset) or held.shape is None or held.ndim != 1 or held.dtype.kind not in "fiu":
+        raise ArchiveError("no row of numbers")
+    if len(held) > most:
+        raise ArchiveError(f"{len(held)} samples, at most {most}")
+    if held.chunks and math.prod(held.chunks) * held.dtype.itemsize > MOST_CHUNK:
+        raise ArchiveError(f"in chunks of more than {MOST_CHUNK} bytes")
+    plan = held.id.get_create_plist()
+    if plan.get_layout() == h5py.h5d.VIRTUAL or plan.get_external_count():
+        raise ArchiveError("numbers that stand in other files")
+    said = _attributes(held)
+    stored = held[()]
+    if _text(said.pop("_unsigned", "")).lower() == "true" and stored.dtype.kind == "i":
+        stored = stored.view(stored.dtype.str.replace("i", "u"))
+    _refuse_missing(held, stored, said)
+    scale, offset = (_number(said, key, without) for key, without in (("scale_factor", 1.0), ("add_offset", 0.0)))
+    units = {_text(said[key]) for key in ("unit", "units") if key in said}
+    if len(units) > 1:
+        raise ArchiveError(f"the units {' and '.join(sorted(units))}")
+    values = stored.astype(float)
+    packed = {"scale_factor", "add_offset"} & set(said)
+    return (values * scale + offset if packed else values).tolist(), "".join(units)
+
+
+def _attributes(held) -> dict:
+    """The attributes of a dataset by their names in small letters."""
+    found = {}
+    for key, value in held.attrs.items():
+        name = key.strip().lower()
+        if name in found:
+            raise ArchiveError(f"the attribute {name} twice")
+        found[name] = value
+    return found
+
+
+def _refuse_missing(held, stored, said: dict) -> None:
+    """Raises ArchiveError for a sample that says by its value, as it is stored, that there is none."""
+    fills = [(key, _numbers(said, key, stored.dtype)) for key in ("_fillvalue", "missing_value") if key in said]
+    own = held.fillvalue
+    if own != 0 and np.isfinite(own):
+        # What was never written reads so; the program's own, without which it is zero.
+        fills.append(("fill value", np.array([own]).astype(stored.dtype)))
+    outside = [(key, np.isin(stored, values)) for key, values in fills]
+    low, high = _numbers(said, "valid_range", stored.dtype, 2) if "valid_range" in said else (None, None)
+    given = {"valid_min": low, "valid_max": high}
+    for key, beyond in BOUNDS.items():
+        bound = _numbers(said, key, stored.dtype, 1)[0] if key in said else given[key]
+        if bound is not None:
+            outside.append((key, beyond(stored, bound)))
+    for key, where in outside:
+        if where.any():
+            raise ArchiveError(f"sample {int(np.argmax(where)) + 1} is missing, by its {key}")
+
+
+def _number(said: dict, key: str, without: float) -> float:
+    if key not in said:
+        return without
+    value = float(_numbers(said, key, None, 1)[0])
+    if not math.isfinite(value) or (key == "scale_factor" and value == 0.0):
+        raise ArchiveError(f"the attribute {key} is {value:g}")
+    return value
+
+
+def _numbers(said: dict, key: str, kind, count: int | None = None) -> np.ndarray:
+    """Numbers of an attribute, (count,), of the type `kind` of what is stored where they are compared with it."""
+    values = np.atleast_1d(np.asarray(said[key]))
+    if values.dtype.kind not in "fiu" or values.ndim != 1 or len(values) != (count or max(1, len(values))):
+        raise ArchiveError(f"the attribute {key} is not {count or 'one or more'} number{'s' * (count != 1)}")
+    if kind is not None and kind.kind == "f":
+        # 1e20 in single precision is another number than in double.
+        return values.astype(kind)
+    if kind is not None and kind.kind == "u" and values.dtype.kind == "i":
+        # As `_Unsigned` has the values.
+        return values.astype(values.dtype.str.replace("i", "u"))
+    return values
+
+
+def _text(value) -> str:
+    """The words of an attribute that is a text, or a row of one."""
+    row = np.atleast_1d(np.asarray(value, dtype=object if isinstance(value, str | bytes) else None)).ravel()
+    if isinstance(value, h5py.Empty) or len(row) != 1 or not isinstance(row[0], str | bytes):
+        raise ArchiveError("the unit is no text")
+    words = row[0].decode() if isinstance(row[0], bytes) else row[0]
+    return words.strip("\0 \t\n")
+
+
+if __name__ == "__main__":
+    # HDF5's own way to end may crash, too.
+    code = main()
+    sys.stdout.flush()
+    os._exit(code)
