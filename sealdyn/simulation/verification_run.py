@@ -1,6 +1,7 @@
 """How wrong a run is, measured: the run once more, sharper or by another method, and how far the two are apart in
 everything that a user looks at, on the scales of `run.accuracy` (ErrorScales)."""
 
+import base64
 import math
 from dataclasses import replace
 
@@ -121,11 +122,18 @@ class Comparison:
         return found
 
     def state(self) -> dict | None:
-        """What a continued run needs: nothing, what was before it is not compared."""
-        return None
+        """What a continued run needs: the columns so far, their bytes as text."""
+        if self.columns is None:
+            return None
+        kept = self.columns[~np.isnan(self.columns[:, 0])]
+        return {"count": len(kept), "columns": base64.b64encode(kept.tobytes()).decode()}
 
     def restore(self, state: dict | None):
         """Go on from `state`."""
+        if state and state["count"]:
+            kept = np.frombuffer(base64.b64decode(state["columns"])).reshape(state["count"], -1)
+            self.columns = np.full((len(self.times), kept.shape[1]), np.nan)
+            self.columns[: len(kept)] = kept
 
 
 class RadialComparison(Comparison):
@@ -157,17 +165,6 @@ class RadialComparison(Comparison):
         if outcome.status != Status.OK:
             self.failure = f"a sharper run {outcome.status} ({outcome.message})"
         return found
-
-    def state(self) -> dict | None:
-        """What a continued run needs."""
-        return None if self.columns is None else {"columns": self.columns[~np.isnan(self.columns[:, 0])].tolist()}
-
-    def restore(self, state):
-        """Go on from `state`."""
-        if state and state["columns"]:
-            rows = np.array(state["columns"])
-            self.columns = np.full((len(self.times), rows.shape[1]), np.nan)
-            self.columns[: len(rows)] = rows
 
 
 class ProgressSink:
