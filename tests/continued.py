@@ -18,7 +18,7 @@ OWN_NUMBERS = ("wall_time", "archive", "figure")
 
 def often(put=setattr) -> None:
     """Let methods start anew often, hand over few steps at once, and keep every start to go on from."""
-    for name, steps in (("RENEWED", 1500), ("RENEWED_PYTHON", 400), ("RENEWED_FILM", 300)):
+    for name, steps in (("RENEWED", 1500), ("RENEWED_PYTHON", 400), ("RENEWED_FILM", 300), ("RENEWED_CELLS", 30)):
         put(integrate, name, steps)
     put(sundials_direct, "BLOCK", 200)
     put(sinks, "EVERY", 0.0)

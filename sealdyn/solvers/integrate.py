@@ -97,9 +97,10 @@ LEAST_STEP = 1e-25
 # Steps from one step's start to a point within it, beyond which the equations are not smooth there.
 CRAWLING = 1000
 # Accepted steps after which every method starts anew, whoever looks: a run can be continued from there to the bit, as
-# nothing of a method's history is left.  Some seconds or a minute of work: of a film with unknowns of its own, of a
-# method in Python, and of a compiled one, which loses a hundred steps until it has found its order again.
-RENEWED_FILM, RENEWED_PYTHON, RENEWED = 2000, 5000, 200_000
+# nothing of a method's history is left.  Some seconds or half a minute of work: of cells that tear and fill, of another
+# film with unknowns of its own, of a method in Python, and of a compiled one.  A multistep method loses up to a hundred
+# steps each time until it has found its order again.
+RENEWED_CELLS, RENEWED_FILM, RENEWED_PYTHON, RENEWED = 500, 4000, 5000, 200_000
 # Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
 STIFF = ("bdf", "ida", "trbdf2")
 # Methods whose steps are made by compiled loops.
@@ -262,7 +263,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
 def _renewed_after(segment, method) -> int:
     """Accepted steps after which the method starts anew."""
     if segment.film.stop > segment.film.start:
-        return RENEWED_FILM
+        return RENEWED_CELLS if method == "trbdf2" else RENEWED_FILM
     return RENEWED if method in COMPILED else RENEWED_PYTHON
 
 
