@@ -16,7 +16,7 @@ import numpy as np
 from h5py import h5a, h5d, h5ds, h5p, h5s, h5t
 
 from ..status import Status
-from .files import READING_ERRORS, ArchiveError, is_whole, must_be_readable, must_be_sound, partial_path
+from .files import READING_ERRORS, ArchiveError, held_in_words, is_whole, must_be_readable, must_be_sound, partial_path
 
 TEXT_TYPE = h5py.string_dtype()
 TEXT = h5t.py_create(TEXT_TYPE, logical=True)
@@ -210,7 +210,8 @@ def _open_file(path: Path):
             except FileNotFoundError:
                 continue
             except OSError as error:
-                what = "truncated or damaged" if h5py.is_hdf5(candidate) else "not an HDF5 file"
+                damaged = "truncated or damaged" if h5py.is_hdf5(candidate) else "not an HDF5 file"
+                what = held_in_words(error) or damaged
                 raise ArchiveError(f"{candidate}: {what}") from error
     raise ArchiveError(f"{path}: {'not a file' if path.exists() else 'no such file'}")
 
