@@ -82,6 +82,13 @@ def link_target(path: str | os.PathLike) -> Path:
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
+def file_stem(name: str) -> str:
+    """The name of a scenario, which may be a stranger's word, as that of a file in a folder: letters, digits and marks,
+    nothing that leads elsewhere."""
+    kept = "".join(mark if mark.isprintable() and mark not in '/\\:*?"<>|' else "_" for mark in name)
+    return kept.strip(". ") or "scene"
+
+
 def partial_path(path: str | os.PathLike) -> Path:
     """Where a run that is to become `path` lives until it is complete."""
     path = link_target(path)

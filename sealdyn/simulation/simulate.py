@@ -52,7 +52,7 @@ def simulate(
     >>> result.summary["end"]["time"] == result.summary["end"]["asked"]
     True
     """
-    out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
+    out = Path(out) if out else Path("outputs") / f"{archive.file_stem(scenario.name)}.h5"
     with only_writer(out) as out:
         return _simulate(scenario, out, progress, stop, resume, allow_large)
 
