@@ -263,6 +263,40 @@ def must_be_readable(file, path, known: str, what: str) -> None:
     raise ArchiveError(f'{path}: a "{written}" {of}; this program reads "{known}"')
 
 
+# Root attributes that are words, and those that are tables or lists, kept as JSON.
+WORDS = (
+    "name",
+    "question",
+    "title",
+    "created",
+    "version",
+    "solver",
+    "program",
+    "study",
+    "scenario",
+    "status",
+    "message",
+)
+TABLES = {"summary": dict, "resolved": dict, "libraries": dict, "units": dict, "along": dict, "overrides": list}
+
+
+def root_attributes(file) -> dict:
+    """The root attributes of an open archive, as they were written: words, numbers, tables.  Raises TypeError for a
+    word or a table that is something else, ValueError for what is no JSON."""
+    found = {}
+    for name, value in file.attrs.items():
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, str) and name not in WORDS and value[:1] in ("{", "["):
+            # Numbers only: what a run goes on from has its arrays elsewhere.
+            value = json.loads(value)
+        if not isinstance(value, str if name in WORDS else TABLES.get(name, object)):
+            raise TypeError(f"its {name} is no {'text' if name in WORDS else 'table'}")
+        found[name] = value
+    if not all(isinstance(override, str) for override in found.get("overrides", [])):
+        raise TypeError("its overrides are no text")
+    return found
+
+
 def is_named(written: str, known: str) -> bool:
     """Whether a format is that of `known`, whatever its number."""
     name, _, number = written.rpartition(" ")

@@ -20,11 +20,11 @@ SCENES = {
     "fmr_reference": ("run.turns=40",),
     "fmsr_both_flexible": ("run.turns=20",),
     "massless_ring": ("run.turns=40",),
-    "gear_mesh": ("run.turns=30",),
+    "gear_mesh": ("run.turns=4",),
     "gas_dam_reference": ("run.turns=5",),
-    "hang_up": (),
-    "rub_chaotic": ("run.turns=40",),
-    "runup_through_critical": (),
+    "impact": (),
+    "rub_chaotic": ("run.turns=6",),
+    "runup_through_critical": ("run.accuracy=1e-5",),
     "rayleigh_pads": (),
 }
 CASES = list(product(SCENES, METHODS))
