@@ -6,6 +6,12 @@ result.data                                          # xarray Dataset
 result.plot.overview()                               # matplotlib Figure
 """
 
+from . import first_moments
+
+if first_moments.is_the_program():
+    # Before anything slow is imported.
+    first_moments.hear()
+
 from importlib import import_module
 from typing import TYPE_CHECKING
 

@@ -148,7 +148,7 @@ def run(
     yes: Annotated[bool, typer.Option("--yes", help="also a run of days, or of an archive of many gigabytes")] = False,
 ):
     """Run a scenario: archive, figure, and what a seal engineer reads first."""
-    from .archive import ArchiveError, partial_path
+    from .archive import ArchiveError, file_stem, partial_path
     from .quantities import reading_in
     from .report.summary import run_answer
     from .report.text import lines, written_units
@@ -157,7 +157,7 @@ def run(
 
     scenario = _read(file, set)
     if out is None:
-        stem = f"{file.stem}-rerun" if file.suffix == ".h5" else scenario.name
+        stem = f"{file.stem}-rerun" if file.suffix == ".h5" else file_stem(scenario.name)
         out = (file.parent if file.suffix == ".h5" else Path("outputs")) / f"{stem}.h5"
     if out.is_dir() or out.suffix != ".h5":
         raise Stop(Status.INVALID, f'--out: found "{out}"; expected a file name ending in .h5')

@@ -15,7 +15,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError
+from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError, held_in_words
 
 # Bytes of a chunk: a packed one may be far larger than its file.
 MOST_CHUNK = 1 << 28
@@ -66,7 +66,8 @@ def main() -> int:
     except ArchiveError as error:
         found = {"wrong": str(error)}
     except (*READING_ERRORS, MemoryError) as error:
-        found = {"wrong": f": no readable HDF5 file ({type(error).__name__})"}
+        why = held_in_words(error) or f"no readable HDF5 file ({type(error).__name__})"
+        found = {"wrong": f": {why}"}
     print(json.dumps(found))
     return 0
 

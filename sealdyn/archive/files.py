@@ -56,6 +56,11 @@ FULL = frozenset(
 )
 # File systems that cannot give room beforehand.
 UNABLE = (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS)
+# HDF5's own switch for its locks, which is ours, too; what HDF5 says where it gets none, and of one that another holds.
+LOCKING, NO_LOCK = "HDF5_USE_FILE_LOCKING", "unable to lock file"
+HELD = tuple(f"errno = {number}," for number in (errno.EAGAIN, errno.EACCES))
+# File systems that have none.
+LOCKLESS = (errno.ENOSYS, errno.ENOLCK, errno.EOPNOTSUPP, errno.EINVAL)
 # Bytes of bookkeeping: of a file, and of each dataset.
 FILE, DATASET = 1 << 18, 1 << 13
 
@@ -75,6 +80,13 @@ def link_target(path: str | os.PathLike) -> Path:
     """Where an archive really is: of a symlink its target."""
     path = Path(path)
     return Path(os.path.realpath(path)) if path.is_symlink() else path
+
+
+def file_stem(name: str) -> str:
+    """The name of a scenario, which may be a stranger's word, as that of a file in a folder: letters, digits and marks,
+    nothing that leads elsewhere."""
+    kept = "".join(mark if mark.isprintable() and mark not in '/\\:*?"<>|' else "_" for mark in name)
+    return kept.strip(". ") or "scene"
 
 
 def partial_path(path: str | os.PathLike) -> Path:
@@ -124,8 +136,20 @@ def must_be_sound(path: str | os.PathLike) -> None:
         raise FileNotFoundError(path)
     if found.returncode:
         lines = found.stdout.decode(errors="replace").splitlines() or ["HDF5 cannot read it"]
+        if held := held_in_words(lines[-1]):
+            raise ArchiveError(f"{path}: {held}")
         raise ArchiveError(f"{path}: damaged or not an archive ({lines[-1][:200]})")
     _sound.add(identity)
+
+
+def held_in_words(error) -> str:
+    """What it means that HDF5 could not lock a file; empty for another error of its."""
+    words = str(error)
+    if NO_LOCK not in words:
+        return ""
+    if any(number in words for number in HELD):
+        return f"another program holds it open; expected that it closes the file, or {LOCKING}=FALSE"
+    return f"where it is files cannot be locked; {LOCKING}=FALSE does without"
 
 
 def _identity(path):
@@ -239,6 +263,40 @@ def must_be_readable(file, path, known: str, what: str) -> None:
     raise ArchiveError(f'{path}: a "{written}" {of}; this program reads "{known}"')
 
 
+# Root attributes that are words, and those that are tables or lists, kept as JSON.
+WORDS = (
+    "name",
+    "question",
+    "title",
+    "created",
+    "version",
+    "solver",
+    "program",
+    "study",
+    "scenario",
+    "status",
+    "message",
+)
+TABLES = {"summary": dict, "resolved": dict, "libraries": dict, "units": dict, "along": dict, "overrides": list}
+
+
+def root_attributes(file) -> dict:
+    """The root attributes of an open archive, as they were written: words, numbers, tables.  Raises TypeError for a
+    word or a table that is something else, ValueError for what is no JSON."""
+    found = {}
+    for name, value in file.attrs.items():
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, str) and name not in WORDS and value[:1] in ("{", "["):
+            # Numbers only: what a run goes on from has its arrays elsewhere.
+            value = json.loads(value)
+        if not isinstance(value, str if name in WORDS else TABLES.get(name, object)):
+            raise TypeError(f"its {name} is no {'text' if name in WORDS else 'table'}")
+        found[name] = value
+    if not all(isinstance(override, str) for override in found.get("overrides", [])):
+        raise TypeError("its overrides are no text")
+    return found
+
+
 def is_named(written: str, known: str) -> bool:
     """Whether a format is that of `known`, whatever its number."""
     name, _, number = written.rpartition(" ")
@@ -293,24 +351,42 @@ def only_writer(path: str | os.PathLike):
     made = [folder for folder in path.parents if not folder.exists()]
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{path.stem}.lock")
-    lock = FileLock(beside, timeout=0)
+    lock = FileLock(beside, timeout=0, fallback_to_soft=False)
+    try:
+        _acquire(lock, path)
+        yield place
+    finally:
+        # Before it is free: whoever waits for it sees that it is gone, and makes a new one.
+        with suppress(OSError):
+            if lock.is_locked:
+                beside.unlink()
+        lock.release()
+        # Folders in which nothing came to stand.
+        with suppress(OSError):
+            for folder in made:
+                folder.rmdir()
+
+
+def _acquire(lock, path) -> None:
+    """Take the lock of an archive; where none can be had that is an error, unless locks are switched off."""
+    wanted = os.environ.get(LOCKING, "").upper()
+    if wanted in ("FALSE", "0"):
+        return
     try:
         lock.acquire()
     except Timeout:
         raise ArchiveError(
             f"{path}: another run or study is writing it; let it end, or choose another file (--out)"
         ) from None
-    try:
-        yield place
-    finally:
-        # Before it is free: whoever waits for it sees that it is gone, and makes a new one.
+    except (OSError, NotImplementedError) as error:
+        if getattr(error, "errno", None) not in (None, *LOCKLESS):
+            raise
         with suppress(OSError):
-            beside.unlink()
-        lock.release()
-        # Folders in which nothing came to stand.
-        with suppress(OSError):
-            for folder in made:
-                folder.rmdir()
+            os.unlink(lock.lock_file)
+        if wanted != "BEST_EFFORT":
+            raise ArchiveError(
+                f"{path}: files cannot be locked there; {LOCKING}=FALSE does without, if nobody else writes it"
+            ) from None
 
 
 # --- room on the disk ------------------------------------------------------------------------------------

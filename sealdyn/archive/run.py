@@ -16,7 +16,16 @@ import numpy as np
 from h5py import h5a, h5d, h5ds, h5p, h5s, h5t
 
 from ..status import Status
-from .files import READING_ERRORS, ArchiveError, is_whole, must_be_readable, must_be_sound, partial_path
+from .files import (
+    READING_ERRORS,
+    ArchiveError,
+    held_in_words,
+    is_whole,
+    must_be_readable,
+    must_be_sound,
+    partial_path,
+    root_attributes,
+)
 
 TEXT_TYPE = h5py.string_dtype()
 TEXT = h5t.py_create(TEXT_TYPE, logical=True)
@@ -210,7 +219,8 @@ def _open_file(path: Path):
             except FileNotFoundError:
                 continue
             except OSError as error:
-                what = "truncated or damaged" if h5py.is_hdf5(candidate) else "not an HDF5 file"
+                damaged = "truncated or damaged" if h5py.is_hdf5(candidate) else "not an HDF5 file"
+                what = held_in_words(error) or damaged
                 raise ArchiveError(f"{candidate}: {what}") from error
     raise ArchiveError(f"{path}: {'not a file' if path.exists() else 'no such file'}")
 
@@ -251,12 +261,7 @@ def read_info(path: str | os.PathLike) -> dict:
     events, series and fields (name -> `Series`), grid (dimension of the fields -> length) and the other root
     attributes.  Works while the run is written."""
     with opened_run(path) as (file, record):
-        info = {name: value.item() if hasattr(value, "item") else value for name, value in file.attrs.items()}
-        for name in file.attrs.keys() - {"scenario", "title", "message"}:
-            # Dicts and lists were stored as JSON: they come back as what they were.
-            if isinstance(info[name], str) and info[name][:1] in ("{", "["):
-                info[name] = from_json(info[name])
-        info.setdefault("summary", {})
+        info = {"summary": {}, **root_attributes(file)}
         info["series"] = {name: _series(file[name].attrs) for name in names_over(file, "time")}
         names = [name for name in names_over(file, FIELD_TIME) if name != FIELD_TIME]
         info["fields"] = {name: _series(file[name].attrs) for name in names}

@@ -66,8 +66,8 @@ class ArchiveWriter:
     many rows is reserved at once.  Rows wait in memory for at most `interval` seconds or `buffer_rows` rows; before,
     there is no file.
     With `resume`, goes on from `<stem>.partial.h5`, or from a `path` that was interrupted: `rows`, `state` say
-    from where; without either it starts anew.  Raises `ArchiveError` when the series or fields differ from those
-    of the file resumed.
+    from where, `goes_on_from` that part of it comes again; without either it starts anew.  Raises `ArchiveError` when
+    the series or fields differ from those of the file resumed.
     """
 
     def __init__(
@@ -86,6 +86,8 @@ class ArchiveWriter:
     ):
         self.path, self.partial = Path(path), partial_path(path)
         self.rows, self.instants, self.state = 0, 0, {}
+        # Events handed over; rows, instants and events that will come once more.
+        self._told, self._again = 0, [0, 0, 0]
         self._series = {"time": Series("s", "time", "ms", 1e3), **series}
         self._fields = fields
         self._attributes = {
@@ -120,7 +122,12 @@ class ArchiveWriter:
         lengths = {len(values) for values in columns.values()}
         if len(lengths) != 1:
             raise ValueError(f"columns of unequal length: {sorted(lengths)}")
+        again, columns = self._again[0] > 0, self._unwritten(0, columns)
+        fields = self._unwritten(1, fields) if fields else {}
         fields = self._fields.checked(fields, self._counts()[1]) if fields else {}
+        if again and not len(columns["time"]):
+            # All of it is there, and a later state.
+            return
         # Rows know their place, so that a flush broken off by Ctrl-C can simply be done again.
         self._waiting.append((self._counts(), columns, fields, self.state if state is None else state))
         self.state = self._waiting[-1][-1]
@@ -130,7 +137,33 @@ class ArchiveWriter:
 
     def events(self, events: list[dict]) -> None:
         """Adds events: dicts with kind, time (s), value, text; other keys are kept as JSON."""
-        self._log += b"".join(to_json(event).encode() + b"\n" for event in events)
+        kept = self._unwritten(2, {"": events})[""]
+        self._told += len(kept)
+        self._log += b"".join(to_json(event).encode() + b"\n" for event in kept)
+
+    def counts(self) -> tuple[int, int, int]:
+        """Rows, instants of the fields and events so far, with those that wait, less those that come again."""
+        rows, instants, events = (
+            here - again for here, again in zip((*self._counts(), self._told), self._again, strict=True)
+        )
+        return rows, instants, events
+
+    def goes_on_from(self, written) -> None:
+        """What comes goes on from so many rows, instants and events (`counts`): what is here already comes again, and
+        is not written twice.  Raises ValueError where that much is not here."""
+        self._again = [here - int(was) for here, was in zip(self.counts(), written, strict=True)]
+        if min(self._again) < 0 or min(written) < 0:
+            raise ValueError("it does not hold what it says that it does")
+
+    def note(self, **attributes) -> None:
+        """Change root attributes, as `meta`."""
+        self._attributes |= attributes
+
+    def _unwritten(self, kind: int, values: dict) -> dict:
+        """Rows, instants or events without those that are here already."""
+        skip = min(self._again[kind], len(next(iter(values.values()))))
+        self._again[kind] -= skip
+        return {name: part[skip:] for name, part in values.items()}
 
     def flush(self) -> None:
         """Hands everything waiting to the operating system; after it, a kill loses nothing.

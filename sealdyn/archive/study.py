@@ -23,6 +23,7 @@ from .files import (
     mark_sound,
     must_be_readable,
     must_be_sound,
+    root_attributes,
     seal,
 )
 from .run import open_run, utf8_text
@@ -31,8 +32,6 @@ from .tables import Variable, answer_variables, grid_variables, long_columns, ta
 FORMAT = "sealdyn study 2"
 # How netCDF-4 calls a dimension without values, in the attribute NAME of its scale.
 NO_VALUES = "This is a netCDF dimension but not a netCDF variable.%10d"
-# Root attributes that are text, whatever they begin with.
-TEXTS = ("name", "question", "scenario", "message")
 
 
 def write_study(
@@ -162,12 +161,7 @@ def read_study(path: str | os.PathLike) -> dict:
             must_be_readable(file, path, FORMAT, "a sealdyn study")
             if not is_whole(file):
                 raise ArchiveError(f"{path}: what it says was altered since it was written")
-            info = {}
-            for name, value in file.attrs.items():
-                value = value.item() if hasattr(value, "item") else value
-                if isinstance(value, str) and name not in TEXTS and value.startswith(("{", "[")):
-                    value = json.loads(value)
-                info[name] = value
+            info = root_attributes(file)
             for name in ("answer", "panels"):
                 info[name] = json.loads(file[f"json/{name}"].asstr()[()])
             if not isinstance(info["answer"], dict) or not all(isinstance(info[n], str) for n in ("study", "scenario")):

@@ -14,6 +14,7 @@ from numba import carray
 from ..numerics.hermite import lobatto, sample, sample_doubtful
 from ..numerics.kernel import call_rates, inner_kernel, integers, outer_kernel
 from ..solvers.contract import OVERLAP
+from ..solvers.integrate import RENEWED
 from ..solvers.sundials_direct import add_refused, restart_cvode, step_cvode
 from ..solvers.sundials_libraries import BLOCK, CALLS, DATA, FUNCTION, JACOBIANS, SCALES
 from ..solvers.sundials_python import longest_step
@@ -153,7 +154,7 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
     q, q_rate, reach = np.empty((most, n)), np.empty((most, n)), np.empty(most)
     scratch, rates = np.zeros(size), np.zeros(size)
     t[0], ys[0] = 0.0, cvode.y
-    count, watched = 1, 0
+    count, watched, begun = 1, 0, runs.counts[i, 0]
     if output is not None:
         whole[FIRST] = whole[END] = output.room[i] if stretch == runs.stretches[i] else runs.whole[stretch - 1, END]
     while reached[0] < length:
@@ -166,7 +167,8 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
         runs.counts[i, 0] += taken
         count += taken
         # The last intervals wait for their right-hand neighbours.
-        upto = count - 1 if reached[0] >= length else count - 1 - OVERLAP
+        renewed = reached[0] < length and runs.counts[i, 0] - begun >= RENEWED
+        upto = count - 1 if renewed or reached[0] >= length else count - 1 - OVERLAP
         if upto > watched:
             for k in range(count):
                 for j in range(n):
@@ -193,10 +195,15 @@ def _stretch(cvode, runs, i, stretch, thinnest, touching, output, told):
                 if not _hand_over(cvode, runs, stretch, t, ys, q, q_rate, count, watched, upto, room, output):
                     return ALONE
             # Neighbours to the left of what comes next.
-            keep = max(0, upto - OVERLAP)
+            keep = upto if renewed else max(0, upto - OVERLAP)
             for k in range(keep, count):
                 t[k - keep], ys[k - keep] = t[k], ys[k]
             count, watched = count - keep, upto - keep
+        if renewed:
+            add_refused(cvode.memory, runs.counts[i, 3:])
+            begun = runs.counts[i, 0]
+            if restart_cvode(cvode.memory, cvode.vector, cvode.tolerances, t[0], tolerance, length, real[LONGEST]) < 0:
+                return ALONE
         if told[0] != 0:
             return STOPPED
     return DONE

@@ -240,10 +240,11 @@ class ContactEvents:
         return found
 
     def state(self) -> dict:
-        """What a continued run needs: {"touching": (STATE,), "contacts": counts}."""
-        return {"touching": self.open, "contacts": vars(self.summary)}
+        """What a continued run needs: {"touching": (STATE,), "contacts": counts, "untold": (k, ROW)}."""
+        return {"touching": self.open, "contacts": vars(self.summary), "untold": np.reshape(self.waiting, (-1, ROW))}
 
     def restore(self, state: dict):
         """Go on from `state`."""
         self.open[:] = state["touching"]
         self.summary = ContactSummary(**state["contacts"])
+        self.waiting = list(np.reshape(state["untold"], (-1, ROW)))

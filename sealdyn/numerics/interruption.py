@@ -14,9 +14,11 @@ from contextlib import contextmanager
 from functools import cache
 from threading import Thread, current_thread, main_thread
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else []))
-# Seconds from the signal to the end, and the exit code.
-GRACE, CODE = 1.5, 130
+from .. import first_moments
+from ..first_moments import CODE, SIGNALS
+
+# Seconds from the signal to the end.
+GRACE = 1.5
 
 
 class Interruption:
@@ -36,7 +38,7 @@ class Interruption:
             self._wakeup = signal.set_wakeup_fd(theirs.fileno(), warn_on_full_buffer=False)
             # nohup: a closed terminal is to change nothing.
             heard = [n for n in SIGNALS if n in SIGNALS[:2] or signal.getsignal(n) != signal.SIG_IGN]
-            self._handlers = {number: signal.signal(number, self._hear) for number in heard}
+            self._handlers = {number: self._replaced(number) for number in heard}
             self._unraised, sys.unraisablehook = sys.unraisablehook, self._swallowed
             Thread(target=self._watch, args=(ours,), daemon=True).start()
         return self
@@ -61,6 +63,12 @@ class Interruption:
             yield
         finally:
             self._looking = False
+
+    def _replaced(self, number):
+        """The handler that is put back in the end; those of the first moments have had theirs."""
+        before = signal.signal(number, self._hear)
+        default = signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL
+        return default if before is first_moments.end else before
 
     def _hear(self, number, frame):
         if not self.asked:

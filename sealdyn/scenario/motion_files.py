@@ -50,6 +50,22 @@ def with_columns(
     return raw
 
 
+def refuse_files_elsewhere(raw: dict, name: str, held: dict, asked) -> None:
+    """Raises ScenarioError where an archive's scenario, its tables `raw`, names a file that the archive does not hold
+    (`held`: its resolved tables): a stranger's words open none.  Keys that the user has `asked` for are his own."""
+    for table in ("shaft", "housing"):
+        motion = raw.get(table, {}).get("motion") if isinstance(raw.get(table), dict) else None
+        own = asked & {table, f"{table}.motion", f"{table}.motion.file"}
+        if own or not isinstance(motion, dict) or "time" in motion or "file" not in motion:
+            continue
+        kept = held.get(table) if isinstance(held.get(table), dict) else {}
+        kept = kept.get("motion") if isinstance(kept.get("motion"), dict) else {}
+        if kept.get("file") != motion["file"] or "time" not in kept:
+            key = f"{table}.motion.file"
+            found = f"{quoted(motion['file'])}, which the archive does not hold"
+            raise ScenarioError(name, key, found, f"--set {key}=FILE, where it is meant")
+
+
 def read_motion(path: Path) -> dict[str, list[float]]:
     """Columns of a file, SI: `time` (s) and what there is of `axial` (m), `tilt_x` and `tilt_y` (rad).  Raises
     QuantityError."""

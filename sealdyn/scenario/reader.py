@@ -24,6 +24,7 @@ from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
 )
+from .motion_files import refuse_files_elsewhere
 from .overrides import (
     as_written,
     key_and_words,
@@ -56,7 +57,7 @@ class Scenario:
     `question` the comment at the head of the file; `given`: dotted keys of scene and run that the user wrote.
     `reading`: the runout as written where it is a total indicator reading, which follows the outer radius.  `bare`:
     keys, table.key, of numbers that were written without a unit; `gauge`: keys of the film's pressures that were
-    written as gauge.
+    written as gauge.  `foreign_start`: a file to start from that an archive names and nobody else, which is not opened.
     Scenarios that run alike are equal, wherever they came from, whatever studies are to ask of them, and whatever the
     seal is for (`application`, None without that table).
 
@@ -78,6 +79,7 @@ class Scenario:
     bare: frozenset[str] = field(default=frozenset(), compare=False)
     application: Application | RadialApplication | None = field(default=None, compare=False)
     gauge: frozenset[str] = field(default=frozenset(), compare=False)
+    foreign_start: str = field(default="", compare=False)
 
     def resolved(self) -> dict:
         """Nested SI values of every key, defaults included; only dicts, lists, numbers, strings, None."""
@@ -155,6 +157,7 @@ def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Sce
 
 
 def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
+    overrides = list(overrides)
     # Whoever reads text does not wait for HDF5.
     from ..archive import is_study, read_info, read_study
 
@@ -162,7 +165,11 @@ def _of_archive(path: Path, overrides: Iterable[str]) -> Scenario:
     given = [*map(str, info.get("overrides", [])), *overrides]
     held = info.get("resolved")
     name = str(info.get("name", path.stem))
-    return parse_scenario(str(info["scenario"]), name, given, held=held if isinstance(held, dict) else None)
+    asked = {key_and_words(override, name)[0] for override in overrides}
+    held = held if isinstance(held, dict) else {}
+    scenario = parse_scenario(str(info["scenario"]), name, given, held=held, asked=asked)
+    foreign = scenario.run.start.endswith(".h5") and not asked & {"run", "run.start"}
+    return dataclasses.replace(scenario, foreign_start=scenario.run.start if foreign else "")
 
 
 def _must_be_readable(path):
@@ -175,13 +182,18 @@ def _must_be_readable(path):
         raise ScenarioError(quoted(str(path)), "", f"{found.st_size} bytes", few)
 
 
-def parse_scenario(text: str, name: str, overrides=(), path: Path | None = None, held: dict | None = None) -> Scenario:
+def parse_scenario(
+    text: str, name: str, overrides=(), path: Path | None = None, held: dict | None = None, asked=frozenset()
+) -> Scenario:
     """Scenario of TOML text; `name` is what errors call it.  Files that it names are looked for beside `path`, or are
-    `held`: the resolved tables of an archive.  Raises `ScenarioError`."""
+    `held`: the resolved tables of an archive, whose words open no others; keys that the user has `asked` for may.
+    Raises `ScenarioError`."""
     raw = _toml(text, name)
     for override in overrides:
         override_key(raw, override, name)
     refuse_unbounded(raw, name)
+    if held is not None:
+        refuse_files_elsewhere(raw, name, held, asked)
     bare = frozenset(_bare_keys(raw))
     gauge = frozenset(f"film.{key}" for key, value in table_of(raw, "film").items() if is_gauge(value))
     unsaid: list[str] = []
@@ -292,7 +304,10 @@ def with_values(scenario: Scenario, values: dict[str, Any]) -> Scenario:
         given |= {*given_keys({key: as_written(value)})}
     bare = [key for key in scenario.bare if not isinstance(values.get(key), str)]
     found = read_tables(tables, scenario.name, frozenset(given), scenario.path and scenario.path.parent, bare=bare)
-    return dataclasses.replace(scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more])
+    start = "" if {"run", "run.start"} & set(values) else scenario.foreign_start
+    return dataclasses.replace(
+        scenario, **found, bare=frozenset(bare), overrides=[*scenario.overrides, *more], foreign_start=start
+    )
 
 
 def scenario_of(source: Scenario | str | os.PathLike, overrides: Mapping[str, Any] | Iterable[str] = ()) -> Scenario:

@@ -18,12 +18,12 @@ from ..scene.radial import RadialScene
 from ..solvers.contract import TIGHTEST, Block, Cause, Counts, Enough, SolverFailure, Status, tolerance_for
 from ..solvers.energy_audit import EnergyAudit, missing_energy
 from ..solvers.global_error import GlobalErrorEstimate
-from ..solvers.integrate import Advance, Outcome
+from ..solvers.integrate import COMPILED, Advance, Outcome
 from ..solvers.matrix_exponential import BETWEEN
 from ..solvers.methods import METHODS
 from .film_error import cell_error, model_error
 from .selection import Plan
-from .verification_run import COMPILED, LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
+from .verification_run import LEAST_SHARPER, OTHER, Comparison, ErrorScales, budget
 
 # The stretch (fastest periods), and what it shows, times this, is what a run has (what passes ERROR_SHARE nevertheless
 # is sharpened).
@@ -209,12 +209,6 @@ def horizon(times, apart, asked: float) -> float | None:
     return float(times[over[0]]) if len(over) else None
 
 
-def _since(times, apart) -> str:
-    """From when on two runs were compared, in words: one that was continued is not seen before."""
-    seen = np.flatnonzero(~np.isnan(apart))
-    return "" if not len(seen) or seen[0] == 0 else f" from {times[seen[0]]:.4g} s on"
-
-
 def no_certificate(asked: float, why: str) -> dict:
     """The certificate of a run that has none, and why, as part of its summary."""
     none = dict.fromkeys(("estimated", "solver", "model", "met", "horizon"))
@@ -274,7 +268,7 @@ def certify(
     by_solver = errors.worst if errors else solver_error(method, tolerance, measured and measured[1])
     if by_solver is not None and method != "expm":
         by_solver = max(by_solver, LEFT_OUT * run.model.accuracy)
-    said = f", against a sharper run{_since(*measured)}" if measured else ""
+    said = ", against a sharper run" if measured else ""
     parts = [f"solver {by_solver:.1e}{said}" if by_solver is not None else "solver not estimated"]
     by_cells = grid = None
     radial = isinstance(run.model.scene, RadialScene)
@@ -327,8 +321,6 @@ def certificate(
         measured = None if unknown else (seen.times, apart)
     found = certify(run, plan.method, outcome.tolerance, errors, plan.film_error, measured, cells)
     beside = {} if found.grid is None else {"cells": found.cells, "grid_asked": found.grid}
-    unseen = "; the run was done before it was continued, begun anew it is measured"
-    found = replace(found, said=found.said + unseen) if seen and seen.columns is None else found
     found = replace(found, said=f"{found.said}; the sharper run is {seen.dear}") if seen and seen.dear else found
     return {"asked": found.asked, "estimated": found.estimated, "solver": found.solver, "model": found.model,
             "met": found.met, "horizon": found.horizon, **beside, "said": found.said}, outcome  # fmt: skip
@@ -367,7 +359,6 @@ def _again(run, solver: str, plan: Plan, outcome, found: dict, tries: list) -> P
         return None
     measured = _measured_tries(tries)
     stuck = bool(measured) and found["solver"] > HELPED * measured[-1][2]["solver"]
-    # A power of ten: a run that was interrupted, and measured in part, is done again as the whole one would be.
     share = 10.0 ** np.floor(np.log10(np.clip(AIM * found["asked"] / found["solver"], SHARPEST, LEAST)))
     sharp = max(outcome.tolerance * share, LEAST_SHARPER * TIGHTEST)
     why = f"{plan.why}; again, sharper: at tolerance {outcome.tolerance:.1e} the run erred by {found['solver']:.1e}"

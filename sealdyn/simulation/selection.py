@@ -19,6 +19,7 @@ from ..scene.radial import RadialScene
 from ..scene.rings import RING_NAMES
 from ..scene.scene import Scene, SceneError
 from ..solvers.contract import attainable
+from ..units import quoted
 from .film_error import model_error
 from .plausibility import PER_TURN, refuse_large, unit_warnings
 
@@ -64,6 +65,9 @@ def prepare_run(scenario: Scenario, allow_large: bool = True, lowest: bool = Tru
     that cost least among many runs.
     Raises SceneError, which names the numbers that may want a unit, or ArchiveError."""
     radial = isinstance(scenario.scene, RadialScene)
+    if (start := scenario.foreign_start) and scenario.run.start == start:
+        found = f"{quoted(start)}, which only the archive names"
+        raise SceneError("run.start", found, "--set run.start=FILE, where it is meant")
     try:
         refuse_large(scenario, allow_large)
         run, plan = _prepared_radial(scenario) if radial else _prepared(scenario, lowest)

@@ -7,7 +7,7 @@ import platform
 import time as clock
 from collections.abc import Callable
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -22,6 +22,7 @@ from ..scenario.reader import Scenario
 from ..scene.radial import RadialScene
 from ..solvers.contract import Status
 from ..solvers.integrate import Outcome, solve
+from ..solvers.methods import METHODS
 from .certificate import TrialRun, certificate, first_steps, judgement, next_plan
 from .result import Result, plain
 from .selection import Plan, Start, prepare_run, set_start
@@ -51,7 +52,7 @@ def simulate(
     >>> result.summary["end"]["time"] == result.summary["end"]["asked"]
     True
     """
-    out = Path(out) if out else Path("outputs") / f"{scenario.name}.h5"
+    out = Path(out) if out else Path("outputs") / f"{archive.file_stem(scenario.name)}.h5"
     with only_writer(out) as out:
         return _simulate(scenario, out, progress, stop, resume, allow_large)
 
@@ -60,10 +61,10 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
     """The same, while nobody else writes there."""
     begun = clock.perf_counter()
     run, plan = prepare_run(scenario, allow_large)
+    tries = []
     radial = isinstance(scenario.scene, RadialScene)
     kind_of_sink, compared = (RadialSink, RadialComparison) if radial else (ArchiveSink, Comparison)
     series, fields = archived_series(run.model)
-    tries = []
     while True:
         writer = ArchiveWriter(
             out,
@@ -75,17 +76,23 @@ def _simulate(scenario, out, progress, stop, resume, allow_large) -> Result:
             resume=resume,
             expected_rows=plan.count,
         )
+        if resume and writer.rows:
+            plan, tries = _begun(run, scenario.scene, plan, writer)
         tally = None if radial else Tally(run.model)
         sink = kind_of_sink(run, writer, plan.interval, plan.count, tally, progress, stop)
-        restart = _resume(run, scenario.scene, writer, sink) if resume and writer.rows else None
+        sink.begun = {
+            "start": vars(run.start),
+            "plan": asdict(plan),
+            "tries": [[asdict(p), *rest] for p, *rest in tries],
+        }
         trial, sink.errors = first_steps(run, plan)
         sink.seen = compared(run) if sink.errors is None and plan.method != "expm" else None
-        if restart:
-            _restore_observers(writer, sink)
+        restart = _restart(run, writer, sink) if resume and writer.rows else None
         try:
             outcome = solve(
                 run, plan.method, run.model.accuracy, sink, audit=sink.audit, errors=sink.errors, seen=sink.seen,
-                tally=tally, resume=restart, work=plan.work / price(plan.method), **_solve_options(trial),
+                tally=tally, resume=restart, work=plan.work / price(plan.method), points=sink.point,
+                **_solve_options(trial),
             )  # fmt: skip
             found, outcome = certificate(run, plan, outcome, sink.errors, sink.seen, progress, stop)
         except KeyboardInterrupt:
@@ -158,32 +165,46 @@ def _own_state(writer):
         ) from None
 
 
-def _resume(run, scene, writer, sink):
-    """Where a run goes on: segment, time in it (s), unknowns (size,)."""
+def _begun(run, scene, plan, writer):
+    """The plan that a run goes on by, and what was tried before it; a run begun is not begun elsewhere, whatever would
+    be chosen now."""
     state = writer.state
     with _own_state(writer):
-        run.extrema.restore(state["records"])
-        if sink.tally:
-            sink.tally.restore(state["tally"])
-        sink.audit.restore(state["audit"])
-        run.restore_modes(state["modes"])
-        sink.logged = int(state["modes"]["logged"])
-        leg, tau, y = int(state["leg"]), float(state["tau"]), np.array(state["y"], dtype=float)
+        begin = Start(**state["start"])
+        plan = _plan_of(state["plan"])
+        tries = [(_plan_of(before), float(tolerance), dict(found)) for before, tolerance, found in state["tries"]]
+    writer.note(solver=plan.method)
+    set_start(run, scene, begin)
+    return plan, tries
+
+
+def _plan_of(kept: dict) -> Plan:
+    """A plan as it was kept."""
+    plan = Plan(**{**kept, "start": Start(**kept["start"])})
+    if plan.method not in METHODS or not (plan.tolerance is None or plan.tolerance > 0.0):
+        raise ValueError("no method that this program has")
+    return plan
+
+
+def _restart(run, writer, sink) -> tuple | None:
+    """Where a run goes on, as `resume` of `solve`: the last start of its method that was kept; None: its beginning."""
+    with _own_state(writer):
+        point = writer.state["point"]
+        writer.goes_on_from(point["written"] if point else (0, 0, 0))
+        if point is None:
+            return None
+        leg, tau, y, account = (
+            int(point["leg"]),
+            float(point["tau"]),
+            np.array(point["y"], dtype=float),
+            point["account"],
+        )
         if not 0 <= leg < len(run.intervals) or y.shape != run.y0.shape or not np.all(np.isfinite([tau, *y])):
             raise ValueError("unknowns of another kind or number")
-        # A run begun is not begun elsewhere, whatever would be chosen now.
-        begin = Start(**state["start"])
-    set_start(run, scene, begin)
-    return leg, tau, y
-
-
-def _restore_observers(writer, sink):
-    """What follows the run's errors goes on as well."""
-    with _own_state(writer):
-        if sink.errors and writer.state["errors"]:
-            sink.errors.restore(writer.state["errors"])
-        if sink.seen:
-            sink.seen.restore(writer.state["seen"])
+        if not account["tolerance"] > 0.0:
+            raise ValueError("no tolerance")
+        sink.restore(point)
+    return leg, tau, y, account
 
 
 @cache

@@ -1,6 +1,8 @@
 """Where a run's samples go: into an archive."""
 
 import math
+import time as clock
+from copy import deepcopy
 from fractions import Fraction
 
 import numpy as np
@@ -28,6 +30,8 @@ KEPT = 32
 MOST_INSTANTS = KEPT + 1
 # Instants at which gap and load around the shaft of a radial seal are kept, at most.
 MOST_RADIAL = 600
+# Seconds between the starts of the method that are kept to go on from: each is, where so few steps lie between.
+EVERY = 0.3
 
 
 def archived_series(model) -> tuple[dict[str, Series], Fields | None]:
@@ -60,6 +64,8 @@ class ArchiveSink:
         self.waiting = self.waiting_fields = None
         self.kept = np.rint(np.linspace(0, count, KEPT))
         self.logged, self.pending = 0, []
+        # What is known of the run as a whole, and the last start of its method.
+        self.begun, self.start, self.since = {}, None, -math.inf
 
     def due(self, segment) -> np.ndarray:
         """Segment times (m,) (s) of the samples in a segment, counted from the nearest sample so that they
@@ -120,24 +126,48 @@ class ArchiveSink:
         belong together."""
         if self.waiting is None:
             return
-        run = self.run
-        run.contacts.tell(self.log)
+        self.run.contacts.tell(self.log)
         self.write_events()
-        state = {
-            "leg": index,
-            "tau": tau,
-            "y": np.asarray(y),
-            "records": run.extrema.state(),
-            "tally": self.tally and self.tally.state(),
-            "audit": self.audit.state(),
-            "errors": self.errors and self.errors.state(),
-            "seen": self.seen and self.seen.state(),
-            "modes": run.modes() | {"logged": self.logged},
-            "start": vars(run.start),
-            "names": run.model.unknowns.names,
-        }
-        self.writer.append(self.waiting, state, self.waiting_fields)
+        here = {"leg": index, "tau": tau, "y": np.asarray(y), "names": self.run.model.unknowns.names}
+        self.writer.append(self.waiting, {**self.begun, **here, "point": self.start}, self.waiting_fields)
         self.waiting = self.waiting_fields = None
+
+    def point(self, segment, tau, y, account):
+        """Keep a start of the method at segment time `tau` (s), unknowns `y` (size,), to go on from: all that has been
+        observed, what has been written by then, and the `account` of solvers/integrate.py."""
+        now = clock.monotonic()
+        if self.waiting is not None or now - self.since < EVERY:
+            return
+        run, self.since = self.run, now
+        self.start = deepcopy(
+            {
+                "leg": segment.index,
+                "tau": tau,
+                "y": y,
+                "account": account,
+                "records": run.extrema.state(),
+                "tally": self.tally and self.tally.state(),
+                "audit": self.audit.state(),
+                "errors": self.errors and self.errors.state(),
+                "seen": self.seen and self.seen.state(),
+                "modes": run.modes(),
+                "logged": self.logged,
+                "pending": self.pending,
+                "written": self.writer.counts(),
+            }
+        )
+
+    def restore(self, point: dict):
+        """Go on from a `point` that was kept."""
+        run = self.run
+        run.extrema.restore(point["records"])
+        run.restore_modes(point["modes"])
+        self.audit.restore(point["audit"])
+        for observer, name in ((self.tally, "tally"), (self.errors, "errors"), (self.seen, "seen")):
+            if observer:
+                observer.restore(point[name])
+        self.logged, self.pending, self.start = int(point["logged"]), list(point["pending"]), point
+        self.since = clock.monotonic()
 
     def write_events(self):
         """Hand the events kept so far to the archive."""

@@ -1,6 +1,7 @@
 """How wrong a run is, measured: the run once more, sharper or by another method, and how far the two are apart in
 everything that a user looks at, on the scales of `run.accuracy` (ErrorScales)."""
 
+import base64
 import math
 from dataclasses import replace
 
@@ -17,7 +18,7 @@ from ..numerics.piecewise_linear import initially
 from ..scene.gas import density_of, gas_of
 from ..scene.scene import SceneError
 from ..solvers.contract import TIGHTEST, Cause, Counts, Enough, Status, attainable, tolerance_for
-from ..solvers.integrate import solve
+from ..solvers.integrate import COMPILED, solve
 
 # Instants at which two runs are compared: per fastest period, at least (many of a film whose loads jump: a hundredth of
 # them must be some) and at most, and after each start of a stretch, where fast parts die away, and before its end,
@@ -39,9 +40,8 @@ SHARPER_FILM = 0.1
 CELLS = 0.5
 # Another method where the same one cannot be any sharper.
 OTHER = {"adams": "bdf", "bdf": "radau", "ida": "ida", "dop853": "radau", "radau": "dop853", "trbdf2": "trbdf2"}
-# Evaluations that another run may take, over those of the one before; methods that are compiled, and how many of their
-# evaluations one in Python costs.
-BUDGET, COMPILED, INTERPRETED = 10.0, ("adams", "bdf", "ida"), 30.0
+# Evaluations that another run may take, over those of the one before, and how many compiled ones one in Python costs.
+BUDGET, INTERPRETED = 10.0, 30.0
 
 
 class Comparison:
@@ -132,11 +132,18 @@ class Comparison:
         return found
 
     def state(self) -> dict | None:
-        """What a continued run needs: nothing, what was before it is not compared."""
-        return None
+        """What a continued run needs: the columns so far, their bytes as text."""
+        if self.columns is None:
+            return None
+        kept = self.columns[~np.isnan(self.columns[:, 0])]
+        return {"count": len(kept), "columns": base64.b64encode(kept.tobytes()).decode()}
 
     def restore(self, state: dict | None):
         """Go on from `state`."""
+        if state and state["count"]:
+            kept = np.frombuffer(base64.b64decode(state["columns"])).reshape(state["count"], -1)
+            self.columns = np.full((len(self.times), kept.shape[1]), np.nan)
+            self.columns[: len(kept)] = kept
 
 
 class RadialComparison(Comparison):
@@ -173,17 +180,6 @@ class RadialComparison(Comparison):
         if outcome.status != Status.OK and outcome.cause != Cause.TOO_DEAR:
             self.failure = f"a sharper run {outcome.status} ({outcome.message})"
         return found
-
-    def state(self) -> dict | None:
-        """What a continued run needs."""
-        return None if self.columns is None else {"columns": self.columns[~np.isnan(self.columns[:, 0])].tolist()}
-
-    def restore(self, state):
-        """Go on from `state`."""
-        if state and state["columns"]:
-            rows = np.array(state["columns"])
-            self.columns = np.full((len(self.times), rows.shape[1]), np.nan)
-            self.columns[: len(rows)] = rows
 
 
 class ProgressSink:

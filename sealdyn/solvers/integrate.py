@@ -82,6 +82,14 @@ class Advance:
             raise SolverFailure(sentence.format(count=count - since[1], span=time - since[0], time=time))
         return time, count
 
+    def state(self) -> dict:
+        """What a continued run needs: how many changes there were, and where the windows began."""
+        return {"changes": self.changes, "step": self.since_step, "change": self.since_change}
+
+    def restore(self, state: dict):
+        """Go on from `state`."""
+        self.changes, self.since_step, self.since_change = state["changes"], state["step"], state["change"]
+
 
 # A stretch shorter than this share of its time is no step for any solver.
 CRUMB = 1e-14
@@ -89,8 +97,15 @@ CRUMB = 1e-14
 LEAST_STEP = 1e-25
 # Steps from one step's start to a point within it, beyond which the equations are not smooth there.
 CRAWLING = 1000
+# Accepted steps after which every method starts anew, whoever looks: a run can be continued from there to the bit, as
+# nothing of a method's history is left.  Some seconds or half a minute of work: of cells that tear and fill, of another
+# film with unknowns of its own, of a method in Python, and of a compiled one.  A multistep method loses up to a hundred
+# steps each time until it has found its order again.
+RENEWED_CELLS, RENEWED_FILM, RENEWED_PYTHON, RENEWED = 500, 4000, 5000, 200_000
 # Multistep methods of stiff scenes: beside their short steps accelerations are the less exact (Block.at).
 STIFF = ("bdf", "ida", "trbdf2")
+# Methods whose steps are made by compiled loops.
+COMPILED = ("adams", "bdf", "ida")
 
 
 @dataclass
@@ -112,13 +127,14 @@ class Outcome:
 
 def solve(
     run, method: str, accuracy: float, sink, *, audit=None, errors=None, seen=None, tally=None, resume=None, steps=None,
-    tolerance=None, work: float = math.inf,
+    tolerance=None, work: float = math.inf, points=None,
 ) -> Outcome:  # fmt: skip
     """Integrate a run segment by segment, chunk by chunk, into a sink.
 
     `method` one of METHODS, `accuracy` relative to each unknown's scale; `audit` an EnergyAudit to go on with; `errors`
     a GlobalErrorEstimate that is shown every step, or None, `seen` and `tally` other observers, or None; `resume` =
-    (segment index, tau (s), y (size,)) continues.
+    (segment index, tau (s), y (size,)) continues; with a fourth, the account that `points(segment, tau, y, account)` is
+    given at every start of the method, it continues to the bit.
     Another method comes as `steps`, a generator with the contract of contract.py, called `method`, with its own
     `tolerance`.  `work`: evaluations of the right-hand side after which the run gives up.
     The sink offers `due(segment)`, segment times (m,) (s) of output, `take(segment, times, q, q_rate)` of displacements
@@ -132,8 +148,11 @@ def solve(
     observers = [*([errors] if errors else []), run.extrema, run.contacts, audit, *others]
     if errors:
         errors.tolerance = tolerance
-    index, tau, y = resume if resume else (0, 0.0, run.y0.copy())
+    index, tau, y, *account = resume if resume else (0, 0.0, run.y0.copy())
     advance = Advance(run.duration, run.segment(index).shortest_period, work)
+    if account:
+        tolerance, counts = account[0]["tolerance"], Counts(**account[0]["counts"])
+        advance.restore(account[0]["advance"])
     status, cause, message = Status.OK, Cause.DONE, str(Cause.DONE)
     segment = run.segment(index)
     if not resume:
@@ -142,6 +161,8 @@ def solve(
         segment = run.segment(index, run.stick_slip.start(segment, tau, y))
     try:
         while True:
+            if points:
+                points(segment, tau, y, {"tolerance": tolerance, "counts": vars(counts), "advance": advance.state()})
             counts.restarts += 1
             found = _integrate(run, segment, tau, y, (steps, method, tolerance, counts, advance), observers, sink)
             index, tau, y = run.last
@@ -187,6 +208,7 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
     due = sink.due(segment)
     done = int(np.searchsorted(due, tau, side="left" if tau == 0.0 else "right"))
     watched = looked = 0
+    begun, most = counts.steps, _renewed_after(segment, method)
     run.last = (segment.index, tau, y)
     for block_t, block_y, block_yp, *failed in _gathered(method_over(segment, tau, y), FEW if sticking else MANY):
         counts.steps += len(block_t)
@@ -209,7 +231,9 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
                 failed = []
             looked = len(t) - 1
         count = len(t)
-        last_block = t[-1] >= segment.length or bool(failed) or transition is not None
+        ended = t[-1] >= segment.length or bool(failed) or transition is not None
+        renewed = not ended and counts.steps - begun >= most
+        last_block = ended or renewed
         # Leave the last intervals until their right-hand neighbours exist, unless there are none to come.
         upto = count - 1 if last_block else count - 1 - OVERLAP
         if upto > watched:
@@ -229,10 +253,19 @@ def _integrate(run, segment, tau, y, how, observers, sink) -> Stop | Change | Re
         if transition:
             # Made only now: what the sink keeps to go on from is still the state before it.
             return sticking.make(transition)
+        if renewed:
+            return Retry(tolerance)
         # Keep neighbours to the left of what comes next.
         keep = max(0, upto - OVERLAP)
         t, ys, yps, watched, looked = t[keep:], ys[keep:], yps[keep:], upto - keep, looked - keep
     return None
+
+
+def _renewed_after(segment, method) -> int:
+    """Accepted steps after which the method starts anew."""
+    if segment.film.stop > segment.film.start:
+        return RENEWED_CELLS if method == "trbdf2" else RENEWED_FILM
+    return RENEWED if method in COMPILED else RENEWED_PYTHON
 
 
 def _must_move(segment, steps, ys):

@@ -14,7 +14,7 @@ from typing import Any
 
 from .. import __version__, studies
 from ..answers import as_json, plain
-from ..archive import link_target, only_writer, write_study
+from ..archive import file_stem, link_target, only_writer, write_study
 from ..films import film_of
 from ..numerics.parallel import Checkpoint, Results, evaluate, processes
 from ..quantities import reading_in
@@ -32,7 +32,7 @@ from . import Info
 
 def archive_of(name: str, scenario, out=None) -> Path:
     """Where study `name` (hyphens or underscores) of a scenario puts its archive, if it is not told (`out`)."""
-    return link_target(out if out else Path("outputs") / f"{scenario.name}-{name.replace('_', '-')}.h5")
+    return link_target(out if out else Path("outputs") / f"{file_stem(scenario.name)}-{name.replace('_', '-')}.h5")
 
 
 def journal_of(out: Path) -> Path:

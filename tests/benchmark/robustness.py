@@ -22,6 +22,7 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from benchmark.attack.archives import archives
+from benchmark.attack.continues import CASES, continues
 from benchmark.attack.disks import disks
 from benchmark.attack.kills import kills, study_kills
 from benchmark.attack.motions import motions
@@ -43,6 +44,7 @@ PARTS = {
     "archives": (archives, 1000, 12, 50),
     "settings": (settings, 2000, 20, 100),
     "kills": (kills, 100, 1, 5),
+    "continues": (continues, len(CASES), 2, 6),
     "study_kills": (study_kills, 400, 2, 20),
     "worlds": (worlds, len(WORLDS), 4, 6),
     "disks": (disks, 100, 3, 10),

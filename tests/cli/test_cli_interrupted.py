@@ -176,6 +176,37 @@ def test_what_has_finished_nothing_says_so(tmp_path, words, number):
     assert not (tmp_path / "outputs").exists()
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("loaded", ["sealdyn.kernel_cache", "typer", "sealdyn.terminal"])
+def test_a_signal_in_the_first_moments(number, loaded):
+    """While the program is loaded, as Python tells what it has imported: one line, exit 130."""
+    words = [sys.executable, "-X", "importtime", "-m", "sealdyn.cli", "list", "--json"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with subprocess.Popen(words, bufsize=1, **pipes) as process:
+        for line in process.stderr:
+            if line.split("|")[-1].strip() == loaded:
+                break
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    lines = [line for line in err.splitlines() if not line.startswith("import time:")]
+    assert process.returncode == 130 and json.loads(out) == {"status": "interrupted", "message": lines[0]}
+    assert len(lines) == 1
+
+
+def test_a_closed_terminal_changes_nothing_under_nohup():
+    """SIGHUP that is ignored stays so, also in the first moments."""
+    asked = "import os, signal, sys; signal.signal(signal.SIGHUP, signal.SIG_IGN); sys.argv = ['sealdyn', '--help']\n"
+    asked += "import sealdyn; os.kill(os.getpid(), signal.SIGHUP); from sealdyn.cli import main; main()"
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and "sealdyn" in done.stdout
+
+
+def test_who_only_uses_the_package_keeps_his_signals():
+    """Handlers are those of the command alone."""
+    asked = "import signal, sealdyn; print(signal.getsignal(signal.SIGTERM) == signal.SIG_DFL)"
+    assert subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, timeout=60).stdout == "True\n"
+
+
 def test_an_interruption_at_any_moment_of_loading(tmp_path):
     """Half-loaded libraries keep quiet, and the exit code is ours (moments in s; a check takes about one)."""
     for moment in (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6):
