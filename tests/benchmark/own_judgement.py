@@ -211,7 +211,7 @@ def gas_waves(random, interrupted=0):
     """Standing waves on a face over a gas that stores."""
     scene, _ = draw.seal(random, draw.gas(random))
     scene = draw.waves(random, scene)
-    return in_time(scene, 1.0, draw.logarithmic(random, 3e-3, 2e-2), lambda *a: own_films.OwnPatterned(*a, (9, 36)),
+    return in_time(scene, 1.0, draw.logarithmic(random, 3e-3, 2e-2), lambda *a: own_films.OwnPatterned(*a, (8, 32)),
                    interrupted=interrupted)  # fmt: skip
 
 
