@@ -2,8 +2,8 @@
 has none (tests/own_films.py, own_torn.py, own_onset.py, own_words.py): within what each run promises."""
 
 import numpy as np
+import own_judged as judged
 import pytest
-from benchmark import own_judgement as judged
 
 SEED = 2029
 
