@@ -114,7 +114,7 @@ def padded(random, scene):
 
 def liquid(random, cells=(8, 64), cavities=False):
     """Changes of a film that make it one of cells, which tears or does not."""
-    kind = dict(cavitation_pressure=float(random.choice([0.0, 0.6e5]))) if cavities else {}
+    kind = dict(cavitation_pressure=random.uniform(0.6e5, 0.97e5)) if cavities else {}
     tears = "mass-conserving" if cavities else "none"
     return dict(model="reynolds", viscosity=logarithmic(random, 2e-4, 1e-3),
                 outer_pressure=logarithmic(random, 2e5, 1e6),
