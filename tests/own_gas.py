@@ -18,11 +18,12 @@ LOADS = 5
 
 class OwnGas:
     """Film of a `Film` table with constant temperature.  Unknowns x (angles * cells,) are p h (Pa m), angle by angle;
+    `floor` (m) of a film between rough faces;
     conditions are dicts of `mu`, `p_i`, `p_o`, `spin_s`, `spin_r`; gaps as `own_face.face_loads` has them."""
 
-    def __init__(self, film, gas):
+    def __init__(self, film, gas, floor=0.0):
         options = film.gas_reynolds
-        (self.cells, self.angles), self.film = options.cells, film
+        (self.cells, self.angles), self.film, self.floor = options.cells, film, floor
         self.size = self.cells * self.angles
         even = np.array([0.0, *((j + 0.5) / self.cells for j in range(self.cells)), 1.0])
         r_i, r_o = film.inner_radius, film.outer_radius
@@ -57,7 +58,12 @@ class OwnGas:
         """Film thickness (angles, cells + 2) and its rate (m, m/s) at the nodes."""
         aligned, g_x, g_y, rate, g_x_rate, g_y_rate = gap
         h = aligned + self.film.coning * (self.r - self.r[0]) + self.r * (g_x * self.sin - g_y * self.cos)
-        return h, rate + self.r * (g_x_rate * self.sin - g_y_rate * self.cos)
+        rate = rate + self.r * (g_x_rate * self.sin - g_y_rate * self.cos)
+        # Between rough faces, below the floor, a hyperbola.
+        bent = np.maximum(h, self.floor**2 / np.maximum(2.0 * self.floor - h, self.floor or 1.0))
+        return (
+            (bent, np.where(h < self.floor, (bent / (self.floor or 1.0)) ** 2, 1.0) * rate) if self.floor else (h, rate)
+        )
 
     def _pressures(self, now, h, x):
         p = np.empty_like(h)
@@ -114,7 +120,7 @@ class OwnGas:
         matrix[self.before[k], j, k, j] += backward - wm * self.turning
         return matrix.reshape(self.size, self.size)
 
-    def loads_by_pressures(self, gap):
+    def loads_by_pressures(self, now, gap):
         """Force and both moments of each unknown, (3, size)."""
         h = self.thickness(gap)[0][:, 1:-1]
         force, moment = self.step * self.pressing[1:-1] / h, self.step * self.tilting[1:-1] / h

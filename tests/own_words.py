@@ -51,7 +51,7 @@ class OwnSeal:
         self.n = len(self.names)
         self._refuse()
         gas = gas_of(film)
-        self.gas = OwnGas(film, gas) if gas else None
+        self.gas = self._film_of(gas)
         viscosity = film.viscosity
         if gas and viscosity is None:
             hot, cold, s = film.temperature, gas.reference_temperature, gas.sutherland_temperature
@@ -85,6 +85,11 @@ class OwnSeal:
         lengths = [film.clearance if name.endswith("z") else film.clearance / film.outer_radius for name in self.names]
         self.lengths, self.rate = np.array(lengths), self._reference_rate()
 
+    def _film_of(self, gas):
+        """A film with unknowns of its own, or None."""
+        floor = 1.8 * self.scene.contact.roughness if self.scene.contact else 0.0
+        return OwnGas(self.scene.film, gas, floor) if gas else None
+
     def _refuse(self):
         scene, film = self.scene, self.scene.film
         for name, ring in self.floating:
@@ -98,8 +103,8 @@ class OwnSeal:
         # Between equal pressures the balance ratio is nothing.
         equal = film.inner_pressure == film.outer_pressure
         given = (scene.closing.balance_ratio is not None and not equal, scene.closing.spring_force is not None)
-        if film.gas is not None and (hasattr(film.temperature, "time") or scene.contact or film.gas_reynolds is None):
-            raise NotImplementedError("a gas that warms up, touching faces or cells by default")
+        if film.gas is not None and (hasattr(film.temperature, "time") or film.gas_reynolds is None):
+            raise NotImplementedError("a gas that warms up, or cells by default")
         waves = scene.stator.waviness or scene.rotor.waviness
         coned = hasattr(film.coning, "time") or film.coning_per_speed_squared or film.coning_per_kelvin
         if not plain or any(extra) or any(given) or waves or coned:
@@ -207,7 +212,12 @@ class OwnSeal:
         if not self.gas:
             return (), self._loads(now, gap, x)
         rates, loads = self.gas.rates_and_loads(now, gap, x)
-        return rates, np.concatenate([loads, np.zeros(9 - LOADS)])
+        rough = np.zeros(9 - LOADS)
+        if self.scene.contact:
+            # The load of asperities knows no film.
+            conditions = (now["mu"], now["p_i"], now["p_o"], now["spin_s"], now["spin_r"])
+            rough = own_face.face_loads(self.face, conditions, gap, self.law, self.touching, self.levels)[LOADS:]
+        return rates, np.concatenate([loads, rough])
 
     # --- what is asked --------------------------------------------------------------------------------
 
@@ -252,7 +262,7 @@ class OwnSeal:
         if self.gas:
             now = self._at(t, self.piece(t) if piece is None else piece)
             gap = self._gap(self._motion(t, y, now)[1])
-            matrix[m:, m:], loads = self.gas.slopes(now, gap, y[m:]), self.gas.loads_by_pressures(gap)
+            matrix[m:, m:], loads = self.gas.slopes(now, gap, y[m:]), self.gas.loads_by_pressures(now, gap)
             for k, (name, ring) in enumerate(self.floating):
                 inertia = np.array([[ring.mass], [ring.transverse_inertia], [ring.transverse_inertia]])
                 first = self.n + 3 * k

@@ -277,13 +277,14 @@ class Follower:
         signs = {"stator_z": 1.0, "rotor_z": -1.0}
         return float(sum(signs.get(name, 0.0) * x for name, x in zip(model.unknowns.names, orbit.start, strict=False)))
 
-    def follow(self, linear: float, tolerance: float) -> float:
+    def follow(self, linear: float, tolerance: float, most: float = np.inf) -> float:
         """The forcing that touches, from below: ever shorter secant steps, since a trial orbit must not cross the
-        closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch."""
+        closed film.  The gap closes ever more slowly (the seal opens axially), so a secant stops short of touch.
+        Raises NoOrbit also where the orbit at the forcing `most`, the last that is followed, does not touch."""
         clearance = Model(self.scene(0.0), 1e-6).clearance if self.touch else 1.0
         low, low_left, step = 0.0, 1.0 - (self.touch / clearance or self.margin), 0.4 * linear
         for _ in range(80):
-            value = low + step
+            value = min(low + step, most)
             try:
                 left = self.excess(value)
             except TooMuchWork:
@@ -297,6 +298,8 @@ class Follower:
             low, low_left = value, left
             if abs(left) < 1e-6 or abs(step) < tolerance * value:
                 return float(value - left / slope)
+            if value == most and left > 0.0:
+                raise NoOrbit("the last orbit that may be followed does not touch")
             aim = 0.3 * left if left > 0.03 else 0.0
             step = min((aim - left) / slope, 0.2 * linear)
             if value > 20 * linear:

@@ -108,7 +108,8 @@ def brief(row: dict) -> dict:
 
 def onset(scenario, point: dict) -> dict:
     """Linear and nonlinear onset of one scenario; `path` the orbits on the way.  Without a nonlinear onset it says why:
-    `failed`; where that is an onset of linear theory beyond any small tilt, `beyond_tilt` (rad) is there too."""
+    `failed`; where that is an onset beyond any small tilt, of linear theory or of the orbits, `beyond_tilt` (rad) is
+    there too."""
     scenario = with_values(scenario, point["set"])
     floor = min(scenario.scene.film.floor, point["margin"] / 4)
     key, rough = point["key"], touch_height(scenario.scene)
@@ -129,16 +130,20 @@ def onset(scenario, point: dict) -> dict:
     result = {"key": key, "formula": formula, "linear_radius": touching, "margin": point["margin"], "touch": rough,
               "times_own": times_own(scenario.scene, key, formula),
               "clearance": Model(scene(0.0), 1e-6).clearance}  # fmt: skip
-    if si_unit(scenario.scene, key) == "rad" and formula > SMALL_TILT:
-        why = f"beyond any small tilt ({SMALL_TILT:g} rad): the film does not limit {key}"
-        return {**result, "beyond_tilt": SMALL_TILT, "failed": why}
+    limit = SMALL_TILT if si_unit(scenario.scene, key) == "rad" else np.inf
+    why = f"beyond any small tilt ({SMALL_TILT:g} rad): the film does not limit {key}"
+    beyond = {"beyond_tilt": SMALL_TILT, "failed": why}
+    if formula > limit:
+        return {**result, **beyond}
     if (result["times_own"] or 0.0) > point["most"]:
         return {**result, "failed": f"beyond {point['most']:g} times the scenario's own nothing is followed"}
     follower = Follower(scene, point["margin"], min(scenario.run.accuracy, 1e-7), touch=rough)
     try:
-        value = follower.follow(formula, point["tolerance"])
+        value = follower.follow(formula, point["tolerance"], limit)
     except NoOrbit as reason:
-        return {**result, **follower.told(), "failed": str(reason)}
+        # Orbits open the gap as they tilt it: what linear theory sees touch may not, at any small tilt.
+        ended = follower.path and follower.path[-1]["forcing"] == limit
+        return {**result, **follower.told(), **(beyond if ended else {"failed": str(reason)})}
     clearance = follower.path[-1]["clearance"]
     # The path's chord iterations keep one monodromy; the verdict at the onset needs its own.
     monodromy = Shooter(scene(value), 1e-7, tight=1e-10).monodromy(follower.start)

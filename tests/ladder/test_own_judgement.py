@@ -1,0 +1,35 @@
+"""Runs and the onset of contact of scenes drawn at random, by equations in the tests' own words, of which the program
+has none (tests/own_films.py, own_torn.py, own_onset.py, own_words.py): within what each run promises."""
+
+import numpy as np
+import own_judged as judged
+import pytest
+
+SEED = 2029
+
+
+def errors(kind, number, seed=SEED):
+    """Errors by name over what is promised."""
+    found, promised, *_ = getattr(judged, kind)(np.random.default_rng([seed, number]))
+    return {name: error / promised for name, error in found.items()}
+
+
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [
+        pytest.param("rub", 3, marks=pytest.mark.core),
+        ("rub", 8),
+        ("gas_rub", 1),
+        pytest.param("gas_waves", 4, marks=pytest.mark.core),
+        ("gas_pads", 1),
+        ("liquid_waves", 1),
+        ("cavities", 2),
+        pytest.param("wavy_rub", 3, marks=pytest.mark.slow),
+        pytest.param("gas_continued", 3, marks=pytest.mark.slow),
+        pytest.param("torn_continued", 2, marks=pytest.mark.slow),
+        pytest.param("onset", 5, marks=pytest.mark.slow),
+    ],
+)
+def test_a_drawn_scene_is_what_was_promised(kind, number):
+    found = errors(kind, number)
+    assert max(found.values()) <= 1.0, found
