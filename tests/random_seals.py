@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from patterned_faces import gas, liquid, pads, seal
 
-from sealdyn.scene.contact import Contact
+from sealdyn.scene.contact import Contact, Waviness
 from sealdyn.scene.excitation import Shaft
 from sealdyn.scene.film import Coefficients, Film, aligned_gaps
 from sealdyn.scene.rings import Rotor, Stator, Support
@@ -84,6 +85,27 @@ def rough_seal(draw: np.random.Generator) -> Scene:
     peaks = {"asperity_density": draw.uniform(0.01, 0.1) / height**2, "asperity_radius": height * draw.uniform(5, 50)}
     law = Contact(height, "greenwood-williamson", modulus=strength, **peaks)
     return replace(scene, contact=law)
+
+
+def patterned_seal(draw: np.random.Generator) -> Scene:
+    """A floating stator with waves, or pads, of one order under a film of liquid or of gas that stores: slow to fast,
+    hardly and well damped, converging, over few cells."""
+
+    def number(low, high):
+        return float(np.exp(draw.uniform(math.log(low), math.log(high))))
+
+    order, cells, coning = int(draw.integers(3, 6)), (5, 60), number(5e-5, 5e-4)
+    gaseous, padded = draw.random() < 0.5, draw.random() < 0.5
+    waves = [Waviness(order, number(1e-7, 1e-6), float(draw.uniform(0, 6)))]
+    if gaseous:
+        film = gas(*([pads(order, 3.0 / order)] if padded else []), cells=cells, coning=coning)
+    else:
+        film = liquid(cells=cells, coning=coning)
+    scene = seal(film, speed=number(100.0, 1e5), stator=[] if gaseous and padded else waves)
+    support = replace(scene.stator.support, axial_damping=number(1.0, 600.0), axial_stiffness=number(1e4, 1e6))
+    heavier = number(1.0, 30.0)
+    inert = {name: heavier * getattr(scene.stator, name) for name in ("mass", "transverse_inertia", "polar_inertia")}
+    return replace(scene, stator=replace(scene.stator, support=support, **inert))
 
 
 def plain(scene: Scene) -> dict:

@@ -112,8 +112,12 @@ def film_of(scene, film: Film | None = None) -> Film:
 def _no_film(table, waves, able) -> SceneError:
     plain = "a gas" if table.gas is not None else "a profile" if table.profile is not None else "a liquid"
     faces = "pads" if table.pads else "wavy faces" if waves else "film.inertia" if table.inertia else plain
-    expected = " or ".join(f'"{name}"' for name in [*able, "auto"])
+    willing, taken = [*able, "auto"], {}
     if not able:
+        # One that is chosen on request only may do.
         taken = {name: limits(_film(name), table, waves) for name in all_film_names()}
+        willing = [name for name, words in taken.items() if not words]
+    expected = " or ".join(f'"{name}"' for name in willing)
+    if not willing:
         expected = "a film that takes them: " + "; ".join(f"{name} takes {words}" for name, words in taken.items())
     return SceneError("film.model", f'"{table.model}" with {faces}', expected)

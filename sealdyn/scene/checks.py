@@ -58,8 +58,6 @@ def _broken(rule, *parts) -> list[SceneError]:
 def _film(scene) -> None:
     film = scene.film
     _coning(scene)
-    for key, found, expected in pads_errors(film):
-        raise SceneError(f"film.{key}", found, expected)
     for key in ("inner_radius", "outer_radius", "clearance"):
         value = getattr(film, key)
         if value is not None and value <= 0:
@@ -70,6 +68,8 @@ def _film(scene) -> None:
             f"{film.inner_radius:g} m",
             f"less than outer_radius = {film.outer_radius:g} m",
         )
+    for key, found, expected in pads_errors(film):
+        raise SceneError(f"film.{key}", found, expected)
     if not 0 < film.floor < 0.5:
         raise SceneError("film.floor", f"{film.floor:g}", "a fraction of the clearance between 0 and 0.5")
     if film.clearance is not None and film.profile is None:

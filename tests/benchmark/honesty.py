@@ -1,18 +1,20 @@
 """How honest are runs and their certificates on any scene, and what do they cost?
 
-    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes] [family]
+    OPENBLAS_NUM_THREADS=1 python tests/benchmark/honesty.py [scenes] [figure.png] [processes] [family] [seed] [budget]
 
-A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py).
-Random scenes (tests/families.py, seeded; family "wide", "gas", "gas_reynolds", "reynolds" or "patterned") of all that
-the program accepts; the truth of each, whose tilts are unknowns whatever tilts it, by two other references
-(tests/judge.py), of every tenth of liquids by equations that share nothing with the program (tests/own_words.py), of
-gas films that store by four times as many cells besides, up to the time where they agree within accuracy/100; of
-cavitating films by their method twice, far sharper, up to the time where they agree within accuracy/10, loads and
-flows at 99 % of the instants, as the certificate has them.
+A figure's numbers go beside it (figure.json), for the gallery's page (gallery.py); without one ("-") no costs are
+found.  Random scenes of all that the program accepts, seeded (tests/families.py: "wide", "gas", "gas_reynolds",
+"reynolds", "patterned"; tests/hard_families.py: "runup", "rubbing", "tilted_faces"); the truth of each, whose tilts are
+unknowns whatever tilts it, by two other references (tests/judge.py), of every tenth of liquids by equations that share
+nothing with the program (tests/own_words.py), of gas films that store by four times as many cells besides, up to the
+time where they agree within accuracy/100; of cavitating films by their method twice, far sharper, up to the time where
+they agree within accuracy/10, loads and flows at 99 % of the instants, as the certificate has them.
+`budget` (s) bounds the processor time of each reference; what takes longer is not judged.
 Scenes of which less than a turn is known are drawn anew.
 A run is done as `sealdyn run` does it: film, method and tolerance chosen, certified, done again where it is not exact
 enough.  Honest: every quantity of the certificate (simulation/verification_run.py) and every contact is right
 within the asked accuracy, or the run says that it is not.
+Runs that are continued and scenes that are refused: unusual_runs.py.
 Cost: processor time of all that, over that of the cheapest method and tolerance that would have done, known only in
 hindsight; smooth scenes; the least of three times each.
 """
@@ -27,8 +29,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import families
 import numpy as np
+from hard_families import one_of
 from judge import (
     Instants,
     TooLong,
@@ -141,10 +143,11 @@ def in_finer_cells(drawn, scales, times, method):
         return None
 
 
-def judge(number, family="wide"):
-    """What one scene shows: a dict, with `why` where it is no scene or cannot be judged."""
-    random = np.random.default_rng([SEED, number])
-    drawn = getattr(families, family)(random)
+def judge(number, family="wide", seed=SEED, budget=None, costs=True):
+    """What one scene shows: a dict, with `why` where it is no scene or cannot be judged; `budget` (s) of processor time
+    of each reference, `costs`: found too."""
+    random = np.random.default_rng([seed, number])
+    drawn = one_of(family, random)
     row = {"number": number, "words": drawn.words, "accuracy": drawn.accuracy, "smooth": drawn.smooth}
     highest = drawn.scene
     if highest.film.gas is None and highest.film.model != "reynolds":
@@ -164,11 +167,9 @@ def judge(number, family="wide"):
     scales, times = ErrorScales(reference), instants(random, reference)
     chosen = choose_method(reference)[0]
     own = number % OWN == 0 and highest.film.model not in ("gas_dam", "reynolds")
-    known = truth_in_own_words(make, scales, times, drawn.accuracy, chosen) if own else None
-    if chosen == "trbdf2":
-        known = truth_by_steps(make, scales, times, drawn.accuracy, chosen)
-    else:
-        known = known or truth(make, scales, times, drawn.accuracy, chosen)
+    asked = make, scales, times, drawn.accuracy, chosen, *([budget] if budget else [])
+    known = truth_in_own_words(*asked) if own else None
+    known = truth_by_steps(*asked) if chosen == "trbdf2" else known or truth(*asked)
     if known is None:
         return {**row, "why": "not judged"}
     turn = 2 * math.pi / scales.rate
@@ -193,7 +194,7 @@ def judge(number, family="wide"):
     until = times[rows - 1] if rows < len(times) else drawn.duration
     wrong, depth, instant = contact_errors(contacts, known.contacts or [], until, run, scales.rate)
     best = math.inf
-    if drawn.smooth and outcome.status == "ok":
+    if costs and drawn.smooth and outcome.status == "ok":
         spent = min([spent, *(automatic(drawn, times)[-1] for _ in range(TIMES - 1))])
         best = hindsight(make, drawn, times, scales, known.columns, rows)
     return {**row, "errors": [*errors.tolist(), depth, instant], "contacts_wrong": wrong, "contacts": len(contacts),
@@ -225,11 +226,15 @@ def main():
     wanted = int(sys.argv[1]) if len(sys.argv) > 1 else 200
     processes = int(sys.argv[3]) if len(sys.argv) > 3 else 2
     family = sys.argv[4] if len(sys.argv) > 4 else "wide"
+    seed = int(sys.argv[5]) if len(sys.argv) > 5 else SEED
+    budget = float(sys.argv[6]) if len(sys.argv) > 6 else None
+    figure = Path(sys.argv[2]) if len(sys.argv) > 2 and sys.argv[2] != "-" else None
+    judged = partial(judge, family=family, seed=seed, budget=budget, costs=figure is not None)
     rows, dropped, number = [], Counter(), 0
     with ProcessPoolExecutor(processes) as pool:
         while len(rows) < wanted:
-            count = max(4 * processes, wanted - len(rows))
-            for row in pool.map(partial(judge, family=family), range(number, number + count)):
+            count = max(2 * processes, wanted - len(rows))
+            for row in pool.map(judged, range(number, number + count)):
                 if "why" in row:
                     dropped[row["why"]] += 1
                     print(row["number"], row["why"], ",".join(row["words"]), flush=True)
@@ -249,25 +254,25 @@ def main():
     ]
     costs = np.array([row["cost"] / row["best"] for row in rows if math.isfinite(row["best"])])
     numbers = {
-        "seed": SEED,
+        "seed": seed,
         "scenes": len(rows),
         "honest": honest,
         "spoken": spoken,
         "wrong": len(rows) - honest - spoken,
         "over_asked": sum(said for _, said in verdicts),
         "dropped": dict(dropped),
-        "estimate_over_error": [min(claimed), *np.quantile(claimed, [0.1, 0.5, 0.9]).tolist()],
+        "estimate_over_error": [min(claimed), *np.quantile(claimed, [0.1, 0.5, 0.9]).tolist()] if claimed else [],
         "asked": [min(row["accuracy"] for row in rows), max(row["accuracy"] for row in rows)],
-        "median_cost": float(np.median(costs)),
+        "median_cost": float(np.median(costs)) if len(costs) else None,
         "smooth": len(costs),
         "own_words": sum(row["by"].startswith("own words") for row in rows),
         "contacts": sum(row["contacts"] for row in rows),
         "contacts_wrong": sum(row["contacts_wrong"] for row in rows),
     }
     print(json.dumps(numbers, indent=1))
-    if len(sys.argv) > 2 and sys.argv[2] != "-":
-        draw(rows, Path(sys.argv[2]))
-        Path(sys.argv[2]).with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n")
+    if figure:
+        draw(rows, figure)
+        figure.with_suffix(".json").write_text(json.dumps(numbers, indent=1) + "\n")
 
 
 def draw(rows, path):

@@ -60,6 +60,15 @@ def test_what_no_scene_can_have_together_of_every_part():
     assert keys(FMR, *wrong, "film.floor=1") == ["film.floor", *expected]
 
 
+@pytest.mark.parametrize(
+    ("wrong", "blamed"),
+    [("film.inner_radius=41 mm", "film.inner_radius"), ("film.outer_radius=-1 mm", "film.outer_radius")],
+)
+def test_radii_of_the_face_are_to_blame_before_those_of_its_pads(wrong, blamed):
+    pads = "film.pads=[{count=3, depth=1e-6, angle=1.0, inner_radius=0.034, outer_radius=0.040}]"
+    assert keys(FMR, pads, wrong)[0] == blamed
+
+
 def test_of_thousands_so_many_lines():
     text = "".join(f"[[housing.axial]]\nfrequency = 0\nx{k} = 1\n" for k in range(2000))
     found = errors(f"{FMR}\n{text}")

@@ -1,17 +1,20 @@
 """What every film of the package offers, and that only what is chosen is loaded."""
 
+import re
 import subprocess
 import sys
 from dataclasses import MISSING, fields, replace
 from pathlib import Path
 
 import pytest
+from scenes import R_I, R_O, fms
 from scenes import film as table
-from scenes import fms
 
 import sealdyn.films
-from sealdyn.films import all_film_names, film_named
+from sealdyn.films import all_film_names, film_named, film_of
 from sealdyn.films._contract import Field, Film, Offer
+from sealdyn.scene.contact import Waviness
+from sealdyn.scene.film import Pads
 from sealdyn.scene.scene import SceneError
 
 FOLDER = Path(sealdyn.films.__file__).parent
@@ -93,3 +96,26 @@ def test_a_film_of_ones_own_is_handed_in_as_an_object():
     own = replace(film_named("radial"), name="own", fluids=("gas",))
     with pytest.raises(SceneError):
         sealdyn.films.film_of(fms(), own)
+
+
+WAVES, PADS, BAND = [Waviness(3, 1e-7)], [Pads(3, 1e-6, 1.0, R_I, R_O)], {"inertia": True, "density": 1000.0}
+
+
+@pytest.mark.parametrize("model", ["auto", "radial", "profiled", "gas_dam"])
+@pytest.mark.parametrize(
+    ("given", "waves", "willing"),
+    [({}, WAVES, True), ({"geometry": "planar"}, WAVES, False), ({"pads": PADS}, [], False), (BAND, WAVES, False)],
+)
+def test_a_refused_film_is_told_the_films_that_would_do(model, given, waves, willing):
+    """Each that is named takes the scene, those chosen on request too; where none does, each says what it takes."""
+    scene = fms(film=table(model, **given))
+    scene = replace(scene, stator=replace(scene.stator, waviness=waves))
+    with pytest.raises(SceneError) as refused:
+        film_of(scene)
+    assert refused.value.key == "film.model"
+    named = re.findall(r'"(\w+)"', refused.value.expected) if " takes " not in refused.value.expected else []
+    assert bool(named) == willing
+    for name in named:
+        assert film_of(replace(scene, film=replace(scene.film, model=name))).name == name or name == "auto"
+    for words in refused.value.expected.split("; ") if not named else []:
+        assert not words.endswith("takes ")
