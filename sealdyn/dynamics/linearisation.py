@@ -67,9 +67,9 @@ def linear_scene(model, interval, speed: float | None = None, shift: float | Non
         slopes, goes_with = model.still_film(interval, shift), spin
         stiffness = slopes.stiffness - spin * slopes.damping @ QUARTER_TURN
     else:
-        found = tilted_rest(model, interval, rings, spin, shift) if resting else None
-        if found is not None:
-            slopes, film, rest = found
+        tilted = tilted_rest(model, interval, rings, spin, shift) if resting else None
+        if tilted is not None:
+            slopes, film, rest = tilted
         else:
             s, steps = rest_state(model.scene, interface.clearance, interval, spin, shift)
             film = interface.linear_film(s, steps) if interface.stores else None
