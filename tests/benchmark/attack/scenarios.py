@@ -18,8 +18,8 @@ from .outcome import command, judged, tried
 
 HOUSE = Path(__file__).parents[3]
 SCENARIOS = HOUSE / "scenarios"
-# Longest time (s) for reading or checking one.
-READY = 20
+# Longest time (s) for reading one, and for checking it, which may compile a film first.
+READY, CHECKED = 20, 120
 # Of the scenarios that are read one in so many is checked whole, and one in so many goes through the command line.
 EVERY, TYPED = 30, 100
 # Numbers that hurt; strings and other things that do.
@@ -167,7 +167,7 @@ def scenarios(ledger, seed, numbers, folder=None) -> None:
             _, outcome, how = tried(partial(_sized, scenario), READY)
             ledger.note("scenario sized", outcome, how, example)
         if scenario and number % EVERY == 0:
-            _, outcome, how = tried(partial(checked, scenario), READY)
+            _, outcome, how = tried(partial(checked, scenario), CHECKED)
             ledger.note("scenario checked", outcome, how, example)
         ledger.slowest("scenario", time.process_time() - begun, f"{number}")
         if folder and number % TYPED == 0:
