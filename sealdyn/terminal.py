@@ -13,7 +13,7 @@ from pathlib import Path
 from threading import Lock, Timer
 from time import monotonic
 
-from .numerics.interruption import CODE, Interruption, deafen
+from .numerics.interruption import CODE, Interruption, deafen, stop_children
 from .status import Status
 
 DONE, BAD_INPUT, COLLAPSED, FAILED, CHECK_FAILED, INTERRUPTED = 0, 2, 3, 4, 5, CODE
@@ -27,6 +27,8 @@ EXIT = {
 }
 # Time (s) after which a wait is worth a progress bar.
 PATIENCE = 1.0
+# Address space (bytes) that a run and its libraries ask for.
+MEMORY = 1_000_000_000
 # Characters of an error.
 LONGEST = 1000
 # New objects after which Python looks for cyclic garbage: imports and compilation make many and leave little.
@@ -281,6 +283,7 @@ def carried_out(verbs):
     # What is done by then is done, and the exit code says how.
     atexit.register(deafen)
     leaves(lambda: "nothing is kept")
+    _say_short_of_memory()
     try:
         with interruption:
             # Standard output itself: while libraries print, it is not where it was.
@@ -289,11 +292,24 @@ def carried_out(verbs):
             try:
                 _run(verbs, as_json)
             finally:
+                # Python would wait for workers that were begun and not used.
+                stop_children()
                 os.close(out)
     except KeyboardInterrupt:
         # It came before the first thing was done, or after the last.
         _tell_interrupted(as_json)
         sys.exit(INTERRUPTED)
+
+
+def _say_short_of_memory():
+    """Libraries end the process in their own words, or in none, where they find no memory: said before."""
+    with contextlib.suppress(ImportError, OSError, ValueError):
+        import resource
+
+        allowed = resource.getrlimit(resource.RLIMIT_AS)[0]
+        if 0 <= allowed < MEMORY:
+            line = f"memory is limited to {allowed / 1e6:.0f} MB (ulimit -v): where that ends it, some"
+            print(f"{line} {MEMORY / 1e6:.0f} are enough", file=sys.stderr, flush=True)
 
 
 def _open_streams():
@@ -328,7 +344,14 @@ def _run(verbs, as_json: bool):
         # Whoever read us has seen enough; keep the interpreter from complaining at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.exit(DONE)
+    except (MemoryError, ImportError) as error:
+        # Libraries that find no memory cannot be loaded.
+        _refuse(Status.FAILED, f"sealdyn: not enough memory, or a library that cannot be loaded ({error})", as_json)
+        sys.exit(FAILED)
     except OSError as error:
+        if error.errno is None:
+            _refuse(Status.FAILED, f"sealdyn: the system refuses something ({error})", as_json)
+            sys.exit(FAILED)
         # Everything else that is written has its own words.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         line = f"standard output: cannot be written ({error.strerror or error})"

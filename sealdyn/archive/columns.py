@@ -15,7 +15,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError, held_in_words
+from .files import ENDLESS, MEMORY, PATIENCE, READING_ERRORS, WORK, ArchiveError, held_in_words, must_have_an_end
 
 # Bytes of a chunk: a packed one may be far larger than its file.
 MOST_CHUNK = 1 << 28
@@ -31,6 +31,7 @@ def read_columns(path: str | os.PathLike, names: tuple[str, ...], most: int) -> 
     (`_FillValue`, `missing_value`, outside of the valid range), and for attributes that say something else than that.
     **Source** NetCDF Climate and Forecast (CF) Metadata Conventions 1.10, sections 2.5.1, 3.1 and 8.1, and the NetCDF
     Users' Guide, attribute conventions (`_Unsigned`, `valid_range`)."""
+    must_have_an_end(path)
     # Of the folder where the program is run nothing is loaded.
     words = [sys.executable, "-P", "-m", __name__, os.path.abspath(path), str(most), *names]
     among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}

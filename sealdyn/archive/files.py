@@ -14,6 +14,7 @@ import json
 import os
 import shutil
 import signal
+import stat
 import subprocess
 import sys
 from contextlib import contextmanager, suppress
@@ -85,7 +86,9 @@ def link_target(path: str | os.PathLike) -> Path:
 def file_stem(name: str) -> str:
     """The name of a scenario, which may be a stranger's word, as that of a file in a folder: letters, digits and marks,
     nothing that leads elsewhere."""
-    kept = "".join(mark if mark.isprintable() and mark not in '/\\:*?"<>|' else "_" for mark in name)
+    # Bytes of a name that is no text here are kept.
+    own = (mark.isprintable() or "\udc80" <= mark <= "\udcff" for mark in name)
+    kept = "".join(mark if fine and mark not in '/\\:*?"<>|' else "_" for mark, fine in zip(name, own, strict=True))
     return kept.strip(". ") or "scene"
 
 
@@ -119,6 +122,7 @@ def must_be_sound(path: str | os.PathLike) -> None:
     identity = _identity(path)
     if identity in _sound or identity[:2] in _writing:
         return
+    must_have_an_end(path)
     # Of the folder where the program is run nothing is loaded.
     words = [sys.executable, "-P", "-m", __name__, os.path.abspath(path)]
     among = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
@@ -140,6 +144,13 @@ def must_be_sound(path: str | os.PathLike) -> None:
             raise ArchiveError(f"{path}: {held}")
         raise ArchiveError(f"{path}: damaged or not an archive ({lines[-1][:200]})")
     _sound.add(identity)
+
+
+def must_have_an_end(path: str | os.PathLike) -> None:
+    """Raises ArchiveError for pipes and devices, and for what the system makes up as it is read: it has no size."""
+    about = os.stat(path)
+    if not stat.S_ISREG(about.st_mode) or not about.st_size:
+        raise ArchiveError(f"{path}: {'an empty file' if stat.S_ISREG(about.st_mode) else 'not a file'}")
 
 
 def held_in_words(error) -> str:
@@ -354,6 +365,10 @@ def only_writer(path: str | os.PathLike):
     lock = FileLock(beside, timeout=0, fallback_to_soft=False)
     try:
         _acquire(lock, path)
+        for begun in (path, partial_path(path)):
+            # Half a file of a writer that was killed.
+            with suppress(OSError):
+                begun.with_name(begun.name + ".new").unlink()
         yield place
     finally:
         # Before it is free: whoever waits for it sees that it is gone, and makes a new one.

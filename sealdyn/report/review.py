@@ -58,7 +58,7 @@ def review(archives, out_path, title: str = "", rules=None, validation=None, pro
     )
     fresh = out_path.with_name(out_path.name + ".new")
     try:
-        fresh.write_text(words, encoding="utf-8")
+        fresh.write_text(words, encoding="utf-8", errors="backslashreplace")
         os.replace(fresh, out_path)
     except BaseException:
         fresh.unlink(missing_ok=True)

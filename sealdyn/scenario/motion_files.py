@@ -9,6 +9,7 @@ from pathlib import Path
 from ..scene.excitation import MOTION_COLUMNS
 from ..units import MOST_LISTED, SECONDS, Angle, Length, QuantityError, quoted
 from .errors import ScenarioError
+from .files import whole_file
 
 NAMES = ("time", *MOTION_COLUMNS)
 QUANTITIES = dict(zip(NAMES, (SECONDS, Length.__metadata__[0], *[Angle.__metadata__[0]] * 2), strict=True))
@@ -113,7 +114,7 @@ def _hdf5(path: Path) -> dict[str, tuple[list[float], str]]:
 
 def _csv(path: Path) -> dict[str, tuple[list[float], str]]:
     try:
-        text = path.read_text("utf-8-sig")
+        text = whole_file(path, MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError):
         raise QuantityError(f"{quoted(path.name)}, no readable text", A_FILE) from None
     rows = _rows(path.name, text)

@@ -24,6 +24,7 @@ from .door import refuse_unbounded, refuse_unreadable
 from .errors import (
     ScenarioError,
 )
+from .files import whole_file
 from .motion_files import refuse_files_elsewhere
 from .overrides import (
     as_written,
@@ -141,7 +142,7 @@ def read_scenario(path: str | os.PathLike, overrides: Iterable[str] = ()) -> Sce
         return _of_archive(path, overrides)
     try:
         _must_be_readable(path)
-        text = path.read_bytes().decode("utf-8-sig")
+        text = whole_file(path, MOST_BYTES).decode("utf-8-sig")
     except FileNotFoundError:
         near = spelled_like(path.name, _neighbours(path), 3, 0.5)
         hint = f"; nearest {', '.join(near)}" if near else ""
