@@ -339,7 +339,7 @@ def test_a_run_done_before_it_is_continued_says_that_nothing_measures_it(tmp_pat
 
 
 def test_whether_a_run_is_as_exact_as_asked_is_not_known_from_its_film_alone():
-    """A run that was done before it is continued, of a film with cells: what these err by says nothing of the solver."""
+    """A run done before it is continued, of a film with cells: what these err by says nothing of the solver."""
 
     def met(**errors):
         return certificate.Certificate(asked=1e-3, said="", **errors).met
