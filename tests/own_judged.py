@@ -7,6 +7,7 @@ the error of its film's cells, where these stand beside.  Loads of films that te
 
 import tempfile
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -28,6 +29,8 @@ from sealdyn.studies import contact_onset
 # Processor time (s) of one run by own words.
 LONGEST = 90.0
 
+BLOCK, BLOCKS = 12, ("sundials_direct.BLOCK", "trbdf2.BLOCK_OF_STEPS", "integrate.MANY")
+
 
 def program(scene, turns, accuracy, folder, interrupted=0):
     """A run; `interrupted`: so many times on the way."""
@@ -36,15 +39,18 @@ def program(scene, turns, accuracy, folder, interrupted=0):
     # Critical and resonance speeds, which cost more than the run, are not judged.
     parts = partial(summary.parts, speeds=False)
     with mock.patch("sealdyn.simulation.simulate.parts", parts):
-        return _program(given, out, interrupted)
-
-
-def _program(given, out, interrupted):
-    for time_out in range(interrupted):
-        looks = iter(range(10**9))
-        after = 3 * time_out
-        simulate(given, out, stop=lambda looks=looks, after=after: next(looks) > after, resume=time_out > 0)
-    return simulate(given, out, resume=interrupted > 0)
+        if not interrupted:
+            return simulate(given, out)
+        # Short runs are one block of steps, and end where one ends.
+        with ExitStack() as stack:
+            for name in BLOCKS:
+                stack.enter_context(mock.patch(f"sealdyn.solvers.{name}", BLOCK))
+            for time_out in range(interrupted):
+                stopped = simulate(given, out, stop=lambda: True, resume=time_out > 0)
+                assert (
+                    stopped.status == "interrupted" and stopped.summary["end"]["time"] < stopped.summary["end"]["asked"]
+                )
+            return simulate(given, out, resume=True)
 
 
 def promise(result, cells=False):

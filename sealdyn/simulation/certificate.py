@@ -95,10 +95,13 @@ class Certificate:
 
     @property
     def met(self) -> bool | None:
-        """Whether all is as exact as asked; None if that is not known."""
+        """Whether all is as exact as asked; None if that is not known: what the film errs by tells nothing of the
+        solver."""
         if self.estimated is None:
             return None
-        return self.estimated <= self.asked and (self.grid is None or self.cells <= self.grid)
+        if self.estimated > self.asked or (self.grid is not None and not self.cells <= self.grid):
+            return False
+        return None if self.solver is None else True
 
     @property
     def estimated(self) -> float | None:

@@ -1,5 +1,5 @@
-"""Runs and the onset of contact of scenes drawn at random, by equations in the tests' own words, of which the program
-has none (tests/own_films.py, own_torn.py, own_onset.py, own_words.py): within what each run promises."""
+"""Runs of scenes drawn at random, by equations in the tests' own words, of which the program
+has none (tests/own_films.py, own_torn.py, own_words.py): within what each run promises."""
 
 import numpy as np
 import own_judged as judged
@@ -18,16 +18,14 @@ def errors(kind, number, seed=SEED):
     ("kind", "number"),
     [
         pytest.param("rub", 3, marks=pytest.mark.core),
-        ("rub", 8),
-        ("gas_rub", 1),
+        ("rub", 18),
+        pytest.param("gas_rub", 1, marks=pytest.mark.slow),
         pytest.param("gas_waves", 4, marks=pytest.mark.core),
-        ("gas_pads", 1),
-        ("liquid_waves", 1),
-        ("cavities", 2),
+        ("gas_pads", 3),
+        ("liquid_waves", 2),
+        ("gas_continued", 4),
         pytest.param("wavy_rub", 3, marks=pytest.mark.slow),
-        pytest.param("gas_continued", 3, marks=pytest.mark.slow),
-        pytest.param("torn_continued", 2, marks=pytest.mark.slow),
-        pytest.param("onset", 5, marks=pytest.mark.slow),
+        pytest.param("torn_continued", 3, marks=pytest.mark.slow),
     ],
 )
 def test_a_drawn_scene_is_what_was_promised(kind, number):

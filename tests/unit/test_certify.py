@@ -355,3 +355,14 @@ def test_a_run_stopped_while_it_is_measured_is_measured_when_it_goes_on(tmp_path
     rest = simulate(scenario, tmp_path / "x.h5", resume=True)
     assert rest.status == "ok" and rest.summary["certificate"]["met"]
     assert rest.summary["certificate"] == simulate(scenario, tmp_path / "whole.h5").summary["certificate"]
+
+
+def test_whether_a_run_is_as_exact_as_asked_is_not_known_from_its_film_alone():
+    """A run done before it is continued, of a film with cells: what these err by says nothing of the solver."""
+
+    def met(**errors):
+        return certificate.Certificate(asked=1e-3, said="", **errors).met
+
+    assert met(solver=None, model=1e-4) is None and met(solver=1e-4, model=1e-4) is True
+    assert met(solver=None, model=2e-3) is False and met(solver=None, model=None) is None
+    assert met(solver=1e-4, model=None, cells=0.1, grid=0.01) is False
